@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file distributions.h
+ *  Distribution functions and quantiles that confidence intervals need.
+ *  All take probabilities in (0, 1) and return NaN outside the domain. */
+#ifndef IMUKIT_DISTRIBUTIONS_H
+#define IMUKIT_DISTRIBUTIONS_H
+
+#include "imukit/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Standard normal distribution function and its inverse; relative error < 1e-14, also in tails. */
+IMK_API double imk_normal_probability(double x);
+IMK_API double imk_normal_quantile(double probability);
+
+/** log Gamma(x) for x > 0, relative error < 1e-14 (absolute near 1 and 2). */
+IMK_API double imk_log_gamma(double x);
+
+/** Regularised incomplete gamma functions P(a, x) and Q = 1 - P, a > 0, x >= 0; relative error of
+ *  the smaller one < 1e-12 for a <= 1e8. */
+IMK_API double imk_gamma_lower(double a, double x);
+IMK_API double imk_gamma_upper(double a, double x);
+
+/** Chi-square distribution with any real degrees of freedom > 0: probability of a value <= x, and
+ *  the value below which it lies with a probability. */
+IMK_API double imk_chi_square_probability(double x, double degrees);
+IMK_API double imk_chi_square_quantile(double probability, double degrees);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file executor.h
+ *  How the caller lends its threads to the library, which makes none of its own. */
+#ifndef IMUKIT_EXECUTOR_H
+#define IMUKIT_EXECUTOR_H
+
+#include "imukit/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** One independent piece of work: item 0 … count - 1, in any order, on any thread. */
+typedef void (*imk_work)(void *work_context, size_t item);
+
+/** Runs work items and returns when all are done. A NULL executor is serial. io.h makes one from a
+ *  pool of POSIX threads. */
+typedef struct imk_executor {
+    void (*run)(void *context, size_t count, imk_work work, void *work_context);
+    void *context;
+    size_t threads; /**< how many items can run at once, >= 1 */
+} imk_executor;
+
+/** Run the items on an executor, or one after another when it is NULL. */
+IMK_API void imk_execute(const imk_executor *executor, size_t count, imk_work work,
+                         void *work_context);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file identify.h
+ *  Static record -> stochastic terms with confidence, and a verdict on the record.
+ *
+ *  The estimator is maximum likelihood on the cosine spectrum of the record (docs/theory/identify):
+ *  the cosine transform makes white noise and random walk exactly independent and the rest nearly
+ *  so, which gives every frequency its right weight; profile-likelihood intervals; a term is kept
+ *  when the likelihood says so, and otherwise reported as absent with an upper bound. */
+#ifndef IMUKIT_IDENTIFY_H
+#define IMUKIT_IDENTIFY_H
+
+#include "imukit/allan.h"
+#include "imukit/model.h"
+#include "imukit/noise.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The five terms of the lecture and of IEEE 952. */
+typedef enum imk_noise_term {
+    IMK_NOISE_QUANTIZATION = 0,
+    IMK_NOISE_WHITE,
+    IMK_NOISE_BIAS_INSTABILITY,
+    IMK_NOISE_RANDOM_WALK,
+    IMK_NOISE_RAMP,
+    IMK_NOISE_TERMS
+} imk_noise_term;
+
+/** One estimated parameter. */
+typedef struct imk_estimate {
+    bool present;        /**< false: absent; value 0, lower 0, upper the bound at the confidence */
+    double value, sigma; /**< [unit of the parameter]; sigma by the likelihood's curvature */
+    double lower, upper; /**< profile-likelihood interval */
+} imk_estimate;
+
+/** What the record holds that the five terms do not explain. */
+enum {
+    IMK_VERDICT_SHORT = 1 << 0,  /**< too short for the slowest terms: bounds only */
+    IMK_VERDICT_COARSE = 1 << 1, /**< resolution step larger than the noise: white noise doubtful */
+    IMK_VERDICT_LINES = 1 << 2,  /**< spectral lines (vibration, interference) modelled apart */
+    IMK_VERDICT_RESONANCE = 1 << 3, /**< structural resonance modelled apart */
+    IMK_VERDICT_FILTERED = 1 << 4,  /**< the output is low-pass filtered within the band */
+    IMK_VERDICT_WARM_UP = 1 << 5,   /**< the start drifts unlike the rest */
+    IMK_VERDICT_SATURATED = 1 << 6, /**< samples stick at an extreme value */
+    IMK_VERDICT_MISFIT = 1 << 7,    /**< something else remains below `valid_from` */
+    IMK_VERDICT_FROZEN = 1 << 8 /**< long runs of one value: samples repeated, rate overstated */
+};
+
+/** Everything found on one channel. Values in the channel's unit. */
+typedef struct imk_identification {
+    imk_estimate term[IMK_NOISE_TERMS];
+    double correlation[IMK_NOISE_TERMS][IMK_NOISE_TERMS];
+    double mean, deviation; /**< of the samples */
+    double minimum_floor;   /**< smallest Allan deviation/0.664, for comparison with B */
+    imk_low_pass filter;    /**< output filter, bandwidth 0 when none is seen */
+    int sinusoid_count, resonance_count;
+    imk_sinusoid sinusoid[IMK_TERMS_MAX];
+    imk_resonance resonance[IMK_TERMS_MAX];
+    double valid_from; /**< shortest tau [s] from which on the model explains the record */
+    double valid_to;   /**< longest tau [s] the record can speak about */
+    double resolution; /**< smallest step between values, 0 when none is seen [unit] */
+    double log_likelihood;
+    unsigned verdict; /**< IMK_VERDICT_… bits */
+} imk_identification;
+
+typedef struct imk_identify_settings {
+    uint32_t cookie;
+    double dt;           /**< sample interval [s] */
+    double confidence;   /**< of intervals and bounds; 0.95 */
+    double significance; /**< false-alarm rate at which a term is called present; 0.01 */
+    bool shape;          /**< look for lines, resonances and the output filter; true */
+} imk_identify_settings;
+
+IMK_API imk_identify_settings imk_identify_default(void);
+
+/** Bytes of workspace for n samples (about 32 n). */
+IMK_API size_t imk_identify_workspace_size(size_t n);
+
+/** Identify one channel.
+ *  @param n         samples, at least 256
+ *  @param samples   equally spaced, finite; not changed
+ *  @return IMK_ERROR_TOO_SHORT, IMK_ERROR_CONSTANT, IMK_ERROR_NOT_FINITE (error.index: sample),
+ *          IMK_ERROR_WORKSPACE, IMK_ERROR_NO_CONVERGENCE */
+IMK_API imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
+                                        const double *samples, imk_identification *result,
+                                        void *workspace, size_t workspace_size, imk_error *error);
+
+/** Expected Allan variance of the identified model at tau = m dt, exact for the sampled process;
+ *  `term` < 0: of all; else of one of the five. */
+IMK_API double imk_identification_allan_variance(const imk_identification *result, double dt,
+                                                 size_t m, int term);
+
+/** Put a channel's result into axis `axis` of a triad's noise terms, filter and evidence. */
+IMK_API void imk_identification_store(const imk_identification *result, imk_triad *triad,
+                                      imk_evidence *evidence, int axis);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file model.h
+ *  The sensor model: every error a set of gyros and accelerometers can have, in SI units.
+ *
+ *  This is the one object of imukit. Instruments reduce to it, logs are identified into it, and
+ *  simulation, compensation and error budgets start from it. Gyros and accelerometers are two
+ *  imk_triad of the same type; `unit` below is rad/s for a gyro and m/s^2 for an accelerometer.
+ *  A term that is zero is absent. Equations: docs/theory. */
+#ifndef IMUKIT_MODEL_H
+#define IMUKIT_MODEL_H
+
+#include "imukit/noise.h"
+#include "imukit/status.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    IMK_AXES_MAX = 8,              /**< sensing axes of one kind: 3 in a triad, more if redundant */
+    IMK_TEMPERATURE_ORDER_MAX = 5, /**< of the temperature polynomials */
+    IMK_TERMS_MAX = 8,             /**< Gauss-Markov terms, sinusoids, resonances: of each kind */
+    IMK_INTERVALS_MAX = 24
+};
+
+/** One number per axis with its 1-sigma uncertainty (0: not stated). */
+typedef struct imk_axes {
+    double value[IMK_AXES_MAX];
+    double sigma[IMK_AXES_MAX];
+} imk_axes;
+
+/** A row of three per axis (its response to the x, y, z components of a vector). */
+typedef struct imk_rows {
+    double value[IMK_AXES_MAX][3];
+    double sigma[IMK_AXES_MAX][3];
+} imk_rows;
+
+/** A row of six per axis: its response to fx^2, fy^2, fz^2, fx fy, fy fz, fz fx. */
+typedef struct imk_quadratic_rows {
+    double value[IMK_AXES_MAX][6];
+    double sigma[IMK_AXES_MAX][6];
+} imk_quadratic_rows;
+
+/** A scalar with its 1-sigma uncertainty. */
+typedef struct imk_scalar {
+    double value;
+    double sigma;
+} imk_scalar;
+
+/** Change with temperature: sum over i of coefficient[i-1] (T - reference)^i, T clipped to the
+ *  valid range. */
+typedef struct imk_temperature_polynomial {
+    int order;                                       /**< 0 … 5; 0: none */
+    imk_axes coefficient[IMK_TEMPERATURE_ORDER_MAX]; /**< [unit/K^i] */
+    double reference;                                /**< [K] */
+    double minimum, maximum;                         /**< valid range [K] */
+} imk_temperature_polynomial;
+
+typedef struct imk_bias {
+    imk_axes fixed;         /**< [unit] */
+    imk_axes repeatability; /**< 1 sigma of the random constant of each run [unit] */
+    imk_temperature_polynomial temperature;
+    imk_axes temperature_rate;  /**< [unit/(K/s)] */
+    imk_axes warm_up_amplitude; /**< [unit] */
+    imk_scalar warm_up_time;    /**< [s], > 0 when the amplitude is not 0 */
+    imk_axes hysteresis;        /**< width over the temperature range [unit] */
+} imk_bias;
+
+typedef struct imk_scale_factor {
+    imk_axes fixed;                         /**< relative error [1] */
+    imk_axes repeatability;                 /**< 1 sigma, per run [1] */
+    imk_temperature_polynomial temperature; /**< [1/K^i] */
+} imk_scale_factor;
+
+/** K2 u^2 + Koq u|u| + K3 u^3 + asymmetry |u|/2 per axis; names of IEEE 1293. */
+typedef struct imk_nonlinearity {
+    imk_axes k2, koq;        /**< [1/unit] */
+    imk_axes k3;             /**< [1/unit^2] */
+    imk_axes asymmetry;      /**< difference of the scale factors for + and - input, relative [1] */
+    imk_rows cross_products; /**< accelerometer: Kip, Kio, Kpo of input, pendulous, output axes
+                                [1/unit] */
+} imk_nonlinearity;
+
+typedef enum imk_density {
+    IMK_DENSITY_UNSTATED = 0,
+    IMK_DENSITY_TWO_SIDED,
+    IMK_DENSITY_ONE_SIDED
+} imk_density;
+
+/** Stochastic terms; see noise.h for each. Values are always two-sided inside; `density` only
+ *  remembers how the file states them. */
+typedef struct imk_noise {
+    imk_density density;
+    imk_axes white;            /**< N: angle or velocity random walk [unit/sqrt(Hz)] */
+    imk_axes bias_instability; /**< B [unit]; the Allan floor is 0.664 B */
+    imk_axes random_walk;      /**< K: rate or acceleration random walk [unit/sqrt(s)] */
+    imk_axes ramp;             /**< R: rate or acceleration ramp [unit/s] */
+    imk_axes quantization;     /**< Q = LSB/sqrt(12) of the integrated output [unit s] */
+    int gauss_markov_count, sinusoid_count, resonance_count;
+    struct imk_gauss_markov_term {
+        imk_axes sigma;            /**< [unit] */
+        imk_axes correlation_time; /**< [s] */
+    } gauss_markov[IMK_TERMS_MAX];
+    struct imk_sinusoid_term {
+        imk_axes amplitude; /**< [unit] */
+        imk_axes frequency; /**< [Hz] */
+    } sinusoid[IMK_TERMS_MAX];
+    struct imk_resonance_term {
+        imk_axes sigma;     /**< [unit] */
+        imk_axes frequency; /**< [Hz] */
+        imk_axes q;         /**< [1] */
+    } resonance[IMK_TERMS_MAX];
+} imk_noise;
+
+/** A set of sensing axes of one kind: usually three, orthogonal. */
+typedef struct imk_triad {
+    bool present;                      /**< false: the unit has no such sensors */
+    int axis_count;                    /**< 1 … IMK_AXES_MAX */
+    double direction[IMK_AXES_MAX][3]; /**< sensing directions e_i in the body frame, unit norm */
+    imk_bias bias;
+    imk_scale_factor scale_factor;
+    imk_nonlinearity nonlinearity;
+    imk_rows misalignment;             /**< off-diagonal [rad] */
+    imk_rows cross_axis;               /**< off-diagonal [1] */
+    imk_rows g_sensitivity;            /**< gyro only [rad/s/(m/s^2)] */
+    imk_quadratic_rows g2_sensitivity; /**< gyro only [rad/s/(m/s^2)^2] */
+    imk_rows lever_arm;                /**< accelerometer only: position of each sensor [m] */
+    imk_noise noise;
+    imk_axes bandwidth;   /**< -3 dB [Hz]; 0: unlimited */
+    imk_axes damping;     /**< of a second-order output filter [1]; 0: first order */
+    imk_axes dead_band;   /**< half width [unit] */
+    imk_axes range;       /**< full scale, +-range [unit]; 0: unlimited */
+    imk_axes resolution;  /**< step of the output [unit] */
+    imk_axes sensitivity; /**< nominal [count/unit]; 0: output in physical units */
+    imk_axes zero_offset; /**< [count] */
+} imk_triad;
+
+typedef struct imk_timing {
+    imk_scalar rate_error; /**< relative error of the sample clock [1] */
+    imk_scalar jitter;     /**< 1 sigma of a sample's time [s] */
+    imk_scalar skew;       /**< accelerometer samples lag the gyro's by [s] */
+    imk_scalar drops;      /**< fraction of samples lost, 0 … < 1 */
+} imk_timing;
+
+/** A 95 % interval of one parameter, as identification or calibration found it. */
+typedef struct imk_interval {
+    char key[48];          /**< dotted path in the triad: "noise.bias_instability" */
+    int instance;          /**< of a list term, else 0 */
+    imk_axes lower, upper; /**< in value[]; [unit of the parameter]; where a term is absent on an
+                                axis lower is 0 and upper the bound. sigma[] is not used */
+} imk_interval;
+
+/** Where a model's numbers come from. Documents; never alters a simulation. */
+typedef struct imk_evidence {
+    char source[192]; /**< file or publication */
+    char method[192];
+    char frame[48]; /**< convention that fixes the triad's rotation, "" when it does not matter */
+    int interval_count;
+    imk_interval interval[IMK_INTERVALS_MAX];
+} imk_evidence;
+
+/** The sensor model. Start from imk_model_default(), then change fields. About 60 kB. */
+typedef struct imk_model {
+    uint32_t cookie;
+    char name[96];
+    char description[256];
+    char residual_of[96]; /**< not "": what is left after compensating with that model */
+    imk_triad gyro;       /**< [rad/s] */
+    imk_triad accel;      /**< [m/s^2] */
+    imk_timing timing;
+    imk_evidence gyro_evidence, accel_evidence;
+} imk_model;
+
+/** A perfect unit: orthogonal triads of gyros and accelerometers without any error. */
+IMK_API imk_model imk_model_default(void);
+
+/** Check every field: finite numbers, sizes, signs, unit directions, correlation times, polynomial
+ *  ranges, terms that exclude each other or belong to the other kind of sensor.
+ *  @param error  field is the dotted path ("gyro.noise.gauss_markov[1].correlation_time")
+ *  @return IMK_OK, IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT */
+IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
+
+/** True when two models would simulate the same bytes (name, evidence and sigmas aside). */
+IMK_API bool imk_model_equal(const imk_model *a, const imk_model *b);
+
+/* ---- catalogue: real devices and grade presets ---------------------------------------------- */
+
+/** One entry: a real device, or one of the five grades. */
+typedef struct imk_device {
+    const char *name;   /**< "ADIS16465", "tactical" */
+    const char *grade;  /**< "industrial MEMS", "navigation", … */
+    const char *source; /**< where the figures are from */
+    const char *note;   /**< conversions made and contradictions found */
+    bool is_preset;     /**< one of the five grades */
+} imk_device;
+
+IMK_API size_t imk_device_count(void);
+/** Entry `index`; pointers live for ever. NULL beyond the end. */
+IMK_API const imk_device *imk_device_get(size_t index);
+/** Entry by name, ASCII case and blanks ignored; NULL when there is none. */
+IMK_API const imk_device *imk_device_find(const char *name);
+/** Model of an entry: always valid. Floors of datasheets are converted to B by 1/0.664. */
+IMK_API void imk_device_model(const imk_device *device, imk_model *model);
+
+/* ---- grades ---------------------------------------------------------------------------------- */
+
+typedef enum imk_grade {
+    IMK_GRADE_STRATEGIC = 0,
+    IMK_GRADE_NAVIGATION,
+    IMK_GRADE_TACTICAL,
+    IMK_GRADE_AHRS,
+    IMK_GRADE_CONTROL,
+    IMK_GRADE_NONE /**< worse than every class */
+} imk_grade;
+
+/** A row of the table of grades. */
+typedef struct imk_grade_row {
+    const char *name;
+    const char *position_performance; /**< as the table prints it */
+    const char *gyro_technology, *accel_technology;
+    double gyro_bias_limit;  /**< upper end of the class [rad/s] */
+    double accel_bias_limit; /**< [m/s^2] */
+} imk_grade_row;
+
+IMK_API const imk_grade_row *imk_grade_table(imk_grade grade);
+
+/** Class of a model by table look-up: the bias that stays after calibration, the root sum of
+ * squares of repeatability and instability (and of the fixed bias's sigma), worst axis. */
+typedef struct imk_grade_result {
+    imk_grade gyro, accel, overall;
+    double gyro_bias, accel_bias; /**< the figures compared; NaN when the model states none */
+    const char *limiting;         /**< "gyro bias" or "accelerometer bias": what decides overall */
+} imk_grade_result;
+IMK_API imk_grade_result imk_grade_model(const imk_model *model);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file random.h
+ *  Counter-based random numbers: a pure function of (seed, stream, index), the same bits on every
+ *  compiler, instruction set, thread count and machine.
+ *
+ *  The generator is Philox4x32-10 [SALMON2011]. Any number of a stream can be drawn without the
+ *  ones before it, so work can be divided in any way without changing a result. */
+#ifndef IMUKIT_RANDOM_H
+#define IMUKIT_RANDOM_H
+
+#include "imukit/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Instruction set that draws the normals. All give the same bits. */
+typedef enum imk_kernel {
+    IMK_KERNEL_SCALAR = 0, /**< portable C, vectorised by the compiler where it can */
+    IMK_KERNEL_AVX2 = 1,
+    IMK_KERNEL_AVX512 = 2, /**< AVX-512 F and DQ */
+    IMK_KERNEL_NEON = 3    /**< AArch64 */
+} imk_kernel;
+
+/** A source of random numbers. A value: copy it freely; it has no state. */
+typedef struct imk_random {
+    uint64_t seed;
+    imk_kernel kernel; /**< must be one this machine has: use imk_random_seeded() */
+} imk_random;
+
+/** Source with this seed and the fastest kernel of this machine. On hosted systems the environment
+ *  variable IMUKIT_ISA (scalar, avx2, avx512, neon) forces a kernel; one the machine lacks is
+ *  ignored. */
+IMK_API imk_random imk_random_seeded(uint64_t seed);
+
+/** Name of a kernel: "scalar", "avx2", "avx512", "neon". */
+IMK_API const char *imk_kernel_name(imk_kernel kernel);
+
+/** Stream number of one noise process. Numbers are fixed for ever: bits 0-7 axis, 8-15 instance,
+ *  16-31 term, 32-63 run. */
+IMK_API uint64_t imk_stream(uint32_t run, uint16_t term, uint8_t instance, uint8_t axis);
+
+/** One Philox4x32-10 block: out = philox(counter, key). The published known answers hold. */
+IMK_API void imk_philox4x32(const uint32_t counter[4], const uint32_t key[2], uint32_t out[4]);
+
+/** Random words number first … first + count - 1 of a stream. Word w is word w mod 4 of block w/4,
+ *  whose counter is {block low, block high, stream low, stream high} and key {seed low, seed high}.
+ */
+IMK_API void imk_random_words(imk_random source, uint64_t stream, uint64_t first, size_t count,
+                              uint32_t *words);
+
+/** Standard normals number first … first + count - 1 of a stream, by Box-Muller.
+ *
+ *  The layout is part of the contract: normal i belongs to group i/32; lane l = i mod 8 and part
+ *  p = (i/8) mod 4 of that group come from Philox block 8*(i/32) + l: parts 0 and 1 are r cos a and
+ *  r sin a of its words 0 and 1, parts 2 and 3 those of its words 2 and 3. The 64-bit number made
+ *  of a pair of words (first word low) gives the radius by its upper 40 bits and the angle by its
+ *  lower 24; |normal| < 7.6.
+ *
+ *  @param first  any; no alignment needed, multiples of 32 are fastest
+ *  @param out    count doubles */
+IMK_API void imk_random_normals(imk_random source, uint64_t stream, uint64_t first, size_t count,
+                                double *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

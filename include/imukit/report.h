@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file report.h
+ *  Tables, plots (by gnuplot) and self-contained HTML pages. Part of libimukit-io. */
+#ifndef IMUKIT_REPORT_H
+#define IMUKIT_REPORT_H
+
+#include "imukit/output_file.h"
+#include "imukit/status.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** How one curve is drawn. */
+typedef enum imk_curve_style {
+    IMK_CURVE_LINE = 0,
+    IMK_CURVE_POINTS,
+    IMK_CURVE_DASHES,
+    IMK_CURVE_BAND /**< filled between lower and upper */
+} imk_curve_style;
+
+/** One curve of a panel. Arrays are the caller's. */
+typedef struct imk_curve {
+    const char *label; /**< "" leaves it out of the key */
+    imk_curve_style style;
+    int color; /**< index into the house palette, which colour-blind readers can tell apart */
+    size_t count;
+    const double *x, *y;
+    const double *lower, *upper; /**< error bars or band; NULL: none */
+} imk_curve;
+
+typedef struct imk_panel {
+    const char *title, *x_label, *y_label;
+    bool x_logarithmic, y_logarithmic;
+    size_t curve_count;
+    const imk_curve *curves;
+} imk_panel;
+
+/** Panels on a grid. */
+typedef struct imk_figure {
+    const char *title;
+    size_t panel_count, columns;
+    const imk_panel *panels;
+} imk_figure;
+
+/** True when gnuplot can be run. */
+IMK_API bool imk_plot_available(void);
+
+/** Draw a figure to FILE.svg or FILE.png, or to the terminal with "term". Without gnuplot FILE.dat
+ *  and FILE.gp are written instead and IMK_ERROR_UNSUPPORTED names the package to install. */
+IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_error *error);
+
+/** The figure as SVG text obtained from malloc(), for a page. */
+IMK_API imk_status imk_figure_svg(const imk_figure *figure, char **svg, size_t *size,
+                                  imk_error *error);
+
+/** A self-contained HTML page being built. */
+typedef struct imk_page imk_page;
+
+IMK_API imk_page *imk_page_create(const char *title, const char *subtitle);
+IMK_API void imk_page_heading(imk_page *page, const char *text);
+/** A paragraph of plain text (escaped). */
+IMK_API void imk_page_text(imk_page *page, const char *text);
+/** A coloured box: 0 good, 1 note, 2 warning. */
+IMK_API void imk_page_verdict(imk_page *page, int level, const char *text);
+/** A table of rows x columns texts, the first row the header. */
+IMK_API void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *const *cells);
+IMK_API void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption);
+/** Preformatted text, such as a model file. */
+IMK_API void imk_page_code(imk_page *page, const char *text);
+/** Write the page and free it; NULL path only frees. */
+IMK_API imk_status imk_page_write(imk_page *page, const char *path, imk_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

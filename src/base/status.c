@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Names and texts of the statuses, from the one list in status.h, and filling an imk_error. */
+#include "imukit/status.h"
+
+#include <stddef.h>
+#include <string.h>
+
+const char *imk_status_name(imk_status status)
+{
+    switch (status) {
+#define NAME(name, value, text)                                                                    \
+    case name:                                                                                     \
+        return #name;
+        IMK_STATUS_LIST(NAME)
+#undef NAME
+    }
+    return "unknown";
+}
+
+const char *imk_status_text(imk_status status)
+{
+    switch (status) {
+#define TEXT(name, value, text)                                                                    \
+    case name:                                                                                     \
+        return text;
+        IMK_STATUS_LIST(TEXT)
+#undef TEXT
+    }
+    return "unknown";
+}
+
+/* Copy as much of a UTF-8 text as fits, never cutting a character in two. */
+static void copy_text(char *target, size_t size, const char *source)
+{
+    size_t length = source ? strlen(source) : 0;
+    if (length >= size) {
+        length = size - 1;
+        while (length > 0 && ((unsigned char)source[length] & 0xC0) == 0x80)
+            length--;
+    }
+    if (length > 0)
+        memcpy(target, source, length);
+    target[length] = '\0';
+}
+
+imk_status imk_error_set(imk_error *error, imk_status status, const char *field, const char *found,
+                         const char *expected)
+{
+    if (error) {
+        memset(error, 0, sizeof *error);
+        error->status = status;
+        error->index = -1;
+        copy_text(error->field, sizeof error->field, field);
+        copy_text(error->found, sizeof error->found, found);
+        copy_text(error->expected, sizeof error->expected, expected);
+    }
+    return status;
+}
