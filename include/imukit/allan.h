@@ -7,6 +7,8 @@
 #include "imukit/executor.h"
 #include "imukit/status.h"
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -16,15 +18,15 @@ typedef enum imk_allan_statistic {
     IMK_ALLAN_PLAIN            /**< ADEV: non-overlapping clusters */
 } imk_allan_statistic;
 
-/** Averaging factors m (tau = m dt), ascending, for n rate samples: octaves, a number of points per
- *  decade, or all; the largest is (n - 1)/2, or n/9 when `trustworthy`.
- *  @param factors  NULL to count only
- *  @return how many */
+/** Which averaging factors: powers of two, ten per decade, or every one. */
 typedef enum imk_allan_grid {
     IMK_ALLAN_OCTAVE = 0,
     IMK_ALLAN_DECADE,
     IMK_ALLAN_ALL
 } imk_allan_grid;
+/** Averaging factors m (tau = m dt), ascending from 1 to n/2, for n rate samples.
+ *  @param factors  NULL to count only
+ *  @return how many */
 IMK_API size_t imk_allan_factors(imk_allan_grid grid, size_t n, size_t *factors);
 
 /** Running sums of a rate record: sums[i] = sum over j < i of (rate[j] - mean), n + 1 values.
@@ -68,10 +70,10 @@ IMK_API imk_status imk_allan_noise_type(size_t n, const double *sums, size_t m,
 IMK_API double imk_allan_edf_greenhall_riley(imk_allan_statistic statistic, imk_power_law type,
                                              size_t n, size_t m);
 
-/** Exact equivalent degrees of freedom, 2 E^2/var, for a *sampled* Gaussian process given by the
- *  structure of its spectrum: `second` are the expected Allan variances at this process's
- *  generalised autocovariance... see allan.c. For independent rate samples (white rate noise):
- *  666.2 at m = 1, n = 999. */
+/** Exact equivalent degrees of freedom, 2 E^2/var, of the sampled process: independent rate samples
+ *  for white rate noise (666.2 at m = 1, n = 1000, where the continuous process gives 782.0),
+ *  independent sums for white phase noise. Flicker laws by their continuous form. Beyond m = 256
+ *  evaluated at m = 256 with the record in proportion, good to 1e-3. Same arguments as above. */
 IMK_API double imk_allan_edf_exact(imk_allan_statistic statistic, imk_power_law type, size_t n,
                                    size_t m);
 
@@ -79,6 +81,34 @@ IMK_API double imk_allan_edf_exact(imk_allan_statistic statistic, imk_power_law 
  *  degrees of freedom: deviation * sqrt(edf / chi2 quantile). */
 IMK_API void imk_allan_interval(double deviation, double edf, double confidence, double *lower,
                                 double *upper);
+
+/** How to evaluate Allan deviations. Start from imk_allan_default(), then change fields. */
+typedef struct imk_allan_settings {
+    uint32_t cookie;
+    imk_allan_statistic statistic;
+    double confidence;    /**< two-sided, of the intervals; 0.95 */
+    bool greenhall_riley; /**< degrees of freedom of the continuous process; false: exact ones */
+} imk_allan_settings;
+
+IMK_API imk_allan_settings imk_allan_default(void);
+
+/** One point of an Allan plot. */
+typedef struct imk_allan_point {
+    size_t m;                       /**< averaging factor, tau = m dt */
+    double deviation, lower, upper; /**< [unit of the rate] */
+    double edf;                     /**< equivalent degrees of freedom */
+    size_t count;                   /**< squares averaged */
+    imk_power_law
+        type; /**< noise type used for edf; that of the last factor with enough clusters */
+} imk_allan_point;
+
+/** Deviations with intervals at each factor (ascending, 1 … n/2).
+ *  @param sums    n + 1 running sums, imk_allan_sums()
+ *  @param points  factor_count values
+ *  @return IMK_ERROR_RANGE, IMK_ERROR_UNINITIALISED, IMK_ERROR_TOO_SHORT */
+IMK_API imk_status imk_allan_points(const imk_allan_settings *settings, size_t n,
+                                    const double *sums, size_t factor_count, const size_t *factors,
+                                    imk_allan_point *points, const imk_executor *executor);
 
 #ifdef __cplusplus
 }

@@ -24,7 +24,8 @@ IMK_API double imk_gamma_lower(double a, double x);
 IMK_API double imk_gamma_upper(double a, double x);
 
 /** Chi-square distribution with any real degrees of freedom > 0: probability of a value <= x, and
- *  the value below which it lies with a probability. */
+ *  the value below which it lies with a probability, relative error < 1e-12 (1e-12/degrees below 1
+ *  degree) for probabilities 1e-12 … 1 - 1e-12; about 1 us. */
 IMK_API double imk_chi_square_probability(double x, double degrees);
 IMK_API double imk_chi_square_quantile(double probability, double degrees);
 

@@ -11,17 +11,19 @@
 extern "C" {
 #endif
 
-/** e^x. Error below 1 ulp; 0 and infinity at the ends of the range; NaN stays NaN. */
+/** e^x. Error below 0.7 ulp, below 1 ulp where the result is subnormal; 0 below -745.2, infinity
+ *  where the result is beyond the largest double; NaN stays NaN. */
 IMK_API double imk_exp(double x);
 
-/** e^x - 1, accurate also for small x. Error below 2 ulp. */
+/** e^x - 1, accurate also for small x. Error below 1.1 ulp; -1 and infinity at the ends of the
+ *  range; -0 and NaN stay. */
 IMK_API double imk_expm1(double x);
 
-/** Natural logarithm. Error below 1 ulp; -infinity at 0, NaN below. */
-IMK_API double imk_log(double x);
+/** Natural logarithm. Error below 0.95 ulp; -infinity at 0, NaN below. */
+IMK_API double imk_ln(double x);
 
-/** Sine and cosine of x [rad]. Error below 1 ulp for |x| <= 1e5 (and below 2 ulp of the result or
- *  1e-16 absolute, whichever is larger, up to 1e9); NaN beyond 1e15 and for infinities. */
+/** Sine and cosine of x [rad]. Error below 0.85 ulp for |x| <= 1e5; up to 1e9 below 2 ulp or 1e-16,
+ *  whichever is larger; up to 1e15 below 1e-15. NaN beyond and for infinities. */
 IMK_API double imk_sin(double x);
 IMK_API double imk_cos(double x);
 

@@ -45,7 +45,7 @@ enum {
     IMK_VERDICT_FILTERED = 1 << 4,  /**< the output is low-pass filtered within the band */
     IMK_VERDICT_WARM_UP = 1 << 5,   /**< the start drifts unlike the rest */
     IMK_VERDICT_SATURATED = 1 << 6, /**< samples stick at an extreme value */
-    IMK_VERDICT_MISFIT = 1 << 7,    /**< something else remains below `valid_from` */
+    IMK_VERDICT_MISFIT = 1 << 7,    /**< something else remains outside valid_from … valid_to */
     IMK_VERDICT_FROZEN = 1 << 8 /**< long runs of one value: samples repeated, rate overstated */
 };
 
@@ -56,12 +56,19 @@ typedef struct imk_identification {
     double mean, deviation; /**< of the samples */
     double minimum_floor;   /**< smallest Allan deviation/0.664, for comparison with B */
     imk_low_pass filter;    /**< output filter, bandwidth 0 when none is seen */
-    int sinusoid_count, resonance_count;
+    int gauss_markov_count, sinusoid_count, resonance_count;
+    struct imk_gauss_markov_estimate {
+        imk_estimate sigma;            /**< [unit] */
+        imk_estimate correlation_time; /**< [s] */
+    } gauss_markov[IMK_TERMS_MAX];
     imk_sinusoid sinusoid[IMK_TERMS_MAX];
     imk_resonance resonance[IMK_TERMS_MAX];
-    double valid_from; /**< shortest tau [s] from which on the model explains the record */
-    double valid_to;   /**< longest tau [s] the record can speak about */
-    double resolution; /**< smallest step between values, 0 when none is seen [unit] */
+    double valid_from, valid_to; /**< range of tau [s] over which the model explains the measured
+                                      Allan deviation; from is infinite when there is none */
+    double five_terms_from;      /**< the same start for the five terms alone, without Gauss-Markov
+                                    terms,      lines, resonances and filter */
+    double longest;              /**< longest tau [s] compared: a ninth of the record */
+    double resolution;           /**< smallest step between values, 0 when none is seen [unit] */
     double log_likelihood;
     unsigned verdict; /**< IMK_VERDICT_… bits */
 } imk_identification;
@@ -93,9 +100,12 @@ IMK_API imk_status imk_identify_channel(const imk_identify_settings *settings, s
 IMK_API double imk_identification_allan_variance(const imk_identification *result, double dt,
                                                  size_t m, int term);
 
-/** Put a channel's result into axis `axis` of a triad's noise terms, filter and evidence. */
-IMK_API void imk_identification_store(const imk_identification *result, imk_triad *triad,
-                                      imk_evidence *evidence, int axis);
+/** Put a channel's result into one axis of a model: its noise terms, its output filter and the
+ *  evidence for them. Terms that are absent become zero there, with their bound in the evidence.
+ *  @param accel  accelerometer axis; false: gyro
+ *  @param axis   0 … IMK_AXES_MAX - 1 */
+IMK_API void imk_identification_store(const imk_identification *result, imk_model *model,
+                                      bool accel, int axis);
 
 #ifdef __cplusplus
 }

@@ -14,10 +14,24 @@
 extern "C" {
 #endif
 
-/** One or two sentences that say what was found, what was expected and what to do:
- *  `tactical.yaml:7:3: gyro.noise.angle_random_walk: "0.1 deg/h" is an angular rate; expected …`
- *  @param source  file name to put in front, or NULL
- *  @return length; the text is shortened to fit `size` */
+/** A sentence that says what was found, what was expected and what to do:
+ *  `tactical.yaml:7:3: gyro.noise.angle_random_walk: "0.1 deg/h" is a rate; expected a unit like …`
+ *
+ *  How an author fills an imk_error so that the sentence is good:
+ *  - found is the bare text that stood there for the statuses about a text (_SYNTAX, _UNIT_…,
+ *    _DIMENSION, _KEY_…, _NAME_UNKNOWN, _VERSION, _RANGE, _NOT_FINITE): it is quoted and the clause
+ *    added; or a whole clause that begins with its own quotation mark. For the others it is a
+ * reason
+ *    ("Permission denied") or a clause ("gnuplot is not installed").
+ *  - expected begins with an article, a count or "at least" when it says what is due ("a positive
+ *    number"; "expected" is put in front), else it is what to do ("add --rate 100Hz"); a single
+ *    word after _UNIT_UNKNOWN, _KEY_UNKNOWN, _NAME_UNKNOWN becomes "did you mean …?".
+ *  - without found, value and limit are printed unless both are 0 (SI, as they are);
+ *    index is an axis under gyro… and accel…, a row with _TIME_ORDER and _GAP, else an element.
+ *
+ *  Control characters and bytes that are not UTF-8 come out as "?".
+ *  @param source  file name to put in front ("-": standard input), or NULL
+ *  @return length; the text is shortened between characters to fit `size` with its zero */
 IMK_API size_t imk_error_text(const imk_error *error, const char *source, char *text, size_t size);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file least_squares.h
- *  Bounded nonlinear least squares with covariance, by Levenberg-Marquardt [MORE1978] with a
- *  projected active set for the bounds. */
+ *  Bounded nonlinear least squares with covariance, by Levenberg-Marquardt scaled as in [MORE1978]
+ *  and damped as in [NIELSEN1999], with a projected active set for the bounds. The residuals are
+ *  asked for inside the bounds only; where they are not finite a shorter step is taken. */
 #ifndef IMUKIT_LEAST_SQUARES_H
 #define IMUKIT_LEAST_SQUARES_H
 
@@ -21,7 +22,7 @@ typedef imk_status (*imk_residuals)(void *context, const double *x, double *resi
 typedef struct imk_least_squares {
     uint32_t cookie;
     size_t parameter_count; /**< <= 64 */
-    size_t residual_count;  /**< >= free parameters */
+    size_t residual_count;  /**< at least as many as parameters with lower < upper */
     imk_residuals residuals;
     void *context;
     bool has_jacobian;   /**< false: forward differences are taken */
@@ -49,8 +50,11 @@ IMK_API size_t imk_least_squares_workspace_size(const imk_least_squares *problem
  *  @param x          parameter_count values: start, then solution (clipped to the bounds)
  *  @param covariance parameter_count^2 or NULL: (J^T J)^-1 over the free parameters, zero rows and
  *                    columns for those at a bound; for residuals divided by their sigmas
+ *  @param result     may be NULL
  *  @return IMK_ERROR_NO_CONVERGENCE (x is then the best point found), IMK_ERROR_SINGULAR (x is the
- *          solution, covariance untouched), IMK_ERROR_ARGUMENT, IMK_ERROR_NOT_FINITE */
+ *          solution, covariance untouched), IMK_ERROR_ARGUMENT, IMK_ERROR_WORKSPACE,
+ *          IMK_ERROR_UNINITIALISED, IMK_ERROR_NOT_FINITE (at the start, or a derivative), or what
+ *          the residual function returned (x is the best point found) */
 IMK_API imk_status imk_least_squares_solve(const imk_least_squares *problem, double *x,
                                            double *covariance, imk_least_squares_result *result,
                                            void *workspace, size_t workspace_size);

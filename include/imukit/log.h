@@ -37,6 +37,8 @@ typedef struct imk_log_column {
     int axis;       /**< 0 … 7; -1 for time, temperature, other */
     imk_unit unit;  /**< as in the file */
     bool increment; /**< the file holds increments of the integral */
+    bool label; /**< the file holds texts (section names, …): the value is the index of the text
+                     in the reader's list, see imk_log_label() */
 } imk_log_column;
 
 /** How to read a file. Start from imk_log_settings_default(). Texts may be NULL: taken from the
@@ -52,7 +54,12 @@ typedef struct imk_log_settings {
 
 IMK_API imk_log_settings imk_log_settings_default(void);
 
-/** What was found in the rows read so far. Rows count from 1, the first data row. */
+/** What was found in the rows read so far. Rows count from 1, the first data row.
+ *
+ *  The interval is the median of the first 4096 positive time steps (of all, when there are fewer),
+ *  afterwards the median of the medians of groups of 4096, or 1/rate where the settings say a rate.
+ *  Gaps and jitter are judged by the interval known when the group of the step was complete. Jitter
+ *  leaves gaps, repeats and reversals out. No step is formed with a time that is not finite. */
 typedef struct imk_log_findings {
     size_t rows;
     size_t not_finite, first_not_finite; /**< rows with a NaN, an infinity or an empty cell */
@@ -62,11 +69,21 @@ typedef struct imk_log_findings {
     double interval;                     /**< median time step, or 1/rate [s] */
     double jitter;                       /**< rms deviation of the steps from it [s] */
     double first_time, last_time;        /**< [s] */
+    double
+        time_origin; /**< [s] subtracted from the times: the first one if beyond 1e6 s (clocks that
+                        count from an epoch), so that microseconds keep their resolution; else 0 */
 } imk_log_findings;
 
 typedef struct imk_log_reader imk_log_reader;
 
-/** Open a log ("-": standard input) and read its header. Regular plain files are memory-mapped.
+/** Open a log ("-": standard input) and read its header. The memory needed does not depend on the
+ *  length of the log; a line beyond 1 MiB is refused.
+ *
+ *  Names, in any case: time (t, timestamp); gyro_, dtheta_, accel_ (acc_), dvel_ followed by x, y,
+ * z or 0 … 7; temperature (temp). Units stand in brackets or parentheses behind the name. Counts
+ * are allowed for any sensor. Other columns are kept as IMK_QUANTITY_OTHER, in SI if their unit is
+ *  known, as they stand if not; where the first row holds a text, the column is one of labels.
+ *
  *  The message of every refusal ends with the exact option to add.
  *  @return IMK_ERROR_OPEN, _READ, _EMPTY, _FORMAT, _COMPRESSED, _COLUMN, _UNIT_MISSING,
  *          _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, … */
@@ -86,12 +103,21 @@ IMK_API int imk_log_column_find(const imk_log_reader *reader, imk_quantity quant
 IMK_API void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *size);
 
 /** Read up to max_rows rows, SI units, into one array per column (NULL skips a column).
+ *
+ *  A value is number * scale + offset of its unit. Increments are divided by the interval: 1/rate
+ *  where the settings say a rate, else the step from the row before (the first row: to the next; a
+ *  step that is not positive: the last that was). An empty cell is NaN. An error behind rows that
+ *  could be read comes with the call after.
  *  @param rows  how many were read; 0 at the end
  *  @return IMK_ERROR_SYNTAX (a cell that is no number), IMK_ERROR_COLUMN (a row with another number
  *          of cells), IMK_ERROR_COMPRESSED, IMK_ERROR_READ, with line and column. A last line that
  *          was cut in the middle is an error, not a row. */
 IMK_API imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *columns,
                                 size_t *rows, imk_error *error);
+
+/** Text number `index` of the columns of labels, in the order they were met; NULL beyond the last.
+ */
+IMK_API const char *imk_log_label(const imk_log_reader *reader, size_t index);
 
 /** Findings on the rows read so far. */
 IMK_API imk_log_findings imk_log_findings_get(const imk_log_reader *reader);
@@ -104,6 +130,8 @@ typedef struct imk_log {
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     double *data[IMK_LOG_COLUMNS_MAX]; /**< rows values each (room for rows + 1), SI */
     imk_log_findings findings;
+    size_t label_count;
+    char (*label)[48]; /**< texts the values of label columns index */
 } imk_log;
 
 /** Called now and then on long work; `done` of `total` (0: not known) in any measure. */
@@ -119,30 +147,64 @@ IMK_API int imk_log_find(const imk_log *log, imk_quantity quantity, int axis);
 
 /** How numbers are written. */
 typedef enum imk_log_precision {
-    IMK_LOG_SHORTEST = 0, /**< shortest decimal that reads back to the same double */
-    IMK_LOG_FIXED         /**< a number of decimals per column */
+    /** In SI units (scale 1) the shortest decimal that reads back to the same double. In other
+     * units a decimal of at most 15 or so digits where one reads back to the SI value, scale *
+     * number + offset == value; else the shortest decimal of the quotient, (value - offset) /
+     * scale. So a log in deg/s or g with up to 15 significant digits, or in degC with up to 11
+     * decimals, is the same text after reading and writing. Of arbitrary SI doubles, 2 to 16 % (by
+     * unit) have no double in the unit that reads back to them; they move by one unit in the last
+     * place. */
+    IMK_LOG_SHORTEST = 0,
+    IMK_LOG_FIXED /**< a number of decimals per column, exactly rounded quotients */
 } imk_log_precision;
 
+/** Writes one log; one thread at a time. Memory: about 1.3 MB, and 2.5 MB per thread of the
+ *  executor. */
 typedef struct imk_log_writer imk_log_writer;
 
-/** Start a log: .csv (also .gz, .zst, and "-") with a header, or .npy (float64 matrix, rows x
- * columns, C order, values in the units of the columns; the column names go to FILE.npy.columns).
- *  @param columns   name and unit of each; values given to imk_log_write() are SI and are divided
- *                   by the unit's scale
- *  @param decimals  per column, with IMK_LOG_FIXED; else NULL
- *  @param row_count number of rows if known (needed for .npy on a pipe), else 0 */
+/** Start a log, which appears complete or not at all (output_file.h).
+ *
+ *  - A path ending in .npy: float64 matrix, rows x columns, C order, little-endian, values in the
+ *    units of the columns chosen as for IMK_LOG_SHORTEST; `name [unit]` of each column goes to a
+ *    line of FILE.npy.columns, which appears with it.
+ *  - Any other: CSV text, commas, line feeds, `name [unit]` in the header (`name` for a unit
+ * without text). NaN and infinities are written nan, inf, -inf.
+ *  - With .gz or .zst behind either, compressed; "-" and NULL are CSV to standard output.
+ *
+ *  @param columns   name and unit of each; values given to imk_log_write() are SI: an increment
+ *                   column takes increments of the integral [rad, m/s]. Names are not empty,
+ *                   different, and without separators, quotes and brackets.
+ *  @param decimals  per column (0 … 17), with IMK_LOG_FIXED; else NULL
+ *  @param row_count number of rows if known, else 0. Only a .npy that is not a plain file (a pipe,
+ *                   compressed) needs it, and then exactly.
+ *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name), IMK_ERROR_ARGUMENT (a unit or decimals),
+ *          IMK_ERROR_UNSUPPORTED (a .npy that needs row_count), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_create(const char *path, size_t column_count,
                                   const imk_log_column *columns, imk_log_precision precision,
                                   const int *decimals, uint64_t row_count, imk_log_writer **writer,
                                   imk_error *error);
-/** A comment line at the head of a CSV, before the first row. */
+/** Comment lines (one per line of the text) at the head of a CSV, before its header; a .npy has no
+ *  place for them and leaves them out. @return IMK_ERROR_ARGUMENT after the first row */
 IMK_API imk_status imk_log_comment(imk_log_writer *writer, const char *text);
-/** Add rows from one array per column, SI. @param executor formats blocks in parallel; may be NULL.
- *  The bytes do not depend on it. */
+/** Text of a label column, for a value of it; NULL when there is none. */
+typedef const char *(*imk_log_label_lookup)(void *context, size_t index);
+/** Where the texts of columns with `label` set are, for a CSV; before the first row. Without it, and
+ *  where it gives NULL, and in a .npy, the index is written. It is called by several threads at
+ *  once when imk_log_write() has an executor. */
+IMK_API void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup,
+                                  void *context);
+/** Add rows from one array per column, SI. @param executor formats blocks in parallel, beside the
+ *  compression and writing of the blocks before; may be NULL. The bytes do not depend on it, nor on
+ *  how the rows are divided among calls.
+ *  @return IMK_ERROR_WRITE or IMK_ERROR_MEMORY, possibly a call late; commit has the reason */
 IMK_API imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *const *columns,
                                  const imk_executor *executor);
-/** Finish: the file appears. On error nothing appears. Frees the writer. */
+/** Finish: the file appears. On error nothing appears. Frees the writer.
+ *  @return IMK_ERROR_WRITE (error.field: the path, error.found: the system's reason),
+ *          IMK_ERROR_CONFLICT (another row count than announced, where it matters),
+ *          IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_commit(imk_log_writer *writer, imk_error *error);
+/** Give up: nothing appears. Frees the writer; NULL is allowed. */
 IMK_API void imk_log_abandon(imk_log_writer *writer);
 
 #ifdef __cplusplus

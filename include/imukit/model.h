@@ -122,9 +122,10 @@ typedef struct imk_triad {
     imk_bias bias;
     imk_scale_factor scale_factor;
     imk_nonlinearity nonlinearity;
-    imk_rows misalignment;             /**< off-diagonal [rad] */
-    imk_rows cross_axis;               /**< off-diagonal [1] */
-    imk_rows g_sensitivity;            /**< gyro only [rad/s/(m/s^2)] */
+    imk_rows misalignment;  /**< row i: response of axis i to the x, y, z components [rad]; the
+                               diagonal of three axes is 0 */
+    imk_rows cross_axis;    /**< the same for what is not geometry [1] */
+    imk_rows g_sensitivity; /**< gyro only [rad/s/(m/s^2)] */
     imk_quadratic_rows g2_sensitivity; /**< gyro only [rad/s/(m/s^2)^2] */
     imk_rows lever_arm;                /**< accelerometer only: position of each sensor [m] */
     imk_noise noise;
@@ -147,7 +148,7 @@ typedef struct imk_timing {
 /** A 95 % interval of one parameter, as identification or calibration found it. */
 typedef struct imk_interval {
     char key[48];          /**< dotted path in the triad: "noise.bias_instability" */
-    int instance;          /**< of a list term, else 0 */
+    int instance;          /**< of a list term ("noise.gauss_markov.sigma"), from 0; else 0 */
     imk_axes lower, upper; /**< in value[]; [unit of the parameter]; where a term is absent on an
                                 axis lower is 0 and upper the bound. sigma[] is not used */
 } imk_interval;
@@ -161,7 +162,7 @@ typedef struct imk_evidence {
     imk_interval interval[IMK_INTERVALS_MAX];
 } imk_evidence;
 
-/** The sensor model. Start from imk_model_default(), then change fields. About 60 kB. */
+/** The sensor model. Start from imk_model_default(), then change fields. About 45 kB. */
 typedef struct imk_model {
     uint32_t cookie;
     char name[96];
@@ -177,9 +178,14 @@ typedef struct imk_model {
 IMK_API imk_model imk_model_default(void);
 
 /** Check every field: finite numbers, sizes, signs, unit directions, correlation times, polynomial
- *  ranges, terms that exclude each other or belong to the other kind of sensor.
- *  @param error  field is the dotted path ("gyro.noise.gauss_markov[1].correlation_time")
- *  @return IMK_OK, IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT */
+ *  ranges, terms that exclude each other or belong to the other kind of sensor. What lies beyond
+ *  axis_count, or beyond the count of a list, is not looked at; nor is a sensor that is not
+ *  present. A time, frequency or q may be 0 on an axis where the term's sigma or amplitude is 0.
+ *  @param error  field is the dotted path ("gyro.noise.gauss_markov[1].correlation_time"), index
+ *                the axis
+ *  @return IMK_OK, IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT, _KEY_MISSING (neither
+ *          gyro nor accel), _KEY_UNKNOWN or _KEY_DUPLICATE (key of an interval), _ARGUMENT (a text
+ *          without end) */
 IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
 
 /** True when two models would simulate the same bytes (name, evidence and sigmas aside). */
@@ -201,7 +207,8 @@ IMK_API size_t imk_device_count(void);
 IMK_API const imk_device *imk_device_get(size_t index);
 /** Entry by name, ASCII case and blanks ignored; NULL when there is none. */
 IMK_API const imk_device *imk_device_find(const char *name);
-/** Model of an entry: always valid. Floors of datasheets are converted to B by 1/0.664. */
+/** Model of an entry: always valid. Floors of datasheets are converted to B by 1/0.664. `device`
+ *  is one of imk_device_get() or imk_device_find(), not a copy. */
 IMK_API void imk_device_model(const imk_device *device, imk_model *model);
 
 /* ---- grades ---------------------------------------------------------------------------------- */
@@ -224,6 +231,7 @@ typedef struct imk_grade_row {
     double accel_bias_limit; /**< [m/s^2] */
 } imk_grade_row;
 
+/** Row of a class; NULL for IMK_GRADE_NONE. */
 IMK_API const imk_grade_row *imk_grade_table(imk_grade grade);
 
 /** Class of a model by table look-up: the bias that stays after calibration, the root sum of
@@ -231,7 +239,8 @@ IMK_API const imk_grade_row *imk_grade_table(imk_grade grade);
 typedef struct imk_grade_result {
     imk_grade gyro, accel, overall;
     double gyro_bias, accel_bias; /**< the figures compared; NaN when the model states none */
-    const char *limiting;         /**< "gyro bias" or "accelerometer bias": what decides overall */
+    const char *limiting; /**< "gyro bias" or "accelerometer bias": what decides overall (the
+                             gyro's, of two equal classes); "" when neither is stated */
 } imk_grade_result;
 IMK_API imk_grade_result imk_grade_model(const imk_model *model);
 

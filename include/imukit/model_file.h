@@ -19,8 +19,10 @@ typedef struct imk_document imk_document;
  *  @param model     untouched on error
  *  @param document  the file's texts, for imk_model_write(); NULL when not wanted;
  *                   free with imk_document_free()
- *  @return IMK_ERROR_OPEN, _READ, _SYNTAX, _KEY_UNKNOWN ("did you mean" in error.expected),
- *          _KEY_DUPLICATE, _UNIT_MISSING, _DIMENSION, …, with line and column */
+ *  @return IMK_ERROR_OPEN, _READ, _EMPTY, _FORMAT, _SYNTAX, _VERSION, _KEY_UNKNOWN ("did you mean"
+ *          in error.expected), _KEY_DUPLICATE, _KEY_MISSING, _CONFLICT, _UNIT_MISSING,
+ *          _UNIT_UNKNOWN, _DIMENSION, _NOT_FINITE, _RANGE, _UNSUPPORTED (anchors, aliases, tags,
+ *          more than 1 MiB), with line and column */
 IMK_API imk_status imk_model_read(const char *path, imk_model *model, imk_document **document,
                                   imk_error *error);
 
@@ -38,9 +40,14 @@ IMK_API void imk_document_free(imk_document *document);
 IMK_API imk_status imk_model_write(const char *path, const imk_model *model,
                                    const imk_document *document, imk_error *error);
 
-/** The same into memory obtained from malloc(). */
+/** The same into memory obtained from malloc(), which the caller frees: YAML, or JSON when the
+ *  document is JSON. */
 IMK_API imk_status imk_model_print(const imk_model *model, const imk_document *document,
                                    char **text, size_t *size, imk_error *error);
+
+/** The same as JSON, whatever the document is. */
+IMK_API imk_status imk_model_print_json(const imk_model *model, const imk_document *document,
+                                        char **text, size_t *size, imk_error *error);
 
 /** The model of a catalogue name or of a model file, whichever `name` is (a file first). An unknown
  *  name that is no file is IMK_ERROR_NAME_UNKNOWN with the nearest names in error.expected. */

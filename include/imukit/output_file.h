@@ -13,9 +13,19 @@ extern "C" {
 typedef struct imk_output_file imk_output_file;
 
 /** Open for writing. The bytes go to a new file beside `path`, renamed by imk_output_file_commit().
- *  "-" and NULL are standard output; an existing non-regular file (a pipe, /dev/null, /dev/full) is
- *  written directly. A path ending in .gz or .zst is compressed on the way.
- *  @return IMK_ERROR_OPEN (error.found: the system's reason) */
+ *
+ *  - "-" and NULL are standard output (stdio's stdout is flushed first; the two must not be mixed
+ *    afterwards); an existing file that is not regular (a pipe, /dev/null, /dev/full) is written
+ *    directly.
+ *  - A symbolic link stays a link: the file it points at is replaced.
+ *  - A replaced file keeps its permissions; a new one has those the umask leaves. A file that must
+ *    not be written is refused, although its directory would allow to replace it.
+ *  - A path ending in .gz (level 6, no time stamp, so that equal content gives equal bytes) or .zst
+ *    (level 3, with checksum) is compressed on the way.
+ *
+ *  One file belongs to one thread at a time.
+ *  @return IMK_ERROR_OPEN (error.field: the path; error.found: the system's reason),
+ *          IMK_ERROR_MEMORY */
 IMK_API imk_status imk_output_file_open(const char *path, imk_output_file **file, imk_error *error);
 
 /** Add bytes; errors are kept and reported by commit as well. */
@@ -25,11 +35,17 @@ IMK_API imk_status imk_output_file_print(imk_output_file *file, const char *form
     __attribute__((format(printf, 2, 3)));
 
 /** Flush, sync to the file system, rename, close and free. On any error nothing appears, and the
- *  temporary file is removed: IMK_ERROR_WRITE with the system's reason in error.found. */
+ *  temporary file is removed: IMK_ERROR_WRITE with the path in error.field and the system's reason
+ *  in error.found. */
 IMK_API imk_status imk_output_file_commit(imk_output_file *file, imk_error *error);
 
 /** Give up: remove the temporary file and free. NULL is allowed. */
 IMK_API void imk_output_file_abandon(imk_output_file *file);
+
+/** Remove the temporary files of all output files that are open, and nothing else: for a signal
+ *  handler that ends the process afterwards (it calls only unlink() and atomics). Later commits of
+ *  these files fail. The first 32 files open at a time are covered. */
+IMK_API void imk_output_file_abandon_all(void);
 
 #ifdef __cplusplus
 }

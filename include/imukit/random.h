@@ -52,10 +52,21 @@ IMK_API void imk_random_words(imk_random source, uint64_t stream, uint64_t first
 /** Standard normals number first … first + count - 1 of a stream, by Box-Muller.
  *
  *  The layout is part of the contract: normal i belongs to group i/32; lane l = i mod 8 and part
- *  p = (i/8) mod 4 of that group come from Philox block 8*(i/32) + l: parts 0 and 1 are r cos a and
- *  r sin a of its words 0 and 1, parts 2 and 3 those of its words 2 and 3. The 64-bit number made
- *  of a pair of words (first word low) gives the radius by its upper 40 bits and the angle by its
- *  lower 24; |normal| < 7.6.
+ *  p = (i/8) mod 4 of that group come from Philox block 8*(i/32) + l: parts 0 and 1 from its words
+ *  0 and 1, parts 2 and 3 from its words 2 and 3. The 64-bit number made of two words (the first
+ *  one is its upper half) gives a pair of normals, parts 0 and 1 (2 and 3):
+ *
+ *      bits 23-62  k, 40 bits:  u = (2k + 1)/2^41,  r = sqrt(-2 log u)
+ *      bits 1-22   j, 22 bits:  a = pi/2 (2j + 1)/2^23, in the first quadrant
+ *      bits 63, 0  signs, 1 is minus:  +- r cos a,  +- r sin a
+ *
+ *  |normal| < 7.54; each is within 4e-13 of the exact value of its bits (2.2e-13 seen). With 2^40
+ *  radii and 2^24 angles the probability of a tail is exact to 6e-9 of itself at 5 sigma, 3e-6 at
+ *  6 and 0.3 % at 7.
+ *
+ *  Cost at 2.7 GHz: 1.4 ns a normal with AVX-512, 2 with AVX2, 7 scalar, and 0.2 us a call (0.4
+ *  scalar), as much again for each end that is not at a multiple of 32: draw some hundred at a
+ *  time.
  *
  *  @param first  any; no alignment needed, multiples of 32 are fastest
  *  @param out    count doubles */

@@ -13,8 +13,8 @@
 extern "C" {
 #endif
 
-/** Exponents of the base dimensions, in halves (so that 1/sqrt(Hz) is time^{+1}): metre, second,
- *  radian, kelvin, count. The angle is a dimension here: deg/s and Hz must not be mixed. */
+/** Exponents of the base dimensions, in halves (so that 1/sqrt(Hz), time^{1/2}, is 1): metre,
+ * second, radian, kelvin, count. The angle is a dimension here: deg/s and Hz must not be mixed. */
 typedef struct imk_dimension {
     int8_t half[5];
 } imk_dimension;
@@ -36,9 +36,16 @@ typedef struct imk_unit {
 /** Read a unit such as deg/h, deg/sqrt(h), deg/√h, °/rt-hr, ug/sqrt(Hz), m/s/sqrt(h), m/s^1.5, mg,
  *  count/(rad/s), deg/h/g^2, ppm, %, degC, degC/min, arcsec, 1 (dimensionless).
  *
+ *  `*`, `·` and `/` work from left to right, a/b/c = a/(b c); a blank multiplies, but is refused
+ *  behind a `/`, where it can be read both ways. Exponents are ^2, ^-1, ^0.5, ^1/2, ², ³, ½, ⁻¹ and
+ *  s2; roots are sqrt(…), √, rt- and root-. Only listed multiples exist (mg is a thousandth of g,
+ *  min a minute); names are case-sensitive. degC has its offset only by itself: in degC/min it is a
+ *  kelvin.
+ *
  *  @param begin,end  the text, blanks around it allowed
  *  @return IMK_ERROR_UNIT_MISSING for blank text, IMK_ERROR_UNIT_UNKNOWN (error.found is the part
- *          not known, error.expected the nearest known spelling) or IMK_ERROR_SYNTAX */
+ *          not known, error.expected the nearest known spelling) or IMK_ERROR_SYNTAX (also for more
+ *          than 47 bytes) */
 IMK_API imk_status imk_unit_parse(const char *begin, const char *end, imk_unit *unit,
                                   imk_error *error);
 
@@ -55,23 +62,29 @@ IMK_API const char *imk_dimension_examples(imk_dimension dimension);
 /** Read `number… [± sigma…] unit`, a quantity of the model file: 1 or up to max_count numbers, then
  *  optionally ± (or +-) and as many 1-sigma values (or one for all), then the unit.
  *
- *  @param expected  dimension due; IMK_ERROR_DIMENSION says what was found and what is due.
- *                   A unit may be missing only when every number is 0 and zero_without_unit is set.
- *  @param values,sigmas  max_count doubles, SI; sigmas 0 where not given
+ *  @param expected  dimension due; IMK_ERROR_DIMENSION says what was found and what is due. The
+ *                   unit may never be missing, not even for 0; a ratio has the unit 1.
+ *  @param max_count 1 … 64
+ *  @param values,sigmas  max_count doubles, SI; sigmas 0 where not given. An uncertainty has no
+ *                   offset: 25 ± 2 degC is 298.15 K and 2 K
  *  @param count     how many numbers stood there
- *  @param unit      the unit found (may be NULL) */
+ *  @param unit      the unit found (may be NULL)
+ *  @return IMK_ERROR_EMPTY, _SYNTAX, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _NOT_FINITE, _RANGE
+ *          (negative uncertainty), _ARGUMENT (max_count) */
 IMK_API imk_status imk_quantity_parse(const char *begin, const char *end, imk_dimension expected,
                                       size_t max_count, double *values, double *sigmas,
                                       size_t *count, imk_unit *unit, imk_error *error);
 
 /** Write values (and sigmas unless NULL or all 0) in a unit, the shortest decimals that read back
- *  to the same doubles; in SI base units where no decimal in `unit` does.
+ *  to the same doubles; in SI base units where no decimal in `unit` does (a density per sqrt(Hz)
+ *  stays one). Equal sigmas are written once. Numbers that are not finite are written in SI.
  *  @return length, or 0 when text_size is too small */
 IMK_API size_t imk_quantity_format(const double *values, const double *sigmas, size_t count,
                                    const imk_unit *unit, char *text, size_t text_size);
 
 /** Best-readable unit among the usual ones of a dimension for a typical magnitude (SI): for 5e-8
- *  rad/s "deg/h", for 3 rad/s "deg/s". */
+ *  rad/s "deg/h", for 3 rad/s "deg/s". The unit of a temperature is degC from 150 K (a reading), K
+ * below (a difference). SI for a dimension without a name. */
 IMK_API imk_unit imk_unit_readable(imk_dimension dimension, double magnitude);
 
 #ifdef __cplusplus

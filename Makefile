@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+#   make         build the libraries and the command: build/imukit
+#   make demo    a first result: simulate a sensor, identify it, see the report
+#   make test    build and run every test
+#   make check   format, static analysis, sanitizers, portability, byte identity
+#   make bench   speed against yardsticks: build/bench.csv
+#   make fuzz    feed the parsers with random input for a while
+#   make install [PREFIX=/usr/local] [DESTDIR=]
+#   make deps    only install the Debian packages that are missing
+#   make clean
+#
+# Each does all its set-up, so any of them may be the first command on a fresh machine.
+
+BUILD  ?= build
+PREFIX ?= /usr/local
+JOBS   ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
+
+# CMake runs a make of its own, which is not a part of this one.
+alone = env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL
+# Say nothing unless it fails.
+quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
+configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
+compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
+
+.PHONY: all demo test check bench fuzz install deps clean help
+
+all:
+	@tools/install_dependencies.sh build
+	@$(configure) $(quiet)
+	@$(compile) --target product
+
+demo:
+	@tools/install_dependencies.sh build run
+	@echo "Building $(BUILD)/imukit…"
+	@$(configure) $(quiet)
+	@$(compile) --target imukit-command $(quiet)
+	@$(alone) BUILD=$(BUILD) tools/demo.sh
+
+test:
+	@tools/install_dependencies.sh build run test
+	@$(configure) -D IMUKIT_TESTS=ON $(quiet)
+	@$(compile)
+	@ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -j $(JOBS)
+
+check:
+	@tools/install_dependencies.sh build run test check
+	@$(alone) BUILD=$(BUILD) tools/check
+
+bench:
+	@tools/install_dependencies.sh build bench
+	@$(alone) BUILD=$(BUILD) tools/run_bench
+
+fuzz:
+	@tools/install_dependencies.sh build fuzz
+	@$(alone) tools/run_fuzz
+
+install: all
+	@cmake --install $(BUILD) --prefix $(PREFIX)
+
+deps:
+	@tools/install_dependencies.sh
+
+clean:
+	rm -rf build build-check build-fuzz
+
+help:
+	@sed -n '3,/^$$/s/^#//p' Makefile

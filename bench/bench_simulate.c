@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Speed of simulating six channels, in ns per row of six:
+ *
+ *   white_and_walk        white noise and random walk, against the C++ loop of mt19937_loop.cpp
+ *   white_and_walk_2      the same on two threads, against one thread: the ratio is the speed-up
+ *   complete_noise        N, B, K, two Gauss-Markov, Q and the deterministic terms, against drawing
+ *                         its normals alone: the yardstick's share of our time
+ *   terms one by one      each alone, against the normals it draws */
+#include "bench.h"
+
+#include "imukit/simulate.h"
+#include "imukit/thread_pool.h"
+
+/* Calls of 8192 rows, as a program that writes a log in blocks makes them: columns stay in cache.
+ */
+enum { CALL = 8192, CALLS = 6, ROWS = CALL * CALLS, CHANNELS = 6, REPEATS = 40 };
+
+static double block[CHANNELS][CALL];
+
+typedef struct job {
+    imk_simulator *simulator;
+    const imk_executor *executor;
+} job;
+
+static void run_job(void *context)
+{
+    const job *work = context;
+    double *const columns[CHANNELS] = {block[0], block[1], block[2], block[3], block[4], block[5]};
+    for (int i = 0; i < CALLS; i++)
+        imk_simulator_next(work->simulator, CALL, columns, work->executor);
+    bench_use(block);
+}
+
+/* Normals in hundredths per sample and channel, drawn in blocks as the generators do. */
+typedef struct draws {
+    imk_random random;
+    int hundredths;
+} draws;
+
+static void run_draws(void *context)
+{
+    const draws *work = context;
+    size_t blocks = (size_t)ROWS * CHANNELS / 256 * (size_t)work->hundredths / 100;
+    for (size_t i = 0; i < blocks; i++) {
+        imk_random_normals(work->random, i / 800, i % 800 * 256, 256, block[0]);
+        bench_use(block);
+    }
+}
+
+static imk_axes axes(double value)
+{
+    return (imk_axes){.value = {value, value, value}};
+}
+
+static void each_triad(imk_model *model, void (*set)(imk_triad *triad))
+{
+    set(&model->gyro);
+    set(&model->accel);
+}
+
+static void set_white(imk_triad *triad)
+{
+    triad->noise.white = axes(1e-3);
+}
+
+static void set_walk(imk_triad *triad)
+{
+    triad->noise.random_walk = axes(1e-5);
+}
+
+static void set_flicker(imk_triad *triad)
+{
+    triad->noise.bias_instability = axes(1e-4);
+}
+
+static void set_gauss_markov(imk_triad *triad)
+{
+    triad->noise.gauss_markov_count = 1;
+    triad->noise.gauss_markov[0].sigma = axes(1e-4);
+    triad->noise.gauss_markov[0].correlation_time = axes(300.0);
+}
+
+static void set_quantization(imk_triad *triad)
+{
+    triad->noise.quantization = axes(1e-6);
+}
+
+static void set_sinusoid(imk_triad *triad)
+{
+    triad->noise.sinusoid_count = 1;
+    triad->noise.sinusoid[0].amplitude = axes(1e-3);
+    triad->noise.sinusoid[0].frequency = axes(20.0);
+}
+
+static void set_resonance(imk_triad *triad)
+{
+    triad->noise.resonance_count = 1;
+    triad->noise.resonance[0].sigma = axes(1e-3);
+    triad->noise.resonance[0].frequency = axes(20.0);
+    triad->noise.resonance[0].q = axes(12.0);
+}
+
+static void set_complete(imk_triad *triad)
+{
+    set_white(triad);
+    set_walk(triad);
+    set_flicker(triad);
+    set_gauss_markov(triad);
+    set_quantization(triad);
+    triad->noise.gauss_markov_count = 2;
+    triad->noise.gauss_markov[1].sigma = axes(2e-4);
+    triad->noise.gauss_markov[1].correlation_time = axes(20.0);
+    triad->bias.fixed = axes(1e-3);
+    triad->bias.repeatability = axes(1e-3);
+    triad->scale_factor.fixed = axes(1e-4);
+    triad->range = axes(100.0);
+}
+
+static imk_simulator *start(const imk_model *model)
+{
+    imk_simulation simulation = imk_simulation_default();
+    size_t size = (imk_simulator_size(model) + 63) / 64 * 64;
+    void *memory = aligned_alloc(64, size);
+    imk_simulator *simulator = NULL;
+    if (!memory ||
+        imk_simulator_start(memory, size, model, &simulation, &simulator, NULL) != IMK_OK) {
+        fprintf(stderr, "bench: the simulator does not start\n");
+        exit(1);
+    }
+    return simulator;
+}
+
+static const double per_row = 1e9 / ROWS;
+
+static void bench_against_loop(const char *isa)
+{
+    imk_model model = imk_model_default();
+    each_triad(&model, set_white);
+    each_triad(&model, set_walk);
+    job work = {start(&model), NULL};
+    double ours = (double)INFINITY, loop = (double)INFINITY;
+    for (int i = 0; i < 3; i++) {
+        ours = fmin(ours, bench_best(REPEATS, run_job, &work) * per_row);
+        loop = fmin(loop, bench_program(BENCH_DIRECTORY "/mt19937_loop 20000 30 2>/dev/null"));
+    }
+    bench_row_time("white_and_walk", ours, loop, "ns/row", isa, 1);
+
+    bench_unpin();
+    imk_thread_pool *pool = imk_thread_pool_create(2);
+    imk_executor executor = imk_thread_pool_executor(pool);
+    job two = {work.simulator, &executor};
+    double one_time, two_time;
+    bench_compare(REPEATS, run_job, &two, run_job, &work, &two_time, &one_time);
+    bench_row_time("white_and_walk_2", two_time * per_row, one_time * per_row, "ns/row", isa, 2);
+    imk_thread_pool_destroy(pool);
+    bench_pin();
+    free(work.simulator);
+}
+
+static void bench_against_normals(const char *name, void (*set)(imk_triad *triad), int hundredths,
+                                  const char *isa)
+{
+    imk_model model = imk_model_default();
+    each_triad(&model, set);
+    job work = {start(&model), NULL};
+    draws normals = {imk_random_seeded(1), hundredths};
+    double ours, drawing;
+    bench_compare(REPEATS, run_job, &work, hundredths > 0 ? run_draws : NULL, &normals, &ours,
+                  &drawing);
+    bench_row_time(name, ours * per_row, drawing * per_row, "ns/row", isa, 1);
+    free(work.simulator);
+}
+
+int main(void)
+{
+    bench_pin();
+    const char *isa = imk_kernel_name(imk_random_seeded(0).kernel);
+    bench_against_loop(isa);
+    /* white, walk, two Gauss-Markov, and flicker's 2 + 1/3 */
+    bench_against_normals("complete_noise", set_complete, 633, isa);
+    bench_against_normals("white", set_white, 100, isa);
+    bench_against_normals("random_walk", set_walk, 100, isa);
+    bench_against_normals("gauss_markov", set_gauss_markov, 100, isa);
+    bench_against_normals("flicker", set_flicker, 233, isa);
+    bench_against_normals("quantization", set_quantization, 0, isa);
+    bench_against_normals("resonance", set_resonance, 100, isa);
+    bench_against_normals("sinusoid", set_sinusoid, 0, isa);
+    return 0;
+}

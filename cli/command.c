@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Messages of the command: everything a person reads on standard error comes through here. */
+#define _POSIX_C_SOURCE 200809L
+#include "command.h"
+
+#include "imukit/names.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *current_verb;
+
+enum { WARNINGS_MAX = 64 };
+static command_warning warnings[WARNINGS_MAX];
+static size_t warning_count;
+
+static int kept_count;
+static char **kept_arguments;
+
+void command_line_keep(int argument_count, char **arguments)
+{
+    kept_count = argument_count;
+    kept_arguments = arguments;
+}
+
+/* A word in single quotes when the shell would not take it as it is. */
+static void append_word(char *line, size_t size, const char *word)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "_-./,:=+@%^";
+    size_t used = strlen(line);
+    if (*word && word[strspn(word, plain)] == '\0') {
+        snprintf(line + used, size - used, " %s", word);
+        return;
+    }
+    if (used + 2 < size)
+        strcat(line, " '");
+    for (; *word; word++) {
+        used = strlen(line);
+        snprintf(line + used, size - used, *word == '\'' ? "'\\''" : "%c", *word);
+    }
+    used = strlen(line);
+    snprintf(line + used, size - used, "'");
+}
+
+const char *command_line(void)
+{
+    static char line[2000];
+    snprintf(line, sizeof line, "imukit");
+    for (int i = 1; i < kept_count; i++)
+        append_word(line, sizeof line, kept_arguments[i]);
+    return line;
+}
+
+void command_begin(const char *verb_name)
+{
+    current_verb = verb_name;
+}
+
+const char *command_color(FILE *stream, const char *sequence)
+{
+    const char *no_color = getenv("NO_COLOR");
+    if (no_color && *no_color)
+        return "";
+    return isatty(fileno(stream)) ? sequence : "";
+}
+
+static void speak(const char *color, const char *label, const char *format, va_list arguments)
+    __attribute__((format(printf, 3, 0)));
+
+static void speak(const char *color, const char *label, const char *format, va_list arguments)
+{
+    fflush(stdout);
+    fprintf(stderr, "imukit%s%s: ", current_verb ? " " : "", current_verb ? current_verb : "");
+    if (*label)
+        fprintf(stderr, "%s%s%s ", command_color(stderr, color), label,
+                command_color(stderr, COLOR_RESET));
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+}
+
+int command_failed(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    speak(COLOR_RED, "error:", format, arguments);
+    va_end(arguments);
+    return EXIT_FAILED;
+}
+
+int command_misused(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    speak(COLOR_RED, "error:", format, arguments);
+    va_end(arguments);
+    if (current_verb)
+        fprintf(stderr, "Try: imukit %s --help\n", current_verb);
+    else
+        fputs("Try: imukit --help\n", stderr);
+    return EXIT_USAGE;
+}
+
+int command_error(const imk_error *error, const char *source)
+{
+    char text[900];
+    imk_error_text(error, source, text, sizeof text);
+    return command_failed("%s", text);
+}
+
+int command_model(const char *name, imk_model *model, imk_document **document)
+{
+    imk_error error;
+    imk_status status = imk_model_open(name, model, document, &error);
+    if (status == IMK_OK)
+        return -1;
+    return command_error(&error, status == IMK_ERROR_NAME_UNKNOWN ? NULL : name);
+}
+
+int command_check_plot(const char *plot)
+{
+    size_t length = plot ? strlen(plot) : 0;
+    if (!plot || strcmp(plot, "term") == 0 ||
+        (length > 4 &&
+         (strcmp(plot + length - 4, ".svg") == 0 || strcmp(plot + length - 4, ".png") == 0)))
+        return -1;
+    return command_misused("--plot %s: expected a name ending in .svg or .png, or the word term",
+                           plot);
+}
+
+void command_warn(const char *code, const char *format, ...)
+{
+    va_list arguments;
+    command_warning scratch;
+    command_warning *warning = warning_count < WARNINGS_MAX ? &warnings[warning_count++] : &scratch;
+    snprintf(warning->code, sizeof warning->code, "%s", code);
+    va_start(arguments, format);
+    vsnprintf(warning->message, sizeof warning->message, format, arguments);
+    va_end(arguments);
+    va_start(arguments, format);
+    speak(COLOR_YELLOW, "warning:", format, arguments);
+    va_end(arguments);
+}
+
+size_t command_warning_count(void)
+{
+    return warning_count;
+}
+
+const command_warning *command_warning_get(size_t index)
+{
+    return index < warning_count ? &warnings[index] : NULL;
+}
+
+int command_finish(int code)
+{
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        int failed = command_failed("standard output: %s", strerror(errno));
+        return code == EXIT_DONE ? failed : code;
+    }
+    return code;
+}
+
+const char *command_nearest(const char *name, size_t count, const char *const *candidates)
+{
+    size_t nearest = imk_nearest_name(name, count, candidates);
+    return nearest < count ? candidates[nearest] : NULL;
+}

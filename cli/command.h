@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the verbs share: exit codes, messages, the list of verbs. */
+#ifndef IMUKIT_COMMAND_H
+#define IMUKIT_COMMAND_H
+
+#include "options.h"
+
+#include "imukit/decimal.h"
+#include "imukit/executor.h"
+#include "imukit/io.h"
+#include "imukit/units.h"
+
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
+
+extern const verb simulate_verb, allan_verb, identify_verb, devices_verb, grade_verb, convert_verb;
+
+/* The verbs in the order of the help. */
+const verb *const *command_verbs(size_t *count);
+
+/* Remember which verb speaks; messages start with it. */
+void command_begin(const char *verb_name);
+
+/* The command line as it can be typed again; kept by command_line_keep(). */
+void command_line_keep(int argument_count, char **arguments);
+const char *command_line(void);
+
+/* "imukit allan: <sentence>" on standard error. Return the exit code, for `return failed(…)`. */
+int command_failed(const char *format, ...) __attribute__((format(printf, 1, 2)));
+int command_misused(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* The sentence of a library error; source is the file it is about, or NULL. */
+int command_error(const imk_error *error, const char *source);
+/* Open a model file or a catalogue entry. @return -1 or the exit code, the message printed */
+int command_model(const char *name, imk_model *model, imk_document **document);
+/* Refuse a --plot that cannot be drawn before the work is done. @return -1 or the exit code */
+int command_check_plot(const char *plot);
+
+/* A warning goes to standard error and into the JSON. */
+typedef struct command_warning {
+    char code[40];
+    char message[400];
+} command_warning;
+void command_warn(const char *code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+size_t command_warning_count(void);
+const command_warning *command_warning_get(size_t index);
+
+/* Bold and colours of standard output or standard error ("" when it is no terminal or NO_COLOR is
+ * set). */
+const char *command_color(FILE *stream, const char *sequence);
+#define COLOR_BOLD "\033[1m"
+#define COLOR_RED "\033[1;31m"
+#define COLOR_YELLOW "\033[33m"
+#define COLOR_GREEN "\033[32m"
+#define COLOR_RESET "\033[0m"
+
+/* Flush standard output: EXIT_DONE, or EXIT_FAILED with the sentence (a full disk). */
+int command_finish(int code);
+
+/* The nearest candidate to a name, or NULL. */
+const char *command_nearest(const char *name, size_t count, const char *const *candidates);
+
+/* Print the first page a newcomer sees. */
+void command_welcome(FILE *out);
+
+#endif

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Identifies the channels of a log, each a piece of work of its own. */
+#include "identify_parts.h"
+
+#include "progress.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct channel_work {
+    identification *all;
+    imk_identify_settings settings;
+    imk_status status[IMK_LOG_COLUMNS_MAX];
+    imk_error error[IMK_LOG_COLUMNS_MAX];
+    const size_t *factors;
+    size_t factor_count;
+    progress *shown;
+    atomic_size_t done;
+} channel_work;
+
+static imk_status take_allan_curve(channel_work *work, size_t channel)
+{
+    identification *all = work->all;
+    size_t n = all->channels.rows;
+    double *sums = malloc((n + 1) * sizeof *sums);
+    if (!sums)
+        return IMK_ERROR_MEMORY;
+    imk_allan_sums(n, log_channel_data(&all->channels, channel), sums);
+    imk_allan_settings settings = imk_allan_default();
+    settings.confidence = work->settings.confidence;
+    imk_status status =
+        allan_curve_compute(&settings, n, sums, all->channels.dt, work->factor_count, work->factors,
+                            NULL, NULL, &all->curve[channel]);
+    free(sums);
+    return status;
+}
+
+static void identify_one(void *context, size_t channel)
+{
+    channel_work *work = context;
+    identification *all = work->all;
+    size_t n = all->channels.rows, size = imk_identify_workspace_size(n);
+    void *workspace = malloc(size);
+    imk_error *error = &work->error[channel];
+    imk_status status = IMK_ERROR_MEMORY;
+    imk_error_set(error, status, NULL, NULL, NULL);
+    if (workspace)
+        status = imk_identify_channel(&work->settings, n, log_channel_data(&all->channels, channel),
+                                      &all->result[channel], workspace, size, error);
+    free(workspace);
+    if (status == IMK_OK) {
+        status = take_allan_curve(work, channel);
+        if (status != IMK_OK)
+            imk_error_set(error, status, NULL, NULL, NULL);
+    }
+    work->status[channel] = status;
+    progress_update(work->shown, atomic_fetch_add(&work->done, 1) + 1, all->channels.count);
+}
+
+static int explain(const identification *i, size_t channel, imk_status status,
+                   const imk_error *error)
+{
+    const char *name = log_channel_column(&i->channels, channel)->name;
+    if (status == IMK_ERROR_CONSTANT)
+        return command_failed("%s: column %s is constant in all %zu rows: there is no noise to "
+                              "identify; leave it out with --columns, or check the log",
+                              i->path, name, i->channels.rows);
+    if (status == IMK_ERROR_TOO_SHORT)
+        return command_failed("%s: %zu rows are too few to identify noise: at least 256 are "
+                              "needed, and minutes to hours are useful",
+                              i->path, i->channels.rows);
+    imk_error named = *error;
+    if (!named.field[0])
+        snprintf(named.field, sizeof named.field, "%s", name);
+    return command_error(&named, i->path);
+}
+
+int identify_channels(identification *i, const imk_executor *executor)
+{
+    channel_work *work = calloc(1, sizeof *work);
+    size_t *factors =
+        work ? allan_factors_of_grid(IMK_ALLAN_OCTAVE, i->channels.rows, &work->factor_count)
+             : NULL;
+    if (!factors) {
+        free(work);
+        return command_failed("memory is exhausted");
+    }
+    progress shown = progress_begin("identifying", "channels", 1);
+    work->all = i;
+    work->factors = factors;
+    work->shown = &shown;
+    work->settings = imk_identify_default();
+    work->settings.dt = i->channels.dt;
+    work->settings.confidence = i->options->confidence;
+    imk_execute(executor, i->channels.count, identify_one, work);
+    progress_end(&shown);
+    int code = -1;
+    for (size_t c = 0; c < i->channels.count && code < 0; c++)
+        if (work->status[c] != IMK_OK)
+            code = explain(i, c, work->status[c], &work->error[c]);
+    free(factors);
+    free(work);
+    return code;
+}

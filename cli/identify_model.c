@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From the identified terms to a model file, and back to a log: the twin. */
+#include "identify_parts.h"
+
+#include "imukit/simulate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Triad and evidence of a kind of channel. */
+static imk_triad *triad_of(imk_model *model, channel_kind kind)
+{
+    return kind == CHANNEL_GYRO ? &model->gyro : &model->accel;
+}
+
+static imk_evidence *evidence_of(imk_model *model, channel_kind kind)
+{
+    return kind == CHANNEL_GYRO ? &model->gyro_evidence : &model->accel_evidence;
+}
+
+static void store_kind(const identification *i, channel_kind kind, imk_model *model)
+{
+    imk_triad *triad = triad_of(model, kind);
+    imk_evidence *evidence = evidence_of(model, kind);
+    int axes = 0;
+    for (size_t c = 0; c < i->channels.count; c++) {
+        const imk_log_column *column = log_channel_column(&i->channels, c);
+        if (channel_kind_of(column) != kind)
+            continue;
+        /* A log of single axes keeps their directions. */
+        for (int k = 0; k < 3; k++)
+            triad->direction[axes][k] = k == column->axis % 3 ? 1 : 0;
+        imk_identification_store(&i->result[c], model, kind == CHANNEL_ACCEL, axes++);
+    }
+    triad->present = axes > 0;
+    if (axes == 0)
+        return;
+    triad->axis_count = axes;
+    if (fabs(i->options->confidence - 0.95) > 1e-12)
+        evidence->interval_count = 0; /* the file's intervals are of 95 % */
+    const char *base = strrchr(i->path, '/');
+    snprintf(evidence->source, sizeof evidence->source, "%s", base ? base + 1 : i->path);
+    char length[60];
+    format_duration(i->channels.dt * (double)i->channels.rows, length, sizeof length);
+    snprintf(evidence->method, sizeof evidence->method,
+             "imukit %s identify: maximum likelihood on the cosine spectrum, %s at %.6g Hz",
+             IMK_VERSION, length, 1 / i->channels.dt);
+}
+
+imk_model identify_noise_model(const identification *i)
+{
+    imk_model model = imk_model_default();
+    store_kind(i, CHANNEL_GYRO, &model);
+    store_kind(i, CHANNEL_ACCEL, &model);
+    identify_round_model(&model);
+    const char *base = strrchr(i->path, '/');
+    base = base ? base + 1 : i->path;
+    if (i->options->name)
+        snprintf(model.name, sizeof model.name, "%s", i->options->name);
+    else
+        snprintf(model.name, sizeof model.name, "%.*s",
+                 (int)(strcspn(base, ".") < 90 ? strcspn(base, ".") : 90), base);
+    return model;
+}
+
+/* Lines of one text that the other does not hold. */
+static void print_missing_lines(const char *text, const char *other, char sign)
+{
+    while (*text) {
+        size_t length = strcspn(text, "\n");
+        bool found = false;
+        for (const char *line = other; *line && !found;) {
+            size_t other_length = strcspn(line, "\n");
+            found = other_length == length && strncmp(line, text, length) == 0;
+            line += other_length + (line[other_length] == '\n');
+        }
+        if (!found)
+            fprintf(stderr, "%c %.*s\n", sign, (int)length, text);
+        text += length + (text[length] == '\n');
+    }
+}
+
+static void print_changes(const char *path, const imk_model *before, const imk_model *after,
+                          const imk_document *document)
+{
+    char *old_text = NULL, *new_text = NULL;
+    size_t size;
+    imk_error error;
+    if (imk_model_print(before, document, &old_text, &size, &error) == IMK_OK &&
+        imk_model_print(after, document, &new_text, &size, &error) == IMK_OK) {
+        fprintf(stderr, "Changes to %s:\n", path);
+        print_missing_lines(old_text, new_text, '-');
+        print_missing_lines(new_text, old_text, '+');
+    }
+    free(old_text);
+    free(new_text);
+}
+
+/* Replace the noise, the output filter and the evidence of a triad, and nothing else. */
+static int merge_kind(identification *i, channel_kind kind, imk_model *noise)
+{
+    imk_model *model = &i->model;
+    imk_triad *from = triad_of(noise, kind), *to = triad_of(model, kind);
+    if (!from->present)
+        return -1;
+    if (to->present && to->axis_count != from->axis_count)
+        return command_failed("%s has %d %s axes, the log has %d: they cannot be matched",
+                              i->options->into, to->axis_count, channel_kind_name(kind),
+                              from->axis_count);
+    if (!to->present)
+        *to = *from;
+    to->noise = from->noise;
+    to->bandwidth = from->bandwidth;
+    to->damping = from->damping;
+    *evidence_of(model, kind) = *evidence_of(noise, kind);
+    return -1;
+}
+
+static int write_into(identification *i, imk_model *noise)
+{
+    imk_error error;
+    imk_document *document = NULL;
+    int code = command_model(i->options->into, &i->model, &document);
+    if (code >= 0)
+        return code;
+    imk_model *before = malloc(sizeof *before);
+    if (before)
+        *before = i->model;
+    code = merge_kind(i, CHANNEL_GYRO, noise);
+    if (code < 0)
+        code = merge_kind(i, CHANNEL_ACCEL, noise);
+    if (code < 0 && i->options->name)
+        snprintf(i->model.name, sizeof i->model.name, "%s", i->options->name);
+    if (code < 0 && before)
+        print_changes(i->options->into, before, &i->model, document);
+    if (code < 0 && i->options->output &&
+        imk_model_write(i->options->output, &i->model, document, &error) != IMK_OK)
+        code = command_error(&error, NULL);
+    free(before);
+    imk_document_free(document);
+    return code;
+}
+
+int identify_write_model(identification *i)
+{
+    imk_error error;
+    imk_model *noise = malloc(sizeof *noise);
+    if (!noise)
+        return command_failed("memory is exhausted");
+    *noise = identify_noise_model(i);
+    int code = -1;
+    if (!noise->gyro.present && !noise->accel.present) {
+        if (i->options->output || i->options->into)
+            code = command_failed("%s has no gyro or accelerometer column, so there is no model to "
+                                  "write; name them with --columns, such as gyro_x",
+                                  i->path);
+    } else if (i->options->into) {
+        code = write_into(i, noise);
+    } else {
+        i->model = *noise;
+        if (i->options->output &&
+            imk_model_write(i->options->output, &i->model, NULL, &error) != IMK_OK)
+            code = command_error(&error, NULL);
+    }
+    free(noise);
+    return code;
+}
+
+/* Which simulated column stands for a channel: gyros and accelerometers come in the same order. */
+static imk_status twin_curves(identification *i, double *const *columns,
+                              const imk_executor *executor)
+{
+    imk_allan_settings settings = imk_allan_default();
+    size_t n = i->channels.rows, count = 0;
+    size_t *factors = allan_factors_of_grid(IMK_ALLAN_OCTAVE, n, &count);
+    imk_status status = factors ? IMK_OK : IMK_ERROR_MEMORY;
+    settings.confidence = i->options->confidence;
+    for (size_t c = 0; c < i->channels.count && status == IMK_OK; c++) {
+        imk_allan_sums(n, columns[c], columns[c]);
+        status = allan_curve_compute(&settings, n, columns[c], i->channels.dt, count, factors,
+                                     "Allan deviation of the twin", executor, &i->twin[c]);
+    }
+    free(factors);
+    return status;
+}
+
+static imk_status simulate_twin(identification *i, const imk_model *noise,
+                                const imk_executor *executor, imk_error *error)
+{
+    size_t n = i->channels.rows, channels = i->channels.count, size = imk_simulator_size(noise);
+    void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
+    double *columns[IMK_LOG_COLUMNS_MAX];
+    double *data = malloc((n + 1) * channels * sizeof *data);
+    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, "twin", NULL, NULL);
+    if (memory && data) {
+        imk_simulation simulation = imk_simulation_default();
+        simulation.rate = 1 / i->channels.dt;
+        simulation.seed = i->options->seed;
+        simulation.earth = false;
+        imk_simulator *simulator;
+        for (size_t c = 0; c < channels; c++)
+            columns[c] = data + c * (n + 1);
+        status = imk_simulator_start(memory, size, noise, &simulation, &simulator, error);
+        if (status == IMK_OK) {
+            imk_simulator_next(simulator, n, columns, executor);
+            status = twin_curves(i, columns, executor);
+        }
+    }
+    free(memory);
+    free(data);
+    return status;
+}
+
+int identify_twin(identification *i, const imk_executor *executor)
+{
+    imk_error error;
+    imk_model *noise = malloc(sizeof *noise);
+    if (!noise)
+        return command_failed("memory is exhausted");
+    *noise = identify_noise_model(i);
+    imk_status status = IMK_OK;
+    if (noise->gyro.present || noise->accel.present)
+        status = simulate_twin(i, noise, executor, &error);
+    free(noise);
+    return status == IMK_OK ? -1 : command_error(&error, "the model's twin");
+}

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The verdict on a record in plain sentences: what it is good for, and what is wrong with it. */
+#include "identify_parts.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+/* Gravity on the surface of the Earth [m/s^2]: equator to pole by WGS84, rounded outwards; what is
+ * off by more than 5 % is no specific force at rest. */
+static const double gravity_least = 9.78, gravity_most = 9.83, gravity_slack = 0.05;
+
+static void add(identification *i, verdict_level level, const char *code, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static void add(identification *i, verdict_level level, const char *code, const char *format, ...)
+{
+    if (i->verdict_count == VERDICTS_MAX)
+        return;
+    verdict_sentence *sentence = &i->verdict[i->verdict_count++];
+    sentence->level = level;
+    snprintf(sentence->code, sizeof sentence->code, "%s", code);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(sentence->text, sizeof sentence->text, format, arguments);
+    va_end(arguments);
+}
+
+/* What stands behind a channel's name in a list, "(61.2 Hz)"; "" for nothing. */
+typedef void (*detail_writer)(const identification *i, size_t channel, char *text, size_t size);
+
+static void no_detail(const identification *i, size_t channel, char *text, size_t size)
+{
+    (void)i, (void)channel, (void)size;
+    text[0] = '\0';
+}
+
+static void filter_detail(const identification *i, size_t channel, char *text, size_t size)
+{
+    imk_low_pass filter = i->result[channel].filter;
+    if (filter.damping > 0)
+        snprintf(text, size, " (%.3g Hz, second order, damping %.2g)", filter.bandwidth,
+                 filter.damping);
+    else
+        snprintf(text, size, " (%.3g Hz, first order)", filter.bandwidth);
+}
+
+static void line_detail(const identification *i, size_t channel, char *text, size_t size)
+{
+    const imk_identification *r = &i->result[channel];
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = 0; k < r->sinusoid_count && k < 3; k++) {
+        imk_unit unit = channel_readable_unit(log_channel_column(&i->channels, channel),
+                                              r->sinusoid[k].amplitude);
+        used += (size_t)snprintf(text + used, size - used, "%s%.4g Hz of %.3g %s", k ? ", " : " (",
+                                 r->sinusoid[k].frequency, r->sinusoid[k].amplitude / unit.scale,
+                                 unit.text);
+        if (used >= size)
+            return;
+    }
+    if (r->sinusoid_count > 0)
+        snprintf(text + used, size - used, "%s)", r->sinusoid_count > 3 ? ", more" : "");
+}
+
+static void resonance_detail(const identification *i, size_t channel, char *text, size_t size)
+{
+    const imk_identification *r = &i->result[channel];
+    text[0] = '\0';
+    if (r->resonance_count > 0)
+        snprintf(text, size, " (%.3g Hz, Q %.2g%s)", r->resonance[0].frequency, r->resonance[0].q,
+                 r->resonance_count > 1 ? ", more" : "");
+}
+
+static void resolution_detail(const identification *i, size_t channel, char *text, size_t size)
+{
+    double step = i->result[channel].resolution;
+    imk_unit unit = channel_readable_unit(log_channel_column(&i->channels, channel), step);
+    text[0] = '\0';
+    if (step > 0)
+        snprintf(text, size, " (step %.3g %s)", step / unit.scale, unit.text);
+}
+
+static void valid_detail(const identification *i, size_t channel, char *text, size_t size)
+{
+    double from = i->result[channel].valid_from;
+    if (isfinite(from))
+        snprintf(text, size, " (from %.3g s)", from);
+    else
+        snprintf(text, size, " (nowhere)");
+}
+
+static const struct bit_sentence {
+    unsigned bit;
+    verdict_level level;
+    const char *code, *text;
+    detail_writer detail;
+} bit_sentences[] = {
+    {IMK_VERDICT_SHORT, VERDICT_WARNING, "short",
+     "the record is too short for the slowest terms: they are bounded, not measured; log for "
+     "longer",
+     no_detail},
+    {IMK_VERDICT_COARSE, VERDICT_WARNING, "coarse",
+     "the output step is larger than the noise: the white noise is doubtful; log with more digits "
+     "or a smaller range",
+     resolution_detail},
+    {IMK_VERDICT_SATURATED, VERDICT_WARNING, "saturated",
+     "samples stick at an extreme value: the range is too small or the sensor was moved",
+     no_detail},
+    {IMK_VERDICT_FROZEN, VERDICT_WARNING, "frozen",
+     "long runs of one value: samples are repeated, so the true sample rate is lower than the "
+     "log's",
+     no_detail},
+    {IMK_VERDICT_WARM_UP, VERDICT_WARNING, "warm_up",
+     "the start drifts unlike the rest: switch on earlier, or leave the first minutes out",
+     no_detail},
+    {IMK_VERDICT_MISFIT, VERDICT_WARNING, "misfit",
+     "the model explains the record only from this averaging time on; the log holds something else "
+     "as well (vibration, filtering, another process)",
+     valid_detail},
+    {IMK_VERDICT_LINES, VERDICT_NOTE, "lines",
+     "spectral lines, from vibration or interference, are modelled apart as sinusoids",
+     line_detail},
+    {IMK_VERDICT_RESONANCE, VERDICT_NOTE, "resonance",
+     "a resonance of the structure or the sensor is modelled apart", resonance_detail},
+    {IMK_VERDICT_FILTERED, VERDICT_NOTE, "filtered",
+     "the output is low-pass filtered within the band; the filter is in the model", filter_detail},
+};
+
+static void judge_bits(identification *i)
+{
+    for (size_t k = 0; k < sizeof bit_sentences / sizeof bit_sentences[0]; k++) {
+        const struct bit_sentence *b = &bit_sentences[k];
+        char list[260] = "";
+        size_t used = 0;
+        for (size_t c = 0; c < i->channels.count && used < sizeof list; c++) {
+            char detail[120];
+            if (!(i->result[c].verdict & b->bit))
+                continue;
+            b->detail(i, c, detail, sizeof detail);
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s%s", used ? ", " : "",
+                                     log_channel_column(&i->channels, c)->name, detail);
+        }
+        if (used > 0)
+            add(i, b->level, b->code, "%s: %s.", list, b->text);
+    }
+}
+
+/* The unit in which the file's numbers would be gravity. */
+static const char *likely_unit(double magnitude, double scale)
+{
+    static const char *const names[] = {"m/s^2", "g", "mg", "ug", "Gal", "mGal"};
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+        double as = magnitude / scale * imk_unit_of(names[k]).scale;
+        if (as > gravity_least * (1 - gravity_slack) && as < gravity_most * (1 + gravity_slack))
+            return names[k];
+    }
+    return NULL;
+}
+
+/* |mean specific force| of a triad at rest is gravity; anything else is a wrong unit, most often.
+ */
+static void judge_gravity(identification *i)
+{
+    double square = 0, scale = 0;
+    int axes = 0;
+    for (size_t c = 0; c < i->channels.count; c++) {
+        const imk_log_column *column = log_channel_column(&i->channels, c);
+        if (column->quantity != IMK_QUANTITY_SPECIFIC_FORCE || column->axis > 2)
+            continue;
+        square += i->result[c].mean * i->result[c].mean;
+        scale = column->unit.scale;
+        axes++;
+    }
+    double magnitude = sqrt(square);
+    if (axes != 3 || (magnitude > gravity_least * (1 - gravity_slack) &&
+                      magnitude < gravity_most * (1 + gravity_slack)))
+        return;
+    const char *unit = likely_unit(magnitude, scale);
+    if (unit)
+        add(i, VERDICT_WARNING, "gravity",
+            "|accel| is %.4g m/s^2 at rest: the numbers look like %s; write %s into the header, or "
+            "add --accel-unit %s where it has none.",
+            magnitude, unit, unit, unit);
+    else
+        add(i, VERDICT_WARNING, "gravity",
+            "|accel| is %.4g m/s^2 at rest, not gravity (9.78 to 9.83), and no usual unit makes it "
+            "so: was gravity removed, or did the sensor move?",
+            magnitude);
+}
+
+void identify_judge(identification *i)
+{
+    char length[60];
+    double from = 0, to = (double)INFINITY;
+    for (size_t c = 0; c < i->channels.count; c++) {
+        if (!isfinite(i->result[c].valid_from))
+            continue;
+        from = fmax(from, i->result[c].valid_from);
+        to = fmin(to, i->result[c].valid_to);
+    }
+    format_duration(i->channels.dt * (double)i->channels.rows, length, sizeof length);
+    judge_gravity(i);
+    judge_bits(i);
+    bool bad = identify_is_bad(i);
+    if (from > 0)
+        add(i, bad ? VERDICT_NOTE : VERDICT_GOOD, "length",
+            "%s at %.6g Hz: the model speaks for averaging times from %.3g s to %.3g s.", length,
+            1 / i->channels.dt, from, to);
+    else
+        add(i, VERDICT_NOTE, "length", "%s at %.6g Hz.", length, 1 / i->channels.dt);
+    if (i->channels.bridged > 0)
+        add(i, VERDICT_NOTE, "bridged", "%zu of %zu samples were bridged by straight lines.",
+            i->channels.bridged, i->channels.rows);
+    if (!bad)
+        add(i, VERDICT_GOOD, "good", "Nothing speaks against this record.");
+    for (size_t k = 0; k < i->verdict_count; k++)
+        if (i->verdict[k].level == VERDICT_WARNING)
+            command_warn(i->verdict[k].code, "%s", i->verdict[k].text);
+}
+
+bool identify_is_bad(const identification *i)
+{
+    for (size_t k = 0; k < i->verdict_count; k++)
+        if (i->verdict[k].level == VERDICT_WARNING)
+            return true;
+    return false;
+}

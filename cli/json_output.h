@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The JSON every reporting verb prints with --json:
+ *   {imukit, command, inputs, result, warnings: [{code, message}]}
+ * with SI numbers and the unit beside each. */
+#ifndef IMUKIT_JSON_OUTPUT_H
+#define IMUKIT_JSON_OUTPUT_H
+
+#include "command.h"
+
+#include <jansson.h>
+
+/* A number, or null when it is not finite. */
+json_t *json_number(double value);
+/* {"value": …, "unit": …} */
+json_t *json_quantity(double value, const char *unit);
+
+/* Print the document to standard output; takes over `inputs` and `result`.
+ * @return the exit code: `code`, or EXIT_FAILED when it cannot be written */
+int json_print(const char *command, json_t *inputs, json_t *result, int code);
+
+#endif

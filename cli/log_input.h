@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reading a log for analysis: the options every such verb takes, loading with progress, and equally
+ * spaced channels out of rows that may have gaps. */
+#ifndef IMUKIT_LOG_INPUT_H
+#define IMUKIT_LOG_INPUT_H
+
+#include "command.h"
+
+#include "imukit/log.h"
+
+typedef enum gap_policy { GAPS_REFUSE = 0, GAPS_BRIDGE, GAPS_LONGEST } gap_policy;
+
+/* What the options of log_input_options fill. */
+typedef struct log_input {
+    double rate; /* [Hz]; 0: from the time column */
+    const char *columns, *gyro_unit, *accel_unit, *time_unit, *temperature_unit, *axes;
+    int gaps; /* gap_policy */
+} log_input;
+
+/* Options on how to read a file, and with --gaps at the end for verbs that analyse it. */
+extern const option log_input_options[];
+extern const size_t log_format_option_count, log_input_option_count;
+
+imk_log_settings log_input_settings(const log_input *input);
+
+/* Equally spaced channels of a log. */
+typedef struct log_channels {
+    imk_log log;                     /* owns the memory */
+    size_t count, rows;              /* channels analysed; rows of each */
+    int column[IMK_LOG_COLUMNS_MAX]; /* of the log: gyros, then accelerometers, or all others */
+    double dt;                       /* [s] */
+    size_t bridged;                  /* samples that were interpolated */
+} log_channels;
+
+/* Load a log and make its channels equally spaced by the policy on gaps. Messages are printed.
+ * @return -1 or the exit code */
+int log_input_load(const log_input *input, const char *path, log_channels *channels);
+void log_channels_free(log_channels *channels);
+
+const imk_log_column *log_channel_column(const log_channels *channels, size_t channel);
+double *log_channel_data(const log_channels *channels, size_t channel);
+
+/* Equal spacing of rows (log_spacing.c). @return -1 or the exit code, the message printed */
+int log_space_evenly(const log_input *input, const char *path, log_channels *channels);
+
+#endif

@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reads the words of a command line by the verb's option tables. */
+#include "options.h"
+
+#include "command.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NAMES_MAX = 64 };
+
+static bool matches(const option *o, const char *name, size_t length)
+{
+    return strlen(o->name) == length && strncmp(o->name, name, length) == 0;
+}
+
+/* The option of a name (or of a letter when name is NULL) and its group. */
+static const option *find(const verb *v, const char *name, size_t length, char letter,
+                          const option_group **group)
+{
+    for (size_t g = 0; g < GROUPS_MAX; g++) {
+        for (size_t i = 0; i < v->groups[g].count; i++) {
+            const option *o = &v->groups[g].options[i];
+            if (name ? matches(o, name, length) : (o->letter && o->letter == letter)) {
+                *group = &v->groups[g];
+                return o;
+            }
+        }
+    }
+    return NULL;
+}
+
+static int unknown_option(const verb *v, const char *name, size_t length)
+{
+    const char *names[NAMES_MAX];
+    size_t count = 0;
+    char given[64];
+    snprintf(given, sizeof given, "%.*s", (int)(length < 60 ? length : 60), name);
+    for (size_t g = 0; g < GROUPS_MAX; g++)
+        for (size_t i = 0; i < v->groups[g].count && count < NAMES_MAX; i++)
+            names[count++] = v->groups[g].options[i].name;
+    const char *nearest = command_nearest(given, count, names);
+    if (nearest)
+        return command_misused("there is no option --%s; did you mean --%s?", given, nearest);
+    return command_misused("there is no option --%s", given);
+}
+
+static int set_integer(const option *o, const char *text, uint64_t *target)
+{
+    uint64_t value = 0;
+    const char *c = text;
+    for (; *c >= '0' && *c <= '9'; c++) {
+        uint64_t digit = (uint64_t)(*c - '0');
+        if (value > (UINT64_MAX - digit) / 10)
+            return command_misused("--%s %s: the number is too large; at most "
+                                   "18446744073709551615",
+                                   o->name, text);
+        value = value * 10 + digit;
+    }
+    if (c == text || *c)
+        return command_misused("--%s %s: expected a whole number, such as --%s 1", o->name, text,
+                               o->name);
+    *target = value;
+    return -1;
+}
+
+static int set_fraction(const option *o, const char *text, double *target)
+{
+    const char *end = text + strlen(text);
+    double value;
+    const char *rest = imk_decimal_parse(text, end, &value);
+    if (rest != text && strcmp(rest, "%") == 0)
+        value /= 100;
+    else if (rest == text || *rest)
+        value = -1;
+    if (!(value > 0 && value < 1))
+        return command_misused("--%s %s: expected a fraction between 0 and 1, such as 0.95 or 95%%",
+                               o->name, text);
+    *target = value;
+    return -1;
+}
+
+static int set_quantity(const option *o, const char *text, double *target)
+{
+    imk_error error;
+    double value, sigma;
+    size_t count;
+    imk_unit unit = imk_unit_of(o->unit);
+    imk_status status = imk_quantity_parse(text, text + strlen(text), unit.dimension, 1, &value,
+                                           &sigma, &count, NULL, &error);
+    if (status == IMK_ERROR_UNIT_MISSING)
+        return command_misused("--%s %s: the unit is missing; write --%s %s%s", o->name, text,
+                               o->name, text, o->unit);
+    if (status != IMK_OK || count != 1 || !isfinite(value))
+        return command_misused("--%s %s: %s; expected %s such as %s", o->name, text,
+                               status == IMK_OK ? "one finite number is due"
+                               : error.found[0] ? error.found
+                                                : imk_status_text(status),
+                               imk_dimension_name(unit.dimension),
+                               imk_dimension_examples(unit.dimension));
+    *target = value;
+    return -1;
+}
+
+static int set_choice(const option *o, const char *text, int *target)
+{
+    int position = 0;
+    size_t length = strlen(text);
+    for (const char *c = o->choices;; position++) {
+        size_t word = strcspn(c, "|");
+        if (word == length && strncmp(c, text, word) == 0) {
+            *target = position;
+            return -1;
+        }
+        if (!c[word])
+            break;
+        c += word + 1;
+    }
+    return command_misused("--%s %s: expected one of %s", o->name, text, o->choices);
+}
+
+static int set_value(const option *o, const option_group *group, const char *text, void *settings)
+{
+    void *target = (char *)settings + group->offset + o->offset;
+    switch (o->kind) {
+    case OPTION_FLAG:
+        *(bool *)target = true;
+        return -1;
+    case OPTION_TEXT:
+    case OPTION_FILE:
+        if (!*text)
+            return command_misused("--%s: the value is empty", o->name);
+        *(const char **)target = text;
+        return -1;
+    case OPTION_INTEGER:
+        return set_integer(o, text, target);
+    case OPTION_QUANTITY:
+        return set_quantity(o, text, target);
+    case OPTION_FRACTION:
+        return set_fraction(o, text, target);
+    case OPTION_CHOICE:
+        return set_choice(o, text, target);
+    }
+    return -1;
+}
+
+/* One option word, with its value from the same word ("--rate=100Hz", "-oFILE") or the next. */
+static int take_option(const verb *v, int count, char **words, int *index, void *settings)
+{
+    const char *word = words[*index];
+    const option_group *group = NULL;
+    const option *o;
+    const char *value = NULL;
+    if (word[1] == '-') {
+        size_t length = strcspn(word + 2, "=");
+        o = find(v, word + 2, length, 0, &group);
+        if (!o)
+            return unknown_option(v, word + 2, length);
+        if (word[2 + length] == '=')
+            value = word + 3 + length;
+    } else {
+        o = find(v, NULL, 0, word[1], &group);
+        if (!o)
+            return command_misused("there is no option -%c", word[1]);
+        if (word[2])
+            value = word + 2;
+    }
+    if (o->kind == OPTION_FLAG && value)
+        return command_misused("--%s takes no value", o->name);
+    if (o->kind != OPTION_FLAG && !value) {
+        if (*index + 1 >= count)
+            return command_misused("--%s needs a value: --%s %s", o->name, o->name, o->value);
+        value = words[++*index];
+    }
+    return set_value(o, group, value, settings);
+}
+
+static int check_operands(const verb *v, size_t count)
+{
+    if (count < v->operands_minimum)
+        return command_misused("%s missing: imukit %s %s",
+                               v->operands_minimum - count > 1 ? "operands are" : "an operand is",
+                               v->name, v->operands);
+    return -1;
+}
+
+int options_parse(const verb *v, int argument_count, char **arguments, void *settings,
+                  const char **operands)
+{
+    size_t operand_count = 0;
+    bool options_over = false;
+    for (size_t i = 0; i < OPERANDS_MAX; i++)
+        operands[i] = NULL;
+    for (int i = 0; i < argument_count; i++) {
+        const char *word = arguments[i];
+        if (!options_over && strcmp(word, "--") == 0) {
+            options_over = true;
+        } else if (!options_over && (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0)) {
+            options_help(v, stdout);
+            return command_finish(EXIT_DONE);
+        } else if (!options_over && word[0] == '-' && word[1]) {
+            int code = take_option(v, argument_count, arguments, &i, settings);
+            if (code >= 0)
+                return code;
+        } else if (operand_count < v->operands_maximum) {
+            operands[operand_count++] = word;
+        } else {
+            return command_misused("\"%s\" is one word too many: imukit %s %s", word, v->name,
+                                   v->operands);
+        }
+    }
+    return check_operands(v, operand_count);
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The option tables: one per group of options, each row read by the parser, --help, the man page,
+ * the shell completion and "did you mean". */
+#ifndef IMUKIT_OPTIONS_H
+#define IMUKIT_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+typedef enum option_kind {
+    OPTION_FLAG,     /* bool: true when given */
+    OPTION_TEXT,     /* const char * */
+    OPTION_FILE,     /* const char *: completed as a file name */
+    OPTION_INTEGER,  /* uint64_t */
+    OPTION_QUANTITY, /* double, SI: a number with a unit of the dimension of `unit` */
+    OPTION_FRACTION, /* double in (0, 1): "0.95" or "95%" */
+    OPTION_CHOICE    /* int: position in `choices` */
+} option_kind;
+
+typedef struct option {
+    const char *name; /* without the dashes */
+    char letter;      /* 0: none */
+    option_kind kind;
+    const char *value;   /* what --help calls the value: "RATE" */
+    const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages */
+    const char *choices; /* OPTION_CHOICE: "octave|decade|all" */
+    const char *help;    /* a clause */
+    size_t offset;       /* of the value in the settings of the group */
+} option;
+
+typedef struct option_group {
+    const char *title;
+    size_t count;
+    const option *options;
+    size_t offset; /* of the group's settings in the verb's */
+} option_group;
+
+typedef struct example {
+    const char *command, *meaning;
+} example;
+
+enum { OPERANDS_MAX = 2, GROUPS_MAX = 4 };
+
+/* One verb of the command. */
+typedef struct verb {
+    const char *name;
+    const char *summary;  /* one line */
+    const char *operands; /* "LOG" */
+    size_t operands_minimum, operands_maximum;
+    example examples[2];
+    const char *description; /* paragraphs separated by blank lines */
+    option_group groups[GROUPS_MAX];
+    int (*run)(int argument_count, char **arguments);
+} verb;
+
+/* Read the words after the verb.
+ * @param settings  the verb's settings with their defaults
+ * @param operands  OPERANDS_MAX texts, NULL where not given
+ * @return -1 to go on; otherwise the exit code (help was printed, or the usage is wrong and a
+ *         message was) */
+int options_parse(const verb *v, int argument_count, char **arguments, void *settings,
+                  const char **operands);
+
+/* "--rate RATE", "-o, --output FILE": at most `size` bytes. */
+void option_synopsis(const option *o, char *text, size_t size);
+
+void options_help(const verb *v, FILE *out);
+/* The man page of a verb in man(7) markup. */
+void options_manual(const verb *v, FILE *out);
+/* A bash completion script for all verbs. */
+void options_completion(const verb *const *verbs, size_t count, FILE *out);
+
+#endif

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A text table on an HTML page. */
+#ifndef IMUKIT_PAGE_TABLE_H
+#define IMUKIT_PAGE_TABLE_H
+
+#include "text_table.h"
+
+#include "imukit/report.h"
+
+/* Nothing for a table without rows. */
+void page_put_table(imk_page *page, const text_table *table);
+
+#endif

@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit convert: logs and model files between formats. */
+#include "command.h"
+#include "log_input.h"
+#include "progress.h"
+
+#include "imukit/model_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct convert_options {
+    log_input log;
+    const char *to_gyro_unit, *to_accel_unit, *to_time_unit, *to_temperature_unit, *select;
+    uint64_t decimals, threads;
+} convert_options;
+
+static const uint64_t decimals_shortest = UINT64_MAX;
+
+static const option convert_option_table[] = {
+    {"select", 0, OPTION_TEXT, "NAMES", NULL, NULL,
+     "columns to keep, in this order, such as time,gyro_x; default: all",
+     offsetof(convert_options, select)},
+    {"to-gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
+     "of the gyro columns written; default: as read", offsetof(convert_options, to_gyro_unit)},
+    {"to-accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
+     "of the accelerometer columns written; default: as read",
+     offsetof(convert_options, to_accel_unit)},
+    {"to-time-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
+     "of the time column written; default: as read", offsetof(convert_options, to_time_unit)},
+    {"to-temperature-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
+     "of the temperature column written; default: as read",
+     offsetof(convert_options, to_temperature_unit)},
+    {"decimals", 0, OPTION_INTEGER, "N", NULL, NULL,
+     "digits after the point, 0 to 17; default: as many as the number needs",
+     offsetof(convert_options, decimals)},
+    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL, "threads to use; default: all processors",
+     offsetof(convert_options, threads)},
+};
+
+static int run(int count, char **words);
+
+const verb convert_verb = {
+    .name = "convert",
+    .summary = "logs and model files between formats",
+    .operands = "IN OUT",
+    .operands_minimum = 2,
+    .operands_maximum = 2,
+    .examples =
+        {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
+          "a log without units becomes one that says everything"},
+         {"imukit convert model.yaml model.json",
+          "the same model as JSON; .yaml, .yml and .json are model files"}},
+    .description =
+        "A log is .csv (also .gz, .zst) or .npy; - is standard input or output, as CSV. Increments "
+        "become rates. Values keep their units unless an option changes them.",
+    .groups = {{"Options", sizeof convert_option_table / sizeof convert_option_table[0],
+                convert_option_table, 0},
+               {"Reading the log", 7, log_input_options, offsetof(convert_options, log)}},
+    .run = run};
+
+static bool is_model(const char *path)
+{
+    static const char *const ends[] = {".yaml", ".yml", ".json"};
+    size_t length = strlen(path);
+    for (size_t i = 0; i < 3; i++) {
+        size_t end = strlen(ends[i]);
+        if (length > end && strcmp(path + length - end, ends[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* The document is kept only within one format: JSON has no place for comments and layout. */
+static int convert_model(const char *in, const char *out)
+{
+    imk_error error;
+    imk_document *document = NULL;
+    imk_model *model = malloc(sizeof *model);
+    if (!model)
+        return command_failed("memory is exhausted");
+    int code = command_model(in, model, &document);
+    if (code < 0)
+        code = imk_model_write(out, model, document, &error) == IMK_OK
+                   ? EXIT_DONE
+                   : command_error(&error, NULL);
+    imk_document_free(document);
+    free(model);
+    return code;
+}
+
+/* Which columns are read and how they are written. */
+typedef struct conversion {
+    size_t count;
+    size_t source[IMK_LOG_COLUMNS_MAX];
+    imk_log_column column[IMK_LOG_COLUMNS_MAX];
+} conversion;
+
+static int select_columns(const convert_options *o, imk_log_reader *reader, conversion *c)
+{
+    const char *names[IMK_LOG_COLUMNS_MAX];
+    size_t available = imk_log_column_count(reader);
+    for (size_t k = 0; k < available; k++)
+        names[k] = imk_log_column_get(reader, k)->name;
+    c->count = 0;
+    for (size_t k = 0; !o->select && k < available; k++)
+        c->source[c->count++] = k;
+    for (const char *item = o->select; item;) {
+        size_t length = strcspn(item, ","), k = 0;
+        while (k < available &&
+               (strlen(names[k]) != length || strncmp(names[k], item, length) != 0))
+            k++;
+        if (k == available || c->count == IMK_LOG_COLUMNS_MAX) {
+            char name[64];
+            snprintf(name, sizeof name, "%.*s", (int)(length < 60 ? length : 60), item);
+            const char *nearest = command_nearest(name, available, names);
+            return command_failed("--select: the log has no column \"%s\"%s%s%s", name,
+                                  nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+                                  nearest ? "\"?" : "");
+        }
+        c->source[c->count++] = k;
+        item = item[length] ? item + length + 1 : NULL;
+    }
+    for (size_t k = 0; k < c->count; k++)
+        c->column[k] = *imk_log_column_get(reader, c->source[k]);
+    return -1;
+}
+
+/* Increments were divided by the interval on reading: name and unit follow. */
+static void make_rate(imk_log_column *column)
+{
+    static const char letters[] = "xyz";
+    bool gyro = column->quantity == IMK_QUANTITY_ANGULAR_RATE;
+    if (!column->increment)
+        return;
+    column->increment = false;
+    column->unit = imk_unit_of(gyro ? "deg/s" : "m/s^2");
+    if (column->axis >= 0 && column->axis < 3)
+        snprintf(column->name, sizeof column->name, "%s_%c", gyro ? "gyro" : "accel",
+                 letters[column->axis]);
+}
+
+static int set_unit(imk_log_column *column, const char *option_name, const char *text)
+{
+    imk_unit unit;
+    imk_error error;
+    if (!text)
+        return -1;
+    if (imk_unit_parse(text, text + strlen(text), &unit, &error) != IMK_OK)
+        return command_misused("--%s %s: the unit is not known", option_name, text);
+    if (!imk_dimension_equal(unit.dimension, column->unit.dimension))
+        return command_misused("--%s %s: expected %s such as %s", option_name, text,
+                               imk_dimension_name(column->unit.dimension),
+                               imk_dimension_examples(column->unit.dimension));
+    column->unit = unit;
+    return -1;
+}
+
+static int set_units(const convert_options *o, conversion *c)
+{
+    const struct {
+        imk_quantity quantity;
+        const char *option_name, *text;
+    } choices[] = {{IMK_QUANTITY_TIME, "to-time-unit", o->to_time_unit},
+                   {IMK_QUANTITY_ANGULAR_RATE, "to-gyro-unit", o->to_gyro_unit},
+                   {IMK_QUANTITY_SPECIFIC_FORCE, "to-accel-unit", o->to_accel_unit},
+                   {IMK_QUANTITY_TEMPERATURE, "to-temperature-unit", o->to_temperature_unit}};
+    int code = -1;
+    for (size_t k = 0; k < c->count; k++) {
+        make_rate(&c->column[k]);
+        for (size_t i = 0; i < sizeof choices / sizeof choices[0] && code < 0; i++)
+            if (c->column[k].quantity == choices[i].quantity)
+                code = set_unit(&c->column[k], choices[i].option_name, choices[i].text);
+    }
+    return code;
+}
+
+enum { BLOCK_ROWS = 65536 };
+
+static int copy_rows(imk_log_reader *reader, imk_log_writer *writer, const conversion *c,
+                     const char *in, const imk_executor *executor)
+{
+    double *read[IMK_LOG_COLUMNS_MAX] = {NULL}, *written[IMK_LOG_COLUMNS_MAX];
+    double *memory = malloc(imk_log_column_count(reader) * BLOCK_ROWS * sizeof *memory);
+    imk_error error;
+    imk_status status = memory ? IMK_OK : imk_error_set(&error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    for (size_t k = 0; k < imk_log_column_count(reader) && memory; k++)
+        read[k] = memory + k * BLOCK_ROWS;
+    for (size_t k = 0; k < c->count; k++)
+        written[k] = read[c->source[k]];
+    progress p = progress_begin("converting", "B", 1);
+    size_t rows = 1;
+    bool wrote = true;
+    uint64_t total = 0;
+    while (status == IMK_OK && rows > 0 && wrote) {
+        uint64_t done, size;
+        status = imk_log_read(reader, BLOCK_ROWS, read, &rows, &error);
+        if (status == IMK_OK && rows > 0)
+            wrote = imk_log_write(writer, rows, (const double *const *)written, executor) == IMK_OK;
+        total += rows;
+        imk_log_progress(reader, &done, &size);
+        progress_update(&p, done, size);
+    }
+    progress_end(&p);
+    free(memory);
+    if (status != IMK_OK) {
+        imk_log_abandon(writer);
+        return command_error(&error, in);
+    }
+    if (wrote && total == 0) {
+        imk_log_abandon(writer);
+        return command_failed("%s: there is a header but no data row", in);
+    }
+    if (imk_log_commit(writer, &error) != IMK_OK)
+        return command_error(&error, NULL);
+    return EXIT_DONE;
+}
+
+static int write_log(const convert_options *o, imk_log_reader *reader, const conversion *c,
+                     const char *in, const char *out)
+{
+    int decimals[IMK_LOG_COLUMNS_MAX];
+    bool fixed = o->decimals != decimals_shortest;
+    imk_error error;
+    imk_log_writer *writer;
+    for (size_t k = 0; k < c->count; k++)
+        decimals[k] = (int)o->decimals;
+    if (imk_log_create(out, c->count, c->column, fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST,
+                       fixed ? decimals : NULL, 0, &writer, &error) != IMK_OK)
+        return command_error(&error, NULL);
+    imk_thread_pool *pool = imk_thread_pool_create(o->threads);
+    imk_executor executor = imk_thread_pool_executor(pool);
+    int code = copy_rows(reader, writer, c, in, &executor);
+    imk_thread_pool_destroy(pool);
+    return code;
+}
+
+static int convert_log(const convert_options *o, const char *in, const char *out)
+{
+    imk_error error;
+    imk_log_reader *reader;
+    imk_log_settings settings = log_input_settings(&o->log);
+    conversion c;
+    if (imk_log_open(in, &settings, &reader, &error) != IMK_OK)
+        return command_error(&error, in);
+    int code = select_columns(o, reader, &c);
+    if (code < 0)
+        code = set_units(o, &c);
+    if (code < 0)
+        code = write_log(o, reader, &c, in, out);
+    imk_log_close(reader);
+    return code;
+}
+
+static int run(int count, char **words)
+{
+    convert_options o = {.decimals = decimals_shortest};
+    const char *operands[OPERANDS_MAX];
+    int code = options_parse(&convert_verb, count, words, &o, operands);
+    if (code >= 0)
+        return code;
+    if (o.decimals != decimals_shortest && o.decimals > 17)
+        return command_misused("--decimals %llu: expected 0 to 17", (unsigned long long)o.decimals);
+    bool from_model = is_model(operands[0]), to_model = is_model(operands[1]);
+    if (from_model != to_model)
+        return command_misused("%s is a %s and %s a %s: a log and a model cannot become each "
+                               "other; use identify or simulate",
+                               operands[0], from_model ? "model" : "log", operands[1],
+                               to_model ? "model" : "log");
+    return from_model ? convert_model(operands[0], operands[1])
+                      : convert_log(&o, operands[0], operands[1]);
+}

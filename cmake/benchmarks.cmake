@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+# One program per file bench/bench_*.c; target `benchmarks`, run by tools/run_bench.
+#
+# bench/*.cpp are yardsticks: what one would write without this library, compiled to run as fast as
+# it can on this machine. They never become part of the library.
+
+add_custom_target(benchmarks)
+set(benchmark_directory ${PROJECT_BINARY_DIR}/bench)
+file(GLOB bench_sources CONFIGURE_DEPENDS bench/bench_*.c)
+foreach(source ${bench_sources})
+  get_filename_component(name ${source} NAME_WE)
+  add_executable(${name} EXCLUDE_FROM_ALL ${source})
+  target_include_directories(${name} PRIVATE src bench)
+  target_link_libraries(${name} PRIVATE imukit-io ZLIB::ZLIB m)
+  target_compile_definitions(${name} PRIVATE
+    SOURCE_DIRECTORY="${PROJECT_SOURCE_DIR}"
+    SHARED_DIRECTORY="${PROJECT_SOURCE_DIR}/../shared"
+    BENCH_DIRECTORY="${benchmark_directory}")
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${benchmark_directory})
+  add_dependencies(benchmarks ${name})
+endforeach()
+
+file(GLOB yardstick_sources CONFIGURE_DEPENDS bench/*.cpp)
+find_program(IMUKIT_CXX NAMES c++ g++ clang++)
+if(yardstick_sources AND IMUKIT_CXX)
+  foreach(source ${yardstick_sources})
+    get_filename_component(name ${source} NAME_WE)
+    add_custom_command(OUTPUT ${benchmark_directory}/${name}
+      COMMAND ${CMAKE_COMMAND} -E make_directory ${benchmark_directory}
+      COMMAND ${IMUKIT_CXX} -O3 -march=native -o ${benchmark_directory}/${name} ${source}
+      DEPENDS ${source} VERBATIM)
+    add_custom_target(yardstick-${name} DEPENDS ${benchmark_directory}/${name})
+    add_dependencies(benchmarks yardstick-${name})
+  endforeach()
+endif()

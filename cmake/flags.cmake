@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+# Language, warnings and sanitizers of everything built here.
+
+set(CMAKE_C_STANDARD 17)
+set(CMAKE_C_STANDARD_REQUIRED ON)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_C_VISIBILITY_PRESET hidden)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+# Logs have the same bytes everywhere, so no fused or reordered arithmetic anywhere, and neither
+# link-time optimisation nor -march=native.
+set(imukit_flags -ffp-contract=off
+    -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes
+    -Wconversion -Wno-sign-conversion)
+if(CMAKE_C_COMPILER_ID STREQUAL GNU) # clang takes NAN and INFINITY for promotions
+  list(APPEND imukit_flags -Wdouble-promotion)
+endif()
+if(IMUKIT_SANITIZE)
+  list(APPEND imukit_flags -fsanitize=${IMUKIT_SANITIZE} -fno-sanitize-recover=all
+       -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${IMUKIT_SANITIZE})
+endif()
+add_compile_options("$<$<COMPILE_LANGUAGE:C>:${imukit_flags}>")

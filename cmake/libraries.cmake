@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+# libimukit (everything left of io: libm only) and libimukit-io (files, threads, reports).
+#
+# Each is compiled once, as position-independent objects, and made into an archive and a shared
+# library.
+
+file(GLOB core_sources CONFIGURE_DEPENDS src/base/*.c src/model/*.c src/noise/*.c src/motion/*.c
+     src/simulate/*.c src/identify/*.c src/physics/*.c src/compensate/*.c src/calibrate/*.c
+     src/navigate/*.c)
+file(GLOB io_sources CONFIGURE_DEPENDS src/io/*.c src/report/*.c)
+
+# One file per instruction set, chosen at run time; the rest is compiled for the base machine.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+  set_source_files_properties(src/base/normals_avx2.c PROPERTIES COMPILE_OPTIONS "-mavx2")
+  set_source_files_properties(src/base/normals_avx512.c PROPERTIES
+                              COMPILE_OPTIONS "-mavx512f;-mavx512dq")
+endif()
+
+set(imukit_soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+# imukit_library(NAME SOURCES <file>... OURS <library>... PUBLIC <library>... PRIVATE <library>...)
+# makes NAME (archive) and, when asked for, NAME-shared. OURS are libraries made here before: the
+# archive needs theirs, the shared library their shared one.
+#
+# A shared library shows its public functions only, yet io reads the core's internal tables (of the
+# model's fields, of units). So libimukit-io.so takes the few objects that hold those from the
+# archive and keeps them to itself; the core has no writable data, so two copies cannot disagree.
+function(imukit_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;OURS;PUBLIC;PRIVATE")
+  add_library(${name}-objects OBJECT ${arg_SOURCES})
+  target_include_directories(${name}-objects PRIVATE ${PROJECT_SOURCE_DIR}/include
+                             ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${name}-objects PRIVATE ${arg_PRIVATE})
+
+  add_library(${name} STATIC $<TARGET_OBJECTS:${name}-objects>)
+  target_link_libraries(${name} PUBLIC ${arg_OURS} ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  set(targets ${name})
+  if(IMUKIT_SHARED)
+    set(shared ${name}-shared)
+    list(APPEND targets ${shared})
+    list(TRANSFORM arg_OURS APPEND -shared OUTPUT_VARIABLE ours_shared)
+    add_library(${shared} SHARED $<TARGET_OBJECTS:${name}-objects>)
+    target_link_libraries(${shared} PUBLIC ${ours_shared} ${arg_PUBLIC}
+                          PRIVATE ${arg_OURS} ${arg_PRIVATE})
+    set_target_properties(${shared} PROPERTIES VERSION ${PROJECT_VERSION}
+                          SOVERSION ${imukit_soversion})
+    # Installed side by side, wherever that is.
+    if(arg_OURS AND APPLE)
+      set_target_properties(${shared} PROPERTIES INSTALL_RPATH "@loader_path")
+    elseif(arg_OURS)
+      set_target_properties(${shared} PROPERTIES INSTALL_RPATH "$ORIGIN")
+    endif()
+    if(NOT APPLE)
+      target_link_options(${shared} PRIVATE -Wl,--exclude-libs,ALL)
+      if(NOT IMUKIT_SANITIZE)
+        target_link_options(${shared} PRIVATE -Wl,-z,defs)
+      endif()
+    endif()
+  endif()
+  foreach(target ${targets})
+    target_include_directories(${target} PUBLIC
+      $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+    set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} LINKER_LANGUAGE C)
+  endforeach()
+endfunction()
+
+imukit_library(imukit SOURCES ${core_sources} PUBLIC m)
+
+if(IMUKIT_IO)
+  find_package(PkgConfig REQUIRED)
+  pkg_check_modules(yaml REQUIRED IMPORTED_TARGET yaml-0.1)
+  pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+  find_package(ZLIB REQUIRED)
+  find_package(Threads REQUIRED)
+  imukit_library(imukit-io SOURCES ${io_sources} OURS imukit
+                 PRIVATE PkgConfig::yaml PkgConfig::zstd ZLIB::ZLIB Threads::Threads)
+endif()
+
+# The names users of the installed package see, valid within this tree as well.
+if(IMUKIT_SHARED)
+  add_library(imukit::imukit ALIAS imukit-shared)
+else()
+  add_library(imukit::imukit ALIAS imukit)
+endif()
+if(IMUKIT_IO AND IMUKIT_SHARED)
+  add_library(imukit::imukit_io ALIAS imukit-io-shared)
+elseif(IMUKIT_IO)
+  add_library(imukit::imukit_io ALIAS imukit-io)
+endif()

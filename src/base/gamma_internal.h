@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parts of the gamma function that the incomplete gamma functions and quantiles share. */
+#ifndef IMUKIT_GAMMA_INTERNAL_H
+#define IMUKIT_GAMMA_INTERNAL_H
+
+/** log Gamma(1 + x) for -0.5 <= x <= 1.5, relative error near 1e-16 also where it is near 0. */
+double imki_log_gamma_one_plus(double x);
+
+/** What Stirling's formula lacks: log Gamma(x) - [(x - 1/2) log x - x + log(2 pi)/2], x >= 10. */
+double imki_stirling_error(double x);
+
+/** log(density) part of the gamma distribution, x^a e^{-x} / Gamma(a + 1), a > 0, x > 0. */
+double imki_gamma_power(double a, double x);
+
+/** P(a, x) and Q(a, x) together. */
+void imki_gamma_both(double a, double x, double *lower, double *upper);
+
+#endif

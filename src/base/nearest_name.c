@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The nearest name of a list, by the distance of Damerau and Levenshtein in its restricted form
+ * (optimal string alignment) [DAMERAU1964]: with d[i][j] for the first i and j letters,
+ *
+ *     d[i][j] = min( d[i-1][j] + 1, d[i][j-1] + 1, d[i-1][j-1] + (a_i != b_j),
+ *                    d[i-2][j-2] + 1  where a_i a_{i-1} = b_{j-1} b_j )
+ *
+ * Three rows of the table are kept. */
+#include "nearest_name_internal.h"
+
+#include "imukit/names.h"
+
+#include <string.h>
+
+enum { LETTERS_MAX = 63 };
+
+/* Letters that count, in lower case; SIZE_MAX for a name too long to compare. */
+static size_t reduce(const char *name, char *letters)
+{
+    size_t length = 0;
+    for (const char *c = name; *c; c++) {
+        if (*c == ' ' || *c == '-' || *c == '_')
+            continue;
+        if (length == LETTERS_MAX)
+            return SIZE_MAX;
+        letters[length++] = (char)(*c >= 'A' && *c <= 'Z' ? *c - 'A' + 'a' : *c);
+    }
+    return length;
+}
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static size_t distance(const char *a, size_t a_length, const char *b, size_t b_length)
+{
+    size_t rows[3][LETTERS_MAX + 1];
+    size_t *before_last = rows[0], *last = rows[1], *row = rows[2];
+    for (size_t j = 0; j <= b_length; j++) {
+        before_last[j] = j;
+        last[j] = j;
+    }
+    for (size_t i = 1; i <= a_length; i++) {
+        row[0] = i;
+        for (size_t j = 1; j <= b_length; j++) {
+            row[j] = smaller(smaller(last[j], row[j - 1]) + 1,
+                             last[j - 1] + (a[i - 1] != b[j - 1] ? 1 : 0));
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = smaller(row[j], before_last[j - 2] + 1);
+        }
+        size_t *free_row = before_last;
+        before_last = last;
+        last = row;
+        row = free_row;
+    }
+    return last[b_length];
+}
+
+size_t imki_nearest_name(const char *name, size_t count, const char *const *candidates)
+{
+    char wanted[LETTERS_MAX], letters[LETTERS_MAX];
+    size_t wanted_length = reduce(name, wanted);
+    size_t best = SIZE_MAX, best_distance = SIZE_MAX;
+    if (wanted_length == SIZE_MAX || wanted_length == 0)
+        return SIZE_MAX;
+    for (size_t i = 0; i < count; i++) {
+        size_t length = candidates[i] ? reduce(candidates[i], letters) : SIZE_MAX;
+        if (length == SIZE_MAX || length == 0)
+            continue;
+        size_t d = distance(wanted, wanted_length, letters, length);
+        /* A third of the longer name, but one slip also in the shortest. */
+        size_t longer = length > wanted_length ? length : wanted_length;
+        size_t allowed = longer < 6 ? 1 : longer / 3;
+        if (longer > 1 && d <= allowed && d < best_distance) {
+            best = i;
+            best_distance = d;
+        }
+    }
+    return best;
+}
+
+size_t imk_nearest_name(const char *name, size_t count, const char *const *candidates)
+{
+    return imki_nearest_name(name, count, candidates);
+}

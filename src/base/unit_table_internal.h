@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Tables of the units and dimensions, and what the reader and writer of units share. */
+#ifndef IMUKIT_UNIT_TABLE_INTERNAL_H
+#define IMUKIT_UNIT_TABLE_INTERNAL_H
+
+#include "imukit/units.h"
+
+enum {
+    IMKI_DIMENSIONS = 5,
+    /** Longest name of a unit after µ and ° are spelled out, with its terminating zero. */
+    IMKI_UNIT_NAME_SIZE = 32
+};
+
+/** A unit with a name of its own. */
+typedef struct imki_named_unit {
+    const char *name;
+    double scale;
+    double offset;
+    imk_dimension dimension;
+    bool is_hertz; /**< Hz or a multiple: its root makes a density */
+} imki_named_unit;
+
+/** By exact name, µ as u and ° as deg; NULL when unknown. */
+const imki_named_unit *imki_unit_find(const char *name);
+
+/** The known name nearest to `name`; NULL when none is near. */
+const char *imki_unit_nearest(const char *name);
+
+/** True when imk_dimension_name() has a name for it. */
+bool imki_dimension_known(imk_dimension dimension);
+
+/** Text of the SI base units of a dimension, like "rad/s^1.5" or "m/s^2/sqrt(Hz)". */
+void imki_unit_si_text(imk_dimension dimension, bool per_root_hertz, char text[48]);
+
+/** First character that is not blank. */
+static inline const char *imki_skip_blanks(const char *at, const char *end)
+{
+    while (at < end && (*at == ' ' || *at == '\t'))
+        at++;
+    return at;
+}
+
+/** `text` when [at, end) starts with it, moved behind; else NULL. */
+const char *imki_match(const char *at, const char *end, const char *text);
+
+#endif

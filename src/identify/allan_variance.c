@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Allan variances from running sums of a rate record.
+ *
+ *     OAVAR(m) = 1/(2 m^2 M) sum_{j=0}^{M-1} (s[j+2m] - 2 s[j+m] + s[j])^2,   M = n - 2m + 1
+ *
+ * [RILEY2008, eq. (11)] with s the sums (phase/dt); the plain variance takes every m-th term only.
+ */
+#include "imukit/allan.h"
+#include "imukit/random.h"
+
+#include <math.h>
+#include <string.h>
+
+size_t imk_allan_factors(imk_allan_grid grid, size_t n, size_t *factors)
+{
+    const size_t per_decade = 10;
+    size_t count = 0, last = 0;
+    for (size_t step = 0;; step++) {
+        size_t m = step + 1;
+        if (grid == IMK_ALLAN_OCTAVE)
+            m = step < 63 ? (size_t)1 << step : n;
+        else if (grid == IMK_ALLAN_DECADE)
+            m = (size_t)(pow(10.0, (double)step / (double)per_decade) + 0.5);
+        if (m > n / 2)
+            return count;
+        if (m == last)
+            continue;
+        if (factors)
+            factors[count] = m;
+        count++;
+        last = m;
+    }
+}
+
+/* Mean of a record: sums of blocks in LANES parts, and the blocks' sums with the rounding error of
+ * each addition carried along [KNUTH1998, 4.2.2]. */
+enum { LANES = 8, BLOCK = 8192 };
+
+static double block_sum(const double *values, size_t count)
+{
+    double lane[LANES] = {0}, rest = 0;
+    size_t i = 0;
+    for (; i + LANES <= count; i += LANES)
+        for (size_t l = 0; l < LANES; l++)
+            lane[l] += values[i + l];
+    for (; i < count; i++)
+        rest += values[i];
+    return (((lane[0] + lane[1]) + (lane[2] + lane[3])) +
+            ((lane[4] + lane[5]) + (lane[6] + lane[7]))) +
+           rest;
+}
+
+/* sum + step exactly: the rounded sum, and what it lacks. */
+static double add_exactly(double sum, double step, double *error)
+{
+    const double next = sum + step, part = next - sum;
+    *error += (sum - (next - part)) + (step - part);
+    return next;
+}
+
+static double mean_of(size_t n, const double *values)
+{
+    double sum = 0, error = 0;
+    for (size_t i = 0; i < n; i += BLOCK)
+        sum = add_exactly(sum, block_sum(values + i, n - i < BLOCK ? n - i : BLOCK), &error);
+    return n > 0 ? (sum + error) / (double)n : 0;
+}
+
+/* The error of every addition is carried along here too: a sum is right to its last digit however
+ * long the record. Reading stays ahead of writing, so that the two may share memory. */
+void imk_allan_sums(size_t n, const double *rate, double *sums)
+{
+    const double mean = mean_of(n, rate);
+    double sum = 0, error = 0, value = n > 0 ? rate[0] : 0;
+    sums[0] = 0;
+    for (size_t i = 0; i < n; i++) {
+        sum = add_exactly(sum, value - mean, &error);
+        if (i + 1 < n)
+            value = rate[i + 1];
+        sums[i + 1] = sum + error;
+    }
+}
+
+/* Sum of squared second differences of `count` (<= BLOCK) consecutive terms. The lanes let the
+ * compiler use vectors; their order, and so the result, is the same on every machine. */
+static inline double overlapping_block(const double *s, size_t m, size_t count)
+{
+    const double *a = s, *b = s + m, *c = s + 2 * m;
+    double lane[LANES] = {0};
+    size_t j = 0;
+    for (; j + LANES <= count; j += LANES)
+        for (size_t l = 0; l < LANES; l++) {
+            const double d = (c[j + l] - b[j + l]) - (b[j + l] - a[j + l]);
+            lane[l] += d * d;
+        }
+    for (; j < count; j++) {
+        const double d = (c[j] - b[j]) - (b[j] - a[j]);
+        lane[0] += d * d;
+    }
+    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
+           ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+}
+
+#if defined(__x86_64__) && defined(__GNUC__)
+__attribute__((target("avx512f"))) static double block_avx512(const double *s, size_t m,
+                                                              size_t count)
+{
+    return overlapping_block(s, m, count);
+}
+
+__attribute__((target("avx2"))) static double block_avx2(const double *s, size_t m, size_t count)
+{
+    return overlapping_block(s, m, count);
+}
+#endif
+
+static double block_for(imk_kernel kernel, const double *s, size_t m, size_t count)
+{
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (kernel == IMK_KERNEL_AVX512)
+        return block_avx512(s, m, count);
+    if (kernel == IMK_KERNEL_AVX2)
+        return block_avx2(s, m, count);
+#endif
+    (void)kernel;
+    return overlapping_block(s, m, count);
+}
+
+static double plain_sum(const double *s, size_t m, size_t count)
+{
+    double total = 0;
+    for (size_t j = 0; j < count; j++) {
+        const double *a = s + j * m;
+        double d = (a[2 * m] - a[m]) - (a[m] - a[0]);
+        total += d * d;
+    }
+    return total;
+}
+
+/* Neighbouring factors share a walk through the record, a block at a time, so that it comes from
+ * memory once for all of them. */
+enum { GROUP = 4 };
+
+typedef struct variance_work {
+    imk_allan_statistic statistic;
+    imk_kernel kernel;
+    size_t n, factor_count;
+    const double *sums;
+    const size_t *factors;
+    double *variances;
+    size_t *counts;
+} variance_work;
+
+static void variance_group(void *context, size_t item)
+{
+    const variance_work *w = context;
+    const size_t first = item * GROUP;
+    const size_t size = w->factor_count - first < GROUP ? w->factor_count - first : GROUP;
+    const size_t *m = w->factors + first;
+    double total[GROUP] = {0};
+    size_t count[GROUP], longest = 0;
+    for (size_t i = 0; i < size; i++) {
+        count[i] = w->statistic == IMK_ALLAN_PLAIN ? w->n / m[i] - 1 : w->n - 2 * m[i] + 1;
+        longest = count[i] > longest ? count[i] : longest;
+    }
+    if (w->statistic == IMK_ALLAN_PLAIN)
+        for (size_t i = 0; i < size; i++)
+            total[i] = plain_sum(w->sums, m[i], count[i]);
+    else
+        for (size_t j = 0; j < longest; j += BLOCK)
+            for (size_t i = 0; i < size; i++)
+                if (j < count[i])
+                    total[i] += block_for(w->kernel, w->sums + j, m[i],
+                                          count[i] - j < BLOCK ? count[i] - j : BLOCK);
+    for (size_t i = 0; i < size; i++) {
+        w->variances[first + i] = total[i] / (2.0 * (double)m[i] * (double)m[i] * (double)count[i]);
+        if (w->counts)
+            w->counts[first + i] = count[i];
+    }
+}
+
+imk_status imk_allan_variances(imk_allan_statistic statistic, size_t n, const double *sums,
+                               size_t factor_count, const size_t *factors, double *variances,
+                               size_t *counts, const imk_executor *executor)
+{
+    for (size_t i = 0; i < factor_count; i++)
+        if (factors[i] < 1 || factors[i] > n / 2)
+            return n < 2 ? IMK_ERROR_TOO_SHORT : IMK_ERROR_RANGE;
+    variance_work work = {
+        statistic, imk_random_seeded(0).kernel, n, factor_count, sums, factors, variances, counts};
+    imk_execute(executor, (factor_count + GROUP - 1) / GROUP, variance_group, &work);
+    return IMK_OK;
+}

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From what was identified on one channel to the terms and the evidence of a sensor model. */
+#include "imukit/identify.h"
+
+#include <string.h>
+
+/* The interval of a key and instance, added when it is not there yet; NULL when the list is full.
+ */
+static imk_interval *interval_of(imk_evidence *evidence, const char *key, int instance)
+{
+    for (int i = 0; i < evidence->interval_count; i++)
+        if (evidence->interval[i].instance == instance &&
+            strcmp(evidence->interval[i].key, key) == 0)
+            return &evidence->interval[i];
+    if (evidence->interval_count == IMK_INTERVALS_MAX)
+        return NULL;
+    imk_interval *added = &evidence->interval[evidence->interval_count++];
+    memset(added, 0, sizeof *added);
+    strncpy(added->key, key, sizeof added->key - 1);
+    added->instance = instance;
+    return added;
+}
+
+static void store(const imk_estimate *estimate, imk_axes *axes, imk_evidence *evidence,
+                  const char *key, int instance, int axis)
+{
+    axes->value[axis] = estimate->value;
+    axes->sigma[axis] = estimate->present ? estimate->sigma : 0;
+    imk_interval *interval = interval_of(evidence, key, instance);
+    if (interval) {
+        interval->lower.value[axis] = estimate->lower;
+        interval->upper.value[axis] = estimate->upper;
+    }
+}
+
+void imk_identification_store(const imk_identification *result, imk_model *model, bool accel,
+                              int axis)
+{
+    imk_triad *triad = accel ? &model->accel : &model->gyro;
+    imk_evidence *evidence = accel ? &model->accel_evidence : &model->gyro_evidence;
+    imk_noise *noise = &triad->noise;
+    imk_axes *axes[IMK_NOISE_TERMS] = {&noise->quantization, &noise->white,
+                                       &noise->bias_instability, &noise->random_walk, &noise->ramp};
+    static const char *const keys[2][IMK_NOISE_TERMS] = {
+        {"noise.quantization", "noise.angle_random_walk", "noise.bias_instability",
+         "noise.rate_random_walk", "noise.rate_ramp"},
+        {"noise.quantization", "noise.velocity_random_walk", "noise.bias_instability",
+         "noise.acceleration_random_walk", "noise.acceleration_ramp"}};
+    triad->present = true;
+    for (int term = 0; term < IMK_NOISE_TERMS; term++)
+        store(&result->term[term], axes[term], evidence, keys[accel][term], 0, axis);
+
+    for (int i = 0; i < result->gauss_markov_count; i++) {
+        store(&result->gauss_markov[i].sigma, &noise->gauss_markov[i].sigma, evidence,
+              "noise.gauss_markov.sigma", i, axis);
+        store(&result->gauss_markov[i].correlation_time, &noise->gauss_markov[i].correlation_time,
+              evidence, "noise.gauss_markov.correlation_time", i, axis);
+    }
+    for (int i = 0; i < result->sinusoid_count; i++) {
+        noise->sinusoid[i].amplitude.value[axis] = result->sinusoid[i].amplitude;
+        noise->sinusoid[i].frequency.value[axis] = result->sinusoid[i].frequency;
+    }
+    for (int i = 0; i < result->resonance_count; i++) {
+        noise->resonance[i].sigma.value[axis] = result->resonance[i].sigma;
+        noise->resonance[i].frequency.value[axis] = result->resonance[i].frequency;
+        noise->resonance[i].q.value[axis] = result->resonance[i].q;
+    }
+    if (noise->gauss_markov_count < result->gauss_markov_count)
+        noise->gauss_markov_count = result->gauss_markov_count;
+    if (noise->sinusoid_count < result->sinusoid_count)
+        noise->sinusoid_count = result->sinusoid_count;
+    if (noise->resonance_count < result->resonance_count)
+        noise->resonance_count = result->resonance_count;
+    triad->bandwidth.value[axis] = result->filter.bandwidth;
+    triad->damping.value[axis] = result->filter.damping;
+}

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Spectral lines: narrow excesses of power over their surroundings.
+ *
+ * A window of w coefficients is compared with two flanks. If both held the same noise, the ratio r
+ * of their means would be that of chi-squares; the log-likelihood a line of that width is worth is
+ *
+ *     gain = w/2 (r - 1 - log r)
+ *
+ * Windows of all widths compete, and the largest gains win. Sums come from cumulative powers, so
+ * that any window costs the same. */
+#include "identify_internal.h"
+
+#include <math.h>
+
+/* gain > 30 has a chance of about e^-30 per window, 1e-7 in a record of 1e6 windows; an excess
+ * below 25 % bends neither the fit nor a plot. Lines below the 48th coefficient cannot be told from
+ * slow noise. */
+static const double GAIN_MIN = 30, RATIO_MIN = 1.25;
+enum { FIRST_COEFFICIENT = 48, CANDIDATES = 256 };
+
+static double mean_power(const double *cumulative, size_t from, size_t to)
+{
+    return (cumulative[to] - cumulative[from]) / (double)(to - from);
+}
+
+static double gain_of(size_t w, double ratio)
+{
+    return 0.5 * (double)w * (ratio - 1 - log(ratio));
+}
+
+/* Ratio at which a window of w coefficients gains GAIN_MIN, at least RATIO_MIN. */
+static double least_ratio(size_t w)
+{
+    double low = 1, high = 2 + 4 * GAIN_MIN / (double)w;
+    for (int i = 0; i < 40; i++) {
+        const double middle = 0.5 * (low + high);
+        *(gain_of(w, middle) > GAIN_MIN ? &high : &low) = middle;
+    }
+    return high > RATIO_MIN ? high : RATIO_MIN;
+}
+
+/* Square of the ratio of a window's mean to its surroundings': the product of the flanks' means,
+ * the square of the level between them for any power law. 0 where the flanks do not fit. */
+static double squared_ratio(size_t n, const double *cumulative, size_t first, size_t w)
+{
+    const size_t gap = w / 2 + 1, flank = 3 * w > 32 ? 3 * w : 32;
+    if (first < gap + flank + 1 || first + w + gap + flank > n)
+        return 0;
+    const size_t left = first - gap, right = first + w + gap;
+    const double below = cumulative[left] - cumulative[left - flank];
+    const double above = cumulative[right + flank] - cumulative[right];
+    const double inside = (cumulative[first + w] - cumulative[first]) * (double)flank / (double)w;
+    return below * above > 0 ? inside * inside / (below * above) : 0;
+}
+
+/* Keep the candidates that gain most; the list is small and unsorted. */
+static void add_candidate(imki_line *list, size_t *count, imki_line line)
+{
+    if (*count < CANDIDATES) {
+        list[(*count)++] = line;
+        return;
+    }
+    size_t least = 0;
+    for (size_t i = 1; i < CANDIDATES; i++)
+        least = list[i].gain < list[least].gain ? i : least;
+    if (list[least].gain < line.gain)
+        list[least] = line;
+}
+
+static void scan_width(size_t n, const double *cumulative, size_t w, imki_line *list, size_t *count)
+{
+    const size_t step = w >= 4 ? w / 4 : 1;
+    const size_t start = 8 * w > FIRST_COEFFICIENT ? 8 * w : FIRST_COEFFICIENT;
+    const double needed = least_ratio(w) * least_ratio(w);
+    imki_line best = {0};
+    for (size_t first = start; first + w < n; first += step) {
+        const double squared = squared_ratio(n, cumulative, first, w);
+        if (squared > needed && (best.gain == 0 || first <= best.last)) {
+            const double r = sqrt(squared), gain = gain_of(w, r);
+            if (gain > best.gain)
+                best = (imki_line){first, first + w - 1, r, gain};
+        } else if (best.gain > 0 && first > best.last) {
+            add_candidate(list, count, best);
+            best = (imki_line){0};
+        }
+    }
+    if (best.gain > 0)
+        add_candidate(list, count, best);
+}
+
+static bool near(const imki_line *a, const imki_line *b)
+{
+    const size_t wa = a->last - a->first + 1, wb = b->last - b->first + 1;
+    const size_t margin = wa > wb ? wa : wb;
+    return a->first <= b->last + margin && b->first <= a->last + margin;
+}
+
+size_t imki_lines_find(size_t n, const double *cumulative, imki_line *lines)
+{
+    imki_line list[CANDIDATES];
+    size_t candidates = 0, count = 0;
+    for (size_t w = 1; 16 * w < n; w *= 2)
+        scan_width(n, cumulative, w, list, &candidates);
+    while (count < IMKI_LINES_MAX) {
+        size_t best = candidates;
+        for (size_t i = 0; i < candidates; i++)
+            if (list[i].gain > 0 && (best == candidates || list[i].gain > list[best].gain))
+                best = i;
+        if (best == candidates)
+            break;
+        lines[count] = list[best];
+        for (size_t i = 0; i < candidates; i++)
+            if (near(&list[i], &lines[count]))
+                list[i].gain = 0;
+        count++;
+    }
+    return count;
+}
+
+imki_line imki_line_widen(const imki_line *line, size_t n)
+{
+    imki_line wide = *line;
+    const size_t width = line->last - line->first + 1;
+    wide.first = line->first > 2 * width ? line->first - 2 * width : 1;
+    wide.last = line->last + 2 * width < n ? line->last + 2 * width : n - 1;
+    return wide;
+}
+
+double imki_line_variance(const imki_line *wide, size_t n, double dt, const double *cumulative)
+{
+    const size_t width = wide->last - wide->first + 1;
+    const size_t below = wide->first > width ? wide->first - width : 1;
+    const size_t above = wide->last + 1 + width < n ? wide->last + 1 + width : n;
+    const double level = 0.5 * (mean_power(cumulative, below, wide->first) +
+                                mean_power(cumulative, wide->last + 1, above));
+    const double excess = mean_power(cumulative, wide->first, wide->last + 1) - level;
+    return excess > 0 ? excess * (double)width / ((double)n * dt) : 0;
+}
+
+/* Projections of the record on cos and sin of a frequency, by a rotating phasor that is set anew
+ * every 256 samples so that its rounding does not grow. */
+static void project(size_t n, const double *samples, double cycles, double *c, double *s)
+{
+    const double turn = 6.283185307179586, step = turn * cycles;
+    const double cos_step = cos(step), sin_step = sin(step);
+    *c = *s = 0;
+    for (size_t begin = 0; begin < n; begin += 256) {
+        const double turns = cycles * (double)begin, phase = turn * (turns - floor(turns));
+        double re = cos(phase), im = sin(phase);
+        const size_t end = begin + 256 < n ? begin + 256 : n;
+        for (size_t i = begin; i < end; i++) {
+            *c += samples[i] * re;
+            *s += samples[i] * im;
+            const double next = re * cos_step - im * sin_step;
+            im = re * sin_step + im * cos_step;
+            re = next;
+        }
+    }
+}
+
+static double projected_power(size_t n, const double *samples, double cycles)
+{
+    double c, s;
+    project(n, samples, cycles, &c, &s);
+    return c * c + s * s;
+}
+
+/* Golden-section search for the periodogram's peak within half a DFT bin, then least squares (the
+ * two projections are orthogonal to 1/n at these frequencies). */
+bool imki_sinusoid_remove(size_t n, double dt, double frequency, double variance, double *samples,
+                          imk_sinusoid *sinusoid)
+{
+    const double golden = 0.6180339887498949, half_bin = 0.75 / (double)n;
+    double low = frequency * dt - half_bin, high = frequency * dt + half_bin;
+    double a = high - golden * (high - low), b = low + golden * (high - low);
+    double power_a = projected_power(n, samples, a), power_b = projected_power(n, samples, b);
+    for (int i = 0; i < 24; i++) {
+        if (power_a > power_b) {
+            high = b, b = a, power_b = power_a;
+            a = high - golden * (high - low);
+            power_a = projected_power(n, samples, a);
+        } else {
+            low = a, a = b, power_a = power_b;
+            b = low + golden * (high - low);
+            power_b = projected_power(n, samples, b);
+        }
+    }
+    const double cycles = 0.5 * (low + high), turn = 6.283185307179586;
+    double c, s;
+    project(n, samples, cycles, &c, &s);
+    c *= 2 / (double)n;
+    s *= 2 / (double)n;
+    if (!(0.5 * (c * c + s * s) > 0.6 * variance))
+        return false;
+    for (size_t i = 0; i < n; i++) {
+        const double turns = cycles * (double)i, phase = turn * (turns - floor(turns));
+        samples[i] -= c * cos(phase) + s * sin(phase);
+    }
+    *sinusoid = (imk_sinusoid){.amplitude = sqrt(c * c + s * s), .frequency = cycles / dt};
+    return true;
+}

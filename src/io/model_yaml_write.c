@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Writing models: characters, and the layouts: YAML by indentation, one line in braces, JSON. */
+#include "model_yaml_internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEY_SIZE = 64 };
+
+/* ---- bytes ----------------------------------------------------------------------------------- */
+
+void imki_write_bytes(imki_writer *writer, const char *bytes, size_t size)
+{
+    if (writer->failed || size == 0)
+        return;
+    if (writer->size + size + 1 > writer->capacity) {
+        size_t capacity = 2 * (writer->size + size + 1);
+        char *grown = realloc(writer->bytes, capacity);
+        if (!grown) {
+            writer->failed = true;
+            return;
+        }
+        writer->bytes = grown;
+        writer->capacity = capacity;
+    }
+    memcpy(writer->bytes + writer->size, bytes, size);
+    writer->size += size;
+    writer->bytes[writer->size] = '\0';
+}
+
+void imki_write_text(imki_writer *writer, const char *text)
+{
+    imki_write_bytes(writer, text, strlen(text));
+}
+
+void imki_write_indent(imki_writer *writer)
+{
+    for (int i = 0; i < writer->indent; i++)
+        imki_write_text(writer, " ");
+}
+
+/* Double quotes with JSON's escapes, which YAML shares. Characters that YAML does not print, and
+ * its extra line ends, are escaped. */
+void imki_write_quoted(imki_writer *writer, const char *text)
+{
+    imki_write_text(writer, "\"");
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+        char escape[16] = "";
+        bool is_c1 = c[0] == 0xC2 && c[1] < 0xA0;
+        bool is_line_end = c[0] == 0xE2 && c[1] == 0x80 && (c[2] == 0xA8 || c[2] == 0xA9);
+        bool is_mark =
+            c[0] == 0xEF && ((c[1] == 0xBB && c[2] == 0xBF) || (c[1] == 0xBF && c[2] >= 0xBE));
+        if (*c == '"' || *c == '\\')
+            snprintf(escape, sizeof escape, "\\%c", *c);
+        else if (*c < 0x20 || *c == 0x7F)
+            snprintf(escape, sizeof escape, "\\u%04x", (unsigned)*c);
+        else if (is_c1)
+            snprintf(escape, sizeof escape, "\\u%04x", (unsigned)c[1]);
+        else if (is_line_end || is_mark)
+            snprintf(escape, sizeof escape, "\\u%04x",
+                     ((c[0] & 0x0Fu) << 12) | ((c[1] & 0x3Fu) << 6) | (c[2] & 0x3Fu));
+        if (escape[0])
+            imki_write_text(writer, escape);
+        else
+            imki_write_bytes(writer, (const char *)c, 1);
+        c += is_c1 ? 1 : (is_line_end || is_mark) ? 2 : 0;
+    }
+    imki_write_text(writer, "\"");
+}
+
+/* Texts that mean themselves in YAML without quotes, also to other readers. */
+static bool is_plain_text(const char *text)
+{
+    static const char *const words[] = {"true", "false", "yes", "no", "on",
+                                        "off",  "null",  "y",   "n"};
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    size_t length = strlen(text);
+    if (strspn(text, letters) == 0 ||
+        strspn(text, "abcdefghijklmnopqrstuvwxyz"
+                     "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 _./()+-") != length)
+        return false;
+    char lower[8] = "";
+    for (size_t i = 0; i < length && length < sizeof lower; i++)
+        lower[i] = (char)(text[i] >= 'A' && text[i] <= 'Z' ? text[i] + 32 : text[i]);
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strcmp(lower, words[i]) == 0)
+            return false;
+    return text[length - 1] != ' ';
+}
+
+void imki_write_text_value(imki_writer *writer, const char *text)
+{
+    if (!writer->is_json && is_plain_text(text))
+        imki_write_text(writer, text);
+    else
+        imki_write_quoted(writer, text);
+}
+
+void imki_write_key(imki_writer *writer, const char *key)
+{
+    if (writer->is_json || strchr(key, '['))
+        imki_write_quoted(writer, key);
+    else
+        imki_write_text(writer, key);
+    imki_write_text(writer, ":");
+}
+
+/* ---- layout ---------------------------------------------------------------------------------- */
+
+/* What stands before an entry. */
+static void begin_entry(imki_writer *writer)
+{
+    if (writer->layout == IMKI_LINE)
+        imki_write_text(writer, writer->is_first ? "" : ", ");
+    if (writer->layout == IMKI_LINES)
+        imki_write_text(writer, writer->is_first ? "\n" : ",\n");
+    if (writer->layout != IMKI_LINE)
+        imki_write_indent(writer);
+    writer->is_first = false;
+}
+
+void imki_open_group(imki_writer *writer, const char *key)
+{
+    begin_entry(writer);
+    imki_write_key(writer, key);
+    imki_write_text(writer, writer->layout == IMKI_BLOCK ? "\n" : " {");
+    writer->indent += 2;
+    writer->is_first = true;
+}
+
+void imki_close_group(imki_writer *writer)
+{
+    writer->indent -= 2;
+    if (writer->layout == IMKI_LINES) {
+        imki_write_text(writer, "\n");
+        imki_write_indent(writer);
+    }
+    if (writer->layout != IMKI_BLOCK)
+        imki_write_text(writer, "}");
+    writer->is_first = false;
+}
+
+static const char *last_component(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+/* Lists of terms and intervals, one a line below their key. */
+static void write_block_list(imki_writer *writer, const imki_item *item, const imk_model *model)
+{
+    const imk_triad *triad = imki_triad_of(model, item->kind);
+    bool is_list = item->type == IMKI_ITEM_FIELD;
+    const imk_evidence *evidence = imki_evidence_of(model, item->kind);
+    int count = is_list ? imki_list_count(item->field, triad) : evidence->interval_count;
+    imki_write_text(writer, "\n");
+    writer->indent += 2;
+    for (int i = 0; i < count; i++) {
+        if (!is_list && imki_is_bound(&evidence->interval[i], triad->axis_count) != item->is_bound)
+            continue;
+        imki_write_indent(writer);
+        if (is_list) {
+            imki_write_text(writer, "- ");
+            imki_write_element(writer, item->field, item->kind, triad, i);
+        } else {
+            imki_write_interval(writer, &evidence->interval[i], item->kind, triad, item->is_bound);
+        }
+        imki_write_text(writer, "\n");
+    }
+    writer->indent -= 2;
+}
+
+void imki_write_item(imki_writer *writer, const imki_item *item, const imk_model *model)
+{
+    bool is_list = item->type == IMKI_ITEM_INTERVALS ||
+                   (item->type == IMKI_ITEM_FIELD && item->field->shape == IMKI_LIST);
+    begin_entry(writer);
+    imki_write_key(writer, last_component(item->path));
+    if (is_list && writer->layout == IMKI_BLOCK) {
+        write_block_list(writer, item, model);
+        return;
+    }
+    imki_write_text(writer, " ");
+    imki_write_item_value(writer, item, model);
+    if (writer->layout == IMKI_BLOCK)
+        imki_write_text(writer, "\n");
+}
+
+/* Length of the first `components` components of a path, without the dot behind. */
+static size_t prefix_length(const char *path, size_t components)
+{
+    size_t length = 0;
+    for (; path[length]; length++)
+        if (path[length] == '.' && --components == 0)
+            break;
+    return length;
+}
+
+static size_t component_count(const char *path)
+{
+    size_t count = 1;
+    for (; *path; path++)
+        count += *path == '.';
+    return count;
+}
+
+/* Close and open groups so that an item of `path` can be written; returns how many are open. */
+static size_t change_groups(imki_writer *writer, const char *from, size_t open, const char *path,
+                            size_t always_open)
+{
+    size_t wanted = component_count(path) - 1, common = open;
+    while (common > always_open) {
+        size_t length = prefix_length(from, common);
+        bool same = common <= wanted && prefix_length(path, common) == length &&
+                    strncmp(from, path, length) == 0;
+        if (same)
+            break;
+        common--;
+        imki_close_group(writer);
+    }
+    for (size_t i = common; i < wanted; i++) {
+        size_t begin = i > 0 ? prefix_length(path, i) + 1 : 0;
+        char key[KEY_SIZE];
+        snprintf(key, sizeof key, "%.*s", (int)(prefix_length(path, i + 1) - begin), path + begin);
+        imki_open_group(writer, key);
+    }
+    return wanted > common ? wanted : common;
+}
+
+/* True when a sensor that is there has nothing to say. */
+static bool is_perfect(const imki_item *sensor, size_t index, const imk_model *model)
+{
+    imki_item item;
+    for (size_t i = index + 1; imki_item_at(i, &item) && item.kind == sensor->kind &&
+                               item.type != IMKI_ITEM_TIMING && item.type != IMKI_ITEM_SENSOR;
+         i++)
+        if (!imki_item_absent(&item, model))
+            return false;
+    return true;
+}
+
+void imki_write_items(imki_writer *writer, const imk_model *model, size_t first, size_t last,
+                      size_t open_components)
+{
+    imki_item item;
+    char open_path[sizeof item.path] = "";
+    size_t open = open_components;
+    for (size_t i = first; i < last && imki_item_at(i, &item); i++) {
+        if (imki_item_absent(&item, model) ||
+            (item.type == IMKI_ITEM_SENSOR && !is_perfect(&item, i, model)))
+            continue;
+        open = change_groups(writer, open_path, open, item.path, open_components);
+        imki_write_item(writer, &item, model);
+        memcpy(open_path, item.path, sizeof open_path);
+    }
+    while (open-- > open_components)
+        imki_close_group(writer);
+}
+
+void imki_write_model(imki_writer *writer, const imk_model *model)
+{
+    if (writer->layout != IMKI_BLOCK) {
+        imki_write_text(writer, "{");
+        writer->indent += 2;
+    }
+    writer->is_first = true;
+    begin_entry(writer);
+    imki_write_key(writer, "imukit");
+    imki_write_text(writer, writer->layout == IMKI_BLOCK ? " 1\n" : " 1");
+    imki_write_items(writer, model, 0, SIZE_MAX, 0);
+    if (writer->layout != IMKI_BLOCK) {
+        writer->indent -= 2;
+        imki_write_text(writer, writer->layout == IMKI_LINES ? "\n}\n" : "}");
+    }
+}

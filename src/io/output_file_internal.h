@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the log writer needs of an output file beyond output_file.h. */
+#ifndef IMUKIT_OUTPUT_FILE_INTERNAL_H
+#define IMUKIT_OUTPUT_FILE_INTERNAL_H
+
+#include "imukit/output_file.h"
+
+#include <stdbool.h>
+
+/* Can bytes written before be replaced? Only in an uncompressed regular file. */
+bool imki_output_file_can_replace(const imk_output_file *file);
+
+/* Replace bytes from `offset` on, all of which were written before. */
+imk_status imki_output_file_replace(imk_output_file *file, uint64_t offset, const void *bytes,
+                                    size_t size);
+
+/* The part of commit that can well fail: flush, end the compression, sync to the disk. Commit then
+ * only renames, so that several files can be prepared first and appear together. On error the file
+ * is abandoned and freed. */
+imk_status imki_output_file_prepare(imk_output_file *file, imk_error *error);
+
+#endif

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Temporary files beside their targets, and the register from which a signal handler removes them.
+ *
+ * The temporary file of DIR/NAME is DIR/.NAME.<process>.<number>.part, made with O_EXCL: no random
+ * numbers, and a file left by a killed process only makes the number go up. */
+#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
+#include "imukit/output_file.h"
+#include "io/output_target_internal.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum {
+    SLOTS = 32,
+    NAME_SIZE = 4096, /* PATH_MAX of Linux */
+    LINKS_MAX = 40,   /* as Linux itself follows */
+    ATTEMPTS_MAX = 10000
+};
+
+/* A temporary file, for the signal handler: the name lies in static memory, since a handler may run
+ * on one thread while another frees memory. Whoever takes the slot out of SLOT_LIVE decides what
+ * becomes of the file. */
+enum { SLOT_FREE, SLOT_FILLING, SLOT_LIVE };
+
+static struct {
+    atomic_int state;
+    char name[NAME_SIZE];
+} slots[SLOTS];
+
+static int register_temporary(const char *name)
+{
+    const size_t size = strlen(name) + 1;
+    for (int slot = 0; slot < SLOTS && size <= NAME_SIZE; slot++) {
+        int state = SLOT_FREE;
+        if (atomic_compare_exchange_strong(&slots[slot].state, &state, SLOT_FILLING)) {
+            memcpy(slots[slot].name, name, size);
+            atomic_store(&slots[slot].state, SLOT_LIVE);
+            return slot;
+        }
+    }
+    return -1;
+}
+
+static void unregister_temporary(int slot)
+{
+    int state = SLOT_LIVE;
+    if (slot >= 0)
+        atomic_compare_exchange_strong(&slots[slot].state, &state, SLOT_FREE);
+}
+
+void imk_output_file_abandon_all(void)
+{
+    const int saved = errno;
+    for (int slot = 0; slot < SLOTS; slot++) {
+        int state = SLOT_LIVE;
+        if (atomic_compare_exchange_strong(&slots[slot].state, &state, SLOT_FILLING))
+            unlink(slots[slot].name);
+    }
+    errno = saved;
+}
+
+/* Directory part of a path with its slash, as a length. */
+static size_t directory_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* The path behind all symbolic links, which need not exist (realpath() would demand it).
+ * @return from malloc(); NULL with errno */
+static char *follow_links(const char *path)
+{
+    char *current = strdup(path);
+    for (int links = 0; current && links < LINKS_MAX; links++) {
+        struct stat about;
+        if (lstat(current, &about) != 0 || !S_ISLNK(about.st_mode))
+            return current;
+        char link[NAME_SIZE];
+        const ssize_t length = readlink(current, link, sizeof link);
+        if (length < 0 || length == sizeof link) {
+            free(current);
+            errno = length < 0 ? errno : ENAMETOOLONG;
+            return NULL;
+        }
+        const size_t directory = link[0] == '/' ? 0 : directory_length(current);
+        char *next = malloc(directory + (size_t)length + 1);
+        if (next) {
+            memcpy(next, current, directory);
+            memcpy(next + directory, link, (size_t)length);
+            next[directory + (size_t)length] = '\0';
+        }
+        free(current);
+        current = next;
+    }
+    free(current);
+    errno = current ? ELOOP : ENOMEM;
+    return NULL;
+}
+
+/* Make the temporary file. @return 0 or an errno value */
+static int make_temporary(imki_target *target, mode_t mode)
+{
+    static atomic_uint count;
+    const int directory = (int)directory_length(target->name);
+    const size_t size = strlen(target->name) + 64;
+    target->temporary = malloc(size);
+    if (!target->temporary)
+        return ENOMEM;
+    for (int attempt = 0; attempt < ATTEMPTS_MAX; attempt++) {
+        /* Half of a name of the greatest length leaves room for what is added. */
+        snprintf(target->temporary, size, "%.*s.%.*s.%ld.%u.part", directory, target->name,
+                 NAME_MAX / 2, target->name + directory, (long)getpid(),
+                 atomic_fetch_add(&count, 1u));
+        target->file = open(target->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        if (target->file >= 0 || errno != EEXIST)
+            break;
+    }
+    if (target->file < 0) {
+        free(target->temporary);
+        target->temporary = NULL;
+        return errno;
+    }
+    target->slot = register_temporary(target->temporary);
+    return 0;
+}
+
+/* A temporary file for a target that exists or not. */
+static int open_beside(imki_target *target)
+{
+    struct stat about;
+    const bool exists = stat(target->name, &about) == 0;
+    if (!exists && errno != ENOENT)
+        return errno;
+    if (exists && S_ISDIR(about.st_mode))
+        return EISDIR;
+    if (exists && !S_ISREG(about.st_mode)) {
+        target->file = open(target->name, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+        return target->file < 0 ? errno : 0;
+    }
+    if (target->name[directory_length(target->name)] == '\0')
+        return target->name[0] == '\0' ? ENOENT : EISDIR;
+    if (exists && access(target->name, W_OK) != 0)
+        return errno;
+    const int number = make_temporary(target, 0666);
+    if (number == 0 && exists)
+        fchmod(target->file, about.st_mode & 0777); /* not every file system has permissions */
+    return number;
+}
+
+int imki_target_open(imki_target *target, const char *path)
+{
+    *target = (imki_target){.file = -1, .slot = -1, .standard = strcmp(path, "-") == 0};
+    target->path = strdup(target->standard ? "standard output" : path);
+    if (!target->path)
+        return ENOMEM;
+    int number = 0;
+    if (target->standard) {
+        fflush(stdout);
+        target->file = STDOUT_FILENO;
+    } else {
+        target->name = follow_links(path);
+        number = target->name ? open_beside(target) : errno;
+    }
+    if (number != 0)
+        imki_target_close(target);
+    return number;
+}
+
+/* Make the rename durable. Failure is no reason to report: the file is complete and in its place;
+ * only a power cut within seconds could bring the old one back. */
+static void sync_directory(const char *name)
+{
+    char *directory = strdup(name);
+    if (!directory)
+        return;
+    directory[directory_length(name)] = '\0';
+    const int file = open(directory[0] ? directory : ".", O_RDONLY | O_CLOEXEC);
+    if (file >= 0) {
+        fsync(file);
+        close(file);
+    }
+    free(directory);
+}
+
+int imki_target_publish(imki_target *target)
+{
+    if (target->standard)
+        return 0;
+    const int closed = close(target->file);
+    target->file = -1;
+    if (closed != 0 && errno != EINTR)
+        return errno;
+    if (!target->temporary)
+        return 0;
+    if (rename(target->temporary, target->name) != 0)
+        return errno;
+    unregister_temporary(target->slot);
+    sync_directory(target->name);
+    free(target->temporary);
+    target->temporary = NULL;
+    return 0;
+}
+
+void imki_target_close(imki_target *target)
+{
+    if (target->file >= 0 && !target->standard)
+        close(target->file);
+    if (target->temporary) {
+        unlink(target->temporary);
+        unregister_temporary(target->slot);
+    }
+    free(target->path);
+    free(target->name);
+    free(target->temporary);
+    *target = (imki_target){.file = -1, .slot = -1};
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The five classes of inertial units, and the class of a model by its biases. */
+#include "imukit/model.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#define DEGREES_PER_HOUR (3.14159265358979323846 / 180 / 3600) /* [rad/s] */
+#define MICRO_G (9.80665e-6)                                   /* [m/s^2] */
+
+static const imk_grade_row grade_rows[] = {
+    {"strategic", "1 nmi / 24 h", "ESG, RLG, FOG", "servo", 0.005 * DEGREES_PER_HOUR, 30 * MICRO_G},
+    {"navigation", "1 nmi / h", "RLG, FOG", "servo, vibrating beam", 0.01 * DEGREES_PER_HOUR,
+     50 * MICRO_G},
+    {"tactical", "> 10 nmi / h", "RLG, FOG", "servo, vibrating beam, MEMS", 1 * DEGREES_PER_HOUR,
+     1000 * MICRO_G},
+    {"AHRS", "n/a", "MEMS, RLG, FOG, Coriolis", "MEMS", 10 * DEGREES_PER_HOUR, 1000 * MICRO_G},
+    {"control system", "n/a", "Coriolis", "MEMS", 1000 * DEGREES_PER_HOUR, 10000 * MICRO_G},
+};
+
+/* A figure on the limit of its class belongs to it, whatever the last bit of the conversion. */
+static const double rounding = 1 + 1e-9;
+
+const imk_grade_row *imk_grade_table(imk_grade grade)
+{
+    int index = (int)grade;
+    return index >= 0 && index < (int)IMK_GRADE_NONE ? &grade_rows[index] : NULL;
+}
+
+/* The bias that stays after calibration, worst axis; NaN when none is stated. */
+static double remaining_bias(const imk_triad *triad)
+{
+    double worst = 0;
+    for (int i = 0; triad->present && i < triad->axis_count && i < IMK_AXES_MAX; i++) {
+        double repeatability = triad->bias.repeatability.value[i];
+        double instability = triad->noise.bias_instability.value[i];
+        double uncertainty = triad->bias.fixed.sigma[i];
+        double square =
+            repeatability * repeatability + instability * instability + uncertainty * uncertainty;
+        worst = square > worst ? square : worst;
+    }
+    return worst > 0 ? sqrt(worst) : (double)NAN;
+}
+
+static imk_grade grade_of(double bias, size_t limit_offset)
+{
+    for (int grade = 0; grade < (int)IMK_GRADE_NONE; grade++) {
+        const char *row = (const char *)&grade_rows[grade];
+        double limit = *(const double *)(const void *)(row + limit_offset);
+        /* "< 0.005 deg/h" and "< 30 ug" exclude the limit itself; the others are listed values. */
+        bool within =
+            grade == IMK_GRADE_STRATEGIC ? bias * rounding < limit : bias <= limit * rounding;
+        if (within)
+            return (imk_grade)grade;
+    }
+    return IMK_GRADE_NONE;
+}
+
+imk_grade_result imk_grade_model(const imk_model *model)
+{
+    imk_grade_result result;
+    result.gyro_bias = remaining_bias(&model->gyro);
+    result.accel_bias = remaining_bias(&model->accel);
+    result.gyro = grade_of(result.gyro_bias, offsetof(imk_grade_row, gyro_bias_limit));
+    result.accel = grade_of(result.accel_bias, offsetof(imk_grade_row, accel_bias_limit));
+    bool has_gyro = !isnan(result.gyro_bias), has_accel = !isnan(result.accel_bias);
+    /* Of two equal classes the gyro decides: its bias makes the error that grows. */
+    bool gyro_decides = has_gyro && (!has_accel || result.gyro >= result.accel);
+    result.overall = gyro_decides ? result.gyro : result.accel;
+    result.limiting = gyro_decides ? "gyro bias" : has_accel ? "accelerometer bias" : "";
+    return result;
+}

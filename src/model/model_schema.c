@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The table of the sensor model's fields; see model_schema_internal.h. */
+#include "model_schema_internal.h"
+
+#include <float.h>
+#include <stddef.h>
+#include <string.h>
+
+#define BOTH(path)                                                                                 \
+    {                                                                                              \
+        path, path                                                                                 \
+    }
+#define GYRO(path)                                                                                 \
+    {                                                                                              \
+        path, NULL                                                                                 \
+    }
+#define ACCEL(path)                                                                                \
+    {                                                                                              \
+        NULL, path                                                                                 \
+    }
+#define NO_UNITS                                                                                   \
+    {                                                                                              \
+        NULL, NULL                                                                                 \
+    }
+#define UNITS(gyro, accel)                                                                         \
+    {                                                                                              \
+        gyro, accel                                                                                \
+    }
+#define UNIT(both)                                                                                 \
+    {                                                                                              \
+        both, both                                                                                 \
+    }
+#define ANY -DBL_MAX, DBL_MAX
+#define NOT_NEGATIVE 0.0, DBL_MAX
+#define AT(member) offsetof(imk_triad, member)
+#define IN(term, member) offsetof(struct term, member)
+#define NO_COUNT 0
+
+const imki_field imki_triad_fields[] = {
+    {BOTH("direction"), IMKI_DIRECTION, IMKI_BARE, AT(direction), AT(axis_count), UNIT("1"),
+     NO_UNITS, UNIT("1"), ANY},
+    {BOTH("sensitivity"), IMKI_AXES, 0, AT(sensitivity), NO_COUNT,
+     UNITS("count/(rad/s)", "count/(m/s^2)"), NO_UNITS, UNITS("count/(rad/s)", "count/(m/s^2)"),
+     ANY},
+    {BOTH("zero_offset"), IMKI_AXES, 0, AT(zero_offset), NO_COUNT, UNIT("count"), NO_UNITS,
+     UNIT("count"), ANY},
+    {BOTH("bias.fixed"), IMKI_AXES, 0, AT(bias.fixed), NO_COUNT, UNITS("deg/h", "mg"), NO_UNITS,
+     UNITS("rad/s", "m/s^2"), ANY},
+    {BOTH("bias.repeatability"), IMKI_AXES, 0, AT(bias.repeatability), NO_COUNT,
+     UNITS("deg/h", "mg"), NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {BOTH("bias.temperature"), IMKI_POLYNOMIAL, 0, AT(bias.temperature), NO_COUNT,
+     UNITS("deg/h", "mg"), NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
+    {BOTH("bias.temperature_rate"), IMKI_AXES, 0, AT(bias.temperature_rate), NO_COUNT,
+     UNITS("deg/h/(K/min)", "mg/(K/min)"), NO_UNITS, UNITS("rad/s/(K/s)", "m/s^2/(K/s)"), ANY},
+    {BOTH("bias.warm_up.amplitude"), IMKI_AXES, 0, AT(bias.warm_up_amplitude), NO_COUNT,
+     UNITS("deg/h", "mg"), NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
+    {BOTH("bias.warm_up.time"), IMKI_SCALAR, 0, AT(bias.warm_up_time), NO_COUNT, UNIT("s"),
+     NO_UNITS, UNIT("s"), NOT_NEGATIVE},
+    {BOTH("bias.hysteresis"), IMKI_AXES, 0, AT(bias.hysteresis), NO_COUNT, UNITS("deg/h", "mg"),
+     NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {BOTH("scale_factor.fixed"), IMKI_AXES, IMKI_OPEN, AT(scale_factor.fixed), NO_COUNT,
+     UNIT("ppm"), NO_UNITS, UNIT("1"), -1.0, DBL_MAX},
+    {BOTH("scale_factor.repeatability"), IMKI_AXES, 0, AT(scale_factor.repeatability), NO_COUNT,
+     UNIT("ppm"), NO_UNITS, UNIT("1"), NOT_NEGATIVE},
+    {BOTH("scale_factor.temperature"), IMKI_POLYNOMIAL, 0, AT(scale_factor.temperature), NO_COUNT,
+     UNIT("ppm"), NO_UNITS, UNIT("1"), ANY},
+    {BOTH("nonlinearity.k2"), IMKI_AXES, 0, AT(nonlinearity.k2), NO_COUNT,
+     UNITS("ppm/(deg/s)", "ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
+    {BOTH("nonlinearity.koq"), IMKI_AXES, 0, AT(nonlinearity.koq), NO_COUNT,
+     UNITS("ppm/(deg/s)", "ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
+    {BOTH("nonlinearity.k3"), IMKI_AXES, 0, AT(nonlinearity.k3), NO_COUNT,
+     UNITS("ppm/(deg/s)^2", "ppm/g^2"), NO_UNITS, UNITS("1/(rad/s)^2", "1/(m/s^2)^2"), ANY},
+    {BOTH("nonlinearity.asymmetry"), IMKI_AXES, IMKI_OPEN, AT(nonlinearity.asymmetry), NO_COUNT,
+     UNIT("ppm"), NO_UNITS, UNIT("1"), -2.0, 2.0},
+    {ACCEL("cross_products"), IMKI_ROWS, 0, AT(nonlinearity.cross_products), NO_COUNT,
+     UNIT("ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
+    {BOTH("misalignment"), IMKI_OFF_DIAGONAL, 0, AT(misalignment), NO_COUNT, UNIT("mrad"), NO_UNITS,
+     UNIT("rad"), ANY},
+    {BOTH("cross_axis"), IMKI_OFF_DIAGONAL, 0, AT(cross_axis), NO_COUNT, UNIT("%"), NO_UNITS,
+     UNIT("1"), ANY},
+    {GYRO("g_sensitivity"), IMKI_ROWS, 0, AT(g_sensitivity), NO_COUNT, UNIT("deg/h/g"), NO_UNITS,
+     UNIT("rad/s/(m/s^2)"), ANY},
+    {GYRO("g2_sensitivity"), IMKI_QUADRATIC, 0, AT(g2_sensitivity), NO_COUNT, UNIT("deg/h/g^2"),
+     NO_UNITS, UNIT("rad/s/(m/s^2)^2"), ANY},
+    {ACCEL("lever_arm"), IMKI_ROWS, 0, AT(lever_arm), NO_COUNT, UNIT("mm"), NO_UNITS, UNIT("m"),
+     ANY},
+    {BOTH("noise.density"), IMKI_DENSITY, 0, AT(noise.density), NO_COUNT, NO_UNITS, NO_UNITS,
+     NO_UNITS, ANY},
+    {UNITS("noise.angle_random_walk", "noise.velocity_random_walk"), IMKI_AXES, 0, AT(noise.white),
+     NO_COUNT, UNITS("deg/sqrt(h)", "m/s/sqrt(h)"), UNITS("deg/s/sqrt(Hz)", "ug/sqrt(Hz)"),
+     UNITS("rad/sqrt(s)", "m/s/sqrt(s)"), NOT_NEGATIVE},
+    {BOTH("noise.bias_instability"), IMKI_AXES, 0, AT(noise.bias_instability), NO_COUNT,
+     UNITS("deg/h", "ug"), NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {BOTH("noise.allan_floor"), IMKI_AXES, IMKI_FLOOR, AT(noise.bias_instability), NO_COUNT,
+     UNITS("deg/h", "ug"), NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {UNITS("noise.rate_random_walk", "noise.acceleration_random_walk"), IMKI_AXES, 0,
+     AT(noise.random_walk), NO_COUNT, UNITS("deg/h/sqrt(h)", "ug/sqrt(h)"), NO_UNITS,
+     UNITS("rad/s/sqrt(s)", "m/s^2/sqrt(s)"), NOT_NEGATIVE},
+    {UNITS("noise.rate_ramp", "noise.acceleration_ramp"), IMKI_AXES, 0, AT(noise.ramp), NO_COUNT,
+     UNITS("deg/h/h", "ug/h"), NO_UNITS, UNITS("rad/s^2", "m/s^3"), ANY},
+    {BOTH("noise.quantization"), IMKI_AXES, 0, AT(noise.quantization), NO_COUNT,
+     UNITS("arcsec", "m/s"), NO_UNITS, UNITS("rad", "m/s"), NOT_NEGATIVE},
+    {BOTH("noise.gauss_markov"), IMKI_LIST, 0, AT(noise.gauss_markov), AT(noise.gauss_markov_count),
+     NO_UNITS, NO_UNITS, NO_UNITS, ANY},
+    {BOTH("noise.sinusoid"), IMKI_LIST, 0, AT(noise.sinusoid), AT(noise.sinusoid_count), NO_UNITS,
+     NO_UNITS, NO_UNITS, ANY},
+    {BOTH("noise.resonance"), IMKI_LIST, 0, AT(noise.resonance), AT(noise.resonance_count),
+     NO_UNITS, NO_UNITS, NO_UNITS, ANY},
+    {BOTH("bandwidth"), IMKI_AXES, 0, AT(bandwidth), NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"),
+     NOT_NEGATIVE},
+    /* The limits of imk_low_pass in noise.h. */
+    {BOTH("damping"), IMKI_AXES, IMKI_BARE | IMKI_TYPICAL, AT(damping), NO_COUNT, UNIT("1"),
+     NO_UNITS, UNIT("1"), 0.05, 50.0},
+    {BOTH("dead_band"), IMKI_AXES, 0, AT(dead_band), NO_COUNT, UNITS("deg/s", "mg"), NO_UNITS,
+     UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {BOTH("range"), IMKI_AXES, 0, AT(range), NO_COUNT, UNITS("deg/s", "g"), NO_UNITS,
+     UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {BOTH("resolution"), IMKI_AXES, 0, AT(resolution), NO_COUNT, UNITS("deg/s", "mg"), NO_UNITS,
+     UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+};
+const size_t imki_triad_field_count = sizeof imki_triad_fields / sizeof imki_triad_fields[0];
+
+static const imki_field gauss_markov_fields[] = {
+    {BOTH("sigma"), IMKI_AXES, 0, IN(imk_gauss_markov_term, sigma), NO_COUNT, UNITS("deg/h", "ug"),
+     NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {BOTH("correlation_time"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL,
+     IN(imk_gauss_markov_term, correlation_time), NO_COUNT, UNIT("s"), NO_UNITS, UNIT("s"),
+     NOT_NEGATIVE},
+};
+
+static const imki_field sinusoid_fields[] = {
+    {BOTH("amplitude"), IMKI_AXES, 0, IN(imk_sinusoid_term, amplitude), NO_COUNT,
+     UNITS("deg/h", "ug"), NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {BOTH("frequency"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL, IN(imk_sinusoid_term, frequency),
+     NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"), NOT_NEGATIVE},
+};
+
+static const imki_field resonance_fields[] = {
+    {BOTH("sigma"), IMKI_AXES, 0, IN(imk_resonance_term, sigma), NO_COUNT, UNITS("deg/h", "ug"),
+     NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {BOTH("frequency"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL, IN(imk_resonance_term, frequency),
+     NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"), NOT_NEGATIVE},
+    {BOTH("q"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL | IMKI_BARE, IN(imk_resonance_term, q),
+     NO_COUNT, UNIT("1"), NO_UNITS, UNIT("1"), 0.5, DBL_MAX},
+};
+
+const imki_field imki_timing_fields[] = {
+    {BOTH("rate_error"), IMKI_SCALAR, IMKI_OPEN, offsetof(imk_timing, rate_error), NO_COUNT,
+     UNIT("ppm"), NO_UNITS, UNIT("1"), -1.0, DBL_MAX},
+    {BOTH("jitter"), IMKI_SCALAR, 0, offsetof(imk_timing, jitter), NO_COUNT, UNIT("us"), NO_UNITS,
+     UNIT("s"), NOT_NEGATIVE},
+    {BOTH("skew"), IMKI_SCALAR, 0, offsetof(imk_timing, skew), NO_COUNT, UNIT("us"), NO_UNITS,
+     UNIT("s"), ANY},
+    {BOTH("drops"), IMKI_SCALAR, 0, offsetof(imk_timing, drops), NO_COUNT, UNIT("%"), NO_UNITS,
+     UNIT("1"), 0.0, 0.99},
+};
+const size_t imki_timing_field_count = sizeof imki_timing_fields / sizeof imki_timing_fields[0];
+
+imki_list imki_list_of(const imki_field *field)
+{
+    if (field->offset == AT(noise.gauss_markov))
+        return (imki_list){sizeof(struct imk_gauss_markov_term),
+                           sizeof gauss_markov_fields / sizeof gauss_markov_fields[0],
+                           gauss_markov_fields};
+    if (field->offset == AT(noise.sinusoid))
+        return (imki_list){sizeof(struct imk_sinusoid_term),
+                           sizeof sinusoid_fields / sizeof sinusoid_fields[0], sinusoid_fields};
+    return (imki_list){sizeof(struct imk_resonance_term),
+                       sizeof resonance_fields / sizeof resonance_fields[0], resonance_fields};
+}
+
+const char *imki_polynomial_si(const imki_field *field, int kind, int order)
+{
+    static const char *const units[3][IMK_TEMPERATURE_ORDER_MAX] = {
+        {"rad/s/K", "rad/s/K^2", "rad/s/K^3", "rad/s/K^4", "rad/s/K^5"},
+        {"m/s^2/K", "m/s^2/K^2", "m/s^2/K^3", "m/s^2/K^4", "m/s^2/K^5"},
+        {"1/K", "1/K^2", "1/K^3", "1/K^4", "1/K^5"}};
+    bool is_bias = field->offset == AT(bias.temperature);
+    return units[is_bias ? kind : 2][order - 1];
+}
+
+const char *imki_polynomial_unit(const imki_field *field, int kind, int order)
+{
+    static const char *const units[3][IMK_TEMPERATURE_ORDER_MAX] = {
+        {"deg/h/K", "deg/h/K^2", "deg/h/K^3", "deg/h/K^4", "deg/h/K^5"},
+        {"mg/K", "mg/K^2", "mg/K^3", "mg/K^4", "mg/K^5"},
+        {"ppm/K", "ppm/K^2", "ppm/K^3", "ppm/K^4", "ppm/K^5"}};
+    bool is_bias = field->offset == AT(bias.temperature);
+    return units[is_bias ? kind : 2][order - 1];
+}
+
+int imki_row_length(imki_shape shape)
+{
+    switch (shape) {
+    case IMKI_OFF_DIAGONAL:
+    case IMKI_ROWS:
+    case IMKI_DIRECTION:
+        return 3;
+    case IMKI_QUADRATIC:
+        return 6;
+    default:
+        return 1;
+    }
+}
+
+const double *imki_field_values(const imki_field *field, const void *base)
+{
+    /* Every one of the structs begins with its values. */
+    return (const double *)(const void *)((const char *)base + field->offset);
+}
+
+const double *imki_field_sigmas(const imki_field *field, const void *base)
+{
+    const char *start = (const char *)base + field->offset;
+    switch (field->shape) {
+    case IMKI_SCALAR:
+        return (const double *)(const void *)(start + offsetof(imk_scalar, sigma));
+    case IMKI_QUADRATIC:
+        return (const double *)(const void *)(start + offsetof(imk_quadratic_rows, sigma));
+    case IMKI_OFF_DIAGONAL:
+    case IMKI_ROWS:
+        return (const double *)(const void *)(start + offsetof(imk_rows, sigma));
+    default:
+        return (const double *)(const void *)(start + offsetof(imk_axes, sigma));
+    }
+}
+
+int imki_field_rows(const imki_field *field, int axis_count)
+{
+    return field->shape == IMKI_SCALAR ? 1 : axis_count;
+}
+
+const void *imki_list_element(const imki_field *field, const imk_triad *triad, int index)
+{
+    return (const char *)triad + field->offset + (size_t)index * imki_list_of(field).size;
+}
+
+int imki_list_count(const imki_field *field, const imk_triad *triad)
+{
+    int count;
+    memcpy(&count, (const char *)triad + field->count_offset, sizeof count);
+    return count;
+}
+
+const imki_field *imki_field_find(const char *path, int kind, const imki_field **list)
+{
+    if (list)
+        *list = NULL;
+    for (size_t i = 0; i < imki_triad_field_count; i++) {
+        const imki_field *field = &imki_triad_fields[i];
+        const char *name = field->path[kind];
+        size_t length = name ? strlen(name) : 0;
+        if (!name || strncmp(path, name, length) != 0)
+            continue;
+        if (path[length] == '\0')
+            return field;
+        if (field->shape != IMKI_LIST || path[length] != '.')
+            continue;
+        imki_list terms = imki_list_of(field);
+        for (size_t j = 0; j < terms.field_count; j++) {
+            if (strcmp(path + length + 1, terms.field[j].path[kind]) != 0)
+                continue;
+            if (list)
+                *list = field;
+            return &terms.field[j];
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* One table of everything a sensor model can say: where it stands in the file and in the struct,
+ * its shape, its units and its valid range. Validation, comparison, reading and writing all walk
+ * this table, in its order, so that a new term is one new row. */
+#ifndef IMUKI_MODEL_SCHEMA_INTERNAL_H
+#define IMUKI_MODEL_SCHEMA_INTERNAL_H
+
+#include "imukit/model.h"
+
+/* Kinds of sensor: index of the two-element arrays below. */
+enum { IMKI_GYRO, IMKI_ACCEL };
+
+typedef enum imki_shape {
+    IMKI_SCALAR,       /* imk_scalar */
+    IMKI_AXES,         /* imk_axes */
+    IMKI_OFF_DIAGONAL, /* imk_rows of which the diagonal is 0 */
+    IMKI_ROWS,         /* imk_rows */
+    IMKI_QUADRATIC,    /* imk_quadratic_rows */
+    IMKI_POLYNOMIAL,   /* imk_temperature_polynomial */
+    IMKI_DENSITY,      /* imk_density */
+    IMKI_DIRECTION,    /* axis_count and direction */
+    IMKI_LIST          /* a list of terms: struct { imk_axes … } [IMK_TERMS_MAX] and its count */
+} imki_shape;
+
+enum {
+    IMKI_OPEN = 1,   /* the limits themselves are excluded */
+    IMKI_BARE = 2,   /* a pure number: needs no unit */
+    IMKI_FLOOR = 4,  /* another way to state the field before: times sqrt(2 ln 2/pi) */
+    IMKI_TYPICAL = 8 /* 0 is allowed beside the range: no such thing on this axis */
+};
+
+typedef struct imki_field {
+    const char *path[2]; /* dotted, below the sensor (or below the list); NULL: not of this kind */
+    imki_shape shape;
+    unsigned flags;
+    size_t offset;          /* in imk_triad; of a list's field in the list's element */
+    size_t count_offset;    /* IMKI_LIST: of the int that counts the elements */
+    const char *unit[2];    /* as written when the file does not have it otherwise */
+    const char *density[2]; /* the same where the file states a density; NULL: no difference */
+    const char *si[2];      /* the unit of the struct; gives the dimension */
+    double minimum, maximum;
+} imki_field;
+
+/* A kind of list term. */
+typedef struct imki_list {
+    size_t size; /* of an element */
+    size_t field_count;
+    const imki_field *field;
+} imki_list;
+
+/* The fields of a triad, in the order in which they are written. */
+extern const imki_field imki_triad_fields[];
+extern const size_t imki_triad_field_count;
+
+/* The fields of imk_timing (path[0], unit[0]; offsets in imk_timing). */
+extern const imki_field imki_timing_fields[];
+extern const size_t imki_timing_field_count;
+
+/* Fields of a list's elements; `field` has shape IMKI_LIST. */
+imki_list imki_list_of(const imki_field *field);
+
+/* SI unit of the coefficient of power `order` (1 … 5) of a temperature polynomial, and the unit it
+ * is written in: "rad/s/K^2", "deg/h/K^2". */
+const char *imki_polynomial_si(const imki_field *field, int kind, int order);
+const char *imki_polynomial_unit(const imki_field *field, int kind, int order);
+
+/* Numbers of a row of this shape: 3 or 6; 1 for axes and scalars. */
+int imki_row_length(imki_shape shape);
+
+/* Value and sigma arrays of a field of shape scalar … quadratic: row i, number j at
+ * [i * imki_row_length() + j]. `base` is the triad, the list element or the timing. */
+const double *imki_field_values(const imki_field *field, const void *base);
+const double *imki_field_sigmas(const imki_field *field, const void *base);
+
+/* Rows of a field in a triad of `axis_count`: 1 for a scalar. */
+int imki_field_rows(const imki_field *field, int axis_count);
+
+/* Element `index` of a list, and how many there are. */
+const void *imki_list_element(const imki_field *field, const imk_triad *triad, int index);
+int imki_list_count(const imki_field *field, const imk_triad *triad);
+
+/* True when the field has the same values (and sigmas, if asked) in both triads; they must have
+ * equal axis counts except for IMKI_DIRECTION. */
+bool imki_field_equal(const imki_field *field, const imk_triad *a, const imk_triad *b,
+                      bool with_sigmas);
+
+/* True when the field has its default in the triad, so that it need not be written. */
+bool imki_field_absent(const imki_field *field, const imk_triad *triad);
+
+/* The field of a triad with this dotted path, "noise.gauss_markov.sigma" included (then *list is
+ * the list it belongs to, else NULL); NULL when there is none. */
+const imki_field *imki_field_find(const char *path, int kind, const imki_field **list);
+
+/* sqrt(2 ln 2/pi): the flat floor of the Allan deviation of flicker noise of instability 1
+ * [IEEE952]. */
+#define IMKI_ALLAN_FLOOR 0.66428247026796002
+
+#endif

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Flicker noise S(f) = B^2/(2 pi f) as a sum of first-order stages [KESHNER1982].
+ *
+ * Lorentzian spectra of variance v with correlation times in geometric progression r add up to
+ * v/(2 ln(r) f) but for a ripple; hence v = (ln r/pi) B^2, here with r = 4. Stage j has the
+ * correlation time dt 4^j. Stages 0 and 1 change at every sample; stage j >= 2 is a first-order
+ * sequence with phi = exp(-1/4) per change (as stage 1 has) whose values are held for h = 4^(j-1)
+ * samples. The moments of change have a random phase common to all stages, so that the sequence is
+ * stationary: a held stage has the autocovariance of its coarse sequence, interpolated linearly.
+ * The Allan variance of any stationary process, integrated over log tau, depends on its variance
+ * alone, so holding does not move the level.
+ *
+ * The fastest stage also stands for those faster than dt, which are left out: its variance is
+ * raised by FASTEST, chosen to make the largest deviation of the Allan deviation from the ideal one
+ * smallest over 2 … 300 dt (tests/reference/flicker_stages.py). */
+#include "noise/generator_internal.h"
+
+#define FASTEST 1.20785             /* tests/reference/flicker_stages.py */
+#define VARIANCE 0.4412712003053032 /* ln 4/pi */
+#define STAGES IMK_FLICKER_STAGES
+
+double imk_flicker_allan_variance(double instability, double tau)
+{
+    (void)tau;
+    return VARIANCE * instability * instability; /* 2 ln 2/pi is the same number */
+}
+
+/* Variance of the sum of n samples of a held stage of unit variance. The autocovariance at lag
+ * a h + b is phi^a (1 - p b/h), p = 1 - phi; with n = a h + b,
+ *
+ *     V = 2 [ (n E0 - E1) G0 - h E0 G1 + phi^a (b (b+1)/2 - p/h (b-1) b (b+1)/6) ] - n
+ *     E0 = sum_{b<h} (1 - p b/h),  E1 = sum b (1 - p b/h),  G0 = sum_{i<a} phi^i,  G1 = sum i phi^i
+ */
+static double variance_of_sum(double n, double h, double phi, double p, double log_phi)
+{
+    double a = floor(n / h), b = n - a * h;
+    double decay = imk_exp(a * log_phi);
+    double e0 = h - 0.5 * p * (h - 1.0);
+    double e1 = 0.5 * h * (h - 1.0) - p * (h - 1.0) * (2.0 * h - 1.0) / 6.0;
+    double g0 = (1.0 - decay) / p;
+    double g1 = (phi * g0 - a * decay) / p;
+    double rest = 0.5 * b * (b + 1.0) - p / h * (b - 1.0) * b * (b + 1.0) / 6.0;
+    return 2.0 * ((n * e0 - e1) * g0 - h * e0 * g1 + decay * rest) - n;
+}
+
+/* sigma_A^2 = (4 V(n) - V(2 n))/(2 n^2) for any stationary process whose n samples sum to V(n). */
+double imk_flicker_sampled_allan_variance(double instability, double dt, size_t n)
+{
+    (void)dt;
+    double m = (double)n, sum = 0.0, hold = 1.0;
+    for (int stage = 0; stage < STAGES; stage++) {
+        double log_phi = stage == 0 ? -1.0 : -0.25;
+        double phi = imk_exp(log_phi), p = -imk_expm1(log_phi);
+        double once = variance_of_sum(m, hold, phi, p, log_phi);
+        double twice = variance_of_sum(2.0 * m, hold, phi, p, log_phi);
+        sum += (stage == 0 ? FASTEST : 1.0) * (4.0 * once - twice);
+        hold *= stage == 0 ? 1.0 : 4.0;
+    }
+    return VARIANCE * instability * instability * sum / (2.0 * m * m);
+}
+
+/* A held stage: the triangle of width h transforms to sin^2(pi f h dt)/(h sin^2(pi f dt)), and with
+ * s = sin^2(pi f h dt) its coarse sequence to (1 - phi^2)/((1 - phi)^2 + 4 phi s). f dt h is exact,
+ * h being a power of 4. */
+double imk_flicker_sampled_spectrum(double instability, double dt, double frequency)
+{
+    double cycles = frequency * dt, sine = imki_sin_half_turns(cycles);
+    double sum = 0.0, hold = 1.0;
+    for (int stage = 0; stage < STAGES; stage++) {
+        double log_phi = stage == 0 ? -1.0 : -0.25;
+        double distance = imk_expm1(log_phi), held = imki_sin_half_turns(cycles * hold);
+        double power = held * held;
+        sum += (stage == 0 ? FASTEST : 1.0) * -imk_expm1(2.0 * log_phi) * power /
+               (hold * (distance * distance + 4.0 * imk_exp(log_phi) * power));
+        hold *= stage == 0 ? 1.0 : 4.0;
+    }
+    return VARIANCE * instability * instability * dt * sum / (sine * sine);
+}
+
+/* The ends take from a held stage what they take from the same one not held: they matter only where
+ * the record is no longer than some thousand correlation times, and the hold is a quarter of one.
+ */
+double imk_flicker_cosine_spectrum(double instability, double dt, size_t n, size_t k)
+{
+    double frequency = 0.5 * (double)k / ((double)n * dt), loss = 0.0, inverse_time = 1.0;
+    for (int stage = 0; stage < STAGES; stage++, inverse_time *= 0.25)
+        loss += imki_cosine_end_loss(inverse_time, n, k);
+    return imk_flicker_sampled_spectrum(instability, dt, frequency) -
+           VARIANCE * instability * instability * dt * loss;
+}
+
+static uint64_t stage_stream(const imk_flicker_state *state, size_t stage)
+{
+    return state->stream + ((uint64_t)stage << 8); /* bits 8-15 are the instance */
+}
+
+imk_status imk_flicker_start(imk_flicker_state *state, double instability, double dt,
+                             imk_random random, uint64_t stream)
+{
+    imk_status status = imki_check_noise(instability, dt);
+    if (status != IMK_OK)
+        return status;
+    *state = (imk_flicker_state){.random = random,
+                                 .stream = stream,
+                                 .sigma = instability * sqrt(VARIANCE),
+                                 .block.used = IMK_NOISE_BLOCK};
+    uint32_t words[2];
+    imk_random_words(random, stream, IMKI_START_WORD, 2, words);
+    state->phase = ((uint64_t)words[1] << 32 | words[0]) & (((uint64_t)1 << 2 * (STAGES - 2)) - 1);
+    state->fast_innovation = sqrt(FASTEST * -imk_expm1(-2.0));
+    state->innovation = sqrt(-imk_expm1(-0.5));
+    imki_powers(imk_exp(-1.0), state->power[0]);
+    imki_powers(imk_exp(-0.25), state->power[1]);
+    for (size_t stage = 0; stage < STAGES; stage++) {
+        double normal;
+        imk_random_normals(random, stage_stream(state, stage), IMKI_START_NORMAL, 1, &normal);
+        if (stage < 2)
+            state->fast[stage] = normal / sqrt(-imk_expm1(stage == 0 ? -2.0 : -0.5));
+        else
+            state->value[stage] = normal;
+    }
+    for (size_t stage = STAGES; stage-- > 3;)
+        state->above[stage] = state->above[stage + 1] + state->value[stage];
+    return IMK_OK;
+}
+
+/* Change a held stage to its next value. */
+static double change_stage(imk_flicker_state *state, size_t stage, double value)
+{
+    size_t i = state->changes[stage] % IMK_FLICKER_BUFFER;
+    if (i == 0)
+        imk_random_normals(state->random, stage_stream(state, stage), state->changes[stage],
+                           IMK_FLICKER_BUFFER, state->normals[stage]);
+    state->changes[stage]++;
+    return state->power[1][1] * value + state->innovation * state->normals[stage][i];
+}
+
+/* Change stage 3 and each slower one whose moment this is, then their sums, slowest first. */
+static void change_slow_stages(imk_flicker_state *state, uint64_t count)
+{
+    size_t slowest = 3;
+    while (slowest + 1 < STAGES && count % ((uint64_t)1 << 2 * slowest) == 0)
+        slowest++;
+    for (size_t stage = slowest; stage >= 3; stage--) {
+        state->value[stage] = change_stage(state, stage, state->value[stage]);
+        state->above[stage] = state->above[stage + 1] + state->value[stage];
+    }
+}
+
+enum { PARTS = IMK_NOISE_STEPS / 4 }; /* of 4 samples, in a segment */
+
+/* The held stages' sum is the same for 4 samples at a time; a block begins `offset` samples after
+ * such a change. Part t of the block belongs to segment t/PARTS, and the last part of a segment is
+ * also the first of the next when the offset is not 0. */
+static void add_held_stages(imk_flicker_state *state, double *block)
+{
+    double held[PARTS + 1][IMKI_SEGMENTS];
+    uint64_t first = state->next + state->phase;
+    size_t offset = (size_t)(first % 4);
+    size_t parts = IMK_NOISE_BLOCK / 4 + (offset > 0 ? 1 : 0);
+    double value = state->value[2];
+    for (size_t t = 0; t < parts; t++) {
+        uint64_t count = first - offset + 4 * t;
+        if (t > 0 || offset == 0) {
+            value = change_stage(state, 2, value);
+            if (count % 16 == 0)
+                change_slow_stages(state, count);
+        }
+        double sum = state->sigma * (state->above[3] + value);
+        if (t < IMK_NOISE_BLOCK / 4)
+            held[t % PARTS][t / PARTS] = sum;
+        if (t % PARTS == 0 && t > 0)
+            held[PARTS][t / PARTS - 1] = sum;
+    }
+    state->value[2] = value;
+    state->next += IMK_NOISE_BLOCK;
+    for (size_t i = 0; i < IMK_NOISE_STEPS; i++)
+        for (size_t s = 0; s < IMKI_SEGMENTS; s++)
+            block[i * IMKI_SEGMENTS + s] += held[(i + offset) / 4][s];
+}
+
+void imki_flicker_block(imk_flicker_state *state, double *block)
+{
+    double normals[IMK_NOISE_BLOCK];
+    for (size_t stage = 0; stage < 2; stage++) {
+        double gain = state->sigma * (stage == 0 ? state->fast_innovation : state->innovation);
+        imk_random_normals(state->random, stage_stream(state, stage), state->next, IMK_NOISE_BLOCK,
+                           normals);
+        imki_add_recursion(state->random.kernel, gain, state->power[stage], normals,
+                           &state->fast[stage], block);
+    }
+    add_held_stages(state, block);
+}
+
+static void next_block(void *state, double *block)
+{
+    imki_flicker_block(state, block);
+}
+
+void imk_flicker_add(imk_flicker_state *state, size_t count, double *out)
+{
+    imki_add_blocks(&state->block, next_block, state, count, out);
+}

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the generators share: blocks of 512 samples in segment order, and the loops over them.
+ *
+ * A recursion y[k] = phi y[k-1] + n[k] done one sample after another waits for each multiplication
+ * and addition. A block is therefore cut into 16 segments of 32 samples; all segments advance
+ * together, as lanes of vector registers, each from zero; then the true value at each segment's
+ * start is carried from segment to segment and its decay added. In segment order, element
+ * 16 i + s is step i of segment s, that is sample 32 s + i. The order of operations is fixed by
+ * this, not by the instruction set. */
+#ifndef IMUKIT_GENERATOR_INTERNAL_H
+#define IMUKIT_GENERATOR_INTERNAL_H
+
+#include "imukit/elementary.h"
+#include "imukit/noise.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+enum { IMKI_SEGMENTS = IMK_NOISE_BLOCK / IMK_NOISE_STEPS };
+
+#define IMKI_PI 3.141592653589793
+#define IMKI_START_NORMAL                                                                          \
+    ((uint64_t)1 << 63)                     /* normals for starting values: never reached by k     \
+                                             */
+#define IMKI_START_WORD ((uint64_t)3 << 62) /* words for starting phases: blocks of their own */
+
+/* Element of sample 0 … 511 in a block in segment order. */
+static inline size_t imki_place(size_t sample)
+{
+    return sample % IMK_NOISE_STEPS * IMKI_SEGMENTS + sample / IMK_NOISE_STEPS;
+}
+
+/* Nearest whole number for |x| < 2^51, ties to even, without a call: adding 1.5 * 2^52 leaves no
+ * room for a fraction. */
+static inline double imki_round(double x)
+{
+    const double shift = 0x1.8p52;
+    return (x + shift) - shift;
+}
+
+/* |sin(pi c)| of c cycles: c is reduced exactly to +-1/2 first. */
+static inline double imki_sin_half_turns(double c)
+{
+    double rest = c - floor(c + 0.5);
+    return imk_sin(IMKI_PI * fabs(rest));
+}
+
+/* [rad] of a count of 2^-64 cycles, between -pi and pi. */
+static inline double imki_angle(uint64_t count)
+{
+    double turns = count < (uint64_t)1 << 63 ? (double)count : -(double)(~count + 1);
+    return 2.0 * IMKI_PI * (turns * 0x1p-64);
+}
+
+/* A strength that must be finite and >= 0, and the sample interval. */
+imk_status imki_check_noise(double strength, double dt);
+
+/* power[i] = phi^i, i = 0 … IMK_NOISE_STEPS. */
+void imki_powers(double phi, double *power);
+
+/* Hand out `count` samples: what is left of the block, then new blocks. `next` adds the next 512
+ * samples, in segment order. */
+void imki_add_blocks(imk_noise_block *block, void (*next)(void *state, double *block), void *state,
+                     size_t count, double *out);
+
+/* ---- loops over a block, by instruction set (segment_loops.c); all give the same bits ---- */
+
+/* block += scale * normals */
+void imki_add_scaled(imk_kernel kernel, double scale, const double *normals, double *block);
+/* block += gain y,  y[k] = phi y[k-1] + n[k];  *value is y before and after */
+void imki_add_recursion(imk_kernel kernel, double gain, const double *power, const double *normals,
+                        double *value, double *block);
+/* block += gain y,  y[k+1] = y[k] + n[k];  *value is y[0] of this block, then of the next */
+void imki_add_sums(imk_kernel kernel, double gain, const double *normals, double *value,
+                   double *block);
+/* Replace rates by quantised ones (quantization.c); *residual is carried. */
+void imki_quantize(imk_kernel kernel, double lsb, double dt, double *residual, double *block);
+/* out = block in time order */
+void imki_to_time_order(imk_kernel kernel, const double *block, double *out);
+
+/* ---- one block of each term, added in segment order: what the public generators hand out ---- */
+
+void imki_white_block(imk_white_state *state, double *block);
+void imki_arma_block(imk_arma_state *state, double *block);
+void imki_flicker_block(imk_flicker_state *state, double *block);
+void imki_random_walk_block(imk_random_walk_state *state, double *block);
+void imki_gauss_markov_block(imk_gauss_markov_state *state, double *block);
+void imki_sinusoid_block(imk_sinusoid_state *state, double *block);
+/* Applies, instead of adding. Not to be mixed with imk_quantization_apply() within a block. */
+void imki_quantization_block(imk_quantization_state *state, imk_kernel kernel, double *block);
+
+/* What the ends of a record of n samples take from the expected square of cosine coefficient k of a
+ * Gauss-Markov sequence of unit variance, x = dt/T. */
+double imki_cosine_end_loss(double x, size_t n, size_t k);
+
+#endif

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Sinusoid of random phase, y[k] = a sin(2 pi (p + k f dt)).
+ *
+ * The phase is an unsigned count of 2^-64 cycles, whose overflow is the wrap to the next cycle: it
+ * is exact at any k, and f is off by at most 2^-65/dt. Within a segment of 32 samples the sine
+ * turns by the addition theorem from the segment's start, which costs one sine and cosine per
+ * segment and an error of 2 ulp of a. */
+#include "noise/generator_internal.h"
+
+double imk_sinusoid_allan_variance(imk_sinusoid sinusoid, double tau)
+{
+    double cycles = sinusoid.frequency * tau;
+    double sine = imki_sin_half_turns(cycles);
+    double amplitude = sinusoid.amplitude * sine * sine / (IMKI_PI * cycles);
+    return cycles > 0.0 ? amplitude * amplitude : 0.0;
+}
+
+/* The mean of n samples has the amplitude sin(pi n c)/(n sin(pi c)) a, c = f dt, and the difference
+ * of two of them n samples apart 2 sin(pi n c) times that:
+ *     sigma_A^2 = a^2 (sin^2(pi n c)/(n sin(pi c)))^2.
+ * At whole c every sample is the same and both sines vanish. */
+double imk_sinusoid_sampled_allan_variance(imk_sinusoid sinusoid, double dt, size_t n)
+{
+    double cycles = sinusoid.frequency * dt;
+    cycles -= floor(cycles);
+    double divisor = (double)n * imki_sin_half_turns(cycles);
+    double sine = imki_sin_half_turns((double)n * cycles);
+    if (divisor == 0.0)
+        return 0.0;
+    double amplitude = sinusoid.amplitude * sine * sine / divisor;
+    return amplitude * amplitude;
+}
+
+imk_status imk_sinusoid_start(imk_sinusoid_state *state, imk_sinusoid sinusoid, double dt,
+                              imk_random random, uint64_t stream)
+{
+    imk_status status = imki_check_noise(sinusoid.amplitude, dt);
+    if (status != IMK_OK)
+        return status;
+    if (!isfinite(sinusoid.frequency))
+        return IMK_ERROR_NOT_FINITE;
+    double cycles = sinusoid.frequency * dt;
+    if (!(sinusoid.frequency > 0.0) || !(cycles < 0x1p52))
+        return IMK_ERROR_RANGE;
+    cycles -= floor(cycles);
+    uint32_t words[2];
+    imk_random_words(random, stream, IMKI_START_WORD, 2, words);
+    *state = (imk_sinusoid_state){.amplitude = sinusoid.amplitude,
+                                  .phase = (uint64_t)words[1] << 32 | words[0],
+                                  .step = (uint64_t)(cycles * 0x1p64),
+                                  .block.used = IMK_NOISE_BLOCK};
+    for (size_t i = 0; i < IMK_NOISE_STEPS; i++) {
+        double angle = imki_angle(state->step * i);
+        state->turn_sine[i] = imk_sin(angle);
+        state->turn_cosine[i] = imk_cos(angle);
+    }
+    return IMK_OK;
+}
+
+void imki_sinusoid_block(imk_sinusoid_state *state, double *block)
+{
+    for (size_t segment = 0; segment < IMKI_SEGMENTS; segment++) {
+        double angle = imki_angle(state->phase);
+        double sine = state->amplitude * imk_sin(angle);
+        double cosine = state->amplitude * imk_cos(angle);
+        for (size_t i = 0; i < IMK_NOISE_STEPS; i++)
+            block[i * IMKI_SEGMENTS + segment] +=
+                sine * state->turn_cosine[i] + cosine * state->turn_sine[i];
+        state->phase += state->step * IMK_NOISE_STEPS;
+    }
+}
+
+static void next_block(void *state, double *block)
+{
+    imki_sinusoid_block(state, block);
+}
+
+void imk_sinusoid_add(imk_sinusoid_state *state, size_t count, double *out)
+{
+    imki_add_blocks(&state->block, next_block, state, count, out);
+}

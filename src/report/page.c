@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A self-contained HTML page: styles and drawings inside, nothing fetched, every text escaped. */
+#define _POSIX_C_SOURCE 200809L
+#include "imukit/report.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The page grows in memory; a failed allocation is remembered by the stream and reported at the
+ * end, so that callers need no check after every paragraph. */
+struct imk_page {
+    FILE *stream;
+    char *text;
+    size_t size;
+    int figures;
+};
+
+static const char style[] =
+    ":root{color-scheme:light}*{box-sizing:border-box}\n"
+    "body{margin:0;background:#f5f6f7;color:#1d2327;"
+    "font:16px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif}\n"
+    "main{max-width:1100px;margin:0 auto;padding:2.2rem 1.4rem 4rem;background:#fff;"
+    "min-height:100vh}\n"
+    "h1{font-size:1.75rem;line-height:1.25;margin:0}"
+    ".subtitle{color:#5b6770;margin:.3rem 0 1.4rem}\n"
+    "h2{font-size:1.2rem;margin:2.2rem 0 .7rem;padding-bottom:.25rem;"
+    "border-bottom:1px solid #dfe3e6}\n"
+    ".verdict{border-left:5px solid;padding:.6rem .9rem;margin:.6rem 0;border-radius:0 4px 4px 0}\n"
+    ".good{border-color:#009e73;background:#e9f6f1}.note{border-color:#0072b2;background:#e8f2f9}"
+    ".warning{border-color:#d55e00;background:#fdf0e7}\n"
+    ".table{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;"
+    "font-size:.92rem;margin:.4rem 0}\n"
+    "th,td{padding:.35rem .8rem;text-align:left;vertical-align:top;"
+    "border-bottom:1px solid #e6e9eb;white-space:pre-line}\n"
+    "th{background:#f0f2f4}td:first-child{font-weight:600}\n"
+    "pre{background:#f6f7f8;border:1px solid #e1e5e8;border-radius:4px;padding:.8rem 1rem;"
+    "overflow-x:auto;font:.85rem/1.5 ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace}\n"
+    "figure{margin:1rem 0}figure svg{width:100%;height:auto}"
+    "figcaption{color:#5b6770;font-size:.9rem}\n"
+    "footer{margin-top:3rem;color:#7a858d;font-size:.82rem}\n"
+    "@media print{body,main{background:#fff}main{max-width:none;padding:0}"
+    "figure,table,pre{break-inside:avoid}}\n";
+
+static void escape(FILE *out, const char *text)
+{
+    for (const char *c = text ? text : ""; *c; c++) {
+        switch (*c) {
+        case '&':
+            fputs("&amp;", out);
+            break;
+        case '<':
+            fputs("&lt;", out);
+            break;
+        case '>':
+            fputs("&gt;", out);
+            break;
+        case '"':
+            fputs("&quot;", out);
+            break;
+        default:
+            /* Control characters have no place in HTML. */
+            if ((unsigned char)*c >= 0x20 || *c == '\n' || *c == '\t')
+                fputc(*c, out);
+        }
+    }
+}
+
+static void element(imk_page *page, const char *open, const char *text, const char *close)
+{
+    if (!page)
+        return;
+    fputs(open, page->stream);
+    escape(page->stream, text);
+    fputs(close, page->stream);
+}
+
+imk_page *imk_page_create(const char *title, const char *subtitle)
+{
+    imk_page *page = calloc(1, sizeof *page);
+    if (!page)
+        return NULL;
+    page->stream = open_memstream(&page->text, &page->size);
+    if (!page->stream) {
+        free(page);
+        return NULL;
+    }
+    element(page,
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
+            title, "</title>\n<style>\n");
+    fputs(style, page->stream);
+    element(page, "</style>\n</head>\n<body>\n<main>\n<h1>", title, "</h1>\n");
+    element(page, "<p class=\"subtitle\">", subtitle, "</p>\n");
+    return page;
+}
+
+void imk_page_heading(imk_page *page, const char *text)
+{
+    element(page, "<h2>", text, "</h2>\n");
+}
+
+void imk_page_text(imk_page *page, const char *text)
+{
+    element(page, "<p>", text, "</p>\n");
+}
+
+void imk_page_verdict(imk_page *page, int level, const char *text)
+{
+    static const char *const open[] = {"<p class=\"verdict good\">", "<p class=\"verdict note\">",
+                                       "<p class=\"verdict warning\">"};
+    element(page, open[level < 0 ? 0 : level > 2 ? 2 : level], text, "</p>\n");
+}
+
+void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *const *cells)
+{
+    if (!page)
+        return;
+    fputs("<div class=\"table\"><table>\n", page->stream);
+    for (size_t row = 0; row < rows; row++) {
+        fputs("<tr>", page->stream);
+        for (size_t column = 0; column < columns; column++)
+            element(page, row == 0 ? "<th>" : "<td>", cells[row * columns + column],
+                    row == 0 ? "</th>" : "</td>");
+        fputs("</tr>\n", page->stream);
+    }
+    fputs("</table></div>\n", page->stream);
+}
+
+void imk_page_code(imk_page *page, const char *text)
+{
+    element(page, "<pre>", text, "</pre>\n");
+}
+
+/* The drawing without its XML prologue. Identifiers are made unique, since several drawings share
+ * the page: every id gnuplot gives starts with "gp" or "gnuplot" after one of these openings. */
+static void put_svg(imk_page *page, const char *svg)
+{
+    static const char *const openings[] = {"id=\"", "href='#", "href=\"#", "url(#", "id='"};
+    const char *start = strstr(svg, "<svg");
+    page->figures++;
+    for (const char *c = start ? start : ""; *c;) {
+        size_t length = 0;
+        for (size_t i = 0; i < sizeof openings / sizeof openings[0] && length == 0; i++)
+            if (strncmp(c, openings[i], strlen(openings[i])) == 0)
+                length = strlen(openings[i]);
+        if (length == 0) {
+            fputc(*c++, page->stream);
+        } else {
+            fprintf(page->stream, "%.*sf%d-", (int)length, c, page->figures);
+            c += length;
+        }
+    }
+}
+
+void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption)
+{
+    if (!page)
+        return;
+    char *svg = NULL;
+    size_t size;
+    imk_error error;
+    if (imk_figure_svg(figure, &svg, &size, &error) != IMK_OK) {
+        element(page, "<p class=\"verdict note\">Figure left out: ", error.found, "; ");
+        element(page, "", error.expected, ".</p>\n");
+        return;
+    }
+    fputs("<figure>\n", page->stream);
+    put_svg(page, svg);
+    element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
+    free(svg);
+}
+
+imk_status imk_page_write(imk_page *page, const char *path, imk_error *error)
+{
+    if (!page)
+        return path ? imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL) : IMK_OK;
+    fputs("<footer>Made by imukit " IMK_VERSION ".</footer>\n</main>\n</body>\n</html>\n",
+          page->stream);
+    bool bad = ferror(page->stream) != 0;
+    bad = fclose(page->stream) != 0 || bad;
+    imk_status status = IMK_OK;
+    if (path && bad) {
+        status = imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
+    } else if (path) {
+        imk_output_file *file;
+        status = imk_output_file_open(path, &file, error);
+        if (status == IMK_OK) {
+            imk_output_file_write(file, page->text, page->size);
+            status = imk_output_file_commit(file, error);
+        }
+    }
+    free(page->text);
+    free(page);
+    return status;
+}

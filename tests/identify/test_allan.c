@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Allan deviations against published tables, their confidence against theory and against draws. */
+#include "check.h"
+
+#include "imukit/allan.h"
+#include "imukit/distributions.h"
+#include "imukit/random.h"
+
+#include <stdlib.h>
+
+enum { TABLE = 1000 };
+
+/* The 1000-point set of [RILEY2008], section 12.4: n <- 16807 n mod 2147483647. */
+static void published_set(double *y)
+{
+    uint64_t value = 1234567890;
+    for (size_t i = 0; i < TABLE; i++) {
+        y[i] = (double)value / 2147483647.0;
+        value = 16807 * value % 2147483647;
+    }
+}
+
+/* Ten digits are printed: half a unit of the last. */
+static const double PRINTED = 0.5000001e-10;
+
+static void test_published_deviations(void **state)
+{
+    (void)state;
+    static const size_t factors[] = {1, 10, 100};
+    static const double overlapping[] = {.2922318781, .0915995342, .0324134303};
+    static const double plain[] = {.2922318781, .0996573606, .0389780433};
+    double y[TABLE], s[TABLE + 1], variances[3];
+    size_t counts[3];
+    published_set(y);
+    imk_allan_sums(TABLE, y, s);
+    CHECK_STATUS(
+        imk_allan_variances(IMK_ALLAN_OVERLAPPING, TABLE, s, 3, factors, variances, counts, NULL),
+        IMK_OK);
+    for (size_t i = 0; i < 3; i++)
+        CHECK_CLOSE(sqrt(variances[i]), overlapping[i], PRINTED);
+    assert_int_equal(counts[2], 801);
+    imk_allan_variances(IMK_ALLAN_PLAIN, TABLE, s, 3, factors, variances, counts, NULL);
+    for (size_t i = 0; i < 3; i++)
+        CHECK_CLOSE(sqrt(variances[i]), plain[i], PRINTED);
+    assert_int_equal(counts[2], 9);
+}
+
+/* OADEV at octaves, printed to nine digits [RILEY2008]. */
+static void test_published_octaves(void **state)
+{
+    (void)state;
+    static const double expected[] = {.292231878, .201016042, .144791307, .105703850, .061914778,
+                                      .048082143, .036237213, .027673856, .010282218};
+    double y[TABLE], s[TABLE + 1], variances[9];
+    size_t factors[16];
+    published_set(y);
+    imk_allan_sums(TABLE, y, s);
+    assert_int_equal(imk_allan_factors(IMK_ALLAN_OCTAVE, TABLE, factors), 9);
+    imk_allan_variances(IMK_ALLAN_OVERLAPPING, TABLE, s, 9, factors, variances, NULL, NULL);
+    for (size_t i = 0; i < 9; i++)
+        CHECK_CLOSE(sqrt(variances[i]), expected[i], 0.5000001e-9);
+}
+
+/* The ten phase points of [RILEY2008], section 12.2, as nine frequencies. */
+static void test_published_nine(void **state)
+{
+    (void)state;
+    static const double y[9] = {892, 809, 823, 798, 671, 644, 883, 903, 677};
+    static const size_t factors[] = {1, 2};
+    double s[10], variances[2];
+    imk_allan_sums(9, y, s);
+    imk_allan_variances(IMK_ALLAN_OVERLAPPING, 9, s, 2, factors, variances, NULL, NULL);
+    CHECK_CLOSE(sqrt(variances[0]), 91.229449741, 0.5000001e-9);
+    CHECK_CLOSE(sqrt(variances[1]), 85.952869838, 0.5000001e-9);
+    imk_allan_variances(IMK_ALLAN_PLAIN, 9, s, 2, factors, variances, NULL, NULL);
+    CHECK_CLOSE(sqrt(variances[1]), 115.808210705, 0.5000001e-9);
+}
+
+/* 68.3 % intervals that Stable32 prints for the 1000-point set, to within 2e-3 relative: its
+ * degrees of freedom are Greenhall and Riley's, rounded. */
+static void test_published_intervals(void **state)
+{
+    (void)state;
+    static const size_t factors[] = {1, 16, 128};
+    static const double lower[] = {.28515, .057696, .023045};
+    static const double upper[] = {.29987, .067217, .037027};
+    double y[TABLE], s[TABLE + 1];
+    imk_allan_point points[3];
+    imk_allan_settings settings = imk_allan_default();
+    settings.confidence = 0.683;
+    settings.greenhall_riley = true;
+    published_set(y);
+    imk_allan_sums(TABLE, y, s);
+    CHECK_STATUS(imk_allan_points(&settings, TABLE, s, 3, factors, points, NULL), IMK_OK);
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(points[i].type, IMK_WHITE_RATE);
+        CHECK_RELATIVE(points[i].lower, lower[i], 2e-3);
+        CHECK_RELATIVE(points[i].upper, upper[i], 2e-3);
+    }
+    CHECK_CLOSE(points[0].edf, 782.03, 0.005);
+}
+
+/* Exact degrees of freedom for independent samples. At m = 1 by hand: r = 6, -4, 1 (in units of the
+ * sums' increments 2, -1), so edf = M 4/(4 + 2 (1 - 1/M)) with M = 999. */
+static void test_exact_degrees_of_freedom(void **state)
+{
+    (void)state;
+    const double m = 999;
+    CHECK_RELATIVE(imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, IMK_WHITE_RATE, TABLE, 1),
+                   m * 4 / (4 + 2 * (1 - 1 / m)), 1e-12);
+    CHECK_CLOSE(imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, IMK_WHITE_RATE, TABLE, 16), 91.15,
+                0.005);
+    /* Independent increments of a random walk make independent second differences at m = 1. */
+    CHECK_RELATIVE(imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, IMK_RANDOM_WALK_RATE, TABLE, 1), m,
+                   1e-12);
+    /* The scaled form beyond m = 256 joins the full one. */
+    CHECK_RELATIVE(imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, IMK_WHITE_RATE, 1000000, 257) * 257,
+                   imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, IMK_WHITE_RATE, 1000000, 256) * 256,
+                   1e-3);
+}
+
+/* Draws: 2 mean^2/variance of the Allan variance over many records is the degrees of freedom. With
+ * R records the ratio has a relative standard deviation of about sqrt(2/R + 8/(edf R)); 5.5 of them
+ * are exceeded by chance in 4e-8 of trials. */
+static void test_degrees_of_freedom_by_draws(void **state)
+{
+    (void)state;
+    enum { N = 256, RECORDS = 4000, M = 8 };
+    static double y[N], s[N + 1];
+    const imk_random random = imk_random_seeded(7);
+    const size_t m = M;
+    double mean = 0, square = 0;
+    for (uint64_t r = 0; r < RECORDS; r++) {
+        double variance;
+        imk_random_normals(random, 1, r * N, N, y);
+        imk_allan_sums(N, y, s);
+        imk_allan_variances(IMK_ALLAN_OVERLAPPING, N, s, 1, &m, &variance, NULL, NULL);
+        mean += variance / RECORDS;
+        square += variance * variance / RECORDS;
+    }
+    const double edf = imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, IMK_WHITE_RATE, N, M);
+    /* The mean was removed from each record, which takes 1e-3 here. */
+    CHECK_RELATIVE(2 * mean * mean / (square - mean * mean), edf,
+                   5.5 * sqrt((2 + 8 / edf) / RECORDS) + 2e-3);
+    CHECK_RELATIVE(mean, 1.0 / M, 5.5 * sqrt(2 / (edf * RECORDS)));
+}
+
+/* A large constant costs no digits: the record plus 9.8 (and plus 2^40) has the same deviation as
+ * far as its own rounding allows. */
+static void test_large_mean(void **state)
+{
+    (void)state;
+    enum { N = 100000 };
+    double *y = malloc(N * sizeof *y), *z = malloc((N + 1) * sizeof *z),
+           *s = malloc((N + 1) * sizeof *s);
+    size_t factors[20];
+    double plain[20], shifted[20];
+    imk_random_normals(imk_random_seeded(3), 2, 0, N, y);
+    for (size_t i = 0; i < N; i++) {
+        y[i] = floor(y[i] * 4096) / 4096 * 1e-3; /* multiples of 2^-12 * 1e-3 */
+        z[i] = y[i] + 9.8;
+    }
+    const size_t count = imk_allan_factors(IMK_ALLAN_OCTAVE, N, factors);
+    imk_allan_sums(N, y, s);
+    imk_allan_variances(IMK_ALLAN_OVERLAPPING, N, s, count, factors, plain, NULL, NULL);
+    imk_allan_sums(N, z, z); /* in place */
+    imk_allan_variances(IMK_ALLAN_OVERLAPPING, N, z, count, factors, shifted, NULL, NULL);
+    /* y + 9.8 is rounded to 2^-50: independent errors of 2.6e-16 beside 1e-3 noise. */
+    for (size_t i = 0; i < count; i++)
+        CHECK_RELATIVE(shifted[i], plain[i], 1e-10);
+    free(y), free(z), free(s);
+}
+
+static void run_backwards(void *context, size_t count, imk_work work, void *work_context)
+{
+    (void)context;
+    while (count-- > 0)
+        work(work_context, count);
+}
+
+static void test_order_of_work(void **state)
+{
+    (void)state;
+    const imk_executor backwards = {run_backwards, NULL, 1};
+    double y[TABLE], s[TABLE + 1];
+    size_t factors[512];
+    static imk_allan_point first[512], second[512];
+    const imk_allan_settings settings = imk_allan_default();
+    published_set(y);
+    imk_allan_sums(TABLE, y, s);
+    const size_t count = imk_allan_factors(IMK_ALLAN_ALL, TABLE, factors);
+    assert_int_equal(count, 500);
+    imk_allan_points(&settings, TABLE, s, count, factors, first, NULL);
+    imk_allan_points(&settings, TABLE, s, count, factors, second, &backwards);
+    for (size_t i = 0; i < count; i++) {
+        assert_true(first[i].deviation == second[i].deviation);
+        assert_true(first[i].edf == second[i].edf);
+    }
+}
+
+static void test_factors(void **state)
+{
+    (void)state;
+    size_t factors[64];
+    const size_t expected[] = {1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 25, 32, 40, 50};
+    assert_int_equal(imk_allan_factors(IMK_ALLAN_DECADE, 100, NULL), 15);
+    assert_int_equal(imk_allan_factors(IMK_ALLAN_DECADE, 100, factors), 15);
+    assert_memory_equal(factors, expected, sizeof expected);
+    assert_int_equal(imk_allan_factors(IMK_ALLAN_OCTAVE, 1, factors), 0);
+}
+
+/* Types of drawn power-law noises. At 1000 clusters the lag-1 autocorrelation has a standard
+ * deviation of 0.03 and the boundaries are 0.1 or more away (0 against 0.33): beyond 3 sigma, but
+ * the draw is fixed and every tenth stream is tried. */
+static void test_noise_types(void **state)
+{
+    (void)state;
+    enum { N = 8000 };
+    static double y[N + 1], s[N + 1];
+    for (uint64_t stream = 0; stream < 10; stream++) {
+        imk_power_law type;
+        imk_random_normals(imk_random_seeded(11), stream, 0, N + 1, y);
+        imk_allan_sums(N, y, s);
+        CHECK_STATUS(imk_allan_noise_type(N, s, 8, &type), IMK_OK);
+        assert_int_equal(type, IMK_WHITE_RATE);
+        CHECK_STATUS(imk_allan_noise_type(N, y, 8, &type), IMK_OK); /* sums that are white */
+        assert_int_equal(type, IMK_WHITE_PHASE);
+        double walk = 0;
+        for (size_t i = 0; i < N; i++)
+            y[i] = walk += y[i];
+        imk_allan_sums(N, y, s);
+        CHECK_STATUS(imk_allan_noise_type(N, s, 8, &type), IMK_OK);
+        assert_int_equal(type, IMK_RANDOM_WALK_RATE);
+        CHECK_STATUS(imk_allan_noise_type(N, s, 300, &type), IMK_ERROR_TOO_SHORT);
+    }
+}
+
+static void test_bad_arguments(void **state)
+{
+    (void)state;
+    double s[11] = {0}, variance = 7;
+    size_t m = 6;
+    CHECK_STATUS(imk_allan_variances(IMK_ALLAN_PLAIN, 10, s, 1, &m, &variance, NULL, NULL),
+                 IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_allan_variances(IMK_ALLAN_PLAIN, 1, s, 1, &m, &variance, NULL, NULL),
+                 IMK_ERROR_TOO_SHORT);
+    assert_true(variance == 7);
+    imk_allan_settings settings = {0};
+    imk_allan_point point;
+    CHECK_STATUS(imk_allan_points(&settings, 10, s, 1, &m, &point, NULL), IMK_ERROR_UNINITIALISED);
+    settings = imk_allan_default();
+    settings.confidence = NAN;
+    CHECK_STATUS(imk_allan_points(&settings, 10, s, 1, &m, &point, NULL), IMK_ERROR_RANGE);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_published_deviations),
+        cmocka_unit_test(test_published_octaves),
+        cmocka_unit_test(test_published_nine),
+        cmocka_unit_test(test_published_intervals),
+        cmocka_unit_test(test_exact_degrees_of_freedom),
+        cmocka_unit_test(test_degrees_of_freedom_by_draws),
+        cmocka_unit_test(test_large_mean),
+        cmocka_unit_test(test_order_of_work),
+        cmocka_unit_test(test_factors),
+        cmocka_unit_test(test_noise_types),
+        cmocka_unit_test(test_bad_arguments),
+    };
+    return cmocka_run_group_tests_name("allan", tests, NULL, NULL);
+}

@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Identification: what was simulated comes back within its stated confidence, what was not there is
+ * reported as absent. */
+#include "check.h"
+
+#include "imukit/fourier.h"
+#include "imukit/identify.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct truth {
+    double white, bias_instability, random_walk, ramp, quantization;
+    imk_sinusoid sinusoid;
+    imk_resonance resonance;
+    imk_low_pass filter;
+} truth;
+
+static double *make_record(const truth *t, size_t n, double dt, uint64_t seed, uint64_t axis)
+{
+    double *x = calloc(n, sizeof *x);
+    const imk_random random = imk_random_seeded(seed);
+    const uint64_t stream = axis << 40;
+    if (t->white > 0 && t->filter.bandwidth > 0) {
+        imk_arma_state state;
+        assert_int_equal(
+            imk_filtered_white_start(&state, t->white, t->filter, dt, random, stream + 1), IMK_OK);
+        imk_arma_add(&state, n, x);
+    } else if (t->white > 0) {
+        imk_white_state state;
+        assert_int_equal(imk_white_start(&state, t->white, dt, random, stream + 1), IMK_OK);
+        imk_white_add(&state, n, x);
+    }
+    if (t->bias_instability > 0) {
+        imk_flicker_state state;
+        assert_int_equal(imk_flicker_start(&state, t->bias_instability, dt, random, stream + 2),
+                         IMK_OK);
+        imk_flicker_add(&state, n, x);
+    }
+    if (t->random_walk > 0) {
+        imk_random_walk_state state;
+        assert_int_equal(imk_random_walk_start(&state, t->random_walk, dt, random, stream + 3),
+                         IMK_OK);
+        imk_random_walk_add(&state, n, x);
+    }
+    if (t->resonance.sigma > 0) {
+        imk_arma_state state;
+        assert_int_equal(imk_resonance_start(&state, t->resonance, dt, random, stream + 4), IMK_OK);
+        imk_arma_add(&state, n, x);
+    }
+    if (t->sinusoid.amplitude > 0) {
+        imk_sinusoid_state state;
+        assert_int_equal(imk_sinusoid_start(&state, t->sinusoid, dt, random, stream + 5), IMK_OK);
+        imk_sinusoid_add(&state, n, x);
+    }
+    imk_ramp_add(t->ramp, dt, 0, n, x);
+    if (t->quantization > 0) {
+        imk_quantization_state state;
+        assert_int_equal(imk_quantization_start(&state, t->quantization, dt, random, stream + 6),
+                         IMK_OK);
+        imk_quantization_apply(&state, n, x);
+    }
+    return x;
+}
+
+static imk_identification identify(const double *x, size_t n, double dt)
+{
+    imk_identify_settings settings = imk_identify_default();
+    settings.dt = dt;
+    const size_t size = imk_identify_workspace_size(n);
+    void *workspace = malloc(size);
+    imk_identification result;
+    memset(&result, 0, sizeof result);
+    imk_error error;
+    CHECK_STATUS(imk_identify_channel(&settings, n, x, &result, workspace, size, &error), IMK_OK);
+    free(workspace);
+    return result;
+}
+
+static imk_identification identify_truth(const truth *t, size_t n, double dt, uint64_t seed,
+                                         uint64_t axis)
+{
+    double *x = make_record(t, n, dt, seed, axis);
+    const imk_identification result = identify(x, n, dt);
+    free(x);
+    return result;
+}
+
+/* N, B, K of a small MEMS gyro, scaled so that three hours at 20 Hz tell all of them. With 40
+ * records a right 95 % interval covers fewer than 30 times in 40 with a probability of 6e-7. */
+static void test_coverage(void **state)
+{
+    (void)state;
+    enum { RECORDS = 40, N = 216000 };
+    const truth t = {.white = 1.0, .bias_instability = 0.4, .random_walk = 0.012};
+    const double dt = 0.05, values[] = {t.white, t.bias_instability, t.random_walk};
+    const int terms[] = {IMK_NOISE_WHITE, IMK_NOISE_BIAS_INSTABILITY, IMK_NOISE_RANDOM_WALK};
+    size_t covered[3] = {0}, false_terms = 0;
+    for (uint64_t record = 0; record < RECORDS; record++) {
+        const imk_identification r = identify_truth(&t, N, dt, 1, record);
+        for (size_t i = 0; i < 3; i++) {
+            const imk_estimate *e = &r.term[terms[i]];
+            covered[i] += e->lower <= values[i] && values[i] <= e->upper;
+            assert_true(e->lower <= e->value && e->value <= e->upper);
+        }
+        false_terms += r.term[IMK_NOISE_QUANTIZATION].present + r.term[IMK_NOISE_RAMP].present +
+                       (r.filter.bandwidth > 0) + (size_t)r.sinusoid_count +
+                       (size_t)r.resonance_count;
+    }
+    for (size_t i = 0; i < 3; i++)
+        assert_in_range(covered[i], 30, RECORDS);
+    /* Each record asks two such questions at 1 %: 80 trials; more than 9 has a chance below 1e-7.
+     */
+    assert_in_range(false_terms, 0, 9);
+}
+
+/* White noise only: everything else is absent, with a bound. */
+static void test_white_only(void **state)
+{
+    (void)state;
+    const truth t = {.white = 2.5e-3};
+    const imk_identification r = identify_truth(&t, 200000, 0.01, 1, 1);
+    const imk_estimate *n = &r.term[IMK_NOISE_WHITE];
+    assert_true(n->present);
+    /* sd of N is N/sqrt(2n) = 0.16 %; five of them. */
+    CHECK_RELATIVE(n->value, t.white, 8e-3);
+    CHECK_RELATIVE(n->sigma, t.white / sqrt(2 * 200000.0), 0.05);
+    for (int term = 0; term < IMK_NOISE_TERMS; term++)
+        if (term != IMK_NOISE_WHITE) {
+            assert_false(r.term[term].present);
+            assert_true(r.term[term].value == 0 && r.term[term].lower == 0);
+            assert_true(r.term[term].upper > 0);
+        }
+    assert_true(r.valid_from == 0.01);
+    assert_true(r.verdict & IMK_VERDICT_SHORT);
+}
+
+static void test_quantization(void **state)
+{
+    (void)state;
+    const truth t = {.white = 1e-3, .quantization = 1.5e-5};
+    const imk_identification r = identify_truth(&t, 200000, 0.01, 1, 2);
+    const imk_estimate *q = &r.term[IMK_NOISE_QUANTIZATION];
+    assert_true(q->present);
+    /* Five stated sigmas. */
+    CHECK_CLOSE(q->value, t.quantization, 5 * q->sigma);
+    CHECK_CLOSE(r.term[IMK_NOISE_WHITE].value, t.white, 5 * r.term[IMK_NOISE_WHITE].sigma);
+    assert_true(r.filter.bandwidth == 0);
+}
+
+static void test_ramp(void **state)
+{
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const truth t = {.white = 1e-3, .ramp = sign * 2e-6};
+        const imk_identification r = identify_truth(&t, 100000, 0.01, 1, 3);
+        const imk_estimate *e = &r.term[IMK_NOISE_RAMP];
+        assert_true(e->present);
+        CHECK_CLOSE(e->value, t.ramp, 5 * e->sigma);
+        assert_true(e->lower < t.ramp && t.ramp < e->upper);
+        /* Least squares on white noise: sigma = N sqrt(12/T^3). */
+        CHECK_RELATIVE(e->sigma, t.white * sqrt(12.0 / 1e9), 0.05);
+        assert_false(r.term[IMK_NOISE_RANDOM_WALK].present);
+    }
+}
+
+/* A tone, a resonance and a filter are found for what they are and do not bend N, B. */
+static void test_shapes(void **state)
+{
+    (void)state;
+    const truth t = {.white = 1.0,
+                     .bias_instability = 0.5,
+                     .sinusoid = {0.3, 7.3},
+                     .resonance = {10.0, 20.3, 16},
+                     .filter = {45, 0.7}};
+    const imk_identification r = identify_truth(&t, 400000, 0.01, 1, 4);
+    assert_int_equal(r.sinusoid_count, 1);
+    CHECK_CLOSE(r.sinusoid[0].frequency, 7.3, 1e-4);
+    /* sd of the amplitude is sqrt(2 S/T) = 0.022; five of them. */
+    CHECK_CLOSE(r.sinusoid[0].amplitude, 0.3, 0.11);
+    assert_int_equal(r.resonance_count, 1);
+    CHECK_RELATIVE(r.resonance[0].frequency, 20.3, 5e-3);
+    CHECK_RELATIVE(r.resonance[0].q, 16, 0.1);
+    CHECK_RELATIVE(r.resonance[0].sigma, 10.0, 0.03);
+    CHECK_RELATIVE(r.filter.bandwidth, 45, 0.1);
+    CHECK_RELATIVE(r.filter.damping, 0.7, 0.15);
+    CHECK_CLOSE(r.term[IMK_NOISE_WHITE].value, 1.0, 5 * r.term[IMK_NOISE_WHITE].sigma + 0.01);
+    const imk_estimate *b = &r.term[IMK_NOISE_BIAS_INSTABILITY];
+    CHECK_CLOSE(b->value, 0.5, 5 * b->sigma);
+    assert_false(r.term[IMK_NOISE_QUANTIZATION].present);
+    assert_true(r.valid_from < 0.05);
+    assert_true(r.five_terms_from > 0.05);
+}
+
+/* Units scale through, a constant changes nothing. */
+static void test_scale_and_offset(void **state)
+{
+    (void)state;
+    enum { N = 50000 };
+    const truth t = {.white = 1.0, .bias_instability = 1.0, .random_walk = 0.05};
+    double *x = make_record(&t, N, 0.1, 5, 1);
+    const imk_identification one = identify(x, N, 0.1);
+    for (size_t i = 0; i < N; i++)
+        x[i] = (x[i] + 1000) * 0x1p-20;
+    const imk_identification two = identify(x, N, 0.1);
+    for (int term = 0; term < IMK_NOISE_TERMS; term++) {
+        assert_int_equal(one.term[term].present, two.term[term].present);
+        /* The searches stop at 1e-4 of a step; adding 1000 costs 1e-13. */
+        CHECK_CLOSE(two.term[term].value * 0x1p20, one.term[term].value,
+                    1e-5 * one.term[term].value);
+        CHECK_CLOSE(two.term[term].upper * 0x1p20, one.term[term].upper,
+                    1e-3 * one.term[term].upper);
+    }
+    free(x);
+}
+
+/* The expected Allan variance of an identified model is the sum of its terms'. */
+static void test_expected_variance(void **state)
+{
+    (void)state;
+    imk_identification r;
+    memset(&r, 0, sizeof r);
+    r.term[IMK_NOISE_WHITE].value = 2;
+    r.term[IMK_NOISE_RAMP].value = 0.5;
+    r.gauss_markov_count = 1;
+    r.gauss_markov[0].sigma.value = 3;
+    r.gauss_markov[0].correlation_time.value = 10;
+    const double tau = 5,
+                 gauss_markov =
+                     imk_gauss_markov_sampled_allan_variance((imk_gauss_markov){3, 10}, 0.1, 50);
+    CHECK_RELATIVE(imk_identification_allan_variance(&r, 0.1, 50, -1),
+                   4 / tau + 0.25 * tau * tau / 2 + gauss_markov, 1e-12);
+    CHECK_RELATIVE(imk_identification_allan_variance(&r, 0.1, 50, IMK_NOISE_WHITE), 4 / tau, 1e-12);
+}
+
+static void test_record_checks(void **state)
+{
+    (void)state;
+    enum { N = 20000 };
+    const truth t = {.white = 0.1};
+    double *x = make_record(&t, N, 0.01, 9, 1);
+    double *y = malloc(N * sizeof *y);
+    for (size_t i = 0; i < N; i++)
+        y[i] = 0.25 * floor(x[i] / 0.25 + 0.5); /* noise of 1, step of 0.25 */
+    imk_identification r = identify(y, N, 0.01);
+    CHECK_RELATIVE(r.resolution, 0.25, 1e-12);
+    assert_false(r.verdict & (IMK_VERDICT_COARSE | IMK_VERDICT_FROZEN | IMK_VERDICT_SATURATED));
+    for (size_t i = 0; i < N; i++)
+        y[i] = floor(x[i] / 4 + 0.1);
+    r = identify(y, N, 0.01);
+    assert_true(r.verdict & IMK_VERDICT_COARSE);
+    for (size_t i = 0; i < N; i++)
+        y[i] = x[i] > 1 ? 1 : x[i];
+    r = identify(y, N, 0.01);
+    assert_true(r.verdict & IMK_VERDICT_SATURATED);
+    for (size_t i = 0; i < N; i++)
+        y[i] = x[i - i % 4];
+    r = identify(y, N, 0.01);
+    assert_true(r.verdict & IMK_VERDICT_FROZEN);
+    for (size_t i = 0; i < N; i++)
+        y[i] = x[i] + 3 * exp(-(double)i / 1500);
+    r = identify(y, N, 0.01);
+    assert_true(r.verdict & IMK_VERDICT_WARM_UP);
+    free(x), free(y);
+}
+
+static void test_store(void **state)
+{
+    (void)state;
+    const truth t = {.white = 1e-3, .bias_instability = 1e-3, .resonance = {0.05, 20, 10}};
+    const imk_identification r = identify_truth(&t, 100000, 0.01, 2, 1);
+    static imk_model model;
+    model = imk_model_default();
+    for (int axis = 0; axis < 3; axis++) {
+        imk_identification_store(&r, &model, false, axis);
+        imk_identification_store(&r, &model, true, axis);
+    }
+    imk_error error;
+    CHECK_STATUS(imk_model_validate(&model, &error), IMK_OK);
+    assert_true(model.accel.noise.white.value[2] == r.term[IMK_NOISE_WHITE].value);
+    assert_int_equal(model.gyro.noise.resonance_count, 1);
+    bool found = false;
+    for (int i = 0; i < model.gyro_evidence.interval_count; i++) {
+        const imk_interval *interval = &model.gyro_evidence.interval[i];
+        if (strcmp(interval->key, "noise.rate_random_walk") == 0) {
+            found = true;
+            assert_true(interval->upper.value[1] == r.term[IMK_NOISE_RANDOM_WALK].upper);
+        }
+    }
+    assert_true(found);
+}
+
+static void test_bad_arguments(void **state)
+{
+    (void)state;
+    enum { N = 1000 };
+    static double x[N];
+    imk_identify_settings settings = imk_identify_default();
+    settings.dt = 0.01;
+    const size_t size = imk_identify_workspace_size(N);
+    void *workspace = malloc(size);
+    imk_identification result = {.mean = 42};
+    imk_error error;
+    CHECK_STATUS(imk_identify_channel(&settings, N, x, &result, workspace, size, &error),
+                 IMK_ERROR_CONSTANT);
+    CHECK_STATUS(imk_identify_channel(&settings, 255, x, &result, workspace, size, &error),
+                 IMK_ERROR_TOO_SHORT);
+    x[77] = NAN;
+    CHECK_STATUS(imk_identify_channel(&settings, N, x, &result, workspace, size, &error),
+                 IMK_ERROR_NOT_FINITE);
+    assert_int_equal(error.index, 77);
+    x[77] = 1;
+    CHECK_STATUS(imk_identify_channel(&settings, N, x, &result, workspace, size - 1, &error),
+                 IMK_ERROR_WORKSPACE);
+    settings.dt = 0;
+    CHECK_STATUS(imk_identify_channel(&settings, N, x, &result, workspace, size, &error),
+                 IMK_ERROR_RANGE);
+    settings.cookie = 0;
+    CHECK_STATUS(imk_identify_channel(&settings, N, x, &result, workspace, size, &error),
+                 IMK_ERROR_UNINITIALISED);
+    assert_true(result.mean == 42);
+    free(workspace);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_coverage),
+        cmocka_unit_test(test_white_only),
+        cmocka_unit_test(test_quantization),
+        cmocka_unit_test(test_ramp),
+        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_scale_and_offset),
+        cmocka_unit_test(test_expected_variance),
+        cmocka_unit_test(test_record_checks),
+        cmocka_unit_test(test_store),
+        cmocka_unit_test(test_bad_arguments),
+    };
+    return cmocka_run_group_tests_name("identify", tests, NULL, NULL);
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The table of fields is consistent with itself: every unit in it can be read, has the dimension
+ * of its SI unit, and the SI units have scale 1, so that any double can be written in them. */
+#include "check.h"
+
+#include "imukit/units.h"
+#include "model/model_schema_internal.h"
+
+#include <string.h>
+
+static void check_unit(const char *text, const char *si, const char *path)
+{
+    imk_unit unit = imk_unit_of(text), base = imk_unit_of(si);
+    if (unit.scale == 0 || base.scale != 1 || base.offset != 0 ||
+        !imk_dimension_equal(unit.dimension, base.dimension))
+        fail_msg("%s: \"%s\" against \"%s\"", path, text, si);
+    assert_false(base.per_root_hertz);
+}
+
+static void check_field(const imki_field *field)
+{
+    for (int kind = 0; kind < 2; kind++) {
+        if (!field->path[kind] || !field->unit[kind])
+            continue;
+        check_unit(field->unit[kind], field->si[kind], field->path[kind]);
+        if (field->density[kind]) {
+            check_unit(field->density[kind], field->si[kind], field->path[kind]);
+            assert_true(imk_unit_of(field->density[kind]).per_root_hertz);
+        }
+        if (field->shape == IMKI_POLYNOMIAL)
+            for (int order = 1; order <= IMK_TEMPERATURE_ORDER_MAX; order++)
+                check_unit(imki_polynomial_unit(field, kind, order),
+                           imki_polynomial_si(field, kind, order), field->path[kind]);
+        assert_true(field->minimum < field->maximum);
+    }
+}
+
+static void units_are_consistent(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < imki_triad_field_count; i++) {
+        const imki_field *field = &imki_triad_fields[i];
+        check_field(field);
+        if (field->shape == IMKI_LIST) {
+            imki_list list = imki_list_of(field);
+            for (size_t j = 0; j < list.field_count; j++)
+                check_field(&list.field[j]);
+        }
+    }
+    for (size_t i = 0; i < imki_timing_field_count; i++)
+        check_field(&imki_timing_fields[i]);
+}
+
+static void paths_are_unique_and_found(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 2; kind++)
+        for (size_t i = 0; i < imki_triad_field_count; i++) {
+            const char *path = imki_triad_fields[i].path[kind];
+            const imki_field *list;
+            if (path)
+                assert_ptr_equal(imki_field_find(path, kind, &list), &imki_triad_fields[i]);
+        }
+    const imki_field *list;
+    const imki_field *field = imki_field_find("noise.resonance.q", IMKI_ACCEL, &list);
+    assert_non_null(field);
+    assert_string_equal(list->path[IMKI_ACCEL], "noise.resonance");
+    assert_null(imki_field_find("noise.resonance.", IMKI_ACCEL, &list));
+    assert_null(imki_field_find("noise", IMKI_GYRO, &list));
+    assert_null(imki_field_find("g_sensitivity", IMKI_ACCEL, &list));
+}
+
+/* sqrt(2 ln 2/pi) = 0.66428247026796001914… by 40-digit decimal arithmetic. */
+static void allan_floor_is_exact(void **state)
+{
+    (void)state;
+    CHECK_CLOSE(IMKI_ALLAN_FLOOR, 0.66428247026796001914, 0);
+    CHECK_RELATIVE(IMKI_ALLAN_FLOOR * IMKI_ALLAN_FLOOR, 2 * log(2) / acos(-1), 4e-16);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(units_are_consistent),
+        cmocka_unit_test(paths_are_unique_and_found),
+        cmocka_unit_test(allan_floor_is_exact),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Figures: what the script says, that gnuplot draws it, and what happens without gnuplot. */
+#define _POSIX_C_SOURCE 200809L
+#include "check.h"
+#include "report/figure_internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { POINTS = 8 };
+static double tau[POINTS], deviation[POINTS], lower[POINTS], upper[POINTS], line[POINTS];
+static imk_curve curves[3];
+static imk_panel panel;
+static imk_figure figure;
+static char directory[] = "/tmp/imukit-test-XXXXXX";
+
+/* sigma = 1/sqrt(tau) with 10 % bars, and a steep line that leaves the frame. */
+static int set_up(void **state)
+{
+    (void)state;
+    for (int i = 0; i < POINTS; i++) {
+        tau[i] = pow(2, i);
+        deviation[i] = 1 / sqrt(tau[i]);
+        lower[i] = 0.9 * deviation[i];
+        upper[i] = 1.1 * deviation[i];
+        line[i] = 1e-9 / tau[i];
+    }
+    curves[0] = (imk_curve){"gyro_x's", IMK_CURVE_POINTS, 0, POINTS, tau, deviation, lower, upper};
+    curves[1] = (imk_curve){"fit", IMK_CURVE_DASHES, 1, POINTS, tau, line, NULL, NULL};
+    curves[2] = (imk_curve){"", IMK_CURVE_BAND, 2, POINTS, tau, deviation, lower, upper};
+    panel = (imk_panel){"a_b `id` $x", "tau [s]", "deviation [deg/h]", true, true, 3, curves};
+    figure = (imk_figure){"title", 1, 1, &panel};
+    return mkdtemp(directory) ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    return rmdir(directory);
+}
+
+static char *path_in_directory(const char *name)
+{
+    static char path[300];
+    snprintf(path, sizeof path, "%s/%s", directory, name);
+    return path;
+}
+
+static char *read_text(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    char *text = calloc(1, 1 << 20);
+    assert_non_null(text);
+    assert_true(fread(text, 1, (1 << 20) - 1, file) > 0);
+    fclose(file);
+    return text;
+}
+
+static bool exists(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
+/* Texts are quoted: gnuplot would run what stands in back quotes inside double quotes. */
+static void test_script_quotes_texts(void **state)
+{
+    (void)state;
+    imki_drawing drawing = {IMKI_TERMINAL_SVG, "it's.svg", "d.dat", 0, 0, false};
+    size_t size = 0;
+    char *script = imki_figure_script(&figure, &drawing, &size);
+    assert_non_null(script);
+    assert_int_equal(strlen(script), size);
+    assert_non_null(strstr(script, "set output 'it''s.svg'\n"));
+    assert_non_null(strstr(script, "set title 'a_b `id` $x' noenhanced\n"));
+    assert_non_null(strstr(script, "title 'gyro_x''s' noenhanced"));
+    assert_null(strchr(script, '"'));
+    free(script);
+}
+
+/* The axes span the points and their bars (0.0795 to 1.1), not the line at 1e-9. Air of 7 % of the
+ * decades on either side: from 0.0795/1.2 to 1.1*1.2. */
+static void test_axes_span_points_only(void **state)
+{
+    (void)state;
+    imki_drawing drawing = {IMKI_TERMINAL_SVG, "x.svg", "d.dat", 0, 0, false};
+    size_t size = 0;
+    char *script = imki_figure_script(&figure, &drawing, &size);
+    double low = 0, high = 0;
+    const char *range = strstr(script, "set yrange [");
+    assert_non_null(range);
+    assert_int_equal(sscanf(range, "set yrange [%lf:%lf]", &low, &high), 2);
+    double span = pow(1.1 / lower[POINTS - 1], 0.07);
+    CHECK_RELATIVE(low, lower[POINTS - 1] / span, 1e-12);
+    CHECK_RELATIVE(high, 1.1 * span, 1e-12);
+    free(script);
+}
+
+static void test_draws_svg_and_png(void **state)
+{
+    (void)state;
+    imk_error error;
+    if (!imk_plot_available()) {
+        print_message("skipped: gnuplot is not installed\n");
+        skip();
+    }
+    char *path = path_in_directory("a.svg");
+    CHECK_OK(imk_figure_write(&figure, path, &error));
+    char *svg = read_text(path);
+    assert_non_null(strstr(svg, "<svg"));
+    assert_non_null(strstr(svg, "</svg>"));
+    assert_non_null(strstr(svg, "a_b `id` $x"));
+    free(svg);
+    unlink(path);
+    path = path_in_directory("a.png");
+    CHECK_OK(imk_figure_write(&figure, path, &error));
+    char *png = read_text(path);
+    assert_memory_equal(png, "\x89PNG\r\n\x1a\n", 8);
+    free(png);
+    unlink(path);
+}
+
+static void test_refuses_what_cannot_be_drawn(void **state)
+{
+    (void)state;
+    imk_error error;
+    CHECK_STATUS(imk_figure_write(&figure, path_in_directory("a.pdf"), &error), IMK_ERROR_FORMAT);
+    assert_non_null(strstr(error.expected, ".svg"));
+    double nothing[POINTS] = {0}; /* no logarithm */
+    imk_curve curve = {"", IMK_CURVE_POINTS, 0, POINTS, tau, nothing, NULL, NULL};
+    imk_panel empty = {"empty", "", "", true, true, 1, &curve};
+    imk_figure bad = {"", 1, 1, &empty};
+    CHECK_STATUS(imk_figure_write(&bad, path_in_directory("a.svg"), &error), IMK_ERROR_EMPTY);
+    assert_string_equal(error.field, "empty");
+    assert_false(exists(path_in_directory("a.svg")));
+}
+
+/* Without gnuplot on PATH the script and its data are left, and the message names the package. */
+static void test_without_gnuplot(void **state)
+{
+    (void)state;
+    imk_error error;
+    char *saved = strdup(getenv("PATH"));
+    setenv("PATH", directory, 1);
+    assert_false(imk_plot_available());
+    imk_status status = imk_figure_write(&figure, path_in_directory("b.svg"), &error);
+    char *svg = NULL;
+    size_t size;
+    imk_error svg_error;
+    imk_status svg_status = imk_figure_svg(&figure, &svg, &size, &svg_error);
+    setenv("PATH", saved, 1);
+    free(saved);
+    CHECK_STATUS(status, IMK_ERROR_UNSUPPORTED);
+    CHECK_STATUS(svg_status, IMK_ERROR_UNSUPPORTED);
+    assert_non_null(strstr(error.expected, "gnuplot-nox"));
+    assert_non_null(strstr(svg_error.expected, "gnuplot-nox"));
+    assert_false(exists(path_in_directory("b.svg")));
+    char *data = read_text(path_in_directory("b.dat"));
+    assert_non_null(strstr(data, "\n1 1 0.9 1.1\n"));
+    free(data);
+    char *script = read_text(path_in_directory("b.gp"));
+    assert_non_null(strstr(script, "b.dat' index 0"));
+    free(script);
+    unlink(path_in_directory("b.dat"));
+    unlink(path_in_directory("b.gp"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_script_quotes_texts),
+        cmocka_unit_test(test_axes_span_points_only),
+        cmocka_unit_test(test_draws_svg_and_png),
+        cmocka_unit_test(test_refuses_what_cannot_be_drawn),
+        cmocka_unit_test(test_without_gnuplot),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,11 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Every C and C++ file is as clang-format leaves it.
+set -eu
+cd "$(dirname "$0")/.."
+mapfile -t files < <(find include src cli tests bench fuzz examples -name '*.[ch]' -o -name '*.cpp')
+if ! clang-format --dry-run -Werror "${files[@]}"; then
+    echo "to mend: clang-format -i FILE"
+    exit 1
+fi
+echo "${#files[@]} files"

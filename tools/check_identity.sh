@@ -1,0 +1,75 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# A log has the same bytes whatever made it: gcc or clang, -O0 or -O3, every kernel this machine
+# has, 1, 2 or 7 threads, a C library told that the processor has neither FMA nor AVX2 (its own exp,
+# log, sin and pow then give other bits), and AArch64, by emulation.
+set -eu
+cd "$(dirname "$0")/.."
+out=build-check/identity
+mkdir -p "$out"
+model=tests/identity/all_terms.yaml
+
+for compiler in gcc clang; do
+    for level in O0 O3; do
+        build=$out/$compiler-$level
+        cmake -S . -B "$build" -DCMAKE_C_COMPILER=$compiler -DCMAKE_BUILD_TYPE=Release \
+            -DCMAKE_C_FLAGS_RELEASE="-$level -DNDEBUG" -DIMUKIT_SHARED=OFF -DIMUKIT_TESTS=OFF \
+            -DIMUKIT_EXAMPLES=OFF >/dev/null
+        # A warning of either compiler at any level is a fault as well.
+        cmake --build "$build" -j "$(nproc)" --target imukit-command >"$build/build.log" 2>&1 ||
+            { cat "$build/build.log"; exit 1; }
+        if grep -A 8 'warning:' "$build/build.log"; then
+            exit 1
+        fi
+    done
+done
+
+# simulate BUILD THREADS: the sum of the log's bytes, with the environment as it is
+simulate() {
+    "$out/$1/imukit" simulate "$model" --rate 100Hz --duration 20s --seed 1 --threads "$2" -o - |
+        sha256sum | cut -d' ' -f1
+}
+
+reference=$(simulate gcc-O3 1)
+[ "$reference" != "$(printf '' | sha256sum | cut -d' ' -f1)" ] || { echo "no log was made"; exit 1; }
+variants=1
+status=0
+compare() { # NAME SUM
+    variants=$((variants + 1))
+    [ "$2" = "$reference" ] || { echo "$1: other bytes than gcc -O3 with one thread"; status=1; }
+}
+
+for build in gcc-O0 gcc-O3 clang-O0 clang-O3; do
+    for isa in scalar avx2 avx512; do
+        compare "$build, $isa kernel" "$(IMUKIT_ISA=$isa simulate $build 1)"
+    done
+    for threads in 2 7; do
+        compare "$build, $threads threads" "$(simulate $build $threads)"
+    done
+done
+
+# That the C library heeds the tunable is checked too: else this part would prove nothing.
+tunable=glibc.cpu.hwcaps=-FMA,-AVX2
+loader=$(ls /lib64/ld-linux-x86-64.so.2 2>/dev/null || true)
+active() { "$loader" --list-diagnostics | grep -E 'cpu_features.features.*active'; }
+if [ -n "$loader" ] && [ "$(active)" != "$(GLIBC_TUNABLES=$tunable active)" ]; then
+    compare "without FMA and AVX2 in the C library" "$(GLIBC_TUNABLES=$tunable simulate gcc-O3 2)"
+else
+    echo "the C library knows no $tunable, or this processor has neither: not checked"
+fi
+
+# The core alone on another processor, with its NEON kernel and with the portable one.
+core="tests/identity/simulate_hash.c $(find src/base src/model src/noise src/motion src/simulate \
+    -name '*.c')"
+flags="-std=c17 -O2 -ffp-contract=off -Iinclude -Isrc"
+gcc $flags tests/identity/simulate_hash.c "$out/gcc-O3/libimukit.a" -lm -o "$out/hash_host"
+aarch64-linux-gnu-gcc $flags -static $core -lm -o "$out/hash_aarch64"
+here=$("$out/hash_host")
+for isa in neon scalar; do
+    variants=$((variants + 1))
+    there=$(IMUKIT_ISA=$isa qemu-aarch64 "$out/hash_aarch64")
+    [ "$here" = "$there" ] ||
+        { echo "AArch64, $isa kernel: $there, on this machine $here"; status=1; }
+done
+[ $status = 0 ] && echo "$variants ways, one log"
+exit $status

@@ -1,0 +1,43 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# House rules a program can check: licence line, unique file names, nothing left behind, no name of
+# the library without its prefix, citations that resolve.
+set -u
+cd "$(dirname "$0")/.."
+status=0
+complain() { echo "$*"; status=1; }
+
+mapfile -t code < <(find include src cli tests bench fuzz examples tools .ci cmake Makefile \
+    CMakeLists.txt -type f \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.sh' -o -name '*.py' \
+    -o -name '*.cmake' -o -name CMakeLists.txt -o -name Makefile -o -path 'tools/*' \
+    -o -path '.ci/*' \) ! -name '*.txt' ! -name '*.pyc' ; echo CMakeLists.txt)
+for file in "${code[@]}"; do
+    head -n 3 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' ||
+        complain "$file: no SPDX line at the head"
+done
+
+# A name says what is inside; two files of the same name would not. The header of a module may have
+# the name of its source file.
+for name in $(find src cli -name '*.c' -printf '%f\n' | sort | uniq -d); do
+    complain "$name: more than one file has this name:" \
+        $(find src cli -name "$name" -printf '%p ')
+done
+
+grep -rnE '\b(TODO|FIXME|XXX|HACK)\b' include src cli tests bench fuzz examples cmake &&
+    complain "something is left behind (above)"
+
+# Every [KEY] cited is in docs/references.md, and there is nothing that nobody cites.
+key='[A-Z][A-Z-]+[0-9]{2,4}(\.[0-9]+)?[a-z]?'
+sources="include src cli tests bench fuzz examples tools docs/theory"
+cited=$(grep -rhoE "\[$key(, [^]]*)?\]" $sources 2>/dev/null | grep -oE "\b$key\b" | sort -u)
+listed=$(grep -oE "^\| $key " docs/references.md | tr -d '| ' | sort -u)
+for name in $(comm -23 <(echo "$cited") <(echo "$listed")); do
+    complain "$name is cited in" $(grep -rlF "$name" $sources 2>/dev/null | head -n 2) \
+        "and not in docs/references.md"
+done
+for name in $(comm -13 <(echo "$cited") <(echo "$listed")); do
+    complain "$name is in docs/references.md and nobody cites it"
+done
+
+[ $status = 0 ] && echo "${#code[@]} files"
+exit $status
