@@ -12,7 +12,7 @@
 #include "imukit/thread_pool.h"
 
 /* Calls of 8192 rows, as a program that writes a log in blocks makes them: columns stay in cache.
- */
+ * Short runs, because the shortest of many is taken. */
 enum { CALL = 8192, CALLS = 6, ROWS = CALL * CALLS, CHANNELS = 6, REPEATS = 40 };
 
 static double block[CHANNELS][CALL];

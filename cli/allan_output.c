@@ -8,6 +8,25 @@
 #include "text_table.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+/* Unit of the deviation as programs read it: phase is per second. */
+static imk_unit plain_unit(const allan_result *result, const imk_log_column *column)
+{
+    imk_unit unit = channel_plain_unit(column);
+    size_t length = strlen(unit.text);
+    if (result->options->type == 1 && length + 3 < sizeof unit.text)
+        strcpy(unit.text + length, "/s");
+    return unit;
+}
+
+/* Unit a person reads the deviation in. */
+static imk_unit readable_unit(const allan_result *result, const imk_log_column *column,
+                              double magnitude)
+{
+    return result->options->type == 1 ? plain_unit(result, column)
+                                      : channel_readable_unit(column, magnitude);
+}
 
 int allan_write_csv(const allan_result *result, const char *output)
 {
@@ -20,7 +39,7 @@ int allan_write_csv(const allan_result *result, const char *output)
     for (size_t c = 0; c < channels->count; c++) {
         const imk_log_column *column = log_channel_column(channels, c);
         const allan_curve *curve = &result->curve[c];
-        imk_unit unit = channel_plain_unit(column);
+        imk_unit unit = plain_unit(result, column);
         for (size_t i = 0; i < curve->count; i++) {
             const imk_allan_point *point = &curve->point[i];
             const double values[] = {curve->tau[i], point->deviation / unit.scale,
@@ -53,8 +72,8 @@ static text_table make_table(const allan_result *result, channel_kind kind)
     if (members == 0)
         return table;
     const allan_curve *first = &result->curve[member[0]];
-    imk_unit unit = channel_readable_unit(log_channel_column(channels, member[0]),
-                                          first->deviation[first->count / 2]);
+    imk_unit unit = readable_unit(result, log_channel_column(channels, member[0]),
+                                  first->deviation[first->count / 2]);
     text_table_row(&table);
     text_table_set(&table, 0, "tau [s]");
     for (size_t k = 0; k < members; k++)
@@ -92,7 +111,7 @@ int allan_print_json(const allan_result *result)
     json_t *list = json_array();
     for (size_t c = 0; c < channels->count; c++) {
         const allan_curve *curve = &result->curve[c];
-        imk_unit unit = channel_plain_unit(log_channel_column(channels, c));
+        imk_unit unit = plain_unit(result, log_channel_column(channels, c));
         json_t *points = json_array();
         for (size_t i = 0; i < curve->count; i++) {
             const imk_allan_point *p = &curve->point[i];
@@ -153,7 +172,7 @@ static void add_panel(allan_figure *f, const allan_result *result, channel_kind 
         if (channel_kind_of(column) != kind)
             continue;
         if (!(unit.scale > 0))
-            unit = channel_readable_unit(column, curve->deviation[curve->count / 2]);
+            unit = readable_unit(result, column, curve->deviation[curve->count / 2]);
         add_channel(f, used, column->name, curve, unit.scale, (int)(*used - first) / 2, rest);
     }
     if (*used == first)

@@ -16,6 +16,7 @@ typedef struct channel_work {
     const size_t *factors;
     size_t factor_count;
     progress *shown;
+    atomic_flag showing; /* one thread at a time draws the line, the others go on */
     atomic_size_t done;
 } channel_work;
 
@@ -55,7 +56,11 @@ static void identify_one(void *context, size_t channel)
             imk_error_set(error, status, NULL, NULL, NULL);
     }
     work->status[channel] = status;
-    progress_update(work->shown, atomic_fetch_add(&work->done, 1) + 1, all->channels.count);
+    size_t done = atomic_fetch_add(&work->done, 1) + 1;
+    if (!atomic_flag_test_and_set(&work->showing)) {
+        progress_update(work->shown, done, all->channels.count);
+        atomic_flag_clear(&work->showing);
+    }
 }
 
 static int explain(const identification *i, size_t channel, imk_status status,
@@ -87,6 +92,7 @@ int identify_channels(identification *i, const imk_executor *executor)
         return command_failed("memory is exhausted");
     }
     progress shown = progress_begin("identifying", "channels", 1);
+    atomic_flag_clear(&work->showing);
     work->all = i;
     work->factors = factors;
     work->shown = &shown;

@@ -65,7 +65,7 @@ static void choose_channels(log_channels *channels)
     if (channels->count > 0)
         return;
     for (size_t c = 0; c < log->column_count; c++)
-        if (log->column[c].quantity == IMK_QUANTITY_OTHER)
+        if (log->column[c].quantity == IMK_QUANTITY_OTHER && !log->column[c].label)
             channels->column[channels->count++] = (int)c;
 }
 

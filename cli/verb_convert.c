@@ -216,6 +216,11 @@ static int copy_rows(imk_log_reader *reader, imk_log_writer *writer, const conve
     return EXIT_DONE;
 }
 
+static const char *label_of(void *reader, size_t index)
+{
+    return imk_log_label(reader, index);
+}
+
 static int write_log(const convert_options *o, imk_log_reader *reader, const conversion *c,
                      const char *in, const char *out)
 {
@@ -228,6 +233,7 @@ static int write_log(const convert_options *o, imk_log_reader *reader, const con
     if (imk_log_create(out, c->count, c->column, fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST,
                        fixed ? decimals : NULL, 0, &writer, &error) != IMK_OK)
         return command_error(&error, NULL);
+    imk_log_write_labels(writer, label_of, reader);
     imk_thread_pool *pool = imk_thread_pool_create(o->threads);
     imk_executor executor = imk_thread_pool_executor(pool);
     int code = copy_rows(reader, writer, c, in, &executor);

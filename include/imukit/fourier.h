@@ -10,18 +10,18 @@
 extern "C" {
 #endif
 
-/** Workspace [bytes] for transforms of n points; 0 when n is 0 or above 2^31. About 16 n bytes and
- *  16 n for the tables of short lengths; 115 n where Bluestein's algorithm is needed. The workspace
- *  may stand at any address, and holds nothing between calls. */
+/** Workspace [bytes] for transforms of n points; 0 when n is 0 or above 2^31. About 17 n for large
+ *  n, twice that for small, and 115 n where Bluestein's algorithm is needed. The workspace may be
+ *  at any address, and holds nothing between calls. */
 IMK_API size_t imk_fourier_workspace_size(size_t n);
 IMK_API size_t imk_cosine_workspace_size(size_t n);
 
 /** Complex transform in place: X[k] = sum_j x[j] exp(-+ 2 pi i j k / n); `inverse` takes the plus
  *  sign and divides by n. Any n: mixed radix up to 13 by Stockham's algorithm [VANLOAN1992], long
- *  lengths in two sweeps over the memory [BAILEY1990], and where a larger prime divides n
- * Bluestein's algorithm [BLUESTEIN1970], about seven times slower. Error of the whole below 1e-15
- * of its norm up to 1e6 points (3e-16 without Bluestein). The bits may differ between machines by
- * the sine of libm.
+ *  lengths in two sweeps over the memory [BAILEY1990], and where a larger prime
+ *  divides n Bluestein's algorithm [BLUESTEIN1970], about seven times slower. Error of the whole
+ *  below 1e-15 of its norm up to 1e6 points (3e-16 without Bluestein). The bits may differ between
+ *  machines by the sine of libm.
  *  @param data  n complex numbers, real and imaginary parts alternating
  *  @return IMK_ERROR_WORKSPACE, IMK_ERROR_ARGUMENT */
 IMK_API imk_status imk_fourier(size_t n, double *data, int inverse, void *workspace,

@@ -9,7 +9,6 @@
 #ifndef IMUKIT_MODEL_H
 #define IMUKIT_MODEL_H
 
-#include "imukit/noise.h"
 #include "imukit/status.h"
 
 #include <stdbool.h>

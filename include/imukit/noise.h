@@ -2,8 +2,7 @@
 /** @file noise.h
  *  The stochastic terms: for each its Allan variance, its spectrum, and its generator.
  *
- *  Three views of a term are kept apart, because mixing them up is the commonest error of the
- * field:
+ *  Three views of a term are kept apart, because mixing them up is the commonest error here:
  *   - `imk_<term>_allan_variance(…, tau)`: the continuous-time closed form [IEEE952];
  *   - `imk_<term>_sampled_allan_variance(…, dt, n)`: exact for the sequence the generator makes, at
  *     tau = n dt, n >= 1;
@@ -17,9 +16,9 @@
  *
  *  Which normal drives which sample is part of the contract. Recursions run over 16 segments of a
  *  block of 512 samples at a time, so white noise, random walk, Gauss-Markov and the two fastest
- *  flicker stages drive sample 512 b + 32 s + i (s < 16, i < 32) by normal 512 b + 16 i + s of
- * their stream; the ARMA sequences drive sample k by normal k. Normals 2^63 and up draw stationary
- *  starting values, words 3 * 2^62 and up starting phases.
+ *  flicker stages drive sample 512 b + 32 s + i (s < 16, i < 32) by normal 512 b + 16 i + s; the
+ *  ARMA sequences drive sample k by normal k. Normals 2^63 and up of the same stream draw
+ *  stationary starting values, words 3 * 2^62 and up starting phases.
  *
  *  Every `_start` takes dt [s] > 0 and returns IMK_ERROR_NOT_FINITE for a parameter that is not
  *  finite and IMK_ERROR_RANGE for one outside its range; the state is untouched then. The formulas
@@ -141,9 +140,9 @@ IMK_API imk_status imk_filtered_white_start(imk_arma_state *state, double densit
  *  variance (ln 4/pi) B^2, the fastest 1.208 times that. Stage j >= 2 changes only every 4^(j-1)
  *  samples, at a moment drawn at random, so that 2.33 normals a sample are enough and the sequence
  *  is still stationary. Its Allan deviation is that of ideal flicker noise within 0.12 % from 2 dt
- *  to 1e7 dt, 1 % to 1e8 dt, 2 % to 2e8 dt; its spectrum is 0.94 … 1.01 times
- *  B^2/(2 pi f) below 0.1/dt. Runs may be 2e9 samples long; the number of stages does not depend
- *  on the run. Sample 0 has the variance of all stages, about (2.7 B)^2. */
+ *  to 1e7 dt, 1 % to 1e8 dt, 2 % to 2e8 dt; its spectrum is 0.94 … 1.01 times B^2/(2 pi f)
+ *  below 0.1/dt. Runs may be 2e9 samples long; the number of stages does not depend on the run.
+ *  Sample 0 has the variance of all stages, about (2.7 B)^2. */
 
 /** The flat part, (2 ln 2/pi) B^2. */
 IMK_API double imk_flicker_allan_variance(double instability, double tau);

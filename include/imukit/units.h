@@ -14,7 +14,7 @@ extern "C" {
 #endif
 
 /** Exponents of the base dimensions, in halves (so that 1/sqrt(Hz), time^{1/2}, is 1): metre,
- * second, radian, kelvin, count. The angle is a dimension here: deg/s and Hz must not be mixed. */
+ *  second, radian, kelvin, count. The angle is a dimension here: deg/s and Hz must not be mixed. */
 typedef struct imk_dimension {
     int8_t half[5];
 } imk_dimension;
@@ -83,8 +83,8 @@ IMK_API size_t imk_quantity_format(const double *values, const double *sigmas, s
                                    const imk_unit *unit, char *text, size_t text_size);
 
 /** Best-readable unit among the usual ones of a dimension for a typical magnitude (SI): for 5e-8
- *  rad/s "deg/h", for 3 rad/s "deg/s". The unit of a temperature is degC from 150 K (a reading), K
- * below (a difference). SI for a dimension without a name. */
+ *  rad/s "deg/h", for 3 rad/s "deg/s". The unit of a temperature is degC from 150 K (a reading),
+ *  K below (a difference). SI for a dimension without a name. */
 IMK_API imk_unit imk_unit_readable(imk_dimension dimension, double magnitude);
 
 #ifdef __cplusplus

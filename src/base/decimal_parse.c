@@ -55,16 +55,17 @@ static const char *scan_digits(const char *text, const char *end, digits *d)
 {
     uint64_t word = d->word, eight;
     int64_t count = d->count;
-    while (end - text >= 8 && count > 0 && count <= WORD_DIGITS - 8 && join_eight(text, &eight)) {
+    if (count == 0) {
+        while (text < end && *text == '0')
+            text++;
+        d->first = text;
+    }
+    while (end - text >= 8 && count <= WORD_DIGITS - 8 && join_eight(text, &eight)) {
         word = word * 100000000 + eight;
         count += 8;
         text += 8;
     }
     for (; text < end && is_digit(*text); text++) {
-        if (count == 0 && *text == '0')
-            continue;
-        if (count == 0)
-            d->first = text;
         if (count < WORD_DIGITS)
             word = word * 10 + (uint64_t)(*text - '0');
         count++;
@@ -212,7 +213,7 @@ const char *imk_decimal_parse(const char *begin, const char *end, double *value)
     const bool negative = p < end && *p == '-';
     if (p < end && (*p == '-' || *p == '+'))
         p++;
-    digits d = {.first = p};
+    digits d = {0};
     const char *integer = p;
     p = scan_digits(p, end, &d);
     int64_t read = p - integer;

@@ -9,7 +9,7 @@ double imki_log_gamma_one_plus(double x);
 /** What Stirling's formula lacks: log Gamma(x) - [(x - 1/2) log x - x + log(2 pi)/2], x >= 10. */
 double imki_stirling_error(double x);
 
-/** log(density) part of the gamma distribution, x^a e^{-x} / Gamma(a + 1), a > 0, x > 0. */
+/** x^a e^{-x} / Gamma(a + 1), a > 0, x > 0. */
 double imki_gamma_power(double a, double x);
 
 /** P(a, x) and Q(a, x) together. */

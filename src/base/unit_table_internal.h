@@ -40,7 +40,7 @@ static inline const char *imki_skip_blanks(const char *at, const char *end)
     return at;
 }
 
-/** `text` when [at, end) starts with it, moved behind; else NULL. */
+/** The first character behind `text` when [at, end) starts with it; else NULL. */
 const char *imki_match(const char *at, const char *end, const char *text);
 
 #endif

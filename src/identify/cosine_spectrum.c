@@ -84,3 +84,23 @@ void imki_bands_build(imki_bands *bands, size_t n, double dt, const double *coef
         k = end;
     }
 }
+
+static void arma_shape(const imk_arma *arma, const imki_bands *bands, double *shape)
+{
+    for (size_t b = 0; b < bands->count; b++)
+        shape[b] = imk_arma_spectrum(arma, bands->frequency[b]);
+}
+
+void imki_resonance_shape(double frequency, double q, const imki_bands *bands, double *shape)
+{
+    imk_arma arma;
+    if (imk_resonance_arma((imk_resonance){1, frequency, q}, bands->dt, &arma) == IMK_OK)
+        arma_shape(&arma, bands, shape);
+}
+
+void imki_filter_shape(imk_low_pass filter, const imki_bands *bands, double *shape)
+{
+    imk_arma arma;
+    if (imk_filtered_white_arma(1, filter, bands->dt, &arma) == IMK_OK)
+        arma_shape(&arma, bands, shape);
+}

@@ -8,6 +8,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Quality above which a resonance counts as a narrow line. */
+static const double NARROW = 50;
+
 enum { COOKIE = 0x1DE70001, SAMPLES_MIN = 256, SORTED = 65536, FACTORS_MAX = 160 };
 
 /* Everything that one channel needs, laid out in the caller's workspace. */
@@ -69,7 +72,7 @@ static void lay_out(identification_work *w, void *workspace)
 static void transform(identification_work *w)
 {
     memcpy(w->coefficients, w->samples, w->n * sizeof(double));
-    imk_cosine(w->n, w->coefficients, w->transform, w->transform_size);
+    (void)imk_cosine(w->n, w->coefficients, w->transform, w->transform_size); /* sized for it */
     w->cumulative[0] = w->cumulative[1] = 0;
     for (size_t k = 1; k < w->n; k++)
         w->cumulative[k + 1] =
@@ -83,8 +86,7 @@ static double centre_of(const imki_line *line)
 
 static double variance_of(const identification_work *w, const imki_line *line)
 {
-    const imki_line wide = imki_line_widen(line, w->n);
-    return imki_line_variance(&wide, w->n, w->settings->dt, w->cumulative);
+    return imki_line_variance(line, w->n, w->settings->dt, w->cumulative);
 }
 
 static size_t peak_of(const identification_work *w, const imki_line *line)
@@ -109,8 +111,9 @@ static void remove_tones(identification_work *w, size_t count, const imki_line *
 }
 
 /* What a line is: a tone is subtracted as a sinusoid; what is shaped like a resonance is one; a
- * narrow line that is neither, such as a tone whose frequency wanders, is left out of the fit and
- * stands in the model as a sinusoid of its power. */
+ * line that is neither, such as a tone whose frequency wanders, stands in the model as a sinusoid
+ * of its power. Only wide resonances take part in the fit: narrow lines are left out of it, and
+ * their power is what is found above their surroundings, whatever their exact shape. */
 static void find_lines(identification_work *w, imk_identification *result)
 {
     const double dt = w->settings->dt, step_hz = 1 / (2 * (double)w->n * dt);
@@ -125,15 +128,20 @@ static void find_lines(identification_work *w, imk_identification *result)
         const double centre = centre_of(&lines[i]), variance = variance_of(w, &lines[i]);
         const double width = (double)(lines[i].last - lines[i].first + 1);
         imk_resonance r = {0, centre * step_hz, fmax(1, centre / width)};
-        if (width > 2 && result->resonance_count < IMK_TERMS_MAX &&
-            imki_shape_resonance(&r, variance, w->n, dt, w->cumulative)) {
+        /* A frequency far below the sample rate is none that imk_resonance_arma() takes. */
+        const bool resonant = width > 2 && r.frequency * dt > 1e-5 &&
+                              result->resonance_count < IMK_TERMS_MAX &&
+                              imki_shape_resonance(&r, variance, w->n, dt, w->cumulative);
+        const bool narrow = !resonant || r.q > NARROW;
+        if (narrow)
+            w->lines[w->line_count++] = imki_line_widen(&lines[i], w->n);
+        if (resonant) {
+            r.sigma = narrow ? sqrt(variance) : r.sigma;
             result->resonance[result->resonance_count++] = r;
-            continue;
-        }
-        w->lines[w->line_count++] = imki_line_widen(&lines[i], w->n);
-        if (result->sinusoid_count < IMK_TERMS_MAX)
+        } else if (result->sinusoid_count < IMK_TERMS_MAX) {
             result->sinusoid[result->sinusoid_count++] =
                 (imk_sinusoid){sqrt(2 * variance), centre * step_hz};
+        }
     }
 }
 
@@ -153,14 +161,14 @@ static void set_templates(identification_work *w, const imk_identification *resu
             b < bands->singles ? imk_flicker_cosine_spectrum(1, dt, bands->n, b + 1)
                                : imk_flicker_sampled_spectrum(1, dt, f);
         fit->shape[IMK_NOISE_RANDOM_WALK][b] = imk_random_walk_sampled_spectrum(1, dt, f);
-        for (size_t r = 0; r < (size_t)result->resonance_count; r++) {
-            imk_resonance unit = result->resonance[r];
-            unit.sigma = 1;
-            fit->shape[IMKI_FIRST_RESONANCE + r][b] = imk_resonance_sampled_spectrum(unit, dt, f);
-        }
     }
+    for (int r = 0; r < result->resonance_count; r++)
+        imki_resonance_shape(result->resonance[r].frequency, result->resonance[r].q, bands,
+                             fit->shape[IMKI_FIRST_RESONANCE + r]);
     for (size_t j = IMK_NOISE_WHITE; j < fit->templates; j++)
-        fit->active[j] = j <= IMK_NOISE_RANDOM_WALK || j >= IMKI_FIRST_RESONANCE;
+        fit->active[j] =
+            j <= IMK_NOISE_RANDOM_WALK ||
+            (j >= IMKI_FIRST_RESONANCE && result->resonance[j - IMKI_FIRST_RESONANCE].q <= NARROW);
     for (int r = 0; r < result->resonance_count; r++)
         fit->amount[IMKI_FIRST_RESONANCE + r] =
             result->resonance[r].sigma * result->resonance[r].sigma;
@@ -200,7 +208,7 @@ static double gain_with_ramp(identification_work *w)
 static void refine_resonances(identification_work *w, imk_identification *result)
 {
     for (int r = 0; r < result->resonance_count; r++)
-        if (result->resonance[r].q < 50)
+        if (result->resonance[r].q <= NARROW)
             imki_resonance_refine(w->fit, w->bands, (size_t)r, &result->resonance[r]);
 }
 
@@ -323,7 +331,8 @@ static void store_values(const identification_work *w, imk_identification *resul
     ramp->sigma = 1 / sqrt(imki_fit_ramp_information(fit, w->bands));
     result->correlation[IMK_NOISE_RAMP][IMK_NOISE_RAMP] = 1;
     for (int r = 0; r < result->resonance_count; r++)
-        result->resonance[r].sigma = sqrt(fit->amount[IMKI_FIRST_RESONANCE + r]);
+        if (fit->active[IMKI_FIRST_RESONANCE + r])
+            result->resonance[r].sigma = sqrt(fit->amount[IMKI_FIRST_RESONANCE + r]);
     result->log_likelihood = fit->log_likelihood;
 }
 
@@ -477,7 +486,7 @@ static void compare_with_allan(identification_work *w, const double *record,
 static void judge(identification_work *w, const double *record, imk_identification *result)
 {
     compare_with_allan(w, record, result);
-    if (result->sinusoid_count > 0 || w->line_count > 0)
+    if (result->sinusoid_count > 0)
         result->verdict |= IMK_VERDICT_LINES;
     if (result->resonance_count > 0)
         result->verdict |= IMK_VERDICT_RESONANCE;

@@ -54,6 +54,10 @@ void imki_bands_build(imki_bands *bands, size_t n, double dt, const double *coef
                       const double *cumulative, size_t line_count, const imki_line *lines,
                       size_t resonance_count, const imk_resonance *resonances);
 
+/* Spectra of unit resonances and of filtered white noise of unit density at the bands. */
+void imki_resonance_shape(double frequency, double q, const imki_bands *bands, double *shape);
+void imki_filter_shape(imk_low_pass filter, const imki_bands *bands, double *shape);
+
 /* spectral_fit.c: all return the log-likelihood, and leave it in the fit. */
 double imki_fit_maximise(imki_fit *fit, const imki_bands *bands);
 /* The same with one amount (or the ramp: index IMK_NOISE_RAMP when `ramp`) held at a value. */
@@ -70,10 +74,10 @@ size_t imki_lines_find(size_t n, const double *cumulative, imki_line *lines);
  * when it holds less than 0.6 of the line's variance. */
 bool imki_sinusoid_remove(size_t n, double dt, double frequency, double variance, double *samples,
                           imk_sinusoid *sinusoid);
-/* The coefficients a line spreads over: five times its width. */
+/* The coefficients a line spreads over, skirts included. */
 imki_line imki_line_widen(const imki_line *line, size_t n);
 /* Variance of a line: its power in excess of its surroundings'. */
-double imki_line_variance(const imki_line *wide, size_t n, double dt, const double *cumulative);
+double imki_line_variance(const imki_line *line, size_t n, double dt, const double *cumulative);
 
 /* spectral_shape.c: fits a resonance from a start; false when the line, of the given variance, is
  * not shaped like one. */

@@ -14,9 +14,7 @@ enum { GRID = 14, TURNS = 3, SECTIONS = 12 };
 
 static double likelihood_with(imki_fit *fit, const imki_bands *bands, imk_low_pass filter)
 {
-    for (size_t b = 0; b < bands->count; b++)
-        fit->shape[IMK_NOISE_WHITE][b] =
-            imk_filtered_white_sampled_spectrum(1, filter, bands->dt, bands->frequency[b]);
+    imki_filter_shape(filter, bands, fit->shape[IMK_NOISE_WHITE]);
     return imki_fit_maximise(fit, bands);
 }
 

@@ -117,24 +117,33 @@ size_t imki_lines_find(size_t n, const double *cumulative, imki_line *lines)
     return count;
 }
 
+/* The skirts of a Lorentzian peak `ratio` times its surroundings fall to a twentieth of these at
+ * width/2 sqrt(20 ratio) from it. */
 imki_line imki_line_widen(const imki_line *line, size_t n)
 {
     imki_line wide = *line;
-    const size_t width = line->last - line->first + 1;
-    wide.first = line->first > 2 * width ? line->first - 2 * width : 1;
-    wide.last = line->last + 2 * width < n ? line->last + 2 * width : n - 1;
+    const double width = (double)(line->last - line->first + 1);
+    const size_t reach = (size_t)(width * fmax(2, 0.5 * sqrt(20 * line->ratio)));
+    wide.first = line->first > reach ? line->first - reach : 1;
+    wide.last = line->last + reach < n ? line->last + reach : n - 1;
     return wide;
 }
 
-double imki_line_variance(const imki_line *wide, size_t n, double dt, const double *cumulative)
+/* The level under the line is the lower of two flanks as wide as three lines: the other may hold a
+ * neighbour. */
+double imki_line_variance(const imki_line *line, size_t n, double dt, const double *cumulative)
 {
-    const size_t width = wide->last - wide->first + 1;
-    const size_t below = wide->first > width ? wide->first - width : 1;
-    const size_t above = wide->last + 1 + width < n ? wide->last + 1 + width : n;
-    const double level = 0.5 * (mean_power(cumulative, below, wide->first) +
-                                mean_power(cumulative, wide->last + 1, above));
-    const double excess = mean_power(cumulative, wide->first, wide->last + 1) - level;
-    return excess > 0 ? excess * (double)width / ((double)n * dt) : 0;
+    const imki_line wide = imki_line_widen(line, n);
+    const size_t width = line->last - line->first + 1, flank = 3 * width > 32 ? 3 * width : 32;
+    const size_t below = wide.first > flank ? wide.first - flank : 1;
+    const size_t above = wide.last + 1 + flank < n ? wide.last + 1 + flank : n;
+    double level = HUGE_VAL;
+    if (below < wide.first)
+        level = mean_power(cumulative, below, wide.first);
+    if (wide.last + 1 < above)
+        level = fmin(level, mean_power(cumulative, wide.last + 1, above));
+    const double excess = mean_power(cumulative, wide.first, wide.last + 1) - level;
+    return excess > 0 ? excess * (double)(wide.last - wide.first + 1) / ((double)n * dt) : 0;
 }
 
 /* Projections of the record on cos and sin of a frequency, by a rotating phasor that is set anew

@@ -21,9 +21,11 @@ static double local_likelihood(const local_spectrum *w, double frequency, double
                                double *variance)
 {
     double shape[WINDOW_BANDS], level = INFINITY, amount = 0;
-    const imk_resonance unit = {1.0, frequency, q};
+    imk_arma unit;
+    if (imk_resonance_arma((imk_resonance){1, frequency, q}, w->dt, &unit) != IMK_OK)
+        return -HUGE_VAL;
     for (size_t b = 0; b < w->count; b++) {
-        shape[b] = imk_resonance_sampled_spectrum(unit, w->dt, w->frequency[b]);
+        shape[b] = imk_arma_spectrum(&unit, w->frequency[b]);
         level = fmin(level, w->power[b]);
     }
     for (int iteration = 0; iteration < 12; iteration++) {
@@ -148,9 +150,7 @@ bool imki_shape_resonance(imk_resonance *resonance, double line_variance, size_t
 static double likelihood_with(imki_fit *fit, const imki_bands *bands, size_t slot, double frequency,
                               double q)
 {
-    const imk_resonance unit = {1, frequency, q};
-    for (size_t b = 0; b < bands->count; b++)
-        fit->shape[slot][b] = imk_resonance_sampled_spectrum(unit, bands->dt, bands->frequency[b]);
+    imki_resonance_shape(frequency, q, bands, fit->shape[slot]);
     return imki_fit_maximise(fit, bands);
 }
 

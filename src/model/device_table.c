@@ -24,13 +24,14 @@ static const double aviation_accel_matrix[9] = {100, -120, 80, -60, -120, 100, -
 static const double aviation_gyro_matrix[9] = {8, -120, 100, 0, -6, -60, 0, 0, -7};
 
 /* Presets: a full set of terms for which the claim of the class holds; typical figures within the
- * published range of each class, rounded. */
+ * range of each class in [ELSHEIMY2020], table 1, and [GROVES2013], chapter 4, rounded. */
 const imki_device_entry imki_device_table[] = {
-    {.device = {"strategic", "strategic",
-                "[ELSHEIMY2020] Table 1, [GROVES2013] chapter 4, docs/theory",
-                "1 nmi in 24 h needs about 0.00145 deg/h: the gyro bias is well below the class "
-                "limit of 0.005 deg/h.",
-                true},
+    {.device =
+         {"strategic", "strategic",
+          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
+          "1 nmi in 24 h needs about 0.00145 deg/h: the gyro bias is well below the class "
+          "limit of 0.005 deg/h.",
+          true},
      .method = "class of instruments",
      .gyro = {.present = true,
               .white = 0.0001,
@@ -48,9 +49,10 @@ const imki_device_entry imki_device_table[] = {
                .range = 10,
                .scale_factor = 2,
                .misalignment = 0.002}},
-    {.device = {"navigation", "navigation",
-                "[ELSHEIMY2020] Table 1, [GROVES2013] chapter 4, docs/theory",
-                "1 nmi/h with biases within 0.01 deg/h and 50 ug.", true},
+    {.device =
+         {"navigation", "navigation",
+          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
+          "1 nmi/h with biases within 0.01 deg/h and 50 ug.", true},
      .method = "class of instruments",
      .gyro = {.present = true,
               .white = 0.002,
@@ -68,9 +70,10 @@ const imki_device_entry imki_device_table[] = {
                .range = 20,
                .scale_factor = 50,
                .misalignment = 0.01}},
-    {.device = {"tactical", "tactical",
-                "[ELSHEIMY2020] Table 1, [GROVES2013] chapter 4, docs/theory",
-                "More than 10 nmi/h with biases within 1 deg/h and 1 mg.", true},
+    {.device =
+         {"tactical", "tactical",
+          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
+          "More than 10 nmi/h with biases within 1 deg/h and 1 mg.", true},
      .method = "class of instruments",
      .gyro = {.present = true,
               .white = 0.08,
@@ -89,8 +92,10 @@ const imki_device_entry imki_device_table[] = {
                .range = 50,
                .scale_factor = 300,
                .misalignment = 0.2}},
-    {.device = {"AHRS", "AHRS", "[ELSHEIMY2020] Table 1, [GROVES2013] chapter 4, docs/theory",
-                "No claim of position; biases within 10 deg/h and 1 mg.", true},
+    {.device =
+         {"AHRS", "AHRS",
+          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
+          "No claim of position; biases within 10 deg/h and 1 mg.", true},
      .method = "class of instruments",
      .gyro = {.present = true,
               .white = 0.3,
@@ -109,8 +114,10 @@ const imki_device_entry imki_device_table[] = {
                .range = 10,
                .scale_factor = 1000,
                .misalignment = 1}},
-    {.device = {"control", "control", "[ELSHEIMY2020] Table 1, [GROVES2013] chapter 4, docs/theory",
-                "No claim of position; biases within 1000 deg/h and 10 mg.", true},
+    {.device =
+         {"control", "control",
+          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
+          "No claim of position; biases within 1000 deg/h and 10 mg.", true},
      .method = "class of instruments",
      .gyro = {.present = true,
               .white = 1.5,

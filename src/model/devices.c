@@ -7,16 +7,16 @@
 #include "device_table_internal.h"
 #include "model_schema_internal.h"
 
+#include "imukit/units.h"
+
 #include <string.h>
 
-static const double degree = 3.14159265358979323846 / 180; /* [rad] */
-static const double hour = 3600;                           /* [s] */
-static const double root_hour = 60;                        /* [sqrt(s)] */
-static const double standard_gravity = 9.80665;            /* [m/s^2], CGPM 1901 */
-
-/* SI values of the units of the table, for one kind of sensor. */
+/* SI values of the units of the table and of model files, for one kind of sensor. The scales are
+ * those of the units' own table, so that 0.8 mg here is the double that "0.8 mg" reads as. */
 typedef struct table_units {
-    double white, bias, random_walk, range;
+    double white, instability, random_walk, range;
+    double bias;         /* of fixed and repeatability as model files write them */
+    double bias_divisor; /* from the table's unit to that one */
 } table_units;
 
 size_t imk_device_count(void)
@@ -79,37 +79,39 @@ static void set_all(imk_axes *axes, double value)
 
 static void set_matrix(imk_triad *triad, const double *matrix)
 {
+    double ppm = imk_unit_of("ppm").scale, mrad = imk_unit_of("mrad").scale;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             if (i == j)
-                triad->scale_factor.fixed.value[i] = matrix[3 * i + j] * 1e-6;
+                triad->scale_factor.fixed.value[i] = matrix[3 * i + j] * ppm;
             else
-                triad->misalignment.value[i][j] = matrix[3 * i + j] * 1e-6;
+                triad->misalignment.value[i][j] = matrix[3 * i + j] / 1000 * mrad;
         }
 }
 
 static void set_triad(imk_triad *triad, const imki_device_figures *figures, table_units unit)
 {
     triad->present = figures->present;
+    double mrad = imk_unit_of("mrad").scale;
     double to_b = figures->is_floor ? 1 / IMKI_ALLAN_FLOOR : 1;
     set_all(&triad->noise.white, figures->white * unit.white);
-    set_all(&triad->noise.bias_instability, figures->instability * unit.bias * to_b);
+    set_all(&triad->noise.bias_instability, figures->instability * to_b * unit.instability);
     set_all(&triad->noise.random_walk, figures->random_walk * unit.random_walk);
-    set_all(&triad->bias.repeatability, figures->repeatability * unit.bias);
+    set_all(&triad->bias.repeatability, figures->repeatability / unit.bias_divisor * unit.bias);
     set_all(&triad->range, figures->range * unit.range);
-    set_all(&triad->scale_factor.repeatability, figures->scale_factor * 1e-6);
+    set_all(&triad->scale_factor.repeatability, figures->scale_factor * imk_unit_of("ppm").scale);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            triad->misalignment.value[i][j] = i == j ? 0 : figures->misalignment * 1e-3;
+            triad->misalignment.value[i][j] = i == j ? 0 : figures->misalignment * mrad;
     if (figures->matrix)
         set_matrix(triad, figures->matrix);
     for (int i = 0; figures->bias && i < 3; i++)
-        triad->bias.fixed.value[i] = figures->bias[i] * unit.bias;
+        triad->bias.fixed.value[i] = figures->bias[i] / unit.bias_divisor * unit.bias;
 }
 
 static void set_g_sensitivity(imk_triad *gyro, const imki_device_figures *figures)
 {
-    double unit = degree / hour / standard_gravity;
+    double unit = imk_unit_of("deg/h/g").scale;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             double own = i == j ? figures->g_sensitivity : 0;
@@ -120,10 +122,18 @@ static void set_g_sensitivity(imk_triad *gyro, const imki_device_figures *figure
 
 void imk_device_model(const imk_device *device, imk_model *model)
 {
-    const table_units gyro_units = {degree / root_hour, degree / hour, degree / hour / root_hour,
-                                    degree};
-    const table_units accel_units = {1 / root_hour, standard_gravity * 1e-6,
-                                     standard_gravity * 1e-6 / root_hour, standard_gravity};
+    const table_units gyro_units = {.white = imk_unit_of("deg/sqrt(h)").scale,
+                                    .instability = imk_unit_of("deg/h").scale,
+                                    .random_walk = imk_unit_of("deg/h/sqrt(h)").scale,
+                                    .range = imk_unit_of("deg/s").scale,
+                                    .bias = imk_unit_of("deg/h").scale,
+                                    .bias_divisor = 1};
+    const table_units accel_units = {.white = imk_unit_of("m/s/sqrt(h)").scale,
+                                     .instability = imk_unit_of("ug").scale,
+                                     .random_walk = imk_unit_of("ug/sqrt(h)").scale,
+                                     .range = imk_unit_of("g").scale,
+                                     .bias = imk_unit_of("mg").scale,
+                                     .bias_divisor = 1000};
     const imki_device_entry *entry = (const imki_device_entry *)(const void *)device;
     *model = imk_model_default();
     copy_text(model->name, sizeof model->name, device->name);

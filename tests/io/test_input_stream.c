@@ -155,8 +155,9 @@ static void zstd_frames(void **state)
     check_file(path_of("a.zst"), TEXT_SIZE);
 }
 
-/* Every cut and every kind of damage is seen, whatever was decoded before. */
-static void check_damaged(const char *path, size_t size, const char *found)
+/* Every cut and every kind of damage is seen, whatever was decoded before.
+ * @return how many bytes were delivered before */
+static size_t check_damaged(const char *path, size_t size, const char *found)
 {
     save(path, packed, size);
     imki_input *input;
@@ -171,6 +172,7 @@ static void check_damaged(const char *path, size_t size, const char *found)
     char byte;
     CHECK_STATUS(imki_input_read(input, &byte, 1, &got, NULL), IMK_ERROR_COMPRESSED); /* for good */
     imki_input_close(input);
+    return total;
 }
 
 static void damaged_gzip(void **state)
@@ -189,10 +191,10 @@ static void damaged_gzip(void **state)
     packed[size] = 0x1F; /* half a magic number */
     check_damaged(path, size + 1, "not gzip");
     packed[size - 6] ^= 1;
-    check_damaged(path, size, "data check");
+    assert_int_equal(check_damaged(path, size, "data check"), TEXT_SIZE); /* found at the end */
     packed[size - 6] ^= 1;
     packed[size - 2] ^= 1;
-    check_damaged(path, size, "length check");
+    assert_int_equal(check_damaged(path, size, "length check"), TEXT_SIZE);
 }
 
 static void damaged_zstd(void **state)

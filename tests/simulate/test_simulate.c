@@ -7,6 +7,7 @@
 
 #include "imukit/distributions.h"
 #include "imukit/earth.h"
+#include "imukit/noise.h"
 #include "imukit/simulate.h"
 #include "imukit/thread_pool.h"
 
