@@ -92,9 +92,10 @@ static bool measure(const char *name, const text *csv)
         free(ours[j]);
         free(theirs[j]);
     }
+    const char *isa = getenv("IMUKIT_ISA");
     const double megabytes = (double)csv->size * 1e-6;
-    printf("%s,%.1f,%.1f,%.2f,MB/s,,1\n", name, megabytes / best_ours, megabytes / best_theirs,
-           best_theirs / best_ours);
+    printf("%s,%.1f,%.1f,%.2f,MB/s,%s,1\n", name, megabytes / best_ours, megabytes / best_theirs,
+           best_theirs / best_ours, isa ? isa : "best");
     if (!equal)
         fprintf(stderr, "%s: the values differ from those of strtod()\n", name);
     return equal;

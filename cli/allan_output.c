@@ -8,15 +8,15 @@
 #include "text_table.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Unit of the deviation as programs read it: phase is per second. */
 static imk_unit plain_unit(const allan_result *result, const imk_log_column *column)
 {
     imk_unit unit = channel_plain_unit(column);
-    size_t length = strlen(unit.text);
-    if (result->options->type == 1 && length + 3 < sizeof unit.text)
-        strcpy(unit.text + length, "/s");
+    if (result->options->type == 1) {
+        imk_unit phase = unit;
+        snprintf(unit.text, sizeof unit.text, "%.40s/s", phase.text);
+    }
     return unit;
 }
 

@@ -26,24 +26,24 @@ void command_line_keep(int argument_count, char **arguments)
     kept_arguments = arguments;
 }
 
+static void append(char *line, size_t size, const char *text)
+{
+    size_t used = strlen(line);
+    snprintf(line + used, size - used, "%s", text);
+}
+
 /* A word in single quotes when the shell would not take it as it is. */
 static void append_word(char *line, size_t size, const char *word)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                                 "_-./,:=+@%^";
-    size_t used = strlen(line);
-    if (*word && word[strspn(word, plain)] == '\0') {
-        snprintf(line + used, size - used, " %s", word);
-        return;
-    }
-    if (used + 2 < size)
-        strcat(line, " '");
+    bool quoted = !*word || word[strspn(word, plain)];
+    append(line, size, quoted ? " '" : " ");
     for (; *word; word++) {
-        used = strlen(line);
-        snprintf(line + used, size - used, *word == '\'' ? "'\\''" : "%c", *word);
+        const char letter[] = {*word, '\0'};
+        append(line, size, *word == '\'' ? "'\\''" : letter);
     }
-    used = strlen(line);
-    snprintf(line + used, size - used, "'");
+    append(line, size, quoted ? "'" : "");
 }
 
 const char *command_line(void)
@@ -109,6 +109,22 @@ int command_error(const imk_error *error, const char *source)
     char text[900];
     imk_error_text(error, source, text, sizeof text);
     return command_failed("%s", text);
+}
+
+/* The remedy of the log reader is "add --option value … (why)": the options are what stands
+ * between.
+ * "--columns with 7 names" asks for what only the user knows. */
+int command_log_error(const imk_error *error, const char *path)
+{
+    int code = command_error(error, path);
+    const char *options = error->expected;
+    if (strncmp(options, "add --", 6) != 0 || strstr(options, " with "))
+        return code;
+    options += 4;
+    const char *reason = strstr(options, " (");
+    fprintf(stderr, "Next: %s %.*s\n", command_line(),
+            (int)(reason ? reason - options : (long)strlen(options)), options);
+    return code;
 }
 
 int command_model(const char *name, imk_model *model, imk_document **document)

@@ -31,6 +31,9 @@ int command_misused(const char *format, ...) __attribute__((format(printf, 1, 2)
 int command_error(const imk_error *error, const char *source);
 /* Open a model file or a catalogue entry. @return -1 or the exit code, the message printed */
 int command_model(const char *name, imk_model *model, imk_document **document);
+/* The same for a log that cannot be read as it is; when an option would help, the whole command to
+ * run next is shown. */
+int command_log_error(const imk_error *error, const char *path);
 /* Refuse a --plot that cannot be drawn before the work is done. @return -1 or the exit code */
 int command_check_plot(const char *plot);
 

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-const option log_input_options[] = {
+const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", NULL,
      "sample rate, needed when the log has no time column", offsetof(log_input, rate)},
     {"columns", 0, OPTION_TEXT, "NAMES", NULL, NULL,
@@ -33,8 +33,6 @@ const option log_input_options[] = {
      "stretch",
      offsetof(log_input, gaps)},
 };
-const size_t log_input_option_count = sizeof log_input_options / sizeof log_input_options[0];
-const size_t log_format_option_count = sizeof log_input_options / sizeof log_input_options[0] - 1;
 
 imk_log_settings log_input_settings(const log_input *input)
 {
@@ -80,7 +78,7 @@ int log_input_load(const log_input *input, const char *path, log_channels *chann
     imk_status status = imk_log_load(path, &settings, progress_update, &p, &channels->log, &error);
     progress_end(&p);
     if (status != IMK_OK)
-        return command_error(&error, path);
+        return command_log_error(&error, path);
     choose_channels(channels);
     int code = -1;
     if (channels->log.rows == 0)

@@ -17,9 +17,9 @@ typedef struct log_input {
     int gaps; /* gap_policy */
 } log_input;
 
-/* Options on how to read a file, and with --gaps at the end for verbs that analyse it. */
-extern const option log_input_options[];
-extern const size_t log_format_option_count, log_input_option_count;
+/* How to read a file, and last what analysis does about gaps, which conversion leaves out. */
+enum { LOG_INPUT_OPTIONS = 8, LOG_FORMAT_OPTIONS = LOG_INPUT_OPTIONS - 1 };
+extern const option log_input_options[LOG_INPUT_OPTIONS];
 
 imk_log_settings log_input_settings(const log_input *input);
 

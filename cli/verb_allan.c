@@ -55,7 +55,8 @@ const verb allan_verb = {
         "their number and the first one, unless --gaps says what to do.",
     .groups = {{"Options", sizeof allan_option_table / sizeof allan_option_table[0],
                 allan_option_table, 0},
-               {"Reading the log", 8, log_input_options, offsetof(allan_options, log)}},
+               {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
+                offsetof(allan_options, log)}},
     .run = run};
 
 /* Averaging factors of --tau; NULL after a message, with the exit code. */

@@ -56,7 +56,8 @@ const verb convert_verb = {
         "become rates. Values keep their units unless an option changes them.",
     .groups = {{"Options", sizeof convert_option_table / sizeof convert_option_table[0],
                 convert_option_table, 0},
-               {"Reading the log", 7, log_input_options, offsetof(convert_options, log)}},
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
+                offsetof(convert_options, log)}},
     .run = run};
 
 static bool is_model(const char *path)
@@ -248,7 +249,7 @@ static int convert_log(const convert_options *o, const char *in, const char *out
     imk_log_settings settings = log_input_settings(&o->log);
     conversion c;
     if (imk_log_open(in, &settings, &reader, &error) != IMK_OK)
-        return command_error(&error, in);
+        return command_log_error(&error, in);
     int code = select_columns(o, reader, &c);
     if (code < 0)
         code = set_units(o, &c);

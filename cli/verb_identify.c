@@ -61,7 +61,8 @@ const verb identify_verb = {
         "rotation and gravity, which need a known attitude to be told apart.",
     .groups = {{"Options", sizeof identify_option_table / sizeof identify_option_table[0],
                 identify_option_table, 0},
-               {"Reading the log", 8, log_input_options, offsetof(identify_options, log)}},
+               {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
+                offsetof(identify_options, log)}},
     .run = run};
 
 static void print_text(const identification *i)

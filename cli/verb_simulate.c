@@ -112,16 +112,39 @@ static void name_axis(imk_log_column *column, const char *sensor, int axis)
     column->axis = axis;
 }
 
+/* The body axis a sensor points along, or -1. */
+static int body_axis(const double direction[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (direction[k] >= 1)
+            return k;
+    return -1;
+}
+
+/* Up to three sensors along body axes are called by them; others are numbered. */
+static bool along_body_axes(const imk_triad *triad)
+{
+    bool taken[3] = {false};
+    for (int axis = 0; axis < triad->axis_count; axis++) {
+        int k = body_axis(triad->direction[axis]);
+        if (k < 0 || taken[k])
+            return false;
+        taken[k] = true;
+    }
+    return true;
+}
+
 static size_t describe_triad(const imk_triad *triad, const char *sensor, imk_quantity quantity,
                              imk_unit unit, imk_log_column *columns)
 {
     if (!triad->present)
         return 0;
+    bool named = along_body_axes(triad);
     for (int axis = 0; axis < triad->axis_count; axis++) {
         columns[axis] = (imk_log_column){.quantity = quantity, .unit = unit};
         if (triad->sensitivity.value[axis] > 0)
             columns[axis].unit = imk_unit_of("count");
-        name_axis(&columns[axis], sensor, axis);
+        name_axis(&columns[axis], sensor, named ? body_axis(triad->direction[axis]) : axis);
     }
     return (size_t)triad->axis_count;
 }

@@ -6,7 +6,8 @@ cd "$(dirname "$0")/.."
 cmake --preset sanitize >/dev/null
 cmake --build --preset sanitize -j "$(nproc)" >/dev/null
 
-export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
+# Not detect_stack_use_after_return: gcc 12 misaligns 64-byte vectors on the stack it makes for that.
+export ASAN_OPTIONS=strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 # Tests that draw hundreds of millions of numbers honour this; the sanitizers need no more.
 export IMUKIT_TEST_DRAWS=${IMUKIT_TEST_DRAWS:-1000000}

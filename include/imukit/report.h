@@ -21,7 +21,8 @@ typedef enum imk_curve_style {
     IMK_CURVE_BAND /**< filled between lower and upper */
 } imk_curve_style;
 
-/** One curve of a panel. Arrays are the caller's. */
+/** One curve of a panel. Arrays are the caller's. Values that are not finite (or not positive on a
+ *  logarithmic axis) are left out. */
 typedef struct imk_curve {
     const char *label; /**< "" leaves it out of the key */
     imk_curve_style style;
@@ -31,6 +32,9 @@ typedef struct imk_curve {
     const double *lower, *upper; /**< error bars or band; NULL: none */
 } imk_curve;
 
+/** One pair of axes. They span the points, error bars and bands with some air, and the lines only
+ *  where there is nothing else: an asymptote may leave the frame. Texts are drawn as they are: no
+ *  markup. */
 typedef struct imk_panel {
     const char *title, *x_label, *y_label;
     bool x_logarithmic, y_logarithmic;
@@ -38,25 +42,31 @@ typedef struct imk_panel {
     const imk_curve *curves;
 } imk_panel;
 
-/** Panels on a grid. */
+/** Panels on a grid, row by row. The title is drawn over two or more panels. */
 typedef struct imk_figure {
     const char *title;
     size_t panel_count, columns;
     const imk_panel *panels;
 } imk_figure;
 
-/** True when gnuplot can be run. */
+/** True when gnuplot is on PATH. */
 IMK_API bool imk_plot_available(void);
 
-/** Draw a figure to FILE.svg or FILE.png, or to the terminal with "term". Without gnuplot FILE.dat
- *  and FILE.gp are written instead and IMK_ERROR_UNSUPPORTED names the package to install. */
+/** Draw a figure to FILE.svg or FILE.png, or to standard output with "term" (in letters, as large
+ *  as the terminal; in colours on a terminal unless NO_COLOR is set). No shell is involved. Without
+ *  gnuplot FILE.dat and FILE.gp are written instead and IMK_ERROR_UNSUPPORTED names the package to
+ *  install.
+ *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_FORMAT
+ *          (another ending), IMK_ERROR_UNSUPPORTED, IMK_ERROR_OPEN, IMK_ERROR_WRITE */
 IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_error *error);
 
 /** The figure as SVG text obtained from malloc(), for a page. */
 IMK_API imk_status imk_figure_svg(const imk_figure *figure, char **svg, size_t *size,
                                   imk_error *error);
 
-/** A self-contained HTML page being built. */
+/** A self-contained HTML page being built: styles and drawings are inside, nothing is fetched,
+ * every text is escaped. Functions accept the NULL of a failed imk_page_create(), which
+ * imk_page_write() then reports. */
 typedef struct imk_page imk_page;
 
 IMK_API imk_page *imk_page_create(const char *title, const char *subtitle);
@@ -67,6 +77,7 @@ IMK_API void imk_page_text(imk_page *page, const char *text);
 IMK_API void imk_page_verdict(imk_page *page, int level, const char *text);
 /** A table of rows x columns texts, the first row the header. */
 IMK_API void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *const *cells);
+/** A figure, drawn into the page; without gnuplot a note that says what to install. */
 IMK_API void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption);
 /** Preformatted text, such as a model file. */
 IMK_API void imk_page_code(imk_page *page, const char *text);

@@ -34,28 +34,26 @@ double imki_gauss_markov_set(imki_fit *fit, const imki_bands *bands, size_t term
     return imki_fit_maximise(fit, bands);
 }
 
+typedef struct time_search {
+    imki_fit *fit;
+    const imki_bands *bands;
+    size_t term;
+} time_search;
+
+static double height(void *context, double logarithm)
+{
+    const time_search *s = context;
+    return imki_gauss_markov_set(s->fit, s->bands, s->term, exp(logarithm));
+}
+
 double imki_gauss_markov_refine(imki_fit *fit, const imki_bands *bands, size_t term, double start,
                                 double reach)
 {
-    const double golden = 0.6180339887498949;
-    double low = log(start / reach), high = log(start * reach);
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = imki_gauss_markov_set(fit, bands, term, exp(a));
-    double at_b = imki_gauss_markov_set(fit, bands, term, exp(b));
-    for (int i = 0; i < SECTIONS; i++) {
-        if (at_a > at_b) {
-            high = b, b = a, at_b = at_a;
-            a = high - golden * (high - low);
-            at_a = imki_gauss_markov_set(fit, bands, term, exp(a));
-        } else {
-            low = a, a = b, at_a = at_b;
-            b = low + golden * (high - low);
-            at_b = imki_gauss_markov_set(fit, bands, term, exp(b));
-        }
-    }
-    const double best = exp(0.5 * (low + high));
-    imki_gauss_markov_set(fit, bands, term, best);
-    return best;
+    time_search search = {fit, bands, term};
+    const double best =
+        imki_peak(height, &search, log(start / reach), log(start * reach), SECTIONS);
+    height(&search, best);
+    return exp(best);
 }
 
 size_t imki_gauss_markov_find(imki_fit *fit, imki_fit *trial, const imki_bands *bands,

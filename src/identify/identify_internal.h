@@ -49,6 +49,10 @@ typedef struct imki_fit {
     double log_likelihood;
 } imki_fit;
 
+/* golden_section.c: place of the highest value between low and high, which should hold one peak. */
+typedef double (*imki_height)(void *context, double place);
+double imki_peak(imki_height height, void *context, double low, double high, int sections);
+
 /* cosine_spectrum.c */
 void imki_bands_build(imki_bands *bands, size_t n, double dt, const double *coefficients,
                       const double *cumulative, size_t line_count, const imki_line *lines,
@@ -106,5 +110,31 @@ double imki_gauss_markov_refine(imki_fit *fit, const imki_bands *bands, size_t t
 double imki_record_resolution(size_t n, const double *samples, double *scratch,
                               size_t scratch_count);
 unsigned imki_record_verdict(size_t n, const double *samples, double resolution, double deviation);
+
+/* Quality above which a resonance counts as a narrow line. */
+#define IMKI_NARROW 50.0
+
+/* Everything that one channel needs, laid out in the caller's workspace. */
+typedef struct imki_work {
+    const imk_identify_settings *settings;
+    size_t n;
+    double *samples;      /* n: mean removed, sinusoids subtracted */
+    double *coefficients; /* n: cosine transform */
+    double *cumulative;   /* n + 1: powers summed, later running sums */
+    void *transform;
+    size_t transform_size;
+    imki_bands *bands;
+    imki_fit *fit, *trial, *chosen;
+    size_t line_count;
+    imki_line lines[IMKI_LINES_MAX]; /* left out of the fit */
+    double correlation_times[IMKI_GAUSS_MARKOV_MAX];
+} imki_work;
+
+/* The steps of imk_identify_channel(), in order, one file each. */
+void imki_identify_transform(imki_work *w);
+void imki_identify_lines(imki_work *w, imk_identification *result);
+void imki_identify_terms(imki_work *w, imk_identification *result);
+void imki_identify_intervals(imki_work *w, imk_identification *result);
+void imki_identify_judge(imki_work *w, const double *record, imk_identification *result);
 
 #endif

@@ -18,31 +18,26 @@ static double likelihood_with(imki_fit *fit, const imki_bands *bands, imk_low_pa
     return imki_fit_maximise(fit, bands);
 }
 
-static double search(imki_fit *fit, const imki_bands *bands, imk_low_pass *filter, double *field,
-                     double reach)
+typedef struct filter_search {
+    imki_fit *fit;
+    const imki_bands *bands;
+    imk_low_pass *filter;
+    double *field; /* of the filter: the one searched, by its logarithm */
+} filter_search;
+
+static double height(void *context, double logarithm)
 {
-    const double golden = 0.6180339887498949;
-    double low = log(*field) - reach, high = log(*field) + reach, best = -HUGE_VAL;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    *field = exp(a);
-    double at_a = likelihood_with(fit, bands, *filter);
-    *field = exp(b);
-    double at_b = likelihood_with(fit, bands, *filter);
-    for (int i = 0; i < SECTIONS; i++) {
-        const bool left = at_a > at_b;
-        if (left) {
-            high = b, b = a, at_b = at_a;
-            a = high - golden * (high - low);
-        } else {
-            low = a, a = b, at_a = at_b;
-            b = low + golden * (high - low);
-        }
-        *field = exp(left ? a : b);
-        *(left ? &at_a : &at_b) = likelihood_with(fit, bands, *filter);
-    }
-    *field = exp(0.5 * (low + high));
-    best = likelihood_with(fit, bands, *filter);
-    return best;
+    filter_search *s = context;
+    *s->field = exp(logarithm);
+    return likelihood_with(s->fit, s->bands, *s->filter);
+}
+
+static double search(filter_search *s, double *field, double low, double high, double reach)
+{
+    s->field = field;
+    low = fmax(log(*field) - reach, log(low));
+    high = fmin(log(*field) + reach, log(high));
+    return height(s, imki_peak(height, s, low, high, SECTIONS));
 }
 
 /* First order (damping 0) or second order from a start; the bandwidth by a grid from a hundredth of
@@ -59,14 +54,13 @@ static double fit_order(imki_fit *fit, const imki_bands *bands, double damping,
         best = l > best ? l : best;
     }
     *filter = (imk_low_pass){bandwidth, damping};
-    for (int turn = 0; turn < TURNS; turn++) {
-        best = search(fit, bands, filter, &filter->bandwidth, turn == 0 ? step : 0.3 * step);
-        if (damping > 0)
-            best = search(fit, bands, filter, &filter->damping, turn == 0 ? 1.0 : 0.3);
-        else
-            break;
+    filter_search s = {fit, bands, filter, NULL};
+    for (int turn = 0; turn < (damping > 0 ? TURNS : 1); turn++) {
+        const double reach = turn == 0 ? 1 : 0.3;
+        best = search(&s, &filter->bandwidth, 1e-3 * rate, 10 * rate, reach * step);
+        if (damping > 0) /* the limits of imk_low_pass */
+            best = search(&s, &filter->damping, 0.05, 50, reach);
     }
-    filter->damping = damping > 0 ? fmin(fmax(filter->damping, 0.05), 50) : 0;
     return best;
 }
 

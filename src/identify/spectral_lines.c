@@ -167,34 +167,28 @@ static void project(size_t n, const double *samples, double cycles, double *c, d
     }
 }
 
-static double projected_power(size_t n, const double *samples, double cycles)
+typedef struct tone_search {
+    size_t n;
+    const double *samples;
+} tone_search;
+
+static double projected_power(void *context, double cycles)
 {
-    double c, s;
-    project(n, samples, cycles, &c, &s);
-    return c * c + s * s;
+    const tone_search *s = context;
+    double c, d;
+    project(s->n, s->samples, cycles, &c, &d);
+    return c * c + d * d;
 }
 
-/* Golden-section search for the periodogram's peak within half a DFT bin, then least squares (the
- * two projections are orthogonal to 1/n at these frequencies). */
+/* The periodogram's peak near the frequency, then least squares (the two projections are orthogonal
+ * to 1/n at these frequencies). */
 bool imki_sinusoid_remove(size_t n, double dt, double frequency, double variance, double *samples,
                           imk_sinusoid *sinusoid)
 {
-    const double golden = 0.6180339887498949, half_bin = 0.75 / (double)n;
-    double low = frequency * dt - half_bin, high = frequency * dt + half_bin;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double power_a = projected_power(n, samples, a), power_b = projected_power(n, samples, b);
-    for (int i = 0; i < 24; i++) {
-        if (power_a > power_b) {
-            high = b, b = a, power_b = power_a;
-            a = high - golden * (high - low);
-            power_a = projected_power(n, samples, a);
-        } else {
-            low = a, a = b, power_a = power_b;
-            b = low + golden * (high - low);
-            power_b = projected_power(n, samples, b);
-        }
-    }
-    const double cycles = 0.5 * (low + high), turn = 6.283185307179586;
+    tone_search search = {n, samples};
+    const double start = frequency * dt, reach = 0.75 / (double)n;
+    const double cycles = imki_peak(projected_power, &search, start - reach, start + reach, 24);
+    const double turn = 6.283185307179586;
     double c, s;
     project(n, samples, cycles, &c, &s);
     c *= 2 / (double)n;

@@ -73,30 +73,26 @@ static void cut_window(local_spectrum *w, const imk_resonance *r, size_t n, doub
     }
 }
 
-/* Golden-section search of one coordinate; `frequency` tells which. */
-static double search(const local_spectrum *w, imk_resonance r, bool frequency, double low,
-                     double high)
+/* One coordinate of the search, by its logarithm. */
+typedef struct local_search {
+    const local_spectrum *window;
+    imk_resonance *resonance;
+    double *field; /* of the resonance */
+} local_search;
+
+static double local_height(void *context, double logarithm)
 {
-    const double golden = 0.6180339887498949;
-    double a = high - golden * (high - low), b = low + golden * (high - low), variance;
-    double at_a =
-        local_likelihood(w, frequency ? a : r.frequency, frequency ? r.q : exp(a), &variance);
-    double at_b =
-        local_likelihood(w, frequency ? b : r.frequency, frequency ? r.q : exp(b), &variance);
-    for (int i = 0; i < SECTIONS; i++) {
-        if (at_a > at_b) {
-            high = b, b = a, at_b = at_a;
-            a = high - golden * (high - low);
-            at_a = local_likelihood(w, frequency ? a : r.frequency, frequency ? r.q : exp(a),
-                                    &variance);
-        } else {
-            low = a, a = b, at_a = at_b;
-            b = low + golden * (high - low);
-            at_b = local_likelihood(w, frequency ? b : r.frequency, frequency ? r.q : exp(b),
-                                    &variance);
-        }
-    }
-    return 0.5 * (low + high);
+    local_search *s = context;
+    double variance;
+    *s->field = exp(logarithm);
+    return local_likelihood(s->window, s->resonance->frequency, s->resonance->q, &variance);
+}
+
+static void search_locally(local_search *s, double *field, double reach)
+{
+    const double low = log(*field) - reach, high = log(*field) + reach;
+    s->field = field;
+    *field = exp(imki_peak(local_height, s, low, high, SECTIONS));
 }
 
 /* A resonance has skirts: between one and four half-power widths from its peak its spectrum holds
@@ -130,14 +126,12 @@ bool imki_shape_resonance(imk_resonance *resonance, double line_variance, size_t
                           const double *cumulative)
 {
     local_spectrum window;
+    local_search search = {&window, resonance, NULL};
     for (int turn = 0; turn < TURNS; turn++) {
         if (turn % 2 == 0)
             cut_window(&window, resonance, n, dt, cumulative);
-        const double width = resonance->frequency / resonance->q;
-        resonance->frequency = search(&window, *resonance, true, resonance->frequency - width,
-                                      resonance->frequency + width);
-        resonance->q = exp(search(&window, *resonance, false, log(fmax(1, resonance->q / 3)),
-                                  log(resonance->q * 3)));
+        search_locally(&search, &resonance->frequency, 1 / resonance->q);
+        search_locally(&search, &resonance->q, 1.1); /* a factor of three */
     }
     double variance;
     local_likelihood(&window, resonance->frequency, resonance->q, &variance);
@@ -147,34 +141,36 @@ bool imki_shape_resonance(imk_resonance *resonance, double line_variance, size_t
     return same_power && has_skirts(&window, resonance);
 }
 
-static double likelihood_with(imki_fit *fit, const imki_bands *bands, size_t slot, double frequency,
-                              double q)
+typedef struct global_search {
+    imki_fit *fit;
+    const imki_bands *bands;
+    size_t slot;
+    imk_resonance *resonance;
+    double *field;
+} global_search;
+
+static double global_height(void *context, double logarithm)
 {
-    imki_resonance_shape(frequency, q, bands, fit->shape[slot]);
-    return imki_fit_maximise(fit, bands);
+    global_search *s = context;
+    *s->field = exp(logarithm);
+    imki_resonance_shape(s->resonance->frequency, s->resonance->q, s->bands,
+                         s->fit->shape[s->slot]);
+    return imki_fit_maximise(s->fit, s->bands);
 }
 
 void imki_resonance_refine(imki_fit *fit, const imki_bands *bands, size_t index,
                            imk_resonance *resonance)
 {
-    const double golden = 0.6180339887498949;
     const size_t slot = IMKI_FIRST_RESONANCE + index;
-    double best[2] = {log(resonance->frequency), log(resonance->q)};
+    global_search search = {fit, bands, slot, resonance, NULL};
     double reach[2] = {0.5 / resonance->q, 0.5};
     for (int turn = 0; turn < 4; turn++) {
-        const int field = turn % 2;
-        double low = best[field] - reach[field], high = best[field] + reach[field];
-        for (int i = 0; i < SECTIONS; i++) {
-            double at[2], place[2] = {high - golden * (high - low), low + golden * (high - low)};
-            for (int side = 0; side < 2; side++) {
-                best[field] = place[side];
-                at[side] = likelihood_with(fit, bands, slot, exp(best[0]), exp(best[1]));
-            }
-            *(at[0] > at[1] ? &high : &low) = place[at[0] > at[1] ? 1 : 0];
-        }
-        best[field] = 0.5 * (low + high);
-        reach[field] *= 0.3;
+        const int which = turn % 2;
+        search.field = which == 0 ? &resonance->frequency : &resonance->q;
+        const double start = log(*search.field);
+        global_height(&search, imki_peak(global_height, &search, start - reach[which],
+                                         start + reach[which], SECTIONS));
+        reach[which] *= 0.3;
     }
-    likelihood_with(fit, bands, slot, exp(best[0]), exp(best[1]));
-    *resonance = (imk_resonance){sqrt(fit->amount[slot]), exp(best[0]), exp(best[1])};
+    resonance->sigma = sqrt(fit->amount[slot]);
 }

@@ -20,6 +20,7 @@
 
 enum {
     POWERS = 23,    /* 10^22 is the last power of ten that is a double */
+    TILE_ROWS = 32, /* 64 columns of them are 16 kB: stack, and first-level cache */
     LABEL_MAX = 300 /* bytes of a text that are written; less than IMK_DECIMAL_SIZE */
 };
 
@@ -35,28 +36,23 @@ static inline int binary_exponent(double value)
     return (int)(bits >> 52 & 0x7FF) - 1023;
 }
 
-/* Largest k with 10^k 2^(exponent - 52) <= scale, or -1 when that is not in 0 … 22. */
-static int fitting_decimals(int exponent, double scale)
-{
-    double spacing = 1.0;
-    for (int i = 52; i > exponent; i--)
-        spacing *= 0.5;
-    for (int i = 52; i < exponent; i++)
-        spacing *= 2.0;
-    int k = -1;
-    while (k + 1 < POWERS && power[k + 1] * spacing <= scale)
-        k++;
-    return k + 1 < POWERS || power[k] * spacing * 10.0 > scale ? k : -1;
-}
-
 void imki_column_format_set(imki_column_format *column, double scale, double offset, int decimals)
 {
     column->scale = scale;
     column->offset = offset;
     column->as_is = scale == 1.0 && offset == 0.0;
     column->fixed = imki_fixed_decimal_of(decimals);
-    for (int i = 0; i < IMKI_EXPONENTS && !column->as_is; i++)
-        column->fitting_decimals[i] = (int8_t)fitting_decimals(i - IMKI_EXPONENTS / 2, scale);
+    double spacing =
+        0x1p-52; /* of the doubles at the exponent of entry i, which begins with 2^-64 */
+    for (int i = 0; i < IMKI_EXPONENTS / 2; i++)
+        spacing *= 0.5;
+    for (int i = 0, k = POWERS - 1; i < IMKI_EXPONENTS; i++, spacing *= 2.0) {
+        while (k >= 0 && power[k] * spacing > scale)
+            k--;
+        /* Still the first power: whether it is the largest is not known. */
+        const bool largest = k < POWERS - 1 || power[k] * spacing * 10.0 > scale;
+        column->fitting_decimals[i] = (int8_t)(largest ? k : -1);
+    }
 }
 
 static inline bool reads_back(const imki_column_format *column, double number, double value)
@@ -133,23 +129,41 @@ static bool reserve(imki_log_bytes *bytes, size_t needed)
     return true;
 }
 
-static char *format_fixed_row(const imki_row_format *format, const double *const *columns,
-                              size_t row, char *at)
+/* Some rows in the units of their columns. They are converted before any is written as text, since
+ * the branches of writing depend on the digits and cannot be predicted: each miss would wait for
+ * the divisions of the conversion. */
+typedef double tile[IMK_LOG_COLUMNS_MAX][TILE_ROWS];
+
+static void convert(const imki_row_format *format, const double *const *columns, size_t first,
+                    size_t count, tile numbers)
 {
     for (size_t i = 0; i < format->column_count; i++) {
         const imki_column_format *column = &format->column[i];
-        const double number = (columns[i][row] - column->offset) / column->scale;
-        at = imki_fixed_decimal_write(&column->fixed, number, at);
+        const double *values = columns[i] + first;
+        if (column->as_is || column->label)
+            memcpy(numbers[i], values, count * sizeof *values);
+        else if (format->precision == IMK_LOG_FIXED)
+            for (size_t row = 0; row < count; row++)
+                numbers[i][row] = (values[row] - column->offset) / column->scale;
+        else
+            for (size_t row = 0; row < count; row++)
+                numbers[i][row] = imki_log_in_unit(column, values[row]);
+    }
+}
+
+static char *format_fixed_row(const imki_row_format *format, tile numbers, size_t row, char *at)
+{
+    for (size_t i = 0; i < format->column_count; i++) {
+        at = imki_fixed_decimal_write(&format->column[i].fixed, numbers[i][row], at);
         *at++ = ',';
     }
     return at;
 }
 
-static char *format_shortest_row(const imki_row_format *format, const double *const *columns,
-                                 size_t row, char *at)
+static char *format_shortest_row(const imki_row_format *format, tile numbers, size_t row, char *at)
 {
     for (size_t i = 0; i < format->column_count; i++) {
-        at += imk_decimal_shortest(imki_log_in_unit(&format->column[i], columns[i][row]), at);
+        at += imk_decimal_shortest(numbers[i][row], at);
         *at++ = ',';
     }
     return at;
@@ -171,29 +185,26 @@ static char *put_label(const char *text, char *at)
 }
 
 /* Any row; the two above are for logs without texts, which are nearly all. */
-static char *format_labelled_row(const imki_row_format *format, const double *const *columns,
-                                 size_t row, char *at)
+static char *format_labelled_row(const imki_row_format *format, tile numbers, size_t row, char *at)
 {
     for (size_t i = 0; i < format->column_count; i++) {
         const imki_column_format *column = &format->column[i];
-        const double value = columns[i][row];
-        const char *label = column->label && value >= 0.0 && value < 0x1p53
-                                ? format->label(format->label_context, (size_t)value)
+        const double number = numbers[i][row];
+        const char *label = column->label && number >= 0.0 && number < 0x1p53
+                                ? format->label(format->label_context, (size_t)number)
                                 : NULL;
         if (label)
             at = put_label(label, at);
         else if (format->precision == IMK_LOG_FIXED)
-            at = imki_fixed_decimal_write(&column->fixed, (value - column->offset) / column->scale,
-                                          at);
+            at = imki_fixed_decimal_write(&column->fixed, number, at);
         else
-            at += imk_decimal_shortest(imki_log_in_unit(column, value), at);
+            at += imk_decimal_shortest(number, at);
         *at++ = ',';
     }
     return at;
 }
 
-typedef char *row_function(const imki_row_format *format, const double *const *columns, size_t row,
-                           char *at);
+typedef char *row_function(const imki_row_format *format, tile numbers, size_t row, char *at);
 
 static void format_text(const imki_row_format *format, const double *const *columns, size_t first,
                         size_t count, imki_log_bytes *bytes)
@@ -202,12 +213,17 @@ static void format_text(const imki_row_format *format, const double *const *colu
     row_function *format_row = format->label                        ? format_labelled_row
                                : format->precision == IMK_LOG_FIXED ? format_fixed_row
                                                                     : format_shortest_row;
-    for (size_t row = first; row < first + count; row++) {
-        if (!reserve(bytes, longest))
-            return;
-        char *at = format_row(format, columns, row, bytes->bytes + bytes->size);
-        at[-1] = '\n';
-        bytes->size = (size_t)(at - bytes->bytes);
+    tile numbers;
+    for (size_t done = 0; done < count; done += TILE_ROWS) {
+        const size_t rows = count - done < TILE_ROWS ? count - done : TILE_ROWS;
+        convert(format, columns, first + done, rows, numbers);
+        for (size_t row = 0; row < rows; row++) {
+            if (!reserve(bytes, longest))
+                return;
+            char *at = format_row(format, numbers, row, bytes->bytes + bytes->size);
+            at[-1] = '\n';
+            bytes->size = (size_t)(at - bytes->bytes);
+        }
     }
 }
 

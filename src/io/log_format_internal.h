@@ -13,8 +13,9 @@ typedef struct imki_column_format {
     bool as_is;               /* scale 1, offset 0 */
     bool label;               /* the value is the index of a text */
     imki_fixed_decimal fixed; /* with IMK_LOG_FIXED */
-    /* For the SI value's binary exponent: how many decimals a number in the unit needs to be about
-     * as finely spaced as the SI doubles. */
+    /* By the SI value's binary exponent: the largest k with 10^-k >= spacing of the doubles /
+     * scale, so that numbers of k decimals are spaced about as the SI doubles; -1 outside 0 … 22.
+     */
     int8_t fitting_decimals[IMKI_EXPONENTS];
 } imki_column_format;
 

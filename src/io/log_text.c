@@ -2,7 +2,6 @@
 /* Lines of a text of any length in a window of bounded size. */
 #include "io/log_text_internal.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -132,6 +132,20 @@ void imk_page_code(imk_page *page, const char *text)
     element(page, "<pre>", text, "</pre>\n");
 }
 
+/* Length of a <title> or <desc> element at this place, 0 when there is none: browsers would show
+ * gnuplot's name for a curve as a tooltip. */
+static size_t caption_length(const char *c)
+{
+    static const char *const ends[][2] = {{"<title>", "</title>"}, {"<desc>", "</desc>"}};
+    for (size_t i = 0; i < 2; i++) {
+        const char *end =
+            strncmp(c, ends[i][0], strlen(ends[i][0])) == 0 ? strstr(c, ends[i][1]) : NULL;
+        if (end)
+            return (size_t)(end - c) + strlen(ends[i][1]);
+    }
+    return 0;
+}
+
 /* The drawing without its XML prologue. Identifiers are made unique, since several drawings share
  * the page: every id gnuplot gives starts with "gp" or "gnuplot" after one of these openings. */
 static void put_svg(imk_page *page, const char *svg)
@@ -140,12 +154,14 @@ static void put_svg(imk_page *page, const char *svg)
     const char *start = strstr(svg, "<svg");
     page->figures++;
     for (const char *c = start ? start : ""; *c;) {
+        c += caption_length(c);
         size_t length = 0;
         for (size_t i = 0; i < sizeof openings / sizeof openings[0] && length == 0; i++)
             if (strncmp(c, openings[i], strlen(openings[i])) == 0)
                 length = strlen(openings[i]);
         if (length == 0) {
-            fputc(*c++, page->stream);
+            if (*c)
+                fputc(*c++, page->stream);
         } else {
             fprintf(page->stream, "%.*sf%d-", (int)length, c, page->figures);
             c += length;

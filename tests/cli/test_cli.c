@@ -289,6 +289,11 @@ static void test_simulate_units_and_decimals(void **state)
                          "--decimals 8"),
                      0);
     check_contains(out, ",-9.78032534\n", "gravity");
+    /* A single axis keeps its name, and a sensor with a sensitivity makes counts. */
+    put("z.yaml", "imukit: 1\ngyro:\n  direction: [0 0 1]\n  sensitivity: 4778 count/(rad/s)\n"
+                  "  zero_offset: 32768 count\n");
+    assert_int_equal(run("$I simulate z.yaml --rate 1Hz --duration 1s --no-earth"), 0);
+    assert_string_equal(out, "time [s],gyro_z [count]\n0,32768\n");
     sweep();
 }
 
@@ -513,7 +518,8 @@ static const struct bad_log {
     {"head -2 good.csv >b.csv", "b.csv",
      "b.csv: there is one row only; a static record of minutes to hours is due\n"},
     {"sed '1s/ .deg.*//' good.csv >b.csv", "b.csv", "add --gyro-unit deg/s"},
-    {"cut -d, -f2 good.csv >b.csv", "b.csv", "add --rate 100Hz (samples per second)\n"},
+    {"cut -d, -f2 good.csv >b.csv", "b.csv",
+     "add --rate 100Hz (samples per second)\nNext: imukit "},
     {"sed 1d good.csv >b.csv", "b.csv", "add --columns "},
     {"sed '1s/deg.s/g/' good.csv >b.csv", "b.csv", "expected an angular rate, such as deg/h"},
     {"sed '1s/deg.s/dge\\/s/' good.csv >b.csv", "b.csv", "dge"},
@@ -562,6 +568,21 @@ static void test_bad_logs(void **state)
             sweep();
         }
     }
+}
+
+/* The command the message shows is the one to run. */
+static void test_next_command(void **state)
+{
+    (void)state;
+    write_good();
+    assert_int_equal(run("cut -d, -f2 good.csv >'b 1.csv'"), 0);
+    check_message(
+        "$I allan 'b 1.csv' --tau=1s", 1,
+        "imukit allan: error: b 1.csv:1: time: the sample rate is not known: no column of "
+        "time; add --rate 100Hz (samples per second)\n"
+        "Next: imukit allan 'b 1.csv' --tau=1s --rate 100Hz\n");
+    assert_int_equal(run("$I allan 'b 1.csv' --tau=1s --rate 100Hz"), 0);
+    sweep();
 }
 
 /* The promise of the messages: the option they name works. */
@@ -785,6 +806,7 @@ int main(void)
         cmocka_unit_test(test_identify_names_the_likely_unit),
         cmocka_unit_test(test_identify_into),
         cmocka_unit_test(test_bad_logs),
+        cmocka_unit_test(test_next_command),
         cmocka_unit_test(test_gap_policies),
         cmocka_unit_test(test_bridging_is_linear),
         cmocka_unit_test(test_unwritable_outputs),

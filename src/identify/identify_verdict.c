@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* How far the identified model and the measured Allan deviation agree. */
+#include "identify_internal.h"
+
+#include <math.h>
+
+enum { FACTORS_MAX = 160 };
+
+double imk_identification_allan_variance(const imk_identification *result, double dt, size_t m,
+                                         int term)
+{
+    const imk_estimate *t = result->term;
+    const double part[IMK_NOISE_TERMS] = {
+        imk_quantization_sampled_allan_variance(t[IMK_NOISE_QUANTIZATION].value, dt, m),
+        result->filter.bandwidth > 0
+            ? imk_filtered_white_sampled_allan_variance(t[IMK_NOISE_WHITE].value, result->filter,
+                                                        dt, m)
+            : imk_white_sampled_allan_variance(t[IMK_NOISE_WHITE].value, dt, m),
+        imk_flicker_sampled_allan_variance(t[IMK_NOISE_BIAS_INSTABILITY].value, dt, m),
+        imk_random_walk_sampled_allan_variance(t[IMK_NOISE_RANDOM_WALK].value, dt, m),
+        imk_ramp_allan_variance(t[IMK_NOISE_RAMP].value, (double)m * dt)};
+    if (term >= 0 && term < IMK_NOISE_TERMS)
+        return part[term];
+    double sum = 0;
+    for (int i = 0; i < IMK_NOISE_TERMS; i++)
+        sum += part[i];
+    for (int i = 0; i < result->gauss_markov_count; i++) {
+        const imk_gauss_markov g = {result->gauss_markov[i].sigma.value,
+                                    result->gauss_markov[i].correlation_time.value};
+        sum += imk_gauss_markov_sampled_allan_variance(g, dt, m);
+    }
+    for (int i = 0; i < result->sinusoid_count; i++)
+        sum += imk_sinusoid_sampled_allan_variance(result->sinusoid[i], dt, m);
+    for (int i = 0; i < result->resonance_count; i++)
+        sum += imk_resonance_sampled_allan_variance(result->resonance[i], dt, m);
+    return sum;
+}
+
+/* The longest range of tau over which the measured deviation agrees with a model: within 5 %, or
+ * with the model inside its 99.9 % interval. Infinite `from` when there is none. */
+static void agreement(const imk_identification *result, double dt, size_t count,
+                      const imk_allan_point *points, double *from, double *to)
+{
+    size_t first = 0, length = 0, run = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double expected =
+            sqrt(imk_identification_allan_variance(result, dt, points[i].m, -1));
+        const bool close = fabs(points[i].deviation / expected - 1) < 0.05 ||
+                           (expected >= points[i].lower && expected <= points[i].upper);
+        run = close ? run + 1 : 0;
+        if (run > length) {
+            length = run;
+            first = i + 1 - run;
+        }
+    }
+    *from = length > 0 ? (double)points[first].m * dt : HUGE_VAL;
+    *to = length > 0 ? (double)points[first + length - 1].m * dt : 0;
+}
+
+static void compare_with_allan(imki_work *w, const double *record, imk_identification *result)
+{
+    const double dt = w->settings->dt;
+    size_t factors[FACTORS_MAX], count = imk_allan_factors(IMK_ALLAN_DECADE, w->n, NULL);
+    imk_allan_point points[FACTORS_MAX];
+    if (count > FACTORS_MAX)
+        return;
+    imk_allan_factors(IMK_ALLAN_DECADE, w->n, factors);
+    while (count > 1 && factors[count - 1] > w->n / 9)
+        count--;
+    imk_allan_settings settings = imk_allan_default();
+    settings.confidence = 0.999;
+    imk_allan_sums(w->n, record, w->cumulative);
+    imk_allan_points(&settings, w->n, w->cumulative, count, factors, points, NULL);
+
+    double least = points[0].deviation;
+    for (size_t i = 0; i < count; i++)
+        least = fmin(least, points[i].deviation);
+    result->minimum_floor = least / sqrt(imk_flicker_allan_variance(1, 1));
+    result->longest = (double)factors[count - 1] * dt;
+    agreement(result, dt, count, points, &result->valid_from, &result->valid_to);
+
+    imk_identification five = *result;
+    five.gauss_markov_count = five.sinusoid_count = five.resonance_count = 0;
+    five.filter = (imk_low_pass){0, 0};
+    double five_terms_to;
+    agreement(&five, dt, count, points, &result->five_terms_from, &five_terms_to);
+}
+
+void imki_identify_judge(imki_work *w, const double *record, imk_identification *result)
+{
+    compare_with_allan(w, record, result);
+    if (result->sinusoid_count > 0)
+        result->verdict |= IMK_VERDICT_LINES;
+    if (result->resonance_count > 0)
+        result->verdict |= IMK_VERDICT_RESONANCE;
+    if (result->filter.bandwidth > 0)
+        result->verdict |= IMK_VERDICT_FILTERED;
+    if (result->valid_from > 1.5 * w->settings->dt || result->valid_to < 0.99 * result->longest)
+        result->verdict |= IMK_VERDICT_MISFIT;
+    const imk_estimate *b = &result->term[IMK_NOISE_BIAS_INSTABILITY];
+    if (!b->present || b->upper > 3 * b->lower)
+        result->verdict |= IMK_VERDICT_SHORT;
+}
