@@ -45,7 +45,7 @@ typedef struct identification {
 /* identify_channels.c: all channels on the threads of the executor. @return -1 or the exit code */
 int identify_channels(identification *i, const imk_executor *executor);
 
-/* identify_verdict.c: sentences on the record; warnings also go to standard error. */
+/* verdict_sentences.c: sentences on the record; warnings also go to standard error. */
 void identify_judge(identification *i);
 bool identify_is_bad(const identification *i);
 

@@ -59,34 +59,44 @@ double imk_flicker_sampled_allan_variance(double instability, double dt, size_t 
     return VARIANCE * instability * instability * sum / (2.0 * m * m);
 }
 
-/* A held stage: the triangle of width h transforms to sin^2(pi f h dt)/(h sin^2(pi f dt)), and with
- * s = sin^2(pi f h dt) its coarse sequence to (1 - phi^2)/((1 - phi)^2 + 4 phi s). f dt h is exact,
- * h being a power of 4. */
+/* Spectrum of a stage of unit variance at dt = 1, without its 1/sin^2(pi f) if held. A held stage:
+ * the triangle of width h transforms to sin^2(pi f h)/(h sin^2(pi f)), and with s = sin^2(pi f h)
+ * its coarse sequence to (1 - phi^2)/((1 - phi)^2 + 4 phi s). f h is exact, h being a power of 4.
+ */
+static double stage_spectrum(int stage, double cycles, double hold)
+{
+    double log_phi = stage == 0 ? -1.0 : -0.25, distance = imk_expm1(log_phi);
+    double held = imki_sin_half_turns(cycles * hold), power = held * held;
+    return -imk_expm1(2.0 * log_phi) * power /
+           (hold * (distance * distance + 4.0 * imk_exp(log_phi) * power));
+}
+
 double imk_flicker_sampled_spectrum(double instability, double dt, double frequency)
 {
-    double cycles = frequency * dt, sine = imki_sin_half_turns(cycles);
-    double sum = 0.0, hold = 1.0;
+    double cycles = frequency * dt, sine = imki_sin_half_turns(cycles), sum = 0.0, hold = 1.0;
     for (int stage = 0; stage < STAGES; stage++) {
-        double log_phi = stage == 0 ? -1.0 : -0.25;
-        double distance = imk_expm1(log_phi), held = imki_sin_half_turns(cycles * hold);
-        double power = held * held;
-        sum += (stage == 0 ? FASTEST : 1.0) * -imk_expm1(2.0 * log_phi) * power /
-               (hold * (distance * distance + 4.0 * imk_exp(log_phi) * power));
+        sum += (stage == 0 ? FASTEST : 1.0) * stage_spectrum(stage, cycles, hold);
         hold *= stage == 0 ? 1.0 : 4.0;
     }
     return VARIANCE * instability * instability * dt * sum / (sine * sine);
 }
 
-/* The ends take from a held stage what they take from the same one not held: they matter only where
- * the record is no longer than some thousand correlation times, and the hold is a quarter of one.
- */
+/* Each stage's spectrum less what the ends take. A record of few holds does not show the zeros of a
+ * held stage's spectrum: there the same stage not held stands for it. Together within 1.3 % of the
+ * exact sums (tests). */
 double imk_flicker_cosine_spectrum(double instability, double dt, size_t n, size_t k)
 {
-    double frequency = 0.5 * (double)k / ((double)n * dt), loss = 0.0, inverse_time = 1.0;
-    for (int stage = 0; stage < STAGES; stage++, inverse_time *= 0.25)
-        loss += imki_cosine_end_loss(inverse_time, n, k);
-    return imk_flicker_sampled_spectrum(instability, dt, frequency) -
-           VARIANCE * instability * instability * dt * loss;
+    double cycles = 0.5 * (double)k / (double)n, sine = imki_sin_half_turns(cycles);
+    double sum = 0.0, hold = 1.0, time = 1.0;
+    for (int stage = 0; stage < STAGES; stage++, time *= 4.0) {
+        double spectrum =
+            4.0 * hold < (double)n
+                ? stage_spectrum(stage, cycles, hold) / (sine * sine)
+                : imk_gauss_markov_sampled_spectrum((imk_gauss_markov){1.0, time}, 1.0, cycles);
+        sum += (stage == 0 ? FASTEST : 1.0) * (spectrum - imki_cosine_end_loss(1.0 / time, n, k));
+        hold *= stage == 0 ? 1.0 : 4.0;
+    }
+    return VARIANCE * instability * instability * dt * sum;
 }
 
 static uint64_t stage_stream(const imk_flicker_state *state, size_t stage)

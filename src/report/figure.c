@@ -214,11 +214,16 @@ static void write_panel(FILE *out, const imk_panel *panel, size_t first_index,
     fputs(" noenhanced\n", out);
     write_axis(out, "x", panel->x_label, x, panel->x_logarithmic, text);
     write_axis(out, "y", panel->y_label, y, panel->y_logarithmic, text);
-    fputs("plot ", out);
+    const char *separator = "plot ";
     for (size_t c = 0; c < panel->curve_count; c++) {
+        /* A band of letters would hide the points. */
+        if (text && panel->curves[c].style == IMK_CURVE_BAND && panel->curve_count > 1)
+            continue;
+        fputs(separator, out);
         write_curve(out, &panel->curves[c], first_index + c, drawing);
-        fputs(c + 1 < panel->curve_count ? ", \\\n     " : "\n", out);
+        separator = ", \\\n     ";
     }
+    fputc('\n', out);
 }
 
 static size_t figure_columns(const imk_figure *figure)

@@ -243,6 +243,51 @@ static void test_flicker_spectrum_and_allan_agree(void **state)
 
 /* The Allan deviation of ideal flicker noise is sqrt(2 ln 2/pi) B at every tau: noise.h promises
  * 0.12 % to 1e7 dt, 1 % to 1e8, 2 % to 2e8. */
+/* E c_k^2 of n samples from their autocovariance: sum over lags of R(l) times the autocorrelation
+ * of the transform's row. */
+static double expected_square(double (*r)(const double *, size_t), const double *p, size_t n,
+                              size_t k)
+{
+    double row[512], sum = 0.0;
+    for (size_t i = 0; i < n; i++)
+        row[i] = sqrt(2.0 / (double)n) * cos(pi * (double)k * ((double)i + 0.5) / (double)n);
+    for (size_t lag = 0; lag < n; lag++) {
+        double product = 0.0;
+        for (size_t i = 0; i + lag < n; i++)
+            product += row[i] * row[i + lag];
+        sum += (lag == 0 ? 1.0 : 2.0) * product * r(p, lag);
+    }
+    return sum;
+}
+
+static double flicker_r(const double *p, size_t lag)
+{
+    double sum = 0.0;
+    (void)p;
+    for (double stage = 0.0; stage < IMK_FLICKER_STAGES; stage += 1.0)
+        sum += (stage < 1.0 ? 1.20785 : 1.0) * stage_r(&stage, lag);
+    return log(4.0) / pi * sum;
+}
+
+static void test_cosine_spectrum(void **state)
+{
+    (void)state;
+    const size_t n = 509;
+    for (double time = 0.3; time < 1e5; time *= 7.0) {
+        const double p[] = {1.0, time, 0.1}; /* sigma, T, dt */
+        for (size_t k = 1; k < n; k = 2 * k + 1)
+            /* both sums lose digits to the lags' cancellation: 1e-13 of the variance times n */
+            CHECK_CLOSE(imk_gauss_markov_cosine_spectrum((imk_gauss_markov){1.0, time}, 0.1, n, k) /
+                            0.1,
+                        expected_square(gauss_markov_r, p, n, k), 2e-10);
+    }
+    /* The end correction takes held stages for ones that are not held: below 1 % where it counts.
+     */
+    for (size_t k = 1; k < 64; k++)
+        CHECK_RELATIVE(imk_flicker_cosine_spectrum(1.0, 0.1, n, k) / 0.1,
+                       expected_square(flicker_r, NULL, n, k), 1.5e-2);
+}
+
 static void test_flicker_is_flat(void **state)
 {
     (void)state;
@@ -474,6 +519,7 @@ int main(void)
         cmocka_unit_test(test_sinusoid),
         cmocka_unit_test(test_flicker_is_the_sum_of_its_stages),
         cmocka_unit_test(test_flicker_spectrum_and_allan_agree),
+        cmocka_unit_test(test_cosine_spectrum),
         cmocka_unit_test(test_flicker_is_flat),
         cmocka_unit_test(test_flicker_spectrum_is_1_over_f),
         cmocka_unit_test(test_filtered_white_spectrum),

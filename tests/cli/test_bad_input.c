@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Logs, models and outputs that are wrong: the sentence, the exit code, and nothing left behind. */
+#include "run_command.h"
+
+#define REMEDY "use --gaps longest (the longest clean stretch) or --gaps bridge (interpolate)\n"
+
+/* How the file is made, and what every verb that analyses a log says about it. */
+static const struct bad_log {
+    const char *make, *file, *says;
+} bad_logs[] = {
+    {":", "missing.csv", "missing.csv: the file cannot be opened: No such file or directory\n"},
+    {"mkdir dir.csv", "dir.csv", "dir.csv: the file cannot be opened: Is a directory\n"},
+    {": >empty.csv", "empty.csv", "empty.csv: the file is empty\n"},
+    {"head -1 good.csv >b.csv", "b.csv", "b.csv: there is no data: "},
+    {"head -2 good.csv >b.csv", "b.csv",
+     "b.csv: there is one row only; a static record of minutes to hours is due\n"},
+    {"sed '1s/ .deg.*//' good.csv >b.csv", "b.csv", "add --gyro-unit deg/s"},
+    {"cut -d, -f2 good.csv >b.csv", "b.csv",
+     "add --rate 100Hz (samples per second)\nNext: imukit "},
+    {"sed 1d good.csv >b.csv", "b.csv", "add --columns "},
+    {"sed '1s/deg.s/g/' good.csv >b.csv", "b.csv", "expected an angular rate, such as deg/h"},
+    {"sed '1s/deg.s/dge\\/s/' good.csv >b.csv", "b.csv", "dge"},
+    {"sed '500s/,.*/,nan/' good.csv >b.csv", "b.csv",
+     "b.csv: 1 row with a value that is not a finite number, first in row 499, column "
+     "gyro_x; " REMEDY},
+    {"sed '500s/,.*/,/' good.csv >b.csv", "b.csv",
+     "b.csv: 1 row with a value that is not a finite number, first in row 499, column "
+     "gyro_x; " REMEDY},
+    {"sed '500{h;d};501G' good.csv >b.csv", "b.csv",
+     "b.csv: time runs backwards in 1 row, first in row 500 (by 0.01 s); " REMEDY},
+    {"sed '500p' good.csv >b.csv", "b.csv",
+     "b.csv: time stands still in 1 row, first in row 500; " REMEDY},
+    {"sed '101,300d' good.csv >b.csv", "b.csv",
+     "b.csv: 200 samples are missing in 1 gap, first before row 100; " REMEDY},
+    {"sed '2,$s/,.*/,5/' good.csv >b.csv", "b.csv",
+     "b.csv: column gyro_x is constant in all 1000 rows: there is no noise to "},
+    {"sed '500s/,.*/,abc/' good.csv >b.csv", "b.csv",
+     "b.csv:500:6: gyro_x: \"abc\" cannot be read; expected "},
+    {"sed '500s/,.*//' good.csv >b.csv", "b.csv", "b.csv:500: "},
+    {"gzip -c good.csv | head -c 3000 >b.csv.gz", "b.csv.gz",
+     "b.csv.gz: the gzip data is cut short"},
+    {"head -c 9000 /dev/urandom >b.csv", "b.csv", "not a text log"},
+    {"truncate -s 1000000000 b.csv", "b.csv", "not a text log"},
+    {"head -c 9000000 /dev/zero | tr '\\0' 1 >b.csv", "b.csv", "b.csv:1: "},
+};
+
+static void test_bad_logs(void **state)
+{
+    (void)state;
+    static const char *const analyses[] = {"identify", "allan"};
+    char line[600], prefix[100];
+    for (size_t i = 0; i < sizeof bad_logs / sizeof bad_logs[0]; i++) {
+        for (size_t k = 0; k < 2; k++) {
+            const struct bad_log *bad = &bad_logs[i];
+            write_good();
+            assert_int_equal(run(bad->make), 0);
+            snprintf(line, sizeof line, "$I %s %s -o result", analyses[k], bad->file);
+            int code = run(line);
+            snprintf(prefix, sizeof prefix, "imukit %s: error: ", analyses[k]);
+            check_contains(err, bad->says, bad->make);
+            check_contains(err, prefix, bad->make);
+            assert_int_equal(code, 1);
+            assert_string_equal(out, "");
+            assert_int_equal(access("result", F_OK), -1);
+            sweep();
+        }
+    }
+}
+
+/* The command the message shows is the one to run. */
+static void test_next_command(void **state)
+{
+    (void)state;
+    write_good();
+    assert_int_equal(run("cut -d, -f2 good.csv >'b 1.csv'"), 0);
+    check_message(
+        "$I allan 'b 1.csv' --tau=1s", 1,
+        "imukit allan: error: b 1.csv:1: time: the sample rate is not known: no column of "
+        "time; add --rate 100Hz (samples per second)\n"
+        "Next: imukit allan 'b 1.csv' --tau=1s --rate 100Hz\n");
+    assert_int_equal(run("$I allan 'b 1.csv' --tau=1s --rate 100Hz"), 0);
+    sweep();
+}
+
+/* The promise of the messages: the option they name works. */
+static void test_gap_policies(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *make, *policy, *says;
+        int rows;
+    } cases[] = {
+        {"cp good.csv b.csv", "refuse", "", 1000},
+        {"sed 500d good.csv >b.csv", "refuse", "1 of 1000 samples are missing or bad: bridged",
+         1000},
+        {"sed '500s/,.*/,nan/' good.csv >b.csv", "bridge", "1 of 1000 samples", 1000},
+        {"sed '500s/,.*/,nan/' good.csv >b.csv", "longest", "rows 500 to 1000 of 1000", 501},
+        {"sed '101,300d' good.csv >b.csv", "bridge", "200 of 1000 samples", 1000},
+        {"sed '101,300d' good.csv >b.csv", "longest", "rows 100 to 800 of 800", 701},
+        {"sed '500{h;d};501G' good.csv >b.csv", "bridge", "1 of 1000 samples", 1000},
+        {"sed '500{h;d};501G' good.csv >b.csv", "longest", "rows 501 to 1000 of 1000", 500},
+        {"sed '500p' good.csv >b.csv", "bridge", "0 of 1000 samples", 1000},
+        {"sed '101,900d' good.csv >b.csv", "bridge", "nothing to interpolate; use --gaps longest",
+         0},
+    };
+    char line[300], rows[40];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        write_good();
+        assert_int_equal(run(cases[i].make), 0);
+        snprintf(line, sizeof line, "$I allan b.csv --gaps %s --tau 0.1s --json", cases[i].policy);
+        assert_int_equal(run(line), cases[i].rows ? 0 : 1);
+        check_contains(err, cases[i].says, cases[i].make);
+        snprintf(rows, sizeof rows, "\"rows\": %d,", cases[i].rows);
+        check_contains(out, cases[i].rows ? rows : "", cases[i].make);
+        check_contains(out, cases[i].rows ? "\"interval\": {\"value\": 0.01, " : "", cases[i].make);
+        sweep();
+    }
+}
+
+/* A straight line between good neighbours, value by value: rates of a ramp stay a ramp. */
+static void test_bridging_is_linear(void **state)
+{
+    (void)state;
+    assert_int_equal(run("awk 'BEGIN{print \"time [s],x\"; for (i = 0; i < 400; i++) "
+                         "if (i % 10 < 7) print i / 8 \",\" i}' >ramp.csv"),
+                     0);
+    /* sigma(tau) of a ramp R t is R tau/sqrt 2: 8 per second here. */
+    assert_int_equal(run("$I allan ramp.csv --gaps bridge --tau 1s -o - | tail -1"), 0);
+    double deviation;
+    assert_int_equal(sscanf(out, "x,1,%lf", &deviation), 1);
+    CHECK_RELATIVE(deviation, 8 / sqrt(2), 1e-9);
+    sweep();
+}
+
+/* ---- outputs that cannot be written ---------------------------------------------------------- */
+
+static void test_unwritable_outputs(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {"simulate AHRS --rate 100Hz --duration 1s -o",
+                                        "allan good.csv -o",
+                                        "allan good.csv --report",
+                                        "identify good.csv -o",
+                                        "identify good.csv --report",
+                                        "convert good.csv"};
+    static const struct {
+        const char *path, *says;
+    } places[] = {{"/dev/full", "No space left on device"},
+                  {"/nonexistent/x.csv", "No such file or directory"},
+                  {"dir.csv", "Is a directory"}};
+    char line[300];
+    write_good();
+    assert_int_equal(run("mkdir dir.csv"), 0);
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        for (size_t k = 0; k < sizeof places / sizeof places[0]; k++) {
+            snprintf(line, sizeof line, "$I %s %s", lines[i], places[k].path);
+            assert_int_equal(run(line), 1);
+            check_contains(err, places[k].says, line);
+        }
+    }
+    assert_int_equal(sweep(), 2); /* good.csv and dir.csv: nothing else was left */
+    write_good();
+    static const char *const to_standard_output[] = {"--help",
+                                                     "devices",
+                                                     "grade AHRS",
+                                                     "grade AHRS --json",
+                                                     "allan good.csv",
+                                                     "allan good.csv --json",
+                                                     "identify good.csv",
+                                                     "simulate AHRS --rate 100Hz --duration 1s",
+                                                     "convert good.csv -"};
+    for (size_t i = 0; i < sizeof to_standard_output / sizeof to_standard_output[0]; i++) {
+        snprintf(line, sizeof line, "$I %s >/dev/full", to_standard_output[i]);
+        assert_int_equal(run(line), 1);
+        check_contains(err, "No space left on device", line);
+    }
+    sweep();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_bad_logs),           cmocka_unit_test(test_next_command),
+        cmocka_unit_test(test_gap_policies),       cmocka_unit_test(test_bridging_is_linear),
+        cmocka_unit_test(test_unwritable_outputs),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

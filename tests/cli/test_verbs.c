@@ -1,0 +1,376 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Each verb on good input: exact output, published values, the closed loop. */
+#include "run_command.h"
+
+/* The same bytes whatever the threads and the way out; another seed or run makes others. */
+static void test_simulate_is_reproducible(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 100Hz --duration 700s --seed 7 -o a.csv"), 0);
+    assert_string_equal(err, "");
+    assert_string_equal(out, "");
+    assert_int_equal(run("head -1 a.csv; wc -l <a.csv"), 0);
+    assert_string_equal(out, "time [s],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],"
+                             "accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2]\n70001\n");
+    assert_int_equal(run("$I simulate AHRS --rate 100Hz --duration 700s --seed 7 --threads 1 | "
+                         "cmp - a.csv"),
+                     0);
+    assert_int_equal(run("$I simulate AHRS --rate 0.1kHz --duration 700s --seed=7 --threads 3 -o - "
+                         "| cmp - a.csv"),
+                     0);
+    assert_int_equal(run("$I simulate AHRS --rate 100Hz --duration 700s --seed 8 | cmp -s - a.csv"),
+                     1);
+    assert_int_equal(run("$I simulate AHRS --rate 100Hz --duration 700s --seed 7 --run 1 | cmp -s "
+                         "- a.csv"),
+                     1);
+    sweep();
+}
+
+static void test_simulate_units_and_decimals(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 4Hz --duration 0.5s --decimals 2 --gyro-unit "
+                         "deg/h --accel-unit mg"),
+                     0);
+    assert_int_equal(strncmp(out, "time [s],gyro_x [deg/h],", 24), 0);
+    check_contains(out, ",accel_z [mg]\n0.00,", "two decimals");
+    check_contains(out, "\n0.25,", "time by the rate");
+    /* Without Earth rate and gravity, and with a model without errors, every sample is zero. */
+    put("perfect.yaml", "imukit: 1\nname: perfect\ngyro: {}\naccel: {}\n");
+    assert_int_equal(run("$I simulate perfect.yaml --rate 2Hz --duration 1s --no-earth"), 0);
+    check_contains(out, "]\n0,0,0,0,0,0,0\n0.5,0,0,0,0,0,0\n", "perfect unit");
+    /* At rest and level at the equator: gravity by Somigliana's formula, 9.7803253359 m/s^2. */
+    assert_int_equal(run("$I simulate perfect.yaml --rate 1Hz --duration 1s --latitude 0deg "
+                         "--decimals 8"),
+                     0);
+    check_contains(out, ",-9.78032534\n", "gravity");
+    /* A single axis keeps its name, and a sensor with a sensitivity makes counts. */
+    put("z.yaml", "imukit: 1\ngyro:\n  direction: [0 0 1]\n  sensitivity: 4778 count/(rad/s)\n"
+                  "  zero_offset: 32768 count\n");
+    assert_int_equal(run("$I simulate z.yaml --rate 1Hz --duration 1s --no-earth"), 0);
+    assert_string_equal(out, "time [s],gyro_z [count]\n0,32768\n");
+    sweep();
+}
+
+/* ---- allan ----------------------------------------------------------------------------------- */
+
+/* The 1000-point set of NIST SP 1065 and its published OADEV at 1, 10, 100. */
+static void write_nist(const char *path, bool phase)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    uint64_t n = 1234567890;
+    double sum = 0;
+    if (phase)
+        fputs("0\n", file);
+    for (int i = 0; i < 1000; i++, n = 16807 * n % 2147483647) {
+        sum += (double)n / 2147483647;
+        fprintf(file, "%.17g\n", phase ? sum : (double)n / 2147483647);
+    }
+    fclose(file);
+}
+
+static void check_nist_line(const char *line, double tau, double expected)
+{
+    double read_tau, deviation, lower, upper;
+    assert_non_null(line = strchr(line, ','));
+    assert_int_equal(sscanf(line, ",%lf,%lf,%lf,%lf,", &read_tau, &deviation, &lower, &upper), 4);
+    CHECK_CLOSE(read_tau, tau, 0);
+    CHECK_CLOSE(deviation, expected, 1e-10); /* as printed: ten decimals */
+    assert_true(lower < deviation && deviation < upper);
+}
+
+static void check_nist_table(void)
+{
+    const char *header = "channel,tau [s],deviation,lower,upper,unit,edf,count\n";
+    assert_int_equal(strncmp(out, header, strlen(header)), 0);
+    const char *line = strchr(out, '\n') + 1;
+    check_nist_line(line, 1, .2922318781);
+    line = strchr(line, '\n') + 1;
+    check_nist_line(line, 10, .0915995342);
+    line = strchr(line, '\n') + 1;
+    check_nist_line(line, 100, .0324134303);
+}
+
+static void test_allan_published_values(void **state)
+{
+    (void)state;
+    write_nist("rate.txt", false);
+    const char *whole = "--columns gyro_x --gyro-unit rad/s --rate 1Hz";
+    setenv("A", whole, 1);
+    assert_int_equal(run("$I allan rate.txt $A --tau 1s,10s,100s -o -"), 0);
+    check_nist_table();
+    assert_int_equal(run("$I allan rate.txt $A --tau 1s,100s --statistic adev -o - | tail -1"), 0);
+    check_nist_line(out, 100, .0389780433);
+    /* Intervals of Stable32 at 68.3 %: .28515 to .29987 at 1 s to 2e-3. */
+    assert_int_equal(
+        run("$I allan rate.txt $A --tau 1s --edf greenhall-riley --confidence 68.3% -o "
+            "- | tail -1"),
+        0);
+    double lower, upper;
+    assert_int_equal(sscanf(out, "gyro_x,1,%*f,%lf,%lf", &lower, &upper), 2);
+    CHECK_RELATIVE(lower, .28515, 2e-3);
+    CHECK_RELATIVE(upper, .29987, 2e-3);
+    sweep();
+}
+
+/* Columns that are no sensor's: rates, and phase (their integral). */
+static void test_allan_of_any_column(void **state)
+{
+    (void)state;
+    write_nist("rate.txt", false);
+    write_nist("phase.txt", true);
+    assert_int_equal(run("$I allan rate.txt --columns x --rate 1Hz --tau 1s,10s,100s -o -"), 0);
+    check_nist_table();
+    assert_int_equal(run("$I allan phase.txt --columns x --rate 1Hz --tau 1s,10s,100s --type phase "
+                         "-o -"),
+                     0);
+    check_nist_table();
+    assert_int_equal(run("$I allan rate.txt --columns x --rate 1Hz | head -1"), 0);
+    assert_string_equal(out, "tau [s]  x [1]\n");
+    sweep();
+}
+
+static void test_allan_taus(void **state)
+{
+    (void)state;
+    write_nist("x.txt", false);
+    assert_int_equal(run("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz"), 0);
+    check_contains(out, "tau [s]  gyro_x [deg/s]", "table");
+    check_contains(out, "\n256 ", "octaves");
+    assert_int_equal(
+        run("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau all -o - | wc -l"),
+        0);
+    assert_string_equal(out, "501\n");
+    check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1,2", 2,
+                  "imukit allan: error: --tau 1,2: \"1\" is no averaging time; expected octave, "
+                  "decade, all or a list such as 1s,10s,100s\n" TRY("allan"));
+    check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1s,501s", 2,
+                  "imukit allan: error: --tau 1s,501s: \"501s\" is outside what this record "
+                  "allows, 1 s to 500 s\n" TRY("allan"));
+    check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 10s,1s", 2,
+                  "imukit allan: error: --tau 10s,1s: the times must ascend\n" TRY("allan"));
+    check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --plot a.pdf", 2,
+                  "imukit allan: error: --plot a.pdf: expected a name ending in .svg or .png, or "
+                  "the word term\n" TRY("allan"));
+    sweep();
+}
+
+/* ---- identify -------------------------------------------------------------------------------- */
+
+/* Simulate, identify, and find the truth inside the intervals: 18 intervals of 99.99 % each all
+ * cover with probability 0.998; this seed is fixed, so the test itself does not vary. */
+static void test_identify_recovers_the_model(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 20Hz --duration 30min --seed 3 -o s.csv"), 0);
+    assert_int_equal(run("$I identify s.csv --truth AHRS --confidence 0.9999 --twin -o m.yaml "
+                         "--report r.html"),
+                     0);
+    check_contains(out, "\n18 of 18 intervals cover the truth; 99.99 % are expected to.\n", out);
+    check_contains(out, "Report: r.html\nModel: m.yaml\nNext: imukit grade m.yaml\n", out);
+    assert_int_equal(run("$I grade m.yaml"), 0);
+    assert_int_equal(run("$I simulate m.yaml --rate 20Hz --duration 1min -o twin.csv"), 0);
+    read_text("r.html", out);
+    check_contains(out, "<h2>Verdict</h2>", "page");
+    check_contains(out, "imukit identify s.csv --truth AHRS --confidence 0.9999", "page");
+    check_contains(out, "angle_random_walk: ", "page");
+    if (imk_plot_available())
+        check_contains(out, "<svg", "page");
+    sweep();
+}
+
+static void test_identify_json(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 20Hz --duration 5min --no-earth -o s.csv"), 0);
+    assert_int_equal(run("$I identify s.csv --json"), 0);
+    json_error_t error;
+    json_t *document = json_loads(out, JSON_REJECT_DUPLICATES, &error);
+    assert_non_null(document);
+    const char *version, *verb, *code, *name, *unit;
+    double value;
+    assert_int_equal(json_unpack(document,
+                                 "{s:s, s:s, s:{s:i}, s:{s:[{s:s, s:{s:{s:F, s:s}}}]}, "
+                                 "s:[{s:s}]}",
+                                 "imukit", &version, "command", &verb, "inputs", "rows", &(int){0},
+                                 "result", "channels", "name", &name, "terms", "angle_random_walk",
+                                 "value", &value, "unit", &unit, "warnings", "code", &code),
+                     0);
+    assert_string_equal(version, IMK_VERSION);
+    assert_string_equal(verb, "identify");
+    assert_string_equal(name, "gyro_x");
+    assert_string_equal(unit, "rad/sqrt(s)");
+    /* 0.3 deg/sqrt(h), 6000 samples: 1 sigma is 0.9 %. */
+    CHECK_RELATIVE(value, 8.7266462599716e-5, 0.06);
+    assert_string_equal(code, "gravity");
+    json_decref(document);
+    /* Without gravity the verdict is bad: --strict says so by the exit code, --json or not. */
+    check_contains(err, "|accel| is ", "gravity");
+    assert_int_equal(run("$I identify s.csv --json --strict"), 1);
+    assert_int_equal(run("$I identify s.csv --strict"), 1);
+    sweep();
+}
+
+static void test_identify_names_the_likely_unit(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 20Hz --duration 1min --accel-unit g | sed "
+                         "'1s/[[]g[]]/[m\\/s^2]/g' >s.csv; head -1 s.csv"),
+                     0);
+    check_contains(out, "accel_z [m/s^2]", "header");
+    assert_int_equal(run("$I identify s.csv"), 0);
+    check_contains(err,
+                   "m/s^2 at rest: the numbers look like g; write g into the header, or add "
+                   "--accel-unit g where it has none.",
+                   err);
+    sweep();
+}
+
+/* Only what is identified is replaced, and the changes are shown. */
+static void test_identify_into(void **state)
+{
+    (void)state;
+    put("old.yaml",
+        "imukit: 1\n# measured on the table\nname: unit 7\ngyro:\n  bias: {fixed: 1 2 3 "
+        "deg/h}\n  noise: {angle_random_walk: 9 deg/sqrt(h)}\n");
+    assert_int_equal(run("$I simulate AHRS --rate 20Hz --duration 2min | cut -d, -f1-4 >s.csv"), 0);
+    assert_int_equal(run("$I identify s.csv --into old.yaml -o new.yaml"), 0);
+    check_contains(err, "Changes to old.yaml:\n-   noise: {angle_random_walk: 9 deg/sqrt(h)}\n+ ",
+                   err);
+    read_text("new.yaml", out);
+    check_contains(out, "bias: {fixed: 1 2 3 deg/h}", "kept");
+    check_contains(out, "# measured on the table", "kept");
+    check_contains(out, "name: unit 7", "kept");
+    assert_null(strstr(out, "{angle_random_walk: 9 deg/sqrt(h)}"));
+    sweep();
+}
+
+/* ---- models, catalogue, conversion ----------------------------------------------------------- */
+
+static void test_models(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I grade navigation"), 0);
+    check_contains(out, "navigation: navigation\n", "grade");
+    check_contains(out, "\n->  navigation ", "grade");
+    assert_int_equal(run("$I grade AHRS | head -2"), 0);
+    check_contains(out, "Gyro: AHRS; remaining bias ", "grade");
+    check_message("$I grade navigatoin", 1,
+                  "imukit grade: error: model: \"navigatoin\" is not a known name; did you mean "
+                  "\"navigation\"?\n");
+    put("k.yaml", "imukit: 1\ngyro:\n  noise:\n    angle_random_wlk: 0.1 deg/sqrt(h)\n");
+    check_message("$I grade k.yaml", 1,
+                  "imukit grade: error: k.yaml:4:5: gyro.noise.angle_random_wlk: "
+                  "\"angle_random_wlk\" is not a known key; did you mean "
+                  "\"angle_random_walk\"?\n");
+    put("u.yaml", "imukit: 1\ngyro:\n  noise:\n    angle_random_walk: 0.1 deg/h\n");
+    assert_int_equal(run("$I simulate u.yaml --rate 1Hz --duration 1s -o s.csv"), 1);
+    check_contains(err, "u.yaml:4:", "dimension");
+    put("e.yaml", "imukit: 1\ngyro: {}\n");
+    check_message("$I grade e.yaml", 1,
+                  "imukit grade: error: e.yaml states no bias repeatability, no bias instability "
+                  "and no uncertainty of the fixed bias: there is nothing to grade\n");
+    assert_int_equal(access("s.csv", F_OK), -1);
+    sweep();
+}
+
+static void test_devices(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I devices | head -2"), 0);
+    check_contains(out, "gyro N [deg/sqrt(h)]", "devices");
+    check_contains(out, "\nstrategic ", "devices");
+    assert_int_equal(run("$I devices ADIS16488 >d.yaml && $I grade d.yaml"), 0);
+    assert_string_equal(err, "");
+    assert_int_equal(run("$I devices --json"), 0);
+    json_t *document = json_loads(out, JSON_REJECT_DUPLICATES, NULL);
+    assert_non_null(document);
+    json_decref(document);
+    check_message("$I devices ADIS1648", 1,
+                  "imukit devices: error: there is no device \"ADIS1648\"; did you mean "
+                  "\"ADIS16488\"?\n");
+    sweep();
+}
+
+static void test_convert(void **state)
+{
+    (void)state;
+    write_good();
+    static const char *const formats[] = {"b.csv", "b.csv.gz", "b.csv.zst"};
+    char line[300];
+    assert_int_equal(run("$I convert good.csv a.csv"), 0);
+    for (size_t i = 0; i < 3; i++) {
+        snprintf(line, sizeof line, "$I convert good.csv %s && $I convert %s - | cmp - a.csv",
+                 formats[i], formats[i]);
+        assert_int_equal(run(line), 0);
+    }
+    assert_int_equal(run("$I convert good.csv b.npy && $I convert b.npy - --rate 100Hz | cmp - "
+                         "a.csv"),
+                     0);
+    assert_int_equal(
+        run("$I convert good.csv - --select gyro_x --to-gyro-unit deg/min --decimals 3 "
+            "| head -2"),
+        0);
+    assert_string_equal(out, "gyro_x [deg/min]\n0.000\n");
+    check_message("$I convert good.csv c.csv --select gyrox", 1,
+                  "imukit convert: error: --select: the log has no column \"gyrox\"; did you mean "
+                  "\"gyro_x\"?\n");
+    /* Increments become rates: 0.1 deg in each 0.01 s is 10 deg/s. */
+    put("i.csv", "time [s],dtheta_x [deg]\n0,0.1\n0.01,0.1\n0.02,0.1\n");
+    assert_int_equal(run("$I convert i.csv - --decimals 3"), 0);
+    check_contains(out, "time [s],gyro_x [deg/s]\n0.000,10.000\n", "increments");
+    /* A model goes to JSON and back. */
+    put("m.yaml", "imukit: 1\nname: m\ngyro:\n  noise:\n    angle_random_walk: 0.3 deg/sqrt(h)\n");
+    assert_int_equal(
+        run("$I convert m.yaml m.json && $I convert m.json n.yaml && cmp m.yaml n.yaml"), 0);
+    read_text("m.json", out);
+    json_t *document = json_loads(out, JSON_REJECT_DUPLICATES, NULL);
+    assert_non_null(document);
+    json_decref(document);
+    sweep();
+}
+
+static void test_plots(void **state)
+{
+    (void)state;
+    if (!imk_plot_available()) {
+        print_message("skipped: gnuplot is not installed\n");
+        skip();
+    }
+    write_good();
+    assert_int_equal(run("$I allan good.csv --plot a.svg && grep -c '</svg>' a.svg"), 0);
+    assert_int_equal(run("$I identify good.csv --plot b.png && head -c 4 b.png | tail -c 3 >&2"),
+                     0);
+    check_contains(err, "PNG", "png");
+    assert_int_equal(run("$I allan good.csv --plot term"), 0);
+    check_contains(out, "averaging time [s]", "terminal");
+    assert_null(strchr(out, '\033'));
+    /* Without gnuplot the script and the data are left, and the message names the package. */
+    assert_int_equal(run("PATH=/nonexistent $I allan good.csv --plot c.svg"), 1);
+    check_contains(err, "c.svg: gnuplot is not installed; apt install gnuplot-nox", "no gnuplot");
+    assert_int_equal(run("test -s c.dat && test -s c.gp && ! test -e c.svg && gnuplot c.gp && grep "
+                         "-q '</svg>' c.svg"),
+                     0);
+    sweep();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_simulate_is_reproducible),
+        cmocka_unit_test(test_simulate_units_and_decimals),
+        cmocka_unit_test(test_allan_published_values),
+        cmocka_unit_test(test_allan_of_any_column),
+        cmocka_unit_test(test_allan_taus),
+        cmocka_unit_test(test_identify_recovers_the_model),
+        cmocka_unit_test(test_identify_json),
+        cmocka_unit_test(test_identify_names_the_likely_unit),
+        cmocka_unit_test(test_identify_into),
+        cmocka_unit_test(test_models),
+        cmocka_unit_test(test_devices),
+        cmocka_unit_test(test_convert),
+        cmocka_unit_test(test_plots),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
