@@ -24,7 +24,7 @@ typedef enum verdict_level { VERDICT_GOOD = 0, VERDICT_NOTE, VERDICT_WARNING } v
 typedef struct verdict_sentence {
     verdict_level level;
     char code[40];
-    char text[400];
+    char text[900];
 } verdict_sentence;
 enum { VERDICTS_MAX = 24 };
 

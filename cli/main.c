@@ -2,6 +2,9 @@
 /* The command imukit: finds the verb and hands it the rest of the line. */
 #include "command.h"
 
+#include "imukit/output_file.h"
+
+#include <signal.h>
 #include <string.h>
 
 static const verb *const verbs[] = {&identify_verb, &simulate_verb, &allan_verb,
@@ -95,8 +98,18 @@ static int help(int count, char **words)
     return command_finish(EXIT_DONE);
 }
 
+/* Interrupted: leave no half-written file behind, and end as the signal would have. */
+static void interrupted(int number)
+{
+    imk_output_file_abandon_all();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
 int main(int argc, char **argv)
 {
+    signal(SIGINT, interrupted);
+    signal(SIGTERM, interrupted);
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         command_welcome(stdout);
         return command_finish(EXIT_DONE);

@@ -68,7 +68,7 @@ static void resonance_detail(const identification *i, size_t channel, char *text
     const imk_identification *r = &i->result[channel];
     text[0] = '\0';
     if (r->resonance_count > 0)
-        snprintf(text, size, " (%.3g Hz, Q %.2g%s)", r->resonance[0].frequency, r->resonance[0].q,
+        snprintf(text, size, " (%.3g Hz, Q %.3g%s)", r->resonance[0].frequency, r->resonance[0].q,
                  r->resonance_count > 1 ? ", more" : "");
 }
 
@@ -83,9 +83,9 @@ static void resolution_detail(const identification *i, size_t channel, char *tex
 
 static void valid_detail(const identification *i, size_t channel, char *text, size_t size)
 {
-    double from = i->result[channel].valid_from;
-    if (isfinite(from))
-        snprintf(text, size, " (from %.3g s)", from);
+    const imk_identification *r = &i->result[channel];
+    if (isfinite(r->valid_from))
+        snprintf(text, size, " (from %.3g s to %.3g s)", r->valid_from, r->valid_to);
     else
         snprintf(text, size, " (nowhere)");
 }
@@ -115,7 +115,7 @@ static const struct bit_sentence {
      "the start drifts unlike the rest: switch on earlier, or leave the first minutes out",
      no_detail},
     {IMK_VERDICT_MISFIT, VERDICT_WARNING, "misfit",
-     "the model explains the record only from this averaging time on; the log holds something else "
+     "the model explains the record only over these averaging times; the log holds something else "
      "as well (vibration, filtering, another process)",
      valid_detail},
     {IMK_VERDICT_LINES, VERDICT_NOTE, "lines",
@@ -189,6 +189,40 @@ static void judge_gravity(identification *i)
             magnitude);
 }
 
+/* Where the five terms alone do not explain the log, and what shapes it there instead. */
+static void judge_five_terms(identification *i)
+{
+    char list[600] = "";
+    size_t used = 0;
+    for (size_t c = 0; c < i->channels.count && used < sizeof list; c++) {
+        const imk_identification *r = &i->result[c];
+        if (r->five_terms_from <= 1.5 * i->channels.dt)
+            continue;
+        const struct {
+            bool is;
+            const char *name;
+        } causes[] = {{r->filter.bandwidth > 0, "output filter"},
+                      {r->resonance_count > 0, "resonances"},
+                      {r->sinusoid_count > 0, "lines"},
+                      {r->gauss_markov_count > 0, "Gauss-Markov noise"}};
+        char why[100] = "";
+        for (size_t k = 0; k < sizeof causes / sizeof causes[0]; k++)
+            if (causes[k].is)
+                snprintf(why + strlen(why), sizeof why - strlen(why), "%s%s", why[0] ? ", " : "",
+                         causes[k].name);
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s from %.3g s (%s)",
+                                 used ? "; " : "", log_channel_column(&i->channels, c)->name,
+                                 r->five_terms_from, why[0] ? why : "cause not known");
+    }
+    if (used > 0)
+        add(i, VERDICT_NOTE, "five_terms",
+            "white noise, bias instability, random walk, ramp and quantization alone hold only "
+            "from "
+            "some averaging time on; below it what is named shapes the log, and is in the model: "
+            "%s.",
+            list);
+}
+
 void identify_judge(identification *i)
 {
     char length[60];
@@ -202,6 +236,7 @@ void identify_judge(identification *i)
     format_duration(i->channels.dt * (double)i->channels.rows, length, sizeof length);
     judge_gravity(i);
     judge_bits(i);
+    judge_five_terms(i);
     bool bad = identify_is_bad(i);
     if (from > 0)
         add(i, bad ? VERDICT_NOTE : VERDICT_GOOD, "length",
