@@ -35,7 +35,7 @@ int allan_write_csv(const allan_result *result, const char *output)
     imk_error error;
     if (imk_output_file_open(output, &file, &error) != IMK_OK)
         return command_error(&error, NULL);
-    imk_output_file_print(file, "channel,tau [s],deviation,lower,upper,unit,edf,count\n");
+    imk_output_file_print(file, "channel,tau [s],deviation [unit],lower,upper,edf,count,unit\n");
     for (size_t c = 0; c < channels->count; c++) {
         const imk_log_column *column = log_channel_column(channels, c);
         const allan_curve *curve = &result->curve[c];
@@ -52,7 +52,7 @@ int allan_write_csv(const allan_result *result, const char *output)
             }
             char edf[IMK_DECIMAL_SIZE];
             edf[imk_decimal_significant(point->edf, 6, edf)] = '\0';
-            imk_output_file_print(file, ",%s,%s,%zu\n", unit.text, edf, point->count);
+            imk_output_file_print(file, ",%s,%zu,%s\n", edf, point->count, unit.text);
         }
     }
     if (imk_output_file_commit(file, &error) != IMK_OK)

@@ -2,6 +2,8 @@
 /* imukit allan: Allan deviations of a log with confidence intervals. */
 #include "allan_output.h"
 
+#include "imukit/decimal.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +13,7 @@ static const option allan_option_table[] = {
      "overlapping (the default) or plain Allan deviation", offsetof(allan_options, statistic)},
     {"tau", 0, OPTION_TEXT, "octave|decade|all|LIST", NULL, NULL,
      "averaging times: doubling (the default), ten per decade, every one, or a list such as "
-     "1s,10s,100s",
+     "1,10,100 in seconds",
      offsetof(allan_options, tau)},
     {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
      "of the two-sided intervals; default 0.95", offsetof(allan_options, confidence)},
@@ -77,8 +79,11 @@ static size_t *parse_tau(const char *text, double dt, size_t n, size_t *count, i
         double tau, sigma;
         size_t numbers;
         imk_error error;
-        imk_status status = imk_quantity_parse(item, item + length, imk_unit_of("s").dimension, 1,
-                                               &tau, &sigma, &numbers, NULL, &error);
+        /* The list is one of seconds, so a bare number is no guess here. */
+        imk_status status = IMK_OK;
+        if (length == 0 || imk_decimal_parse(item, item + length, &tau) != item + length)
+            status = imk_quantity_parse(item, item + length, imk_unit_of("s").dimension, 1, &tau,
+                                        &sigma, &numbers, NULL, &error);
         double m = status == IMK_OK ? floor(tau / dt + 0.5) : 0;
         if (status != IMK_OK)
             *code = command_misused("--tau %s: \"%.*s\" is no averaging time; expected octave, "
