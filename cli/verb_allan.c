@@ -87,7 +87,7 @@ static size_t *parse_tau(const char *text, double dt, size_t n, size_t *count, i
         double m = status == IMK_OK ? floor(tau / dt + 0.5) : 0;
         if (status != IMK_OK)
             *code = command_misused("--tau %s: \"%.*s\" is no averaging time; expected octave, "
-                                    "decade, all or a list such as 1s,10s,100s",
+                                    "decade, all or a list such as 1,10,100 in seconds",
                                     text, (int)length, item);
         else if (!(m >= 1 && m <= (double)(n / 2)))
             *code = command_misused("--tau %s: \"%.*s\" is outside what this record allows, %g s "

@@ -142,9 +142,9 @@ static void test_allan_taus(void **state)
         run("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau all -o - | wc -l"),
         0);
     assert_string_equal(out, "501\n");
-    check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1,2", 2,
-                  "imukit allan: error: --tau 1,2: \"1\" is no averaging time; expected octave, "
-                  "decade, all or a list such as 1s,10s,100s\n" TRY("allan"));
+    check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1,2m", 2,
+                  "imukit allan: error: --tau 1,2m: \"2m\" is no averaging time; expected octave, "
+                  "decade, all or a list such as 1,10,100 in seconds\n" TRY("allan"));
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1s,501s", 2,
                   "imukit allan: error: --tau 1s,501s: \"501s\" is outside what this record "
                   "allows, 1 s to 500 s\n" TRY("allan"));
