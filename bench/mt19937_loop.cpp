@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Yardstick of bench_simulate: what one writes first in C++. White noise and random walk on six
-// channels from one std::mt19937_64 and std::normal_distribution; prints ns per row, the shortest of
-// the repeats.
+// channels from one std::mt19937_64 and std::normal_distribution; prints ns per row, the shortest
+// of the repeats.
 //
 //     mt19937_loop ROWS REPEATS
 #include <algorithm>

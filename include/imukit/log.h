@@ -188,8 +188,8 @@ IMK_API imk_status imk_log_create(const char *path, size_t column_count,
 IMK_API imk_status imk_log_comment(imk_log_writer *writer, const char *text);
 /** Text of a label column, for a value of it; NULL when there is none. */
 typedef const char *(*imk_log_label_lookup)(void *context, size_t index);
-/** Where the texts of columns with `label` set are, for a CSV; before the first row. Without it, and
- *  where it gives NULL, and in a .npy, the index is written. It is called by several threads at
+/** Where the texts of columns with `label` set are, for a CSV; before the first row. Without it,
+ * and where it gives NULL, and in a .npy, the index is written. It is called by several threads at
  *  once when imk_log_write() has an executor. */
 IMK_API void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup,
                                   void *context);

@@ -66,8 +66,8 @@ void imki_filter_shape(imk_low_pass filter, const imki_bands *bands, double *sha
 double imki_fit_maximise(imki_fit *fit, const imki_bands *bands);
 /* The same with one amount (or the ramp: index IMK_NOISE_RAMP when `ramp`) held at a value. */
 double imki_fit_profile(imki_fit *fit, const imki_bands *bands, int held, double value);
-/* Fisher information of the active amounts at the fit, templates x templates, row-major. */
-void imki_fit_information(const imki_fit *fit, const imki_bands *bands, double *information);
+/* Covariance of the active amounts, templates x templates, row-major; zero for the others. */
+void imki_fit_covariance(const imki_fit *fit, const imki_bands *bands, double *covariance);
 double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands);
 double imki_fit_spectrum(const imki_fit *fit, size_t band);
 enum { IMKI_HELD_NONE = -1, IMKI_HELD_RAMP = -2 };

@@ -2,7 +2,6 @@
 /* Values, standard deviations and profile-likelihood intervals of the chosen terms. */
 #include "identify_internal.h"
 #include "imukit/distributions.h"
-#include "imukit/linear_algebra.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,33 +35,13 @@ static double profile_end(const imki_fit *best, imki_fit *trial, const imki_band
     return 0.5 * (inside + outside);
 }
 
-/* Covariance of the active amounts: inverse of the scaled information. */
-static void amount_covariance(const imki_fit *fit, const imki_bands *bands, double *covariance)
-{
-    const size_t t = fit->templates;
-    double h[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], scale[IMKI_TEMPLATES_MAX];
-    imki_fit_information(fit, bands, h);
-    for (size_t i = 0; i < t; i++)
-        scale[i] = fit->active[i] && h[i * t + i] > 0 ? 1 / sqrt(h[i * t + i]) : 0;
-    for (size_t i = 0; i < t; i++)
-        for (size_t j = 0; j < t; j++)
-            h[i * t + j] = i == j ? 1 + 1e-12 : h[i * t + j] * scale[i] * scale[j];
-    memset(covariance, 0, t * t * sizeof *covariance);
-    if (imk_cholesky_factor(t, h) != IMK_OK)
-        return;
-    imk_cholesky_inverse(t, h, covariance);
-    for (size_t i = 0; i < t; i++)
-        for (size_t j = 0; j < t; j++)
-            covariance[i * t + j] *= scale[i] * scale[j];
-}
-
 /* Values, sigmas and correlations of the chosen terms. */
 static void store_values(const imki_work *w, imk_identification *result)
 {
     const imki_fit *fit = w->fit;
     const size_t t = fit->templates;
     double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
-    amount_covariance(fit, w->bands, covariance);
+    imki_fit_covariance(fit, w->bands, covariance);
     for (size_t i = 0; i < IMKI_FIRST_GAUSS_MARKOV; i++) {
         imk_estimate *e = &result->term[i];
         e->present = fit->active[i] && fit->amount[i] > 0;
@@ -110,7 +89,7 @@ static void store_interval(imki_work *w, imk_identification *result, int term, d
         step = 1 / sqrt(imki_fit_ramp_information(best, w->bands));
     } else {
         double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
-        amount_covariance(best, w->bands, covariance);
+        imki_fit_covariance(best, w->bands, covariance);
         const double sd = sqrt(covariance[(size_t)term * best->templates + (size_t)term]);
         centre = sqrt(best->amount[term]);
         step = sqrt(best->amount[term] + sd) - centre;
@@ -158,7 +137,7 @@ static void store_gauss_markov(imki_work *w, imk_identification *result, size_t 
     if (!w->fit->active[slot] || !(w->fit->amount[slot] > 0))
         return;
     double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
-    amount_covariance(w->fit, w->bands, covariance);
+    imki_fit_covariance(w->fit, w->bands, covariance);
     struct imk_gauss_markov_estimate *g = &result->gauss_markov[result->gauss_markov_count++];
     const double sigma = sqrt(w->fit->amount[slot]), sd = sqrt(covariance[slot * t + slot]);
     *w->chosen = *w->fit;

@@ -115,6 +115,28 @@ static void choose_terms(imki_work *w, double needed)
                 imki_gauss_markov_refine(w->fit, w->bands, term, w->correlation_times[term], 1.5);
 }
 
+/* Gain in log-likelihood that a ramp must bring. Its estimate is judged against slow noise that is
+ * itself known from a few coefficients, so that the ratio follows Student's t with v degrees, where
+ * v = 2 S^2/var S for the fitted spectrum at the lowest frequency. With Wallace's normal
+ * approximation of t [WALLACE1959], z ~ (8v + 1)/(8v + 3) sqrt(v log(1 + t^2/v)):
+ *
+ *     2 gain = (v + 1) log(1 + t^2/v) ~ (v + 1)/v [(8v + 3)/(8v + 1)]^2 z^2 */
+static double needed_for_ramp(const imki_work *w, double significance)
+{
+    const imki_fit *fit = w->fit;
+    const size_t t = fit->templates;
+    double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], variance = 0;
+    imki_fit_covariance(fit, w->bands, covariance);
+    for (size_t i = 0; i < t; i++)
+        for (size_t j = 0; j < t; j++)
+            variance += covariance[i * t + j] * fit->shape[i][0] * fit->shape[j][0];
+    const double spectrum = imki_fit_spectrum(fit, 0);
+    const double v = fmax(1, 2 * spectrum * spectrum / variance);
+    const double z = imk_normal_quantile(1 - 0.5 * significance);
+    const double ratio = (8 * v + 3) / (8 * v + 1);
+    return 0.5 * (v + 1) / v * ratio * ratio * z * z;
+}
+
 void imki_identify_terms(imki_work *w, imk_identification *result)
 {
     const double significance = w->settings->significance;
@@ -125,7 +147,7 @@ void imki_identify_terms(imki_work *w, imk_identification *result)
     fit_fast_end(w, result, needed);
     imki_gauss_markov_find(w->fit, w->trial, w->bands, w->correlation_times);
     choose_terms(w, needed);
-    if (gain_with_ramp(w) > 0.5 * imk_chi_square_quantile(1 - significance, 1)) {
+    if (gain_with_ramp(w) > needed_for_ramp(w, significance)) {
         *w->fit = *w->trial;
         choose_terms(w, needed);
     }

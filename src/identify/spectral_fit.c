@@ -64,13 +64,28 @@ static void slope(const imki_fit *fit, const imki_bands *bands, size_t count, co
             information[j * count + i] = information[i * count + j];
 }
 
-void imki_fit_information(const imki_fit *fit, const imki_bands *bands, double *information)
+/* Covariance of the active amounts: inverse of the scaled information. */
+void imki_fit_covariance(const imki_fit *fit, const imki_bands *bands, double *covariance)
 {
-    size_t index[IMKI_TEMPLATES_MAX];
+    const size_t t = fit->templates;
+    double h[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], scale[IMKI_TEMPLATES_MAX];
     double gradient[IMKI_TEMPLATES_MAX];
-    for (size_t j = 0; j < fit->templates; j++)
-        index[j] = j;
-    slope(fit, bands, fit->templates, index, gradient, information);
+    size_t index[IMKI_TEMPLATES_MAX] = {0};
+    for (size_t i = 0; i < t; i++)
+        index[i] = i;
+    slope(fit, bands, t, index, gradient, h);
+    for (size_t i = 0; i < t; i++)
+        scale[i] = fit->active[i] && h[i * t + i] > 0 ? 1 / sqrt(h[i * t + i]) : 0;
+    for (size_t i = 0; i < t; i++)
+        for (size_t j = 0; j < t; j++)
+            h[i * t + j] = i == j ? 1 + 1e-12 : h[i * t + j] * scale[i] * scale[j];
+    memset(covariance, 0, t * t * sizeof *covariance);
+    if (imk_cholesky_factor(t, h) != IMK_OK)
+        return;
+    imk_cholesky_inverse(t, h, covariance);
+    for (size_t i = 0; i < t; i++)
+        for (size_t j = 0; j < t; j++)
+            covariance[i * t + j] *= scale[i] * scale[j];
 }
 
 double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands)

@@ -230,13 +230,11 @@ imk_status imki_output_file_replace(imk_output_file *file, uint64_t offset, cons
     return file->status;
 }
 
-/* The error of a file that failed, which is abandoned. */
-static imk_status refuse(imk_output_file *file, imk_error *error)
+/* Say why a file failed, and abandon it. */
+static void refuse(imk_output_file *file, imk_error *error)
 {
-    const imk_status status =
-        imki_system_error(error, file->status, file->target.path, file->system_error);
+    (void)imki_system_error(error, file->status, file->target.path, file->system_error);
     imk_output_file_abandon(file);
-    return status;
 }
 
 imk_status imki_output_file_prepare(imk_output_file *file, imk_error *error)
@@ -248,10 +246,12 @@ imk_status imki_output_file_prepare(imk_output_file *file, imk_error *error)
     flush(file);
     if (file->status == IMK_OK && file->target.temporary && fsync(file->target.file) != 0)
         fail(file, errno);
-    if (file->status != IMK_OK)
-        return refuse(file, error);
-    file->prepared = true;
-    return IMK_OK;
+    const imk_status status = file->status;
+    if (status == IMK_OK)
+        file->prepared = true;
+    else
+        refuse(file, error);
+    return status;
 }
 
 imk_status imk_output_file_commit(imk_output_file *file, imk_error *error)
@@ -264,7 +264,9 @@ imk_status imk_output_file_commit(imk_output_file *file, imk_error *error)
     const int number = imki_target_publish(&file->target);
     if (number != 0) {
         fail(file, number);
-        return refuse(file, error);
+        const imk_status status = file->status;
+        refuse(file, error);
+        return status;
     }
     imki_target_close(&file->target);
     release(file);
