@@ -64,6 +64,15 @@ static void store_values(const imki_work *w, imk_identification *result)
     result->log_likelihood = fit->log_likelihood;
 }
 
+/* Bartlett's factor of the likelihood ratio [BARTLETT1937]: for a variance estimated with v degrees
+ * of freedom its mean is v [log(v/2) - digamma(v/2)] ~ 1 + 1/(3v), not 1. Here v = 2 (amount/sd)^2,
+ * at least 2. */
+static double small_sample_factor(double amount, double sd)
+{
+    const double degrees = 2 * (amount / sd) * (amount / sd);
+    return 1 + 1 / (3 * (degrees > 2 ? degrees : 2));
+}
+
 /* Intervals are those of the model in which white noise, bias instability, random walk and the term
  * itself are all free, whether they were called present or not: leaving a term out would claim to
  * know that it is zero. */
@@ -93,6 +102,7 @@ static void store_interval(imki_work *w, imk_identification *result, int term, d
         const double sd = sqrt(covariance[(size_t)term * best->templates + (size_t)term]);
         centre = sqrt(best->amount[term]);
         step = sqrt(best->amount[term] + sd) - centre;
+        drop *= small_sample_factor(best->amount[term], sd);
     }
     e->upper = profile_end(best, scratch, w->bands, held, centre, step, drop);
     e->lower = centre == 0 && held != IMKI_HELD_RAMP
