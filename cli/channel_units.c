@@ -4,8 +4,16 @@
 
 #include <string.h>
 
+/* Counts are no rate and no force until somebody says what a count is. */
+static bool in_counts(const imk_log_column *column)
+{
+    return imk_dimension_equal(column->unit.dimension, imk_unit_of("count").dimension);
+}
+
 channel_kind channel_kind_of(const imk_log_column *column)
 {
+    if (in_counts(column))
+        return CHANNEL_OTHER;
     if (column->quantity == IMK_QUANTITY_ANGULAR_RATE)
         return CHANNEL_GYRO;
     return column->quantity == IMK_QUANTITY_SPECIFIC_FORCE ? CHANNEL_ACCEL : CHANNEL_OTHER;
@@ -27,9 +35,9 @@ const char *channel_axis_name(const imk_log_column *column)
 
 imk_unit channel_plain_unit(const imk_log_column *column)
 {
-    if (column->quantity == IMK_QUANTITY_ANGULAR_RATE)
+    if (channel_kind_of(column) == CHANNEL_GYRO)
         return imk_unit_of("rad/s");
-    if (column->quantity == IMK_QUANTITY_SPECIFIC_FORCE)
+    if (channel_kind_of(column) == CHANNEL_ACCEL)
         return imk_unit_of("m/s^2");
     imk_unit unit = column->unit;
     if (!(unit.scale > 0) || !unit.text[0]) {

@@ -166,7 +166,7 @@ static void judge_gravity(identification *i)
     int axes = 0;
     for (size_t c = 0; c < i->channels.count; c++) {
         const imk_log_column *column = log_channel_column(&i->channels, c);
-        if (column->quantity != IMK_QUANTITY_SPECIFIC_FORCE || column->axis > 2)
+        if (channel_kind_of(column) != CHANNEL_ACCEL || column->axis > 2)
             continue;
         square += i->result[c].mean * i->result[c].mean;
         scale = column->unit.scale;

@@ -2,10 +2,11 @@
 /** @file identify.h
  *  Static record -> stochastic terms with confidence, and a verdict on the record.
  *
- *  The estimator is maximum likelihood on the cosine spectrum of the record (docs/theory/identify):
- *  the cosine transform makes white noise and random walk exactly independent and the rest nearly
- *  so, which gives every frequency its right weight; profile-likelihood intervals; a term is kept
- *  when the likelihood says so, and otherwise reported as absent with an upper bound. */
+ *  The estimator is maximum likelihood on the cosine spectrum of the record
+ * (docs/theory/identification.md): the cosine transform makes white noise and random walk exactly
+ * independent and the rest nearly so, which gives every frequency its right weight;
+ * profile-likelihood intervals; a term is kept when the likelihood says so, and otherwise reported
+ * as absent with an upper bound. */
 #ifndef IMUKIT_IDENTIFY_H
 #define IMUKIT_IDENTIFY_H
 

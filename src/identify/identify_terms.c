@@ -147,8 +147,8 @@ void imki_identify_terms(imki_work *w, imk_identification *result)
     fit_fast_end(w, result, needed);
     imki_gauss_markov_find(w->fit, w->trial, w->bands, w->correlation_times);
     choose_terms(w, needed);
-    /* In one record a ramp and a random walk look much alike, and a ramp that is not there takes the
-     * walk's place: it must be ten times less likely by chance than the other terms. */
+    /* In one record a ramp and a random walk look much alike, and a ramp that is not there takes
+     * the walk's place: it must be ten times less likely by chance than the other terms. */
     if (gain_with_ramp(w) > needed_for_ramp(w, 0.1 * significance)) {
         *w->fit = *w->trial;
         choose_terms(w, needed);

@@ -97,7 +97,11 @@ void imki_identify_judge(imki_work *w, const double *record, imk_identification 
         result->verdict |= IMK_VERDICT_FILTERED;
     if (result->valid_from > 1.5 * w->settings->dt || result->valid_to < 0.99 * result->longest)
         result->verdict |= IMK_VERDICT_MISFIT;
+    /* Slow noise is told when there is some, and bias instability, if it is that, to a factor of 3.
+     */
     const imk_estimate *b = &result->term[IMK_NOISE_BIAS_INSTABILITY];
-    if (!b->present || b->upper > 3 * b->lower)
+    const bool other = result->term[IMK_NOISE_RANDOM_WALK].present ||
+                       result->term[IMK_NOISE_RAMP].present || result->gauss_markov_count > 0;
+    if (b->present ? b->upper > 3 * b->lower : !other)
         result->verdict |= IMK_VERDICT_SHORT;
 }

@@ -68,9 +68,13 @@ imk_low_pass imki_filter_find(imki_fit *fit, const imki_bands *bands)
 {
     const imk_low_pass none = {0, 0};
     const double plain = likelihood_with(fit, bands, none);
-    /* A mild filter does better wherever a filter is there at all: no search without a slope. */
-    const imk_low_pass mild = {2 / bands->dt, 0};
-    if (likelihood_with(fit, bands, mild) < plain + 1) {
+    /* No search without a sign of a filter: a mild one, a middling or a strong one that does
+     * better. (Where a strong filter is, a mild one may not help: the plain fit explains the record
+     * by slow noise alone.) */
+    bool sign = false;
+    for (double bandwidth = 2; bandwidth > 0.01 && !sign; bandwidth *= 0.15)
+        sign = likelihood_with(fit, bands, (imk_low_pass){bandwidth / bands->dt, 0}) > plain + 1;
+    if (!sign) {
         likelihood_with(fit, bands, none);
         return none;
     }

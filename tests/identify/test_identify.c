@@ -192,6 +192,23 @@ static void test_shapes(void **state)
     assert_true(r.five_terms_from > 0.05);
 }
 
+/* Filters well inside the band, where white noise looks like slow noise to a fit without a filter.
+ */
+static void test_strong_filters(void **state)
+{
+    (void)state;
+    const imk_low_pass filters[] = {{5, 0.7}, {10, 0.7}, {20, 0.7}, {5, 0}, {10, 0}};
+    for (size_t i = 0; i < sizeof filters / sizeof filters[0]; i++) {
+        const truth t = {.white = 1.0, .bias_instability = 0.4, .filter = filters[i]};
+        const imk_identification r = identify_truth(&t, 200000, 0.01, 1, 20 + i);
+        CHECK_RELATIVE(r.filter.bandwidth, filters[i].bandwidth, 0.05);
+        /* Five stated sigmas, and 1 % for the filter's own uncertainty. */
+        CHECK_CLOSE(r.term[IMK_NOISE_WHITE].value, 1.0, 5 * r.term[IMK_NOISE_WHITE].sigma + 0.01);
+        CHECK_CLOSE(r.term[IMK_NOISE_BIAS_INSTABILITY].value, 0.4,
+                    5 * r.term[IMK_NOISE_BIAS_INSTABILITY].sigma);
+    }
+}
+
 /* Units scale through, a constant changes nothing. */
 static void test_scale_and_offset(void **state)
 {
@@ -325,15 +342,11 @@ static void test_bad_arguments(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_coverage),
-        cmocka_unit_test(test_white_only),
-        cmocka_unit_test(test_quantization),
-        cmocka_unit_test(test_ramp),
-        cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_scale_and_offset),
-        cmocka_unit_test(test_expected_variance),
-        cmocka_unit_test(test_record_checks),
-        cmocka_unit_test(test_store),
+        cmocka_unit_test(test_coverage),         cmocka_unit_test(test_white_only),
+        cmocka_unit_test(test_quantization),     cmocka_unit_test(test_ramp),
+        cmocka_unit_test(test_shapes),           cmocka_unit_test(test_strong_filters),
+        cmocka_unit_test(test_scale_and_offset), cmocka_unit_test(test_expected_variance),
+        cmocka_unit_test(test_record_checks),    cmocka_unit_test(test_store),
         cmocka_unit_test(test_bad_arguments),
     };
     return cmocka_run_group_tests_name("identify", tests, NULL, NULL);
