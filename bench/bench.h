@@ -87,6 +87,30 @@ static inline double bench_best(int repeats, bench_work work, void *context)
     return best;
 }
 
+/** Speed-up that cores 0 and 1 allow for a piece of work: cores of a shared machine are not equally
+ *  fast. The work runs alone on each in turns; two threads can at best add the two speeds, and are
+ *  compared with the faster core. Printed as a remark. The process may use every core afterwards.
+ */
+static inline double bench_two_core_limit(const char *name, int repeats, bench_work work,
+                                          void *context)
+{
+    double best[2] = {(double)INFINITY, (double)INFINITY};
+    for (int i = 0; i < repeats; i++)
+        for (int core = 0; core < 2; core++) {
+            cpu_set_t set;
+            CPU_ZERO(&set);
+            CPU_SET(core, &set);
+            sched_setaffinity(0, sizeof set, &set);
+            best[core] = fmin(best[core], bench_once(work, context));
+        }
+    bench_unpin();
+    const double limit = 1 + fmin(best[0], best[1]) / fmax(best[0], best[1]);
+    fprintf(stderr,
+            "bench: %s: cores 0 and 1 alone take %.3g and %.3g ms: a speed-up of %.2f at best\n",
+            name, 1e3 * best[0], 1e3 * best[1], limit);
+    return limit;
+}
+
 /** Shortest times [s] of ours and the yardstick, run in turns so that both see the same machine.
  *  @param yardstick  NULL when there is none: its time is NaN */
 static inline void bench_compare(int repeats, bench_work ours, void *ours_context,

@@ -267,12 +267,13 @@ static char *write_positional(char *text, decimal d)
     }
     if (whole > 0) {
         write_digits(text + 1, d.digits, count);
-        memmove(text, text + 1, (size_t)whole);
+        text[0] = text[1]; /* most numbers have one digit there: no call for it */
+        if (whole > 1)
+            memmove(text + 1, text + 2, (size_t)whole - 1);
         text[whole] = '.';
         return text + count + 1;
     }
-    memset(text, '0', (size_t)(2 - whole));
-    text[1] = '.';
+    memcpy(text, "0.0000000", 8); /* whole >= -5: the zeros in front, and room for more digits */
     return write_digits(text + 2 - whole, d.digits, count);
 }
 

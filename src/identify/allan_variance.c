@@ -33,21 +33,29 @@ size_t imk_allan_factors(imk_allan_grid grid, size_t n, size_t *factors)
 }
 
 /* Mean of a record: sums of blocks in LANES parts, and the blocks' sums with the rounding error of
- * each addition carried along [KNUTH1998, 4.2.2]. */
-enum { LANES = 8, BLOCK = 8192 };
+ * each addition carried along [KNUTH1998, 4.2.2]. The lanes let the compiler use vectors, several
+ * at a time; their order, and so the result, is the same on every machine. */
+enum { LANES = 16, BLOCK = 2048 };
+
+/* Sum of the lanes, which are used up, in a fixed order. */
+static inline double sum_lanes(double *lane)
+{
+    for (size_t half = LANES / 2; half > 0; half /= 2)
+        for (size_t l = 0; l < half; l++)
+            lane[l] += lane[l + half];
+    return lane[0];
+}
 
 static double block_sum(const double *values, size_t count)
 {
-    double lane[LANES] = {0}, rest = 0;
+    double lane[LANES] = {0};
     size_t i = 0;
     for (; i + LANES <= count; i += LANES)
         for (size_t l = 0; l < LANES; l++)
             lane[l] += values[i + l];
     for (; i < count; i++)
-        rest += values[i];
-    return (((lane[0] + lane[1]) + (lane[2] + lane[3])) +
-            ((lane[4] + lane[5]) + (lane[6] + lane[7]))) +
-           rest;
+        lane[0] += values[i];
+    return sum_lanes(lane);
 }
 
 /* sum + step exactly: the rounded sum, and what it lacks. */
@@ -81,8 +89,7 @@ void imk_allan_sums(size_t n, const double *rate, double *sums)
     }
 }
 
-/* Sum of squared second differences of `count` (<= BLOCK) consecutive terms. The lanes let the
- * compiler use vectors; their order, and so the result, is the same on every machine. */
+/* Sum of squared second differences of `count` (<= BLOCK) consecutive terms. */
 static inline double overlapping_block(const double *s, size_t m, size_t count)
 {
     const double *a = s, *b = s + m, *c = s + 2 * m;
@@ -90,15 +97,14 @@ static inline double overlapping_block(const double *s, size_t m, size_t count)
     size_t j = 0;
     for (; j + LANES <= count; j += LANES)
         for (size_t l = 0; l < LANES; l++) {
-            const double d = (c[j + l] - b[j + l]) - (b[j + l] - a[j + l]);
+            const double middle = b[j + l], d = (c[j + l] - middle) - (middle - a[j + l]);
             lane[l] += d * d;
         }
     for (; j < count; j++) {
-        const double d = (c[j] - b[j]) - (b[j] - a[j]);
+        const double middle = b[j], d = (c[j] - middle) - (middle - a[j]);
         lane[0] += d * d;
     }
-    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
-           ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+    return sum_lanes(lane);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -137,14 +143,16 @@ static double plain_sum(const double *s, size_t m, size_t count)
     return total;
 }
 
-/* Neighbouring factors share a walk through the record, a block at a time, so that it comes from
- * memory once for all of them. */
-enum { GROUP = 4 };
+/* Factors in a group share a walk through the record, a block at a time, so that it comes from
+ * memory once for all of them. A short list (octaves) is dealt out to as many groups as there are
+ * threads, large and small factors alike; a long one is cut into neighbours, whose windows overlap.
+ */
+enum { DEALT_MAX = 64, NEIGHBOURS = 8 };
 
 typedef struct variance_work {
     imk_allan_statistic statistic;
     imk_kernel kernel;
-    size_t n, factor_count;
+    size_t n, factor_count, groups;
     const double *sums;
     const size_t *factors;
     double *variances;
@@ -154,28 +162,31 @@ typedef struct variance_work {
 static void variance_group(void *context, size_t item)
 {
     const variance_work *w = context;
-    const size_t first = item * GROUP;
-    const size_t size = w->factor_count - first < GROUP ? w->factor_count - first : GROUP;
-    const size_t *m = w->factors + first;
-    double total[GROUP] = {0};
-    size_t count[GROUP], longest = 0;
-    for (size_t i = 0; i < size; i++) {
-        count[i] = w->statistic == IMK_ALLAN_PLAIN ? w->n / m[i] - 1 : w->n - 2 * m[i] + 1;
-        longest = count[i] > longest ? count[i] : longest;
+    const bool dealt = w->factor_count <= DEALT_MAX;
+    const size_t first = dealt ? item : item * NEIGHBOURS, stride = dealt ? w->groups : 1;
+    const size_t most = dealt ? DEALT_MAX : NEIGHBOURS;
+    double total[DEALT_MAX] = {0};
+    size_t count[DEALT_MAX], size = 0, longest = 0;
+    for (size_t i = first; i < w->factor_count && size < most; i += stride, size++) {
+        const size_t m = w->factors[i];
+        count[size] = w->statistic == IMK_ALLAN_PLAIN ? w->n / m - 1 : w->n - 2 * m + 1;
+        longest = count[size] > longest ? count[size] : longest;
     }
     if (w->statistic == IMK_ALLAN_PLAIN)
         for (size_t i = 0; i < size; i++)
-            total[i] = plain_sum(w->sums, m[i], count[i]);
+            total[i] = plain_sum(w->sums, w->factors[first + i * stride], count[i]);
     else
         for (size_t j = 0; j < longest; j += BLOCK)
             for (size_t i = 0; i < size; i++)
                 if (j < count[i])
-                    total[i] += block_for(w->kernel, w->sums + j, m[i],
+                    total[i] += block_for(w->kernel, w->sums + j, w->factors[first + i * stride],
                                           count[i] - j < BLOCK ? count[i] - j : BLOCK);
     for (size_t i = 0; i < size; i++) {
-        w->variances[first + i] = total[i] / (2.0 * (double)m[i] * (double)m[i] * (double)count[i]);
+        const size_t place = first + i * stride;
+        const double m = (double)w->factors[place];
+        w->variances[place] = total[i] / (2.0 * m * m * (double)count[i]);
         if (w->counts)
-            w->counts[first + i] = count[i];
+            w->counts[place] = count[i];
     }
 }
 
@@ -186,8 +197,13 @@ imk_status imk_allan_variances(imk_allan_statistic statistic, size_t n, const do
     for (size_t i = 0; i < factor_count; i++)
         if (factors[i] < 1 || factors[i] > n / 2)
             return n < 2 ? IMK_ERROR_TOO_SHORT : IMK_ERROR_RANGE;
+    const size_t threads = executor && executor->threads > 0 ? executor->threads : 1;
+    const size_t groups = factor_count > DEALT_MAX ? (factor_count + NEIGHBOURS - 1) / NEIGHBOURS
+                          : threads < factor_count ? threads
+                                                   : factor_count;
     variance_work work = {
-        statistic, imk_random_seeded(0).kernel, n, factor_count, sums, factors, variances, counts};
-    imk_execute(executor, (factor_count + GROUP - 1) / GROUP, variance_group, &work);
+        statistic, imk_random_seeded(0).kernel, n, factor_count, groups, sums, factors, variances,
+        counts};
+    imk_execute(executor, groups, variance_group, &work);
     return IMK_OK;
 }

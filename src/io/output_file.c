@@ -23,6 +23,7 @@
 
 enum {
     BUFFER_SIZE = 1 << 20, /* few system calls, and still in the second-level cache */
+    DIRECT_SIZE = 1 << 15, /* from here on a copy costs more than a call of its own */
     PRINT_SIZE = 4096
 };
 
@@ -80,7 +81,7 @@ static imk_status flush(imk_output_file *file)
 
 static imk_status write_plain(imk_output_file *file, const unsigned char *bytes, size_t size)
 {
-    if (size >= BUFFER_SIZE) {
+    if (size >= DIRECT_SIZE) {
         flush(file);
         return write_all(file, bytes, size);
     }
