@@ -5,6 +5,7 @@
 #   make test    build and run every test
 #   make check   format, static analysis, sanitizers, portability, byte identity
 #   make bench   speed against yardsticks: build/bench.csv
+#   make experiments  build the long statistical experiments: build/experiments/*
 #   make fuzz    feed the parsers with random input for a while
 #   make install [PREFIX=/usr/local] [DESTDIR=]
 #   make deps    only install the Debian packages that are missing
@@ -23,7 +24,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check bench fuzz install deps clean help
+.PHONY: all demo test check bench experiments fuzz install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -50,6 +51,11 @@ check:
 bench:
 	@tools/install_dependencies.sh build bench
 	@$(alone) BUILD=$(BUILD) tools/run_bench
+
+experiments:
+	@tools/install_dependencies.sh build
+	@$(configure) $(quiet)
+	@$(compile) --target experiments
 
 fuzz:
 	@tools/install_dependencies.sh build fuzz

@@ -33,3 +33,15 @@ if(yardstick_sources AND IMUKIT_CXX)
     add_dependencies(benchmarks yardstick-${name})
   endforeach()
 endif()
+
+# Long statistical experiments, one program per file experiments/*.c; target `experiments`.
+add_custom_target(experiments)
+file(GLOB experiment_sources CONFIGURE_DEPENDS experiments/*.c)
+foreach(source ${experiment_sources})
+  get_filename_component(name ${source} NAME_WE)
+  add_executable(${name} EXCLUDE_FROM_ALL ${source})
+  target_link_libraries(${name} PRIVATE imukit-io m)
+  set_target_properties(${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/experiments)
+  add_dependencies(experiments ${name})
+endforeach()
