@@ -263,9 +263,12 @@ static void format_matrix(const imki_row_format *format, const double *const *co
 void imki_log_format(const imki_row_format *format, const double *const *columns, size_t first,
                      size_t count, imki_log_bytes *bytes)
 {
-    bytes->size = 0;
+    /* In a variable of this thread's own: neighbouring blocks share cache lines. */
+    imki_log_bytes own = *bytes;
+    own.size = 0;
     if (format->binary)
-        format_matrix(format, columns, first, count, bytes);
+        format_matrix(format, columns, first, count, &own);
     else
-        format_text(format, columns, first, count, bytes);
+        format_text(format, columns, first, count, &own);
+    *bytes = own;
 }
