@@ -91,7 +91,7 @@ IMK_API size_t imk_identify_workspace_size(size_t n);
  *  @param n         samples, at least 256
  *  @param samples   equally spaced, finite; not changed
  *  @return IMK_ERROR_TOO_SHORT, IMK_ERROR_CONSTANT, IMK_ERROR_NOT_FINITE (error.index: sample),
- *          IMK_ERROR_WORKSPACE, IMK_ERROR_NO_CONVERGENCE */
+ *          IMK_ERROR_WORKSPACE, IMK_ERROR_NO_CONVERGENCE (no noise in the record) */
 IMK_API imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
                                         const double *samples, imk_identification *result,
                                         void *workspace, size_t workspace_size, imk_error *error);

@@ -85,17 +85,62 @@ static imk_status check_arguments(const imk_identify_settings *settings, size_t 
     return IMK_OK;
 }
 
-static void remove_mean(imki_work *w, const double *samples, imk_identification *result)
+/* A power of two that brings the record's span near 1, so that no square overflows or vanishes. */
+static double scale_of(size_t n, const double *samples)
+{
+    double span = 0;
+    int exponent;
+    for (size_t i = 1; i < n; i++)
+        span = fmax(span, fabs(samples[i] - samples[0]));
+    frexp(span, &exponent);
+    return ldexp(1, exponent < -1000 ? 1000 : exponent > 1000 ? -1000 : -exponent);
+}
+
+/* The record without its mean, scaled, as the work's samples. */
+static void take_record(imki_work *w, const double *samples, imk_identification *result)
 {
     double shifted = 0, squares = 0;
     for (size_t i = 0; i < w->n; i++)
-        shifted += samples[i] - samples[0];
-    result->mean = samples[0] + shifted / (double)w->n;
+        shifted += (samples[i] - samples[0]) * w->scale;
+    const double mean = shifted / (double)w->n;
     for (size_t i = 0; i < w->n; i++) {
-        w->samples[i] = samples[i] - result->mean;
+        w->samples[i] = (samples[i] - samples[0]) * w->scale - mean;
         squares += w->samples[i] * w->samples[i];
     }
-    result->deviation = sqrt(squares / (double)(w->n - 1));
+    result->mean = samples[0] + mean / w->scale;
+    result->deviation = sqrt(squares / (double)(w->n - 1)) / w->scale;
+}
+
+static void rescale(imk_estimate *e, double factor)
+{
+    e->value *= factor;
+    e->sigma *= factor;
+    e->lower *= factor;
+    e->upper *= factor;
+}
+
+/* Back to the unit of the record. */
+static void undo_scale(imk_identification *result, double factor)
+{
+    for (int term = 0; term < IMK_NOISE_TERMS; term++)
+        rescale(&result->term[term], factor);
+    for (int i = 0; i < result->gauss_markov_count; i++)
+        rescale(&result->gauss_markov[i].sigma, factor);
+    for (int i = 0; i < result->sinusoid_count; i++)
+        result->sinusoid[i].amplitude *= factor;
+    for (int i = 0; i < result->resonance_count; i++)
+        result->resonance[i].sigma *= factor;
+    result->minimum_floor *= factor;
+}
+
+static bool is_finite(const imk_identification *result)
+{
+    double sum = 0; /* not a number as soon as one of them is none, or infinite */
+    for (int term = 0; term < IMK_NOISE_TERMS; term++) {
+        const imk_estimate *e = &result->term[term];
+        sum += 0 * e->value + 0 * e->sigma + 0 * e->lower + 0 * e->upper;
+    }
+    return sum == 0;
 }
 
 imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
@@ -105,10 +150,10 @@ imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
     imk_status status = check_arguments(settings, n, samples, workspace_size, error);
     if (status != IMK_OK)
         return status;
-    imki_work work = {.settings = settings, .n = n}, *w = &work;
+    imki_work work = {.settings = settings, .n = n, .scale = scale_of(n, samples)}, *w = &work;
     lay_out(w, workspace);
     imk_identification found = {0};
-    remove_mean(w, samples, &found);
+    take_record(w, samples, &found);
     found.resolution = imki_record_resolution(n, samples, w->coefficients, n < SORTED ? n : SORTED);
     found.verdict = imki_record_verdict(n, samples, found.resolution, found.deviation);
 
@@ -117,7 +162,12 @@ imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
         imki_identify_lines(w, &found);
     imki_identify_terms(w, &found);
     imki_identify_intervals(w, &found);
-    imki_identify_judge(w, samples, &found);
+    take_record(w, samples, &found); /* the lines may have been taken out */
+    imki_identify_judge(w, &found);
+    undo_scale(&found, 1 / w->scale);
+    if (!is_finite(&found))
+        return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, NULL, "no noise in the record",
+                             "a record of a real sensor: this one is smooth or too regular");
     *result = found;
     return IMK_OK;
 }

@@ -118,7 +118,8 @@ unsigned imki_record_verdict(size_t n, const double *samples, double resolution,
 typedef struct imki_work {
     const imk_identify_settings *settings;
     size_t n;
-    double *samples;      /* n: mean removed, sinusoids subtracted */
+    double scale;         /* of samples and all that follows from them: record times scale */
+    double *samples;      /* n: mean removed, later sinusoids subtracted */
     double *coefficients; /* n: cosine transform */
     double *cumulative;   /* n + 1: powers summed, later running sums */
     void *transform;
@@ -135,6 +136,6 @@ void imki_identify_transform(imki_work *w);
 void imki_identify_lines(imki_work *w, imk_identification *result);
 void imki_identify_terms(imki_work *w, imk_identification *result);
 void imki_identify_intervals(imki_work *w, imk_identification *result);
-void imki_identify_judge(imki_work *w, const double *record, imk_identification *result);
+void imki_identify_judge(imki_work *w, imk_identification *result);
 
 #endif

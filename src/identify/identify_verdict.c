@@ -57,7 +57,7 @@ static void agreement(const imk_identification *result, double dt, size_t count,
     *to = length > 0 ? (double)points[first + length - 1].m * dt : 0;
 }
 
-static void compare_with_allan(imki_work *w, const double *record, imk_identification *result)
+static void compare_with_allan(imki_work *w, imk_identification *result)
 {
     const double dt = w->settings->dt;
     size_t factors[FACTORS_MAX], count = imk_allan_factors(IMK_ALLAN_DECADE, w->n, NULL);
@@ -69,7 +69,7 @@ static void compare_with_allan(imki_work *w, const double *record, imk_identific
         count--;
     imk_allan_settings settings = imk_allan_default();
     settings.confidence = 0.999;
-    imk_allan_sums(w->n, record, w->cumulative);
+    imk_allan_sums(w->n, w->samples, w->cumulative);
     imk_allan_points(&settings, w->n, w->cumulative, count, factors, points, NULL);
 
     double least = points[0].deviation;
@@ -86,9 +86,9 @@ static void compare_with_allan(imki_work *w, const double *record, imk_identific
     agreement(&five, dt, count, points, &result->five_terms_from, &five_terms_to);
 }
 
-void imki_identify_judge(imki_work *w, const double *record, imk_identification *result)
+void imki_identify_judge(imki_work *w, imk_identification *result)
 {
-    compare_with_allan(w, record, result);
+    compare_with_allan(w, result);
     if (result->sinusoid_count > 0)
         result->verdict |= IMK_VERDICT_LINES;
     if (result->resonance_count > 0)

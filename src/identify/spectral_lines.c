@@ -193,7 +193,11 @@ bool imki_sinusoid_remove(size_t n, double dt, double frequency, double variance
     project(n, samples, cycles, &c, &s);
     c *= 2 / (double)n;
     s *= 2 / (double)n;
-    if (!(0.5 * (c * c + s * s) > 0.6 * variance))
+    const double power = 0.5 * (c * c + s * s);
+    double all = 0;
+    for (size_t i = 0; i < n; i++)
+        all += samples[i] * samples[i] / (double)n;
+    if (!(power > 0.6 * variance && all - power > 1e-9 * all))
         return false;
     for (size_t i = 0; i < n; i++) {
         const double turns = cycles * (double)i, phase = turn * (turns - floor(turns));

@@ -281,6 +281,47 @@ static void test_record_checks(void **state)
     free(x), free(y);
 }
 
+/* Records that no sensor makes: whatever comes out is finite and a valid model, or a refusal. */
+static void test_odd_records(void **state)
+{
+    (void)state;
+    enum { KINDS = 10 };
+    static const size_t sizes[] = {256, 257, 1000, 5003};
+    static const double scales[] = {1, 1e-230, 1e210};
+    static imk_model model;
+    for (size_t trial = 0; trial < KINDS * 4 * 3; trial++) {
+        const size_t n = sizes[trial / KINDS % 4];
+        const double scale = scales[trial / KINDS / 4];
+        double *x = malloc(n * sizeof *x);
+        imk_random_normals(imk_random_seeded(trial), 1, 0, n, x);
+        for (size_t i = 0; i < n; i++) {
+            const double k = (double)i,
+                         odd[KINDS] = {
+                             x[i], i == n / 2,        i > n / 2,  sin(0.7 * k),    x[i] > 0,
+                             k,    floor(0.3 * x[i]), x[i] + 1e9, (double)(i % 2), exp(-k / 20)};
+            x[i] = odd[trial % KINDS] * scale;
+        }
+        imk_identify_settings settings = imk_identify_default();
+        settings.dt = 0.01;
+        const size_t size = imk_identify_workspace_size(n);
+        void *workspace = malloc(size);
+        imk_identification r;
+        memset(&r, 0, sizeof r);
+        imk_error error;
+        const imk_status status =
+            imk_identify_channel(&settings, n, x, &r, workspace, size, &error);
+        /* A pure tone has no noise; the others do, or look as if they had. */
+        CHECK_STATUS(status, trial % KINDS == 3 ? IMK_ERROR_NO_CONVERGENCE : IMK_OK);
+        if (status == IMK_OK) {
+            model = imk_model_default();
+            imk_identification_store(&r, &model, false, 0);
+            CHECK_STATUS(imk_model_validate(&model, &error), IMK_OK);
+        }
+        free(workspace);
+        free(x);
+    }
+}
+
 static void test_store(void **state)
 {
     (void)state;
@@ -342,11 +383,17 @@ static void test_bad_arguments(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_coverage),         cmocka_unit_test(test_white_only),
-        cmocka_unit_test(test_quantization),     cmocka_unit_test(test_ramp),
-        cmocka_unit_test(test_shapes),           cmocka_unit_test(test_strong_filters),
-        cmocka_unit_test(test_scale_and_offset), cmocka_unit_test(test_expected_variance),
-        cmocka_unit_test(test_record_checks),    cmocka_unit_test(test_store),
+        cmocka_unit_test(test_coverage),
+        cmocka_unit_test(test_white_only),
+        cmocka_unit_test(test_quantization),
+        cmocka_unit_test(test_ramp),
+        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_strong_filters),
+        cmocka_unit_test(test_scale_and_offset),
+        cmocka_unit_test(test_expected_variance),
+        cmocka_unit_test(test_record_checks),
+        cmocka_unit_test(test_odd_records),
+        cmocka_unit_test(test_store),
         cmocka_unit_test(test_bad_arguments),
     };
     return cmocka_run_group_tests_name("identify", tests, NULL, NULL);
