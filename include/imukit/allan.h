@@ -90,6 +90,7 @@ typedef struct imk_allan_settings {
     bool greenhall_riley; /**< degrees of freedom of the continuous process; false: exact ones */
 } imk_allan_settings;
 
+/** 95 % intervals of the overlapping deviation, with the exact degrees of freedom. */
 IMK_API imk_allan_settings imk_allan_default(void);
 
 /** One point of an Allan plot. */

@@ -13,6 +13,7 @@ extern "C" {
 
 /** Standard normal distribution function and its inverse; relative error < 1e-14, also in tails. */
 IMK_API double imk_normal_probability(double x);
+/** x below which a standard normal lies with this probability. */
 IMK_API double imk_normal_quantile(double probability);
 
 /** log Gamma(x) for x > 0, relative error < 1e-14 (absolute near 1 and 2). */
@@ -21,12 +22,14 @@ IMK_API double imk_log_gamma(double x);
 /** Regularised incomplete gamma functions P(a, x) and Q = 1 - P, a > 0, x >= 0; relative error of
  *  the smaller one < 1e-12 for a <= 1e8. */
 IMK_API double imk_gamma_lower(double a, double x);
+/** Q(a, x), the upper one. */
 IMK_API double imk_gamma_upper(double a, double x);
 
 /** Chi-square distribution with any real degrees of freedom > 0: probability of a value <= x, and
  *  the value below which it lies with a probability, relative error < 1e-12 (1e-12/degrees below 1
  *  degree) for probabilities 1e-12 … 1 - 1e-12; about 1 us. */
 IMK_API double imk_chi_square_probability(double x, double degrees);
+/** x below which chi-square lies with this probability. */
 IMK_API double imk_chi_square_quantile(double probability, double degrees);
 
 #ifdef __cplusplus

@@ -25,6 +25,7 @@ IMK_API double imk_ln(double x);
 /** Sine and cosine of x [rad]. Error below 0.85 ulp for |x| <= 1e5; up to 1e9 below 2 ulp or 1e-16,
  *  whichever is larger; up to 1e15 below 1e-15. NaN beyond and for infinities. */
 IMK_API double imk_sin(double x);
+/** Cosine of x [rad]; as imk_sin(). */
 IMK_API double imk_cos(double x);
 
 #ifdef __cplusplus

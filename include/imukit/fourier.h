@@ -14,6 +14,7 @@ extern "C" {
  *  n, twice that for small, and 115 n where Bluestein's algorithm is needed. The workspace may be
  *  at any address, and holds nothing between calls. */
 IMK_API size_t imk_fourier_workspace_size(size_t n);
+/** Workspace [bytes] of imk_cosine() for n points; 0 when n is 0 or too large. */
 IMK_API size_t imk_cosine_workspace_size(size_t n);
 
 /** Complex transform in place: X[k] = sum_j x[j] exp(-+ 2 pi i j k / n); `inverse` takes the plus

@@ -82,6 +82,7 @@ typedef struct imk_identify_settings {
     bool shape;          /**< look for lines, resonances and the output filter; true */
 } imk_identify_settings;
 
+/** 95 % intervals, 1 % significance, shapes looked for; dt must be set. */
 IMK_API imk_identify_settings imk_identify_default(void);
 
 /** Bytes of workspace for n samples (about 32 n). */

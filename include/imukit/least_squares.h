@@ -41,6 +41,7 @@ typedef struct imk_least_squares_result {
     int free_parameters; /**< not held at a bound */
 } imk_least_squares_result;
 
+/** The tolerances and limits named above; the problem itself must be set. */
 IMK_API imk_least_squares imk_least_squares_default(void);
 
 /** Bytes of workspace for a problem. */

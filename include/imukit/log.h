@@ -52,6 +52,7 @@ typedef struct imk_log_settings {
     const char *axes;      /**< "right-forward-up" …: mapped to forward-right-down; NULL: as is */
 } imk_log_settings;
 
+/** Everything from the header of the file. */
 IMK_API imk_log_settings imk_log_settings_default(void);
 
 /** What was found in the rows read so far. Rows count from 1, the first data row.
@@ -95,7 +96,9 @@ IMK_API imk_status imk_log_open_memory(const char *text, size_t size,
                                        const imk_log_settings *settings, imk_log_reader **reader,
                                        imk_error *error);
 
+/** Columns of the log. */
 IMK_API size_t imk_log_column_count(const imk_log_reader *reader);
+/** Column `index` as the reader gives it, SI; NULL beyond the last. */
 IMK_API const imk_log_column *imk_log_column_get(const imk_log_reader *reader, size_t index);
 /** Index of the column of a quantity and axis, or -1. */
 IMK_API int imk_log_column_find(const imk_log_reader *reader, imk_quantity quantity, int axis);
@@ -122,6 +125,7 @@ IMK_API const char *imk_log_label(const imk_log_reader *reader, size_t index);
 /** Findings on the rows read so far. */
 IMK_API imk_log_findings imk_log_findings_get(const imk_log_reader *reader);
 
+/** Close and free; NULL is allowed. */
 IMK_API void imk_log_close(imk_log_reader *reader);
 
 /** A whole log in memory. */
@@ -141,6 +145,7 @@ typedef void (*imk_progress)(void *context, uint64_t done, uint64_t total);
 IMK_API imk_status imk_log_load(const char *path, const imk_log_settings *settings,
                                 imk_progress progress, void *progress_context, imk_log *log,
                                 imk_error *error);
+/** Free the columns of a loaded log. */
 IMK_API void imk_log_free(imk_log *log);
 /** Index of the column of a quantity and axis, or -1. */
 IMK_API int imk_log_find(const imk_log *log, imk_quantity quantity, int axis);

@@ -201,6 +201,7 @@ typedef struct imk_device {
     bool is_preset;     /**< one of the five grades */
 } imk_device;
 
+/** Entries of the catalogue, presets included. */
 IMK_API size_t imk_device_count(void);
 /** Entry `index`; pointers live for ever. NULL beyond the end. */
 IMK_API const imk_device *imk_device_get(size_t index);
@@ -241,6 +242,7 @@ typedef struct imk_grade_result {
     const char *limiting; /**< "gyro bias" or "accelerometer bias": what decides overall (the
                              gyro's, of two equal classes); "" when neither is stated */
 } imk_grade_result;
+/** Grade of a model; see imk_grade_result. */
 IMK_API imk_grade_result imk_grade_model(const imk_model *model);
 
 #ifdef __cplusplus

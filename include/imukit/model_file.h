@@ -30,6 +30,7 @@ IMK_API imk_status imk_model_read(const char *path, imk_model *model, imk_docume
 IMK_API imk_status imk_model_parse(const char *text, size_t size, imk_model *model,
                                    imk_document **document, imk_error *error);
 
+/** Free a document; NULL is allowed. */
 IMK_API void imk_document_free(imk_document *document);
 
 /** Write a model file. Values equal to those of `document` keep its text, units and order; others

@@ -60,7 +60,9 @@ typedef struct imk_noise_block {
 
 /** N^2/tau */
 IMK_API double imk_white_allan_variance(double density, double tau);
+/** The same, the samples being means over dt. */
 IMK_API double imk_white_sampled_allan_variance(double density, double dt, size_t n);
+/** N^2 at every frequency. */
 IMK_API double imk_white_sampled_spectrum(double density, double dt, double frequency);
 
 typedef struct imk_white_state {
@@ -69,8 +71,10 @@ typedef struct imk_white_state {
     double sigma;          /**< N/sqrt(dt) */
     imk_noise_block block;
 } imk_white_state;
+/** Start at sample 0. @return IMK_ERROR_RANGE, IMK_ERROR_NOT_FINITE */
 IMK_API imk_status imk_white_start(imk_white_state *state, double density, double dt,
                                    imk_random random, uint64_t stream);
+/** Add the next `count` samples. */
 IMK_API void imk_white_add(imk_white_state *state, size_t count, double *out);
 
 /* ---- ARMA sequences -------------------------------------------------------------------------
@@ -105,6 +109,7 @@ typedef struct imk_arma_state {
  *  it is drawn. */
 IMK_API imk_status imk_arma_start(imk_arma_state *state, const imk_arma *arma, imk_random random,
                                   uint64_t stream);
+/** Add the next `count` samples. */
 IMK_API void imk_arma_add(imk_arma_state *state, size_t count, double *out);
 
 /* ---- white noise through the sensor's output filter ----------------------------------------
@@ -130,6 +135,7 @@ IMK_API double imk_filtered_white_sampled_spectrum(double density, imk_low_pass 
 /** The sequence: IMK_ERROR_RANGE unless 1e-6 <= bandwidth * dt <= 1e6 or bandwidth is 0. */
 IMK_API imk_status imk_filtered_white_arma(double density, imk_low_pass filter, double dt,
                                            imk_arma *arma);
+/** Stationary from sample 0; continue with imk_arma_add(). @return as imk_filtered_white_arma() */
 IMK_API imk_status imk_filtered_white_start(imk_arma_state *state, double density,
                                             imk_low_pass filter, double dt, imk_random random,
                                             uint64_t stream);
@@ -146,7 +152,9 @@ IMK_API imk_status imk_filtered_white_start(imk_arma_state *state, double densit
 
 /** The flat part, (2 ln 2/pi) B^2. */
 IMK_API double imk_flicker_allan_variance(double instability, double tau);
+/** Exact for the generated stages. */
 IMK_API double imk_flicker_sampled_allan_variance(double instability, double dt, size_t n);
+/** Exact for the generated stages. */
 IMK_API double imk_flicker_sampled_spectrum(double instability, double dt, double frequency);
 /** Expected square, times dt, of cosine coefficient k (imk_cosine(), 1 <= k < n) of n samples: the
  *  spectrum at f = k/(2 n dt) less what the ends of a finite record take from it, which matters for
@@ -173,13 +181,16 @@ typedef struct imk_flicker_state {
 /** Takes the streams of 16 instances: `stream` and the next 15. */
 IMK_API imk_status imk_flicker_start(imk_flicker_state *state, double instability, double dt,
                                      imk_random random, uint64_t stream);
+/** Add the next `count` samples. */
 IMK_API void imk_flicker_add(imk_flicker_state *state, size_t count, double *out);
 
 /* ---- random walk of the output: K [unit/sqrt(s)] -------------------------------------------- */
 
 /** K^2 tau/3 */
 IMK_API double imk_random_walk_allan_variance(double k, double tau);
+/** K^2 tau/3 (1 + 1/(2 n^2)): the walk is point-sampled. */
 IMK_API double imk_random_walk_sampled_allan_variance(double k, double dt, size_t n);
+/** K^2 dt^2/(4 sin^2(pi f dt)). */
 IMK_API double imk_random_walk_sampled_spectrum(double k, double dt, double frequency);
 
 typedef struct imk_random_walk_state {
@@ -192,6 +203,7 @@ typedef struct imk_random_walk_state {
 /** Starts at 0: sample 0 is 0. */
 IMK_API imk_status imk_random_walk_start(imk_random_walk_state *state, double k, double dt,
                                          imk_random random, uint64_t stream);
+/** Add the next `count` samples. */
 IMK_API void imk_random_walk_add(imk_random_walk_state *state, size_t count, double *out);
 
 /* ---- ramp: R [unit/s], deterministic -------------------------------------------------------- */
@@ -208,9 +220,12 @@ typedef struct imk_gauss_markov {
     double correlation_time; /**< [s], > 0 and finite */
 } imk_gauss_markov;
 
+/** 2 sigma^2 T/tau [1 - T/(2 tau) (3 - 4 e^(-tau/T) + e^(-2 tau/T))], by series for short tau. */
 IMK_API double imk_gauss_markov_allan_variance(imk_gauss_markov process, double tau);
+/** Of the point-sampled process, an AR(1) sequence. */
 IMK_API double imk_gauss_markov_sampled_allan_variance(imk_gauss_markov process, double dt,
                                                        size_t n);
+/** Of the point-sampled process. */
 IMK_API double imk_gauss_markov_sampled_spectrum(imk_gauss_markov process, double dt,
                                                  double frequency);
 /** As imk_flicker_cosine_spectrum(); exact. */
@@ -228,6 +243,7 @@ typedef struct imk_gauss_markov_state {
 /** Stationary from sample 0. */
 IMK_API imk_status imk_gauss_markov_start(imk_gauss_markov_state *state, imk_gauss_markov process,
                                           double dt, imk_random random, uint64_t stream);
+/** Add the next `count` samples. */
 IMK_API void imk_gauss_markov_add(imk_gauss_markov_state *state, size_t count, double *out);
 
 /* ---- sinusoid of random phase --------------------------------------------------------------- */
@@ -239,6 +255,7 @@ typedef struct imk_sinusoid {
 
 /** a^2 (sin^2(pi f tau)/(pi f tau))^2 */
 IMK_API double imk_sinusoid_allan_variance(imk_sinusoid sinusoid, double tau);
+/** a^2 [sin^2(pi f tau)/(n sin(pi f dt))]^2, averaged over the phase. */
 IMK_API double imk_sinusoid_sampled_allan_variance(imk_sinusoid sinusoid, double dt, size_t n);
 
 typedef struct imk_sinusoid_state {
@@ -250,6 +267,7 @@ typedef struct imk_sinusoid_state {
 /** The phase is counted in whole 2^-64 cycles: it neither drifts nor repeats. */
 IMK_API imk_status imk_sinusoid_start(imk_sinusoid_state *state, imk_sinusoid sinusoid, double dt,
                                       imk_random random, uint64_t stream);
+/** Add the next `count` samples. */
 IMK_API void imk_sinusoid_add(imk_sinusoid_state *state, size_t count, double *out);
 
 /* ---- structural resonance: x'' + (w/Q) x' + w^2 x = white, point-sampled -------------------- */
@@ -260,8 +278,11 @@ typedef struct imk_resonance {
     double q;         /**< quality factor, > 0.5, at most 1e6 */
 } imk_resonance;
 
+/** Of the continuous process. */
 IMK_API double imk_resonance_allan_variance(imk_resonance resonance, double tau);
+/** Of the point-sampled process. */
 IMK_API double imk_resonance_sampled_allan_variance(imk_resonance resonance, double dt, size_t n);
+/** Of the point-sampled process; designs it each time, see imk_resonance_arma(). */
 IMK_API double imk_resonance_sampled_spectrum(imk_resonance resonance, double dt, double frequency);
 /** The exact ARMA(2,1); IMK_ERROR_RANGE unless 1e-6 <= frequency * dt <= 1e6. */
 IMK_API imk_status imk_resonance_arma(imk_resonance resonance, double dt, imk_arma *arma);
@@ -273,7 +294,9 @@ IMK_API imk_status imk_resonance_start(imk_arma_state *state, imk_resonance reso
 
 /** 3 Q^2/tau^2, for Q = LSB/sqrt(12) [unit s] and a busy input. */
 IMK_API double imk_quantization_allan_variance(double q, double tau);
+/** 3 Q^2/tau^2, exact for independent rounding errors of the integral. */
 IMK_API double imk_quantization_sampled_allan_variance(double q, double dt, size_t n);
+/** 4 Q^2 sin^2(pi f dt)/dt. */
 IMK_API double imk_quantization_sampled_spectrum(double q, double dt, double frequency);
 
 typedef struct imk_quantization_state {

@@ -69,7 +69,9 @@ IMK_API imk_status imk_figure_svg(const imk_figure *figure, char **svg, size_t *
  * imk_page_write() then reports. */
 typedef struct imk_page imk_page;
 
+/** Start a page; NULL when memory is exhausted, which every function below allows. */
 IMK_API imk_page *imk_page_create(const char *title, const char *subtitle);
+/** A heading, escaped. */
 IMK_API void imk_page_heading(imk_page *page, const char *text);
 /** A paragraph of plain text (escaped). */
 IMK_API void imk_page_text(imk_page *page, const char *text);

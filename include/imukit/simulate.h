@@ -37,6 +37,7 @@ typedef struct imk_simulation {
     double roll, pitch, yaw; /**< attitude of the body, north-east-down [rad] */
 } imk_simulation;
 
+/** 100 Hz, seed 0, level and at rest at 45 deg north with Earth rate and gravity. */
 IMK_API imk_simulation imk_simulation_default(void);
 
 /** True angular rate [rad/s] and specific force [m/s^2] of a body at rest, in body axes. Without

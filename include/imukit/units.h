@@ -52,11 +52,13 @@ IMK_API imk_status imk_unit_parse(const char *begin, const char *end, imk_unit *
 /** Read a unit known to be right, in a string literal of the caller; scale 0 if it is not. */
 IMK_API imk_unit imk_unit_of(const char *text);
 
+/** True when all exponents are the same. */
 IMK_API bool imk_dimension_equal(imk_dimension a, imk_dimension b);
 
 /** What a dimension is called: "an angular rate", "a white-noise density of angular rate", … and
  *  the usual units for it: "deg/h, deg/s or rad/s". Both are never NULL. */
 IMK_API const char *imk_dimension_name(imk_dimension dimension);
+/** The usual units of a dimension, never NULL. */
 IMK_API const char *imk_dimension_examples(imk_dimension dimension);
 
 /** Read `number… [± sigma…] unit`, a quantity of the model file: 1 or up to max_count numbers, then
