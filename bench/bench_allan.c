@@ -23,7 +23,7 @@ typedef struct allan_run {
 static void run(void *context)
 {
     allan_run *r = context;
-    imk_allan_sums(SAMPLES, r->rate, r->sums);
+    imk_allan_sums(SAMPLES, r->rate, r->sums, r->executor);
     imk_allan_variances(IMK_ALLAN_OVERLAPPING, SAMPLES, r->sums, r->count, r->factors, r->variances,
                         NULL, r->executor);
 }

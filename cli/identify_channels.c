@@ -27,7 +27,7 @@ static imk_status take_allan_curve(channel_work *work, size_t channel)
     double *sums = malloc((n + 1) * sizeof *sums);
     if (!sums)
         return IMK_ERROR_MEMORY;
-    imk_allan_sums(n, log_channel_data(&all->channels, channel), sums);
+    imk_allan_sums(n, log_channel_data(&all->channels, channel), sums, NULL);
     imk_allan_settings settings = imk_allan_default();
     settings.confidence = work->settings.confidence;
     imk_status status =

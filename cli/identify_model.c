@@ -177,7 +177,7 @@ static imk_status twin_curves(identification *i, double *const *columns,
     imk_status status = factors ? IMK_OK : IMK_ERROR_MEMORY;
     settings.confidence = i->options->confidence;
     for (size_t c = 0; c < i->channels.count && status == IMK_OK; c++) {
-        imk_allan_sums(n, columns[c], columns[c]);
+        imk_allan_sums(n, columns[c], columns[c], NULL);
         status = allan_curve_compute(&settings, n, columns[c], i->channels.dt, count, factors,
                                      "Allan deviation of the twin", executor, &i->twin[c]);
     }

@@ -130,7 +130,7 @@ static double *running_sums(const allan_options *o, const log_channels *channels
 {
     double *data = log_channel_data(channels, channel);
     if (o->type == 0)
-        imk_allan_sums(n, data, data);
+        imk_allan_sums(n, data, data, NULL);
     else
         for (size_t i = 0; i <= n; i++)
             data[i] /= channels->dt;

@@ -27,7 +27,7 @@ static void deviations_item(void *context, size_t channel)
 {
     channel_work *w = context;
     double *sums = w->columns[channel];
-    imk_allan_sums(w->n, sums, sums);
+    imk_allan_sums(w->n, sums, sums, NULL);
     imk_allan_variances(IMK_ALLAN_OVERLAPPING, w->n, sums, w->factor_count, w->factors,
                         w->deviation[channel], NULL, NULL);
     for (size_t i = 0; i < w->factor_count; i++)

@@ -33,8 +33,10 @@ IMK_API size_t imk_allan_factors(imk_allan_grid grid, size_t n, size_t *factors)
  *
  *  The mean is taken first, and the sums carry their rounding error along, so that a large constant
  *  (gravity on an accelerometer) costs no digits. In place is allowed: `sums` may be the memory of
- *  `rate` when that has room for n + 1. */
-IMK_API void imk_allan_sums(size_t n, const double *rate, double *sums);
+ *  `rate` when that has room for n + 1.
+ *  @param executor NULL for serial; the result does not depend on it */
+IMK_API void imk_allan_sums(size_t n, const double *rate, double *sums,
+                            const imk_executor *executor);
 
 /** Allan variances from running sums (or phase data divided by dt).
  *

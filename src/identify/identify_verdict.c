@@ -69,7 +69,7 @@ static void compare_with_allan(imki_work *w, imk_identification *result)
         count--;
     imk_allan_settings settings = imk_allan_default();
     settings.confidence = 0.999;
-    imk_allan_sums(w->n, w->samples, w->cumulative);
+    imk_allan_sums(w->n, w->samples, w->cumulative, NULL);
     imk_allan_points(&settings, w->n, w->cumulative, count, factors, points, NULL);
 
     double least = points[0].deviation;

@@ -32,7 +32,7 @@ static void test_published_deviations(void **state)
     double y[TABLE], s[TABLE + 1], variances[3];
     size_t counts[3];
     published_set(y);
-    imk_allan_sums(TABLE, y, s);
+    imk_allan_sums(TABLE, y, s, NULL);
     CHECK_STATUS(
         imk_allan_variances(IMK_ALLAN_OVERLAPPING, TABLE, s, 3, factors, variances, counts, NULL),
         IMK_OK);
@@ -54,7 +54,7 @@ static void test_published_octaves(void **state)
     double y[TABLE], s[TABLE + 1], variances[9];
     size_t factors[16];
     published_set(y);
-    imk_allan_sums(TABLE, y, s);
+    imk_allan_sums(TABLE, y, s, NULL);
     assert_int_equal(imk_allan_factors(IMK_ALLAN_OCTAVE, TABLE, factors), 9);
     imk_allan_variances(IMK_ALLAN_OVERLAPPING, TABLE, s, 9, factors, variances, NULL, NULL);
     for (size_t i = 0; i < 9; i++)
@@ -68,7 +68,7 @@ static void test_published_nine(void **state)
     static const double y[9] = {892, 809, 823, 798, 671, 644, 883, 903, 677};
     static const size_t factors[] = {1, 2};
     double s[10], variances[2];
-    imk_allan_sums(9, y, s);
+    imk_allan_sums(9, y, s, NULL);
     imk_allan_variances(IMK_ALLAN_OVERLAPPING, 9, s, 2, factors, variances, NULL, NULL);
     CHECK_CLOSE(sqrt(variances[0]), 91.229449741, 0.5000001e-9);
     CHECK_CLOSE(sqrt(variances[1]), 85.952869838, 0.5000001e-9);
@@ -90,7 +90,7 @@ static void test_published_intervals(void **state)
     settings.confidence = 0.683;
     settings.greenhall_riley = true;
     published_set(y);
-    imk_allan_sums(TABLE, y, s);
+    imk_allan_sums(TABLE, y, s, NULL);
     CHECK_STATUS(imk_allan_points(&settings, TABLE, s, 3, factors, points, NULL), IMK_OK);
     for (size_t i = 0; i < 3; i++) {
         assert_int_equal(points[i].type, IMK_WHITE_RATE);
@@ -133,7 +133,7 @@ static void test_degrees_of_freedom_by_draws(void **state)
     for (uint64_t r = 0; r < RECORDS; r++) {
         double variance;
         imk_random_normals(random, 1, r * N, N, y);
-        imk_allan_sums(N, y, s);
+        imk_allan_sums(N, y, s, NULL);
         imk_allan_variances(IMK_ALLAN_OVERLAPPING, N, s, 1, &m, &variance, NULL, NULL);
         mean += variance / RECORDS;
         square += variance * variance / RECORDS;
@@ -161,9 +161,9 @@ static void test_large_mean(void **state)
         z[i] = y[i] + 9.8;
     }
     const size_t count = imk_allan_factors(IMK_ALLAN_OCTAVE, N, factors);
-    imk_allan_sums(N, y, s);
+    imk_allan_sums(N, y, s, NULL);
     imk_allan_variances(IMK_ALLAN_OVERLAPPING, N, s, count, factors, plain, NULL, NULL);
-    imk_allan_sums(N, z, z); /* in place */
+    imk_allan_sums(N, z, z, NULL); /* in place */
     imk_allan_variances(IMK_ALLAN_OVERLAPPING, N, z, count, factors, shifted, NULL, NULL);
     /* y + 9.8 is rounded to 2^-50: independent errors of 2.6e-16 beside 1e-3 noise. */
     for (size_t i = 0; i < count; i++)
@@ -187,11 +187,15 @@ static void test_order_of_work(void **state)
     static imk_allan_point first[512], second[512];
     const imk_allan_settings settings = imk_allan_default();
     published_set(y);
-    imk_allan_sums(TABLE, y, s);
+    imk_allan_sums(TABLE, y, s, NULL);
     const size_t count = imk_allan_factors(IMK_ALLAN_ALL, TABLE, factors);
     assert_int_equal(count, 500);
     imk_allan_points(&settings, TABLE, s, count, factors, first, NULL);
     imk_allan_points(&settings, TABLE, s, count, factors, second, &backwards);
+    double z[TABLE + 1]; /* the running sums too, and in place */
+    published_set(z);
+    imk_allan_sums(TABLE, z, z, &backwards);
+    assert_memory_equal(z, s, sizeof z);
     for (size_t i = 0; i < count; i++) {
         assert_true(first[i].deviation == second[i].deviation);
         assert_true(first[i].edf == second[i].edf);
@@ -221,7 +225,7 @@ static void test_noise_types(void **state)
     for (uint64_t stream = 0; stream < 10; stream++) {
         imk_power_law type;
         imk_random_normals(imk_random_seeded(11), stream, 0, N + 1, y);
-        imk_allan_sums(N, y, s);
+        imk_allan_sums(N, y, s, NULL);
         CHECK_STATUS(imk_allan_noise_type(N, s, 2, &type), IMK_OK);
         assert_int_equal(type, IMK_WHITE_RATE);
         CHECK_STATUS(imk_allan_noise_type(N, y, 2, &type), IMK_OK); /* sums that are white */
@@ -229,7 +233,7 @@ static void test_noise_types(void **state)
         double walk = 0;
         for (size_t i = 0; i < N; i++)
             y[i] = walk += y[i];
-        imk_allan_sums(N, y, s);
+        imk_allan_sums(N, y, s, NULL);
         CHECK_STATUS(imk_allan_noise_type(N, s, 2, &type), IMK_OK);
         assert_int_equal(type, IMK_RANDOM_WALK_RATE);
         CHECK_STATUS(imk_allan_noise_type(N, s, 300, &type), IMK_ERROR_TOO_SHORT);

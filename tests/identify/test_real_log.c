@@ -45,7 +45,7 @@ static void test_published_variances(void **state)
         const int column = imk_log_find(
             &log, gyro ? IMK_QUANTITY_ANGULAR_RATE : IMK_QUANTITY_SPECIFIC_FORCE, channel % 3);
         double *sums = log.data[column];
-        imk_allan_sums(log.rows, sums, sums);
+        imk_allan_sums(log.rows, sums, sums, NULL);
         for (int i = 0; i < 18; i++) {
             double tau, expected, variance;
             assert_non_null(fgets(line, sizeof line, published));
