@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Overlapped Allan deviation of 1e7 samples at octave tau, running sums included, against NumPy's
- * cumsum, slices and np.sum(d**2). Peak memory beyond the input is printed as a remark: sums are
- * made in place, so there is none but the input here. */
+ * cumsum, slices and np.sum(d**2). The sums have an array of their own, so that the record can be
+ * used again: peak memory, printed as a remark, is the input and that array. */
 #include "bench.h"
 
 #include "imukit/allan.h"

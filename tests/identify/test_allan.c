@@ -145,7 +145,7 @@ static void test_degrees_of_freedom_by_draws(void **state)
     CHECK_RELATIVE(mean, 1.0 / M, 5.5 * sqrt(2 / (edf * RECORDS)));
 }
 
-/* A large constant costs no digits: the record plus 9.8 (and plus 2^40) has the same deviation as
+/* A large constant costs no digits: the record plus 9.8 has the same deviation as
  * far as its own rounding allows. */
 static void test_large_mean(void **state)
 {
