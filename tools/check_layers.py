@@ -20,12 +20,14 @@ RANK = {module: rank for rank, modules in enumerate(LAYERS) for module in module
 PUBLIC = {
     "base": "attitude decimal distributions elementary executor fourier least_squares "
             "linear_algebra names random status units",
-    "model": "model",
+    "model": "correct distort model",
     "noise": "noise",
-    "motion": "earth",
+    "motion": "earth motion motion_script",
     "simulate": "simulate",
     "identify": "allan identify",
-    "io": "io log model_file output_file thread_pool",
+    "compensate": "compensate",
+    "navigate": "navigate",
+    "io": "io log model_file motion_file output_file parameter_file thread_pool",
     "report": "report",
 }
 # Headers that gather others: imukit.h the core, for users only; io.h what is right of it.

@@ -22,6 +22,31 @@ IMK_API double imk_normal_gravity(double latitude, double height);
 /** The Earth's rotation in north-east-down axes [rad/s]. */
 IMK_API imk_vector3 imk_earth_rate(double latitude);
 
+/** A place on or near the WGS84 ellipsoid. */
+typedef struct imk_geodetic {
+    double latitude, longitude; /**< [rad] */
+    double height;              /**< above the ellipsoid [m] */
+} imk_geodetic;
+
+/** Earth-centred, Earth-fixed coordinates [m]: x towards longitude 0, z along the axis. */
+IMK_API imk_vector3 imk_ecef_from_geodetic(imk_geodetic place);
+
+/** The inverse, bit-reproducible, for heights from -10 km to 10000 km: error below 1e-9 m in
+ *  height and 1e-15 rad (some units in the last place) in the angles; at the poles the longitude
+ *  is that of the point, 0 on the axis itself. */
+IMK_API imk_geodetic imk_geodetic_from_ecef(imk_vector3 position);
+
+/** Normal gravity (gravitation and centrifugal force together) at an ECEF position, in ECEF axes
+ *  [m/s^2]: the magnitude of imk_normal_gravity(), along the ellipsoid's normal. Only + - * / sqrt.
+ *  The one gravity of motion and navigation, so that they cannot disagree. */
+IMK_API imk_vector3 imk_gravity_ecef(imk_vector3 position);
+
+/** Radii of curvature of the ellipsoid in the meridian and in the prime vertical [m]. */
+IMK_API void imk_curvature_radii(double latitude, double *meridian, double *prime_vertical);
+
+/** C_en: north, east and down at a place, as columns in ECEF axes. */
+IMK_API imk_matrix3 imk_ned_axes(double latitude, double longitude);
+
 #ifdef __cplusplus
 }
 #endif

@@ -28,6 +28,9 @@ IMK_API double imk_sin(double x);
 /** Cosine of x [rad]; as imk_sin(). */
 IMK_API double imk_cos(double x);
 
+/** Angle of the point (x, y) [rad], -pi … pi, signs of zeros as in C. Error below 1 ulp. */
+IMK_API double imk_atan2(double y, double x);
+
 #ifdef __cplusplus
 }
 #endif

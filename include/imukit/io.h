@@ -6,7 +6,9 @@
 
 #include "imukit/log.h"
 #include "imukit/model_file.h"
+#include "imukit/motion_file.h"
 #include "imukit/output_file.h"
+#include "imukit/parameter_file.h"
 #include "imukit/report.h"
 #include "imukit/thread_pool.h"
 

@@ -80,6 +80,9 @@ typedef struct imk_nonlinearity {
     imk_axes asymmetry;      /**< difference of the scale factors for + and - input, relative [1] */
     imk_rows cross_products; /**< accelerometer: Kip, Kio, Kpo of input, pendulous, output axes
                                 [1/unit] */
+    double pendulous_axis[IMK_AXES_MAX][3]; /**< of cross_products, in the body frame, unit norm and
+                                               across the direction; zeros: by default, see
+                                               distort.h. The output axis is pendulous x input */
 } imk_nonlinearity;
 
 typedef enum imk_density {
@@ -186,6 +189,17 @@ IMK_API imk_model imk_model_default(void);
  *          gyro nor accel), _KEY_UNKNOWN or _KEY_DUPLICATE (key of an interval), _ARGUMENT (a text
  *          without end) */
 IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
+
+/** Switch terms off, to see the effect of the others alone.
+ *
+ *  A name is a key of the model file, a term ("angle_random_walk", "noise.gauss_markov"), a group
+ *  ("bias", "noise"), or either of one sensor only ("gyro.bias.fixed", "accel.noise"), or "timing"
+ *  and its keys. What is no error stays always: directions, pendulous axes, sensitivity and zero
+ *  offset.
+ *  @param keep  true: only the terms named stay; false: only those go
+ *  @return IMK_ERROR_NAME_UNKNOWN (error.found: the name, error.expected: the nearest) */
+IMK_API imk_status imk_model_select(imk_model *model, bool keep, size_t count,
+                                    const char *const *names, imk_error *error);
 
 /** True when two models would simulate the same bytes (name, evidence and sigmas aside). */
 IMK_API bool imk_model_equal(const imk_model *a, const imk_model *b);

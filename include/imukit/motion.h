@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file motion.h
+ *  True motion and temperature: trajectories, and what perfect sensors on them read.
+ *
+ *  A trajectory is a chain of pieces, each a polynomial in time of the position in Earth-fixed axes
+ *  and of the attitude quaternion. Everything else follows by differentiation, so the truth is
+ *  consistent by construction: position, velocity, attitude, angular rate, angular acceleration and
+ *  specific force belong to one motion,
+ *
+ *      w = C_be w_ie + 2 vec(q* q')/|q|^2,       f = C_be (r'' + 2 w_ie x r' - g(r)),
+ *
+ *  q being q_eb up to its norm, and g the normal gravity of earth.h. Scripts (motion_script.h) and
+ *  tables of poses compile into pieces; a body at rest is one piece.
+ *
+ *  Time is a pure argument: samples may be taken at any times, in any order, on any thread, and the
+ *  bits do not depend on it. Only + - * / sqrt (and imk_sin, imk_cos for vibration). */
+#ifndef IMUKIT_MOTION_H
+#define IMUKIT_MOTION_H
+
+#include "imukit/attitude.h"
+#include "imukit/earth.h"
+#include "imukit/random.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- trajectories ---------------------------------------------------------------------------- */
+
+/** Polynomials in s = time - start, 0 <= s <= length. Pieces follow one another without gap or
+ *  overlap; position is continuous with its first and second, the quaternion with its first
+ *  derivative at least. */
+typedef struct imk_trajectory_piece {
+    double start, length;    /**< [s]; the last piece may be infinitely long */
+    double position[3][7];   /**< Earth-fixed, relative to the origin: coefficient of s^i [m/s^i] */
+    double quaternion[4][6]; /**< w, x, y, z of q_eb up to its norm: coefficient of s^i [1/s^i] */
+} imk_trajectory_piece;
+
+enum { IMK_VIBRATION_LINES_MAX = 512 };
+
+/** One line of a vibration: displacement or rotation of the body about its smooth trajectory,
+ *  amplitude sin(2 pi (frequency t + phase)) along one body axis. */
+typedef struct imk_vibration_line {
+    int axis;         /**< 0 … 2: displacement along x, y, z; 3 … 5: rotation about x, y, z */
+    double amplitude; /**< [m] or [rad]; rotations below 0.1 rad */
+    double frequency; /**< [Hz], > 0 */
+    double phase;     /**< [cycles] */
+} imk_vibration_line;
+
+/** A motion known at all times. Arrays belong to the caller. */
+typedef struct imk_trajectory {
+    bool earth;       /**< false: no Earth rate, no gravity; axes and origin are inertial then */
+    double origin[3]; /**< Earth-fixed [m] */
+    size_t piece_count;
+    const imk_trajectory_piece *piece; /**< in order of time; ends are continued at rest */
+    size_t line_count;
+    const imk_vibration_line *line;
+} imk_trajectory;
+
+/** Everything about the body at one instant. */
+typedef struct imk_motion_state {
+    double time;
+    imk_geodetic place;       /**< of the reference point (zeros without Earth) */
+    imk_vector3 position;     /**< Earth-fixed, without the origin when there is no Earth [m] */
+    imk_vector3 velocity;     /**< relative to the Earth, Earth-fixed axes [m/s] */
+    imk_vector3 velocity_ned; /**< the same in north-east-down axes [m/s] */
+    imk_quaternion attitude;  /**< q_eb: body to Earth-fixed axes */
+    imk_matrix3 c_nb;         /**< body to north-east-down */
+    imk_vector3 angular_rate; /**< body in inertial space, body axes [rad/s] */
+    imk_vector3 angular_acceleration; /**< its derivative in body axes [rad/s^2] */
+    imk_vector3 specific_force;       /**< body axes [m/s^2] */
+} imk_motion_state;
+
+/** A body at rest at a place, with attitude roll, pitch, yaw [rad] in north-east-down axes: one
+ *  endless piece, which the caller keeps.
+ *  @return IMK_ERROR_RANGE (error names the argument) */
+IMK_API imk_status imk_trajectory_standstill(imk_geodetic place, const double roll_pitch_yaw[3],
+                                             bool earth, imk_trajectory_piece *piece,
+                                             imk_trajectory *trajectory, imk_error *error);
+
+/** Check numbers, order and continuity of pieces. */
+IMK_API imk_status imk_trajectory_validate(const imk_trajectory *trajectory, imk_error *error);
+
+/** First and last instant [s]; an endless one ends at infinity. */
+IMK_API void imk_trajectory_span(const imk_trajectory *trajectory, double *first, double *last);
+
+/** State at one instant; before the start and after the end the body rests where it began or
+ *  stopped (attitude and position held). */
+IMK_API void imk_trajectory_state(const imk_trajectory *trajectory, double time,
+                                  imk_motion_state *state);
+
+/** What perfect sensors read over intervals: means of angular rate and specific force, and of the
+ *  angular acceleration (the difference of the rates at the ends, divided by the interval).
+ *
+ *  Integrated exactly up to rounding for pieces of polynomials: by Gauss-Lobatto quadrature
+ *  between the ends of intervals and pieces (relative error below 1e-12 when the body turns less
+ *  than 0.2 rad and vibrates less than a quarter of a cycle in an interval; see
+ *  imk_trajectory_substeps()).
+ *
+ *  @param boundary  count + 1 increasing times [s]; sample k covers boundary[k] … boundary[k+1]
+ *  @param kernel    of imk_random_seeded(), or IMK_KERNEL_SCALAR; the bits do not depend on it
+ *  @param rate,acceleration,force  3 arrays of count doubles each; acceleration may be NULL */
+IMK_API void imk_trajectory_means(const imk_trajectory *trajectory, imk_kernel kernel, size_t count,
+                                  const double *boundary, double *const rate[3],
+                                  double *const acceleration[3], double *const force[3]);
+
+/** Into how many equal parts an interval `dt` must be divided so that each vibration is resolved:
+ *  at least 16 per cycle of the highest line, 1 without vibration. */
+IMK_API size_t imk_trajectory_substeps(const imk_trajectory *trajectory, double dt);
+
+/* ---- tables of poses --------------------------------------------------------------------------
+ */
+
+/** Pieces through a table of poses: C2 cubic splines of the Earth-fixed position (relative to the
+ *  first one, so no digits are lost) and of the quaternion components, natural ends ("not-a-knot"
+ *  from four poses on).
+ *
+ *  @param time       count increasing times [s]
+ *  @param position   3 arrays, Earth-fixed relative to `origin` [m]
+ *  @param attitude   count unit quaternions q_eb; signs do not matter
+ *  @param workspace  imk_trajectory_poses_workspace(count) doubles
+ *  @param piece      count - 1 pieces
+ *  @return IMK_ERROR_TOO_SHORT (fewer than two), IMK_ERROR_TIME_ORDER (error.index: the row),
+ *          IMK_ERROR_NOT_FINITE, IMK_ERROR_RANGE (two attitudes more than 120 deg apart: the turn
+ *          between them is not known) */
+IMK_API imk_status imk_trajectory_from_poses(size_t count, const double *time,
+                                             const double *const position[3],
+                                             const imk_quaternion *attitude, double *workspace,
+                                             imk_trajectory_piece *piece, imk_error *error);
+/** Doubles of workspace for `count` poses. */
+IMK_API size_t imk_trajectory_poses_workspace(size_t count);
+
+/* ---- vibration ---------------------------------------------------------------------------------
+ */
+
+/** Lines that stand for a random vibration of a one-sided acceleration density, given at corner
+ *  frequencies and log-log straight between them (as in MIL-STD-810). The band is cut into parts of
+ *  equal power; each part is one line at a random frequency within it, with random phase, so that
+ *  the record never repeats and its density is the given one at the resolution of the parts.
+ *
+ *  @param axis       0 … 2
+ *  @param corners    >= 2; frequency [Hz] increasing, density [(m/s^2)^2/Hz] > 0
+ *  @param line_count how many lines to make, 8 … IMK_VIBRATION_LINES_MAX
+ *  @param stream     of the random source: another one is another draw */
+IMK_API imk_status imk_vibration_from_density(int axis, size_t corners, const double *frequency,
+                                              const double *density, imk_random random,
+                                              uint64_t stream, size_t line_count,
+                                              imk_vibration_line *line, imk_error *error);
+
+/* ---- temperature --------------------------------------------------------------------------------
+ */
+
+/** Temperature of a unit: surroundings that are straight lines between points, followed with a
+ *  time constant, T' = (surroundings - T)/time_constant, or at once when it is 0. It starts in
+ *  balance with the first point; before it and after the last point the surroundings are constant.
+ */
+typedef struct imk_temperature_profile {
+    size_t point_count;        /**< >= 1 */
+    const double *time;        /**< increasing [s]; equal times are a step */
+    const double *temperature; /**< [K], > 0 */
+    double time_constant;      /**< [s], >= 0 */
+} imk_temperature_profile;
+
+IMK_API imk_status imk_temperature_validate(const imk_temperature_profile *profile,
+                                            imk_error *error);
+/** Temperature [K] and its rate [K/s] at `count` increasing times. The solution is carried exactly
+ *  from point to point. @param rate may be NULL */
+IMK_API void imk_temperature_at(const imk_temperature_profile *profile, size_t count,
+                                const double *time, double *temperature, double *rate);
+
+/* ---- what the simulator takes ------------------------------------------------------------------
+ */
+
+/** True rates and forces from elsewhere: means over equal intervals. */
+typedef struct imk_recorded_motion {
+    size_t count;
+    double rate; /**< [Hz] */
+    const double *angular_rate[3], *specific_force[3];
+    const double *angular_acceleration[3]; /**< NULL: differences of the neighbours' rates */
+} imk_recorded_motion;
+
+typedef struct imk_motion {
+    const imk_trajectory *trajectory;    /**< or NULL */
+    const imk_recorded_motion *recorded; /**< or NULL: exactly one of the two */
+} imk_motion;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file motion_file.h
+ *  Motion and temperature from files: scripts in YAML, tables of poses, and truth recorded by
+ *  another program. Formats: docs/motion-file.md. */
+#ifndef IMUKIT_MOTION_FILE_H
+#define IMUKIT_MOTION_FILE_H
+
+#include "imukit/log.h"
+#include "imukit/motion_script.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What a file holds. Owns everything its motion points to. */
+typedef struct imk_motion_file imk_motion_file;
+
+typedef enum imk_motion_kind {
+    IMK_MOTION_SCRIPT,  /**< YAML (.yaml, .yml, .json) */
+    IMK_MOTION_POSES,   /**< a table with positions and attitudes */
+    IMK_MOTION_RECORDED /**< a table with rates and forces */
+} imk_motion_kind;
+
+/** Read a motion file: a script when the name ends in .yaml, .yml or .json, else a log with columns
+ *
+ *   - time, latitude, longitude, height (or x, y, z: local north-east-down [m] with the place given
+ *     in `place`; or ecef_x …), and roll, pitch, yaw or q_w, q_x, q_y, q_z (q_nb): poses; velocity
+ *     columns are ignored, and said so;
+ *   - gyro_x … accel_z (any names imk_log_open() knows): true rates and forces, in equal steps.
+ *
+ *  @param settings  how to read a table; NULL: from its header
+ *  @param place     of local coordinates and default of a script; NULL: 45 deg north
+ *  @param seed      of random vibration
+ *  @return errors of the readers with line and column */
+IMK_API imk_status imk_motion_read(const char *path, const imk_log_settings *settings,
+                                   const imk_geodetic *place, uint64_t seed, imk_motion_file **file,
+                                   imk_error *error);
+/** A script from memory. */
+IMK_API imk_status imk_motion_parse(const char *text, size_t size, const imk_geodetic *place,
+                                    uint64_t seed, imk_motion_file **file, imk_error *error);
+IMK_API void imk_motion_file_free(imk_motion_file *file);
+
+IMK_API imk_motion_kind imk_motion_file_kind(const imk_motion_file *file);
+/** What the simulator takes; lives as long as the file. */
+IMK_API const imk_motion *imk_motion_file_motion(const imk_motion_file *file);
+/** Length [s]; infinite when it ends at rest and is a script that says `then: hold`; else where the
+ *  script or table ends. */
+IMK_API double imk_motion_file_duration(const imk_motion_file *file);
+/** Name of a script ("" when it has none). */
+IMK_API const char *imk_motion_file_name(const imk_motion_file *file);
+
+/** A temperature profile. */
+typedef struct imk_temperature_file imk_temperature_file;
+/** Read one: a YAML script of the steps start, ramp, soak, step; a CSV with time and temperature
+ *  columns; or, when `path` is a quantity such as "25degC", a constant. */
+IMK_API imk_status imk_temperature_read(const char *path, imk_temperature_file **file,
+                                        imk_error *error);
+IMK_API void imk_temperature_file_free(imk_temperature_file *file);
+IMK_API const imk_temperature_profile *
+imk_temperature_file_profile(const imk_temperature_file *file);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file parameter_file.h
+ *  Sensor parameters in the formats of other programs, read into a model and written from one.
+ *
+ *  None of these formats carries units, and some leave open whether a density is one- or two-sided,
+ *  a standard deviation per sample or per root hertz. What each value is taken for is said in the
+ *  notes; what a format cannot hold is listed, never dropped silently. Docs: docs/other-formats.md.
+ */
+#ifndef IMUKIT_PARAMETER_FILE_H
+#define IMUKIT_PARAMETER_FILE_H
+
+#include "imukit/model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum imk_parameter_format {
+    IMK_PARAMETERS_UNKNOWN = 0,
+    IMK_PARAMETERS_KALIBR,       /**< imu.yaml and the intrinsics of a calibration result */
+    IMK_PARAMETERS_GAZEBO,       /**< SDF sensor noise (XML) */
+    IMK_PARAMETERS_MATLAB,       /**< imuSensor parameters as JSON */
+    IMK_PARAMETERS_GNSS_INS_SIM, /**< its accuracy dictionary, as JSON or YAML */
+    IMK_PARAMETERS_NAVEGO,       /**< assignments to a structure, .m */
+    IMK_PARAMETERS_OPENVINS,     /**< kalibr_imu_chain.yaml */
+    IMK_PARAMETERS_VINS,         /**< acc_n, gyr_n, acc_w, gyr_w in an OpenCV yaml */
+    IMK_PARAMETERS_PX4           /**< TC_…, CAL_… in a parameter file */
+} imk_parameter_format;
+
+/** Name of a format ("kalibr", "gazebo", "matlab", "gnss-ins-sim", "navego", "openvins", "vins",
+ *  "px4"); NULL beyond the last. */
+IMK_API const char *imk_parameter_format_name(imk_parameter_format format);
+/** Format of a name; IMK_PARAMETERS_UNKNOWN when there is none. */
+IMK_API imk_parameter_format imk_parameter_format_find(const char *name);
+/** Format of a file by its name and content, IMK_PARAMETERS_UNKNOWN when it is none of them. */
+IMK_API imk_parameter_format imk_parameter_format_detect(const char *path);
+
+enum { IMK_PARAMETER_NOTES_MAX = 64 };
+
+/** What was assumed or left out: one sentence each. */
+typedef struct imk_parameter_notes {
+    size_t count;
+    struct imk_parameter_note {
+        bool lost; /**< left out; else assumed */
+        char text[240];
+    } note[IMK_PARAMETER_NOTES_MAX];
+} imk_parameter_notes;
+
+/** How to read or write. Start from imk_parameter_settings_default(). */
+typedef struct imk_parameter_settings {
+    uint32_t cookie;
+    imk_parameter_format format; /**< UNKNOWN: detect */
+    double rate;         /**< [Hz]; needed where a format states noise per sample (Gazebo) */
+    imk_density density; /**< of formats that leave it open; UNSTATED: refuse, naming the option */
+    const char *sensor;  /**< which of several sensors in the file; NULL: the only one */
+} imk_parameter_settings;
+IMK_API imk_parameter_settings imk_parameter_settings_default(void);
+
+/** Read. @return IMK_ERROR_FORMAT (none of the formats), _KEY_MISSING (error.expected: the option
+ *  to add), _KEY_UNKNOWN, _SYNTAX, _RANGE (a value that cannot be in the unit of the format: the
+ *  sentence says which unit it looks like), … with line */
+IMK_API imk_status imk_parameters_read(const char *path, const imk_parameter_settings *settings,
+                                       imk_model *model, imk_parameter_notes *notes,
+                                       imk_error *error);
+/** Write; comments in the file state every unit where the format has comments.
+ *  @return IMK_ERROR_UNSUPPORTED when nothing of the model fits; errors of writing */
+IMK_API imk_status imk_parameters_write(const char *path, const imk_parameter_settings *settings,
+                                        const imk_model *model, imk_parameter_notes *notes,
+                                        imk_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
