@@ -11,8 +11,9 @@ file(GLOB io_sources CONFIGURE_DEPENDS src/io/*.c src/report/*.c)
 
 # One file per instruction set, chosen at run time; the rest is compiled for the base machine.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
-  set_source_files_properties(src/base/normals_avx2.c PROPERTIES COMPILE_OPTIONS "-mavx2")
-  set_source_files_properties(src/base/normals_avx512.c PROPERTIES
+  set_source_files_properties(src/base/normals_avx2.c src/motion/trajectory_avx2.c PROPERTIES
+                              COMPILE_OPTIONS "-mavx2")
+  set_source_files_properties(src/base/normals_avx512.c src/motion/trajectory_avx512.c PROPERTIES
                               COMPILE_OPTIONS "-mavx512f;-mavx512dq")
 endif()
 
@@ -70,10 +71,12 @@ if(IMUKIT_IO)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(yaml REQUIRED IMPORTED_TARGET yaml-0.1)
   pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+  pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
   find_package(ZLIB REQUIRED)
   find_package(Threads REQUIRED)
   imukit_library(imukit-io SOURCES ${io_sources} OURS imukit
-                 PRIVATE PkgConfig::yaml PkgConfig::zstd ZLIB::ZLIB Threads::Threads)
+                 PRIVATE PkgConfig::yaml PkgConfig::zstd PkgConfig::expat ZLIB::ZLIB
+                         Threads::Threads)
 endif()
 
 # The names users of the installed package see, valid within this tree as well.

@@ -41,10 +41,12 @@ typedef struct imk_trajectory_piece {
 enum { IMK_VIBRATION_LINES_MAX = 512 };
 
 /** One line of a vibration: displacement or rotation of the body about its smooth trajectory,
- *  amplitude sin(2 pi (frequency t + phase)) along one body axis. */
+ *  amplitude sin(2 pi (frequency t + phase)) along one body axis. The displacement is along the
+ *  axes of the smooth attitude; the rotations follow it, about x, then the new y, then the new z.
+ */
 typedef struct imk_vibration_line {
     int axis;         /**< 0 … 2: displacement along x, y, z; 3 … 5: rotation about x, y, z */
-    double amplitude; /**< [m] or [rad]; rotations below 0.1 rad */
+    double amplitude; /**< [m] or [rad]; rotations to 0.1 rad, all about an axis to 1 rad */
     double frequency; /**< [Hz], > 0 */
     double phase;     /**< [cycles] */
 } imk_vibration_line;
@@ -74,30 +76,42 @@ typedef struct imk_motion_state {
 } imk_motion_state;
 
 /** A body at rest at a place, with attitude roll, pitch, yaw [rad] in north-east-down axes: one
- *  endless piece, which the caller keeps.
+ *  endless piece, which the caller keeps. Without Earth the place does not matter, and the axes of
+ *  the trajectory stand for north, east and down.
  *  @return IMK_ERROR_RANGE (error names the argument) */
 IMK_API imk_status imk_trajectory_standstill(imk_geodetic place, const double roll_pitch_yaw[3],
                                              bool earth, imk_trajectory_piece *piece,
                                              imk_trajectory *trajectory, imk_error *error);
 
-/** Check numbers, order and continuity of pieces. */
+/** Check numbers, order and continuity of pieces, and lines. What may jump where pieces meet is far
+ *  above rounding and below what sensors see: 1e-7 rad, 1e-6 m, m/s and rad/s, 1e-4 m/s^2, and a
+ *  part of 1e-9 (position, velocity), 1e-6 or 1e-4 of the quantity.
+ *  @return IMK_ERROR_EMPTY, _NOT_FINITE, _RANGE, _TIME_ORDER, _CONFLICT (a jump), _ARGUMENT (too
+ *          many lines); error.index is the piece or line */
 IMK_API imk_status imk_trajectory_validate(const imk_trajectory *trajectory, imk_error *error);
 
 /** First and last instant [s]; an endless one ends at infinity. */
 IMK_API void imk_trajectory_span(const imk_trajectory *trajectory, double *first, double *last);
 
 /** State at one instant; before the start and after the end the body rests where it began or
- *  stopped (attitude and position held). */
+ *  stopped (attitude and position held). At the end itself it is still under way. Without Earth,
+ *  place is zero and c_nb, velocity_ned are in the axes of the trajectory. About 0.4 us. */
 IMK_API void imk_trajectory_state(const imk_trajectory *trajectory, double time,
                                   imk_motion_state *state);
 
 /** What perfect sensors read over intervals: means of angular rate and specific force, and of the
  *  angular acceleration (the difference of the rates at the ends, divided by the interval).
  *
- *  Integrated exactly up to rounding for pieces of polynomials: by Gauss-Lobatto quadrature
- *  between the ends of intervals and pieces (relative error below 1e-12 when the body turns less
- *  than 0.2 rad and vibrates less than a quarter of a cycle in an interval; see
- *  imk_trajectory_substeps()).
+ *  Integrated by Gauss-Lobatto quadrature with five nodes between the ends of intervals and pieces:
+ *  the relative error is below 1e-12 when in an interval the body turns less than 0.3 rad, travels
+ *  less than 1 km and vibrates less than a sixteenth of a cycle (imk_trajectory_substeps(); at a
+ *  quarter it is 3e-8). A constant is met exactly: a body at rest reads what
+ *  imk_trajectory_state() says, to the bit. The bits of a sample do not depend on the others asked
+ *  for with it. At rest outside the span the lines of vibration go on.
+ *
+ *  Cost at 2.7 GHz: 70 ns a sample with AVX-512, 110 with AVX2, 210 scalar, 1.6 times that where
+ *  each sample has its own piece, 2 ns a line and node of vibration; at rest next to nothing. Calls
+ *  with many samples are best, at least 8.
  *
  *  @param boundary  count + 1 increasing times [s]; sample k covers boundary[k] … boundary[k+1]
  *  @param kernel    of imk_random_seeded(), or IMK_KERNEL_SCALAR; the bits do not depend on it
@@ -160,13 +174,19 @@ typedef struct imk_temperature_profile {
     size_t point_count;        /**< >= 1 */
     const double *time;        /**< increasing [s]; equal times are a step */
     const double *temperature; /**< [K], > 0 */
-    double time_constant;      /**< [s], >= 0 */
+    double time_constant;      /**< [s], 0 or >= 1e-9 */
+    const double *carried;     /**< NULL, or what imk_temperature_carry() made, for long profiles */
 } imk_temperature_profile;
 
 IMK_API imk_status imk_temperature_validate(const imk_temperature_profile *profile,
                                             imk_error *error);
+/** Temperature of the unit at each point, point_count values, for `carried`: then every call of
+ *  imk_temperature_at() finds its first point at once. The values are the same without. */
+IMK_API void imk_temperature_carry(const imk_temperature_profile *profile, double *carried);
+
 /** Temperature [K] and its rate [K/s] at `count` increasing times. The solution is carried exactly
- *  from point to point. @param rate may be NULL */
+ *  from point to point: from the first one in each call, unless the profile has it `carried`. At
+ *  the time of a step the surroundings are those after it. @param rate may be NULL */
 IMK_API void imk_temperature_at(const imk_temperature_profile *profile, size_t count,
                                 const double *time, double *temperature, double *rate);
 

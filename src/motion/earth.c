@@ -4,15 +4,9 @@
 #include "imukit/earth.h"
 
 #include "imukit/elementary.h"
+#include "motion/wgs84_internal.h"
 
 #include <math.h>
-
-#define SEMI_MAJOR_AXIS 6378137.0        /* a [m] */
-#define FLATTENING (1.0 / 298.257223563) /* f */
-#define ECCENTRICITY_SQUARED 6.69437999014e-3
-#define EQUATOR_GRAVITY 9.7803253359      /* [m/s^2] */
-#define GRAVITY_CONSTANT 1.93185265241e-3 /* k = b g_pole/(a g_equator) - 1 */
-#define ROTATION_RATIO 3.44978650684e-3   /* m = rate^2 a^2 b/GM */
 
 /* g0 = g_equator (1 + k s)/sqrt(1 - e^2 s),  s = sin^2(latitude)
  * g  = g0 [1 - 2 (1 + f + m - 2 f s) h/a + 3 (h/a)^2]                                    */

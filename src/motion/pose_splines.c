@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Trajectories through tables of poses: a C2 cubic spline for each component of position and
+ * quaternion [DEBOOR1978, chapter IV]. With h[i] the interval from pose i, d[i] the slope of the
+ * chord over it, and m[i] the second derivative at pose i,
+ *
+ *     h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1])
+ *
+ * From four poses on, the third derivative is continuous at the second and the last but one pose
+ * too ("not-a-knot"), m[0] = m[1] + h[0]/h[1] (m[1] - m[2]); with fewer, m is 0 at both ends. The
+ * system is the same for all components, so it is factorised once. */
+#include "imukit/motion.h"
+
+#include <math.h>
+
+/* Arrays of count each in the workspace. */
+typedef struct spline_system {
+    size_t count;
+    const double *time;
+    double *sign;    /* of each quaternion, so that neighbours are less than half a turn apart */
+    double *inverse; /* of the pivots */
+    double *upper;   /* upper diagonal times the inverse pivot */
+    double *second;  /* m */
+} spline_system;
+
+size_t imk_trajectory_poses_workspace(size_t count)
+{
+    return 4 * count;
+}
+
+static imk_status refuse(imk_error *error, imk_status status, const char *field, size_t row,
+                         double value, double limit, const char *expected)
+{
+    imk_error_set(error, status, field, NULL, expected);
+    if (error) {
+        error->index = (int)row;
+        error->value = value;
+        error->limit = limit;
+    }
+    return status;
+}
+
+static double product(imk_quaternion a, imk_quaternion b)
+{
+    return (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z);
+}
+
+/* A turn of 120 deg is one of 60 deg between the quaternions. */
+static imk_status check_row(const double *time, const double *const position[3],
+                            const imk_quaternion *attitude, size_t row, imk_error *error)
+{
+    if (!isfinite(time[row]))
+        return refuse(error, IMK_ERROR_NOT_FINITE, "time", row, time[row], 0.0, "a time");
+    if (row > 0 && !(time[row] > time[row - 1]))
+        return refuse(error, IMK_ERROR_TIME_ORDER, "time", row, time[row], time[row - 1],
+                      "times that increase");
+    for (int axis = 0; axis < 3; axis++)
+        if (!isfinite(position[axis][row]))
+            return refuse(error, IMK_ERROR_NOT_FINITE, "position", row, position[axis][row], 0.0,
+                          "a position");
+    const double square = product(attitude[row], attitude[row]);
+    if (!isfinite(square))
+        return refuse(error, IMK_ERROR_NOT_FINITE, "attitude", row, square, 0.0, "an attitude");
+    if (!(fabs(square - 1.0) <= 1e-2))
+        return refuse(error, IMK_ERROR_RANGE, "attitude", row, square, 1.0, "a unit quaternion");
+    if (row == 0)
+        return IMK_OK;
+    const double cosine = fabs(product(attitude[row], attitude[row - 1]));
+    if (!(cosine >= 0.5 * sqrt(square * product(attitude[row - 1], attitude[row - 1]))))
+        return refuse(error, IMK_ERROR_RANGE, "attitude", row, cosine, 0.5,
+                      "attitudes less than 120 deg apart: more poses per second");
+    return IMK_OK;
+}
+
+/* Rows 1 … count - 2, the ends eliminated. */
+static void factorise(const spline_system *system)
+{
+    const size_t n = system->count;
+    for (size_t i = 1; i + 1 < n; i++) {
+        const double before = system->time[i] - system->time[i - 1];
+        const double after = system->time[i + 1] - system->time[i];
+        double lower = before, diagonal = 2.0 * (before + after), upper = after;
+        if (n >= 4 && i == 1) {
+            diagonal += before + before * (before / after);
+            upper -= before * (before / after);
+        }
+        if (n >= 4 && i == n - 2) {
+            diagonal += after + after * (after / before);
+            lower -= after * (after / before);
+        }
+        if (i > 1)
+            diagonal -= lower * system->upper[i - 1];
+        system->inverse[i] = 1.0 / diagonal;
+        system->upper[i] = upper * system->inverse[i];
+    }
+}
+
+/* Row i less `lower` times the row before, which is what factorise() assumed. */
+static double lower_of(const spline_system *system, size_t i)
+{
+    const double before = system->time[i] - system->time[i - 1];
+    const double after = system->time[i + 1] - system->time[i];
+    return system->count >= 4 && i == system->count - 2 ? before - after * (after / before)
+                                                        : before;
+}
+
+/* m of one component, values[stride i], whose signs are turned when `sign` is not NULL. */
+static void solve(const spline_system *system, const double *values, size_t stride,
+                  const double *sign)
+{
+    const size_t n = system->count;
+    const double *const time = system->time;
+    double *const second = system->second;
+    double value[2] = {values[0] * (sign ? sign[0] : 1.0), 0.0}, chord = 0.0;
+    for (size_t i = 0; i + 1 < n; i++) {
+        value[1] = values[stride * (i + 1)] * (sign ? sign[i + 1] : 1.0);
+        const double next = (value[1] - value[0]) / (time[i + 1] - time[i]);
+        if (i > 0) {
+            double right = 6.0 * (next - chord);
+            if (i > 1)
+                right -= lower_of(system, i) * second[i - 1];
+            second[i] = right * system->inverse[i];
+        }
+        chord = next;
+        value[0] = value[1];
+    }
+    for (size_t i = n - 2; i-- > 1;)
+        second[i] -= system->upper[i] * second[i + 1];
+    second[0] = second[n - 1] = 0.0;
+    if (n < 4)
+        return;
+    const double first = (time[1] - time[0]) / (time[2] - time[1]);
+    const double last = (time[n - 1] - time[n - 2]) / (time[n - 2] - time[n - 3]);
+    second[0] = second[1] + first * (second[1] - second[2]);
+    second[n - 1] = second[n - 2] + last * (second[n - 2] - second[n - 3]);
+}
+
+/* y + (d - h (2 m + m_next)/6) s + m/2 s^2 + (m_next - m)/(6 h) s^3 */
+static void set_cubic(double now, double next, double h, const double *second, double *coefficient)
+{
+    coefficient[0] = now;
+    coefficient[1] = (next - now) / h - h * ((2.0 * second[0] + second[1]) / 6.0);
+    coefficient[2] = 0.5 * second[0];
+    coefficient[3] = (second[1] - second[0]) / (6.0 * h);
+}
+
+static void set_components(const spline_system *system, const double *const position[3],
+                           const imk_quaternion *attitude, imk_trajectory_piece *piece)
+{
+    const double *const parts[4] = {&attitude->w, &attitude->x, &attitude->y, &attitude->z};
+    const size_t stride = sizeof *attitude / sizeof(double);
+    const double *const time = system->time, *const sign = system->sign;
+    for (int axis = 0; axis < 3; axis++) {
+        solve(system, position[axis], 1, NULL);
+        for (size_t i = 0; i + 1 < system->count; i++)
+            set_cubic(position[axis][i], position[axis][i + 1], time[i + 1] - time[i],
+                      system->second + i, piece[i].position[axis]);
+    }
+    for (int part = 0; part < 4; part++) {
+        solve(system, parts[part], stride, sign);
+        for (size_t i = 0; i + 1 < system->count; i++)
+            set_cubic(sign[i] * parts[part][stride * i],
+                      sign[i + 1] * parts[part][stride * (i + 1)], time[i + 1] - time[i],
+                      system->second + i, piece[i].quaternion[part]);
+    }
+}
+
+imk_status imk_trajectory_from_poses(size_t count, const double *time,
+                                     const double *const position[3],
+                                     const imk_quaternion *attitude, double *workspace,
+                                     imk_trajectory_piece *piece, imk_error *error)
+{
+    if (count < 2)
+        return refuse(error, IMK_ERROR_TOO_SHORT, "poses", 0, (double)count, 2.0,
+                      "at least two poses");
+    for (size_t row = 0; row < count; row++) {
+        const imk_status status = check_row(time, position, attitude, row, error);
+        if (status)
+            return status;
+    }
+    const spline_system system = {
+        count, time, workspace, workspace + count, workspace + 2 * count, workspace + 3 * count};
+    system.sign[0] = 1.0;
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double cosine = product(attitude[i], attitude[i + 1]);
+        system.sign[i + 1] = cosine < 0.0 ? -system.sign[i] : system.sign[i];
+        piece[i] = (imk_trajectory_piece){.start = time[i], .length = time[i + 1] - time[i]};
+    }
+    factorise(&system);
+    set_components(&system, position, attitude, piece);
+    return IMK_OK;
+}

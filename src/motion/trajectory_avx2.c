@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Means over a trajectory with AVX2: four intervals at once. Empty on other processors. */
+#if defined(__AVX2__)
+
+#include <immintrin.h>
+#include <stdint.h>
+
+#define LANES 4
+
+typedef double real __attribute__((vector_size(32)));
+
+static inline real square_root(real a)
+{
+    return (real)_mm256_sqrt_pd((__m256d)a);
+}
+
+#include "motion/trajectory_kernel.h"
+
+void imki_means_of_intervals_avx2(const imk_trajectory *trajectory, size_t count,
+                                  imki_intervals *intervals)
+{
+    means_of_intervals(trajectory, count, intervals);
+}
+
+void imki_means_of_samples_avx2(const imk_trajectory *trajectory, const imk_trajectory_piece *piece,
+                                size_t count, const double *boundary, const imki_means *means)
+{
+    means_of_samples(trajectory, piece, count, boundary, means);
+}
+
+#else
+typedef int imki_trajectory_avx2_is_empty; /* a translation unit may not be empty */
+#endif
