@@ -72,9 +72,12 @@ typedef struct imk_axis_response {
     double bias_reference, bias_minimum, bias_maximum;    /**< [K] */
     double scale_reference, scale_minimum, scale_maximum; /**< [K] */
     double temperature_rate, warm_up, half_hysteresis;
+    double place[3];  /**< r of an accelerometer, contained in the weights [m] */
+    bool has_place;   /**< r is not 0 */
+    uint16_t used[4]; /**< bit k: weight k of input, other, pendulous, output is not 0 */
 } imk_axis_response;
 
-/** A model, compiled. About 12 kB; plain data. */
+/** A model, compiled. About 11 kB; plain data. */
 typedef struct imk_distortion {
     uint32_t cookie;
     imk_kernel kernel;
@@ -103,7 +106,9 @@ IMK_API void imk_distort(const imk_distortion *distortion, int sensor, int axis,
  *
  *  so that a sweep over the whole range opens a loop of the stated width, and an excursion much
  *  smaller than L hardly any. L is an eighth of the valid range of the bias polynomial, 10 K when
- *  it states none (a Duhem model of the simplest kind). */
+ *  it states none (a Duhem model of the simplest kind). Between two temperatures the equation is
+ *  solved exactly, so that only turns matter, not steps; a temperature that is not a number is
+ *  passed over. */
 typedef struct imk_hysteresis {
     double span;        /**< L [K] */
     double temperature; /**< last [K]; NaN before the first */

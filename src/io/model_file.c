@@ -5,8 +5,8 @@
 #include "imukit/model_file.h"
 
 #include "document_internal.h"
-#include "input_stream_internal.h"
 #include "model_yaml_internal.h"
+#include "text_file_internal.h"
 
 #include "imukit/names.h"
 #include "imukit/output_file.h"
@@ -66,36 +66,12 @@ imk_status imk_model_parse(const char *text, size_t size, imk_model *model, imk_
     return IMK_OK;
 }
 
-/* All bytes of a file, at most one more than a model file may have. */
-static imk_status read_all(imki_input *input, char **bytes, size_t *size, imk_error *error)
-{
-    enum { CAPACITY = IMKI_DOCUMENT_SIZE_MAX + 1 };
-    char *buffer = malloc(CAPACITY);
-    imk_status status = buffer ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    *size = 0;
-    for (size_t got = 1; status == IMK_OK && got > 0 && *size < CAPACITY; *size += got) {
-        got = 0;
-        status = imki_input_read(input, buffer + *size, CAPACITY - *size, &got, error);
-    }
-    if (status != IMK_OK) {
-        free(buffer);
-        return status;
-    }
-    *bytes = buffer;
-    return IMK_OK;
-}
-
 imk_status imk_model_read(const char *path, imk_model *model, imk_document **document,
                           imk_error *error)
 {
-    imki_input *input = NULL;
     char *bytes = NULL;
     size_t size = 0;
-    imk_status status = imki_input_open(path, &input, error);
-    if (status != IMK_OK)
-        return status;
-    status = read_all(input, &bytes, &size, error);
-    imki_input_close(input);
+    imk_status status = imki_text_file_read(path, IMKI_DOCUMENT_SIZE_MAX, &bytes, &size, error);
     if (status == IMK_OK)
         status = imk_model_parse(bytes, size, model, document, error);
     free(bytes);

@@ -199,7 +199,32 @@ static imk_status read_rows(imki_reader *r, const imki_field *field, int node)
     return IMK_OK;
 }
 
-/* Rows of any length, brought to unit length; the number of rows is that of the axes. */
+/* One row of any length, brought to unit length; where zeros are allowed they stay. */
+static imk_status read_unit_row(imki_reader *r, int node, bool may_be_zero, double row[3])
+{
+    quantity q;
+    imk_status status = read_quantity(r, node, "1", IMKI_BARE, 3, &q);
+    if (status != IMK_OK)
+        return status;
+    double square = q.value[0] * q.value[0] + q.value[1] * q.value[1] + q.value[2] * q.value[2];
+    bool is_zero = q.count == 3 && q.value[0] == 0 && q.value[1] == 0 && q.value[2] == 0;
+    if (q.count != 3 || !((square > 1e-12 && square < 1e12) || (may_be_zero && is_zero)))
+        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,
+                                may_be_zero ? "a direction: three numbers x y z"
+                                            : "a direction: three numbers x y z, not all 0");
+    if (q.sigma[0] != 0 || q.sigma[1] != 0 || q.sigma[2] != 0)
+        return imki_reader_fail(
+            r, node, IMK_ERROR_SYNTAX,
+            "a direction without 1-sigma; uncertain directions are a misalignment");
+    /* Rows of unit length to rounding stay as they are, so that reading what was written changes
+     * nothing. */
+    double norm = is_zero || fabs(square - 1) < 1e-14 ? 1 : sqrt(square);
+    for (int j = 0; j < 3; j++)
+        row[j] = q.value[j] / norm;
+    return IMK_OK;
+}
+
+/* The number of rows is that of the axes. */
 imk_status imki_read_direction(imki_reader *r, int node)
 {
     const imki_node *list = imki_reader_node(r, node);
@@ -210,23 +235,24 @@ imk_status imki_read_direction(imki_reader *r, int node)
     memset(r->triad->direction, 0, sizeof r->triad->direction);
     int child = list->first;
     for (int i = 0; i < list->count; i++, child = imki_reader_node(r, child)->next) {
-        quantity q;
-        imk_status status = read_quantity(r, child, "1", IMKI_BARE, 3, &q);
+        imk_status status = read_unit_row(r, child, false, r->triad->direction[i]);
         if (status != IMK_OK)
             return status;
-        double square = q.value[0] * q.value[0] + q.value[1] * q.value[1] + q.value[2] * q.value[2];
-        if (q.count != 3 || !(square > 1e-12 && square < 1e12))
-            return imki_reader_fail(r, child, IMK_ERROR_SYNTAX,
-                                    "a direction: three numbers x y z, not all 0");
-        if (q.sigma[0] != 0 || q.sigma[1] != 0 || q.sigma[2] != 0)
-            return imki_reader_fail(
-                r, child, IMK_ERROR_SYNTAX,
-                "a direction without 1-sigma; uncertain directions are a misalignment");
-        /* Rows of unit length to rounding stay as they are, so that reading what was written
-         * changes nothing. */
-        double norm = fabs(square - 1) < 1e-14 ? 1 : sqrt(square);
-        for (int j = 0; j < 3; j++)
-            r->triad->direction[i][j] = q.value[j] / norm;
+    }
+    return IMK_OK;
+}
+
+static imk_status read_pendulous(imki_reader *r, int node)
+{
+    const imki_node *list = imki_reader_node(r, node);
+    if (list->kind != IMKI_NODE_SEQUENCE || list->count != r->triad->axis_count)
+        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,
+                                "a list with a row x y z for each axis, 0 0 0 for the default");
+    int child = list->first;
+    for (int i = 0; i < list->count; i++, child = imki_reader_node(r, child)->next) {
+        imk_status status = read_unit_row(r, child, true, r->triad->nonlinearity.pendulous_axis[i]);
+        if (status != IMK_OK)
+            return status;
     }
     return IMK_OK;
 }
@@ -399,6 +425,8 @@ imk_status imki_read_field(imki_reader *r, const imki_field *field, int node)
             return read_floor(r, field, node);
         return imki_read_per_axis(r, node, field->si[r->kind], field->flags,
                                   values_of(field, r->triad), sigmas_of(field, r->triad));
+    case IMKI_PENDULOUS:
+        return read_pendulous(r, node);
     case IMKI_POLYNOMIAL:
         return read_polynomial(r, field, node);
     case IMKI_LIST:

@@ -157,9 +157,9 @@ static void write_off_diagonal(imki_writer *writer, const imki_field *field, int
 static void write_rows(imki_writer *writer, const imki_field *field, int kind,
                        const imk_triad *triad)
 {
-    bool is_direction = field->shape == IMKI_DIRECTION;
+    bool is_direction = field->shape == IMKI_DIRECTION || field->shape == IMKI_PENDULOUS;
     int length = imki_row_length(field->shape);
-    const double *values = is_direction ? triad->direction[0] : imki_field_values(field, triad);
+    const double *values = imki_field_values(field, triad);
     const double *sigmas = is_direction ? NULL : imki_field_sigmas(field, triad);
     imki_write_text(writer, "[");
     for (int i = 0; i < triad->axis_count; i++) {

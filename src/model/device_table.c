@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The catalogue: five grade presets, then figures of real devices with the source of each. Only
- * facts are taken from the sources; what they contradict themselves in is left out, and the note
- * says so. */
+/* The catalogue: figures of real devices with the source of each. Only facts are taken from the
+ * sources. Where a source contradicts itself, the note says which figure is taken and why, or that
+ * it is left out; sensors of which no figure can be taken are left out of the model altogether, so
+ * that none is simulated without errors.
+ *
+ * Densities per root hertz are taken as N itself (two-sided), as the sources use them: should one
+ * be a data sheet's one-sided density, N is smaller by sqrt(2). */
 #include "device_table_internal.h"
 
 /* Biases [ug], [deg/h]; scale factors (diagonal) with cross couplings [ppm]; g-sensitivity
@@ -23,124 +27,14 @@ static const double aviation_gyro_bias[3] = {-0.0009, 0.0013, -0.0008};
 static const double aviation_accel_matrix[9] = {100, -120, 80, -60, -120, 100, -100, -40, 90};
 static const double aviation_gyro_matrix[9] = {8, -120, 100, 0, -6, -60, 0, 0, -7};
 
-/* Presets: a full set of terms for which the claim of the class holds; typical figures within the
- * range of each class in [ELSHEIMY2020], table 1, and [GROVES2013], chapter 4, rounded. */
 const imki_device_entry imki_device_table[] = {
     {.device =
-         {"strategic", "strategic",
-          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
-          "1 nmi in 24 h needs about 0.00145 deg/h: the gyro bias is well below the class "
-          "limit of 0.005 deg/h.",
-          true},
-     .method = "class of instruments",
-     .gyro = {.present = true,
-              .white = 0.0001,
-              .instability = 0.0003,
-              .random_walk = 1e-05,
-              .repeatability = 0.0004,
-              .range = 400,
-              .scale_factor = 1,
-              .misalignment = 0.002},
-     .accel = {.present = true,
-               .white = 0.0006,
-               .instability = 1,
-               .random_walk = 0.1,
-               .repeatability = 2,
-               .range = 10,
-               .scale_factor = 2,
-               .misalignment = 0.002}},
-    {.device =
-         {"navigation", "navigation",
-          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
-          "1 nmi/h with biases within 0.01 deg/h and 50 ug.", true},
-     .method = "class of instruments",
-     .gyro = {.present = true,
-              .white = 0.002,
-              .instability = 0.003,
-              .random_walk = 0.001,
-              .repeatability = 0.006,
-              .range = 400,
-              .scale_factor = 5,
-              .misalignment = 0.01},
-     .accel = {.present = true,
-               .white = 0.006,
-               .instability = 10,
-               .random_walk = 2,
-               .repeatability = 35,
-               .range = 20,
-               .scale_factor = 50,
-               .misalignment = 0.01}},
-    {.device =
-         {"tactical", "tactical",
-          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
-          "More than 10 nmi/h with biases within 1 deg/h and 1 mg.", true},
-     .method = "class of instruments",
-     .gyro = {.present = true,
-              .white = 0.08,
-              .instability = 0.3,
-              .random_walk = 0.2,
-              .repeatability = 0.8,
-              .range = 1000,
-              .scale_factor = 150,
-              .misalignment = 0.2,
-              .g_sensitivity = 0.5},
-     .accel = {.present = true,
-               .white = 0.03,
-               .instability = 50,
-               .random_walk = 20,
-               .repeatability = 800,
-               .range = 50,
-               .scale_factor = 300,
-               .misalignment = 0.2}},
-    {.device =
-         {"AHRS", "AHRS",
-          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
-          "No claim of position; biases within 10 deg/h and 1 mg.", true},
-     .method = "class of instruments",
-     .gyro = {.present = true,
-              .white = 0.3,
-              .instability = 4,
-              .random_walk = 4,
-              .repeatability = 6,
-              .range = 450,
-              .scale_factor = 1000,
-              .misalignment = 1,
-              .g_sensitivity = 3},
-     .accel = {.present = true,
-               .white = 0.06,
-               .instability = 60,
-               .random_walk = 60,
-               .repeatability = 900,
-               .range = 10,
-               .scale_factor = 1000,
-               .misalignment = 1}},
-    {.device =
-         {"control", "control",
-          "typical of the class: doi 10.1186/s43020-019-0001-5 table 1; Groves 2013, chapter 4",
-          "No claim of position; biases within 1000 deg/h and 10 mg.", true},
-     .method = "class of instruments",
-     .gyro = {.present = true,
-              .white = 1.5,
-              .instability = 30,
-              .random_walk = 60,
-              .repeatability = 600,
-              .range = 500,
-              .scale_factor = 10000,
-              .misalignment = 5,
-              .g_sensitivity = 36},
-     .accel = {.present = true,
-               .white = 0.3,
-               .instability = 400,
-               .random_walk = 400,
-               .repeatability = 8000,
-               .range = 16,
-               .scale_factor = 5000,
-               .misalignment = 5}},
-    {.device = {"ADIS16405", "industrial MEMS",
-                "rodralez/NaveGo: examples/synthetic-data/navego_example_synth.m",
-                "Bias instability and turn-on figures (3 deg/s, 50 mg) of the data sheet; the "
-                "floors are divided by 0.664.",
-                false},
+         {"ADIS16405", "industrial MEMS",
+          "rodralez/NaveGo: examples/synthetic-data/navego_example_synth.m",
+          "Bias instability (0.007 deg/s, 0.2 mg) and turn-on figures (3 deg/s, 50 mg) of the data "
+          "sheet; the floors are divided by 0.664. N is its angle random walk of 2 deg/sqrt(h), "
+          "with which its density of 0.05 deg/s/sqrt(Hz) agrees when read as one-sided (6 %).",
+          false},
      .method = "datasheet",
      .gyro = {.present = true,
               .white = 2,
@@ -169,26 +63,31 @@ const imki_device_entry imki_device_table[] = {
                .is_floor = true}},
     {.device =
          {"ADIS16405 measured", "industrial MEMS", "SMAC-Group/imudata: data/adis_16405_imu1.rda",
-          "From the Allan deviation of a record of 2.78 h, mean of the axes; B is the minimum / "
-          "0.664 (gyro 27.2, 45.6, 43.9 deg/h, x still falling at 1111 s). The accelerometer falls "
-          "with slope -0.35 only at 1 s, so its white noise is an upper bound.",
+          "A record of 2.78 h, means of the axes. Gyro: from the Allan deviation; B is the minimum "
+          "/ 0.664 (27.2, 45.6, 43.9 deg/h, x still falling at 1111 s). Accelerometer: an "
+          "oscillation at 0.564 Hz spoils the Allan deviation at 1 s (slope -0.35; read as white "
+          "noise it gives 0.3635 m/s/sqrt(h)), so the white noise is that of a fit to the spectrum "
+          "with the oscillation set apart. Steps of the output 0.05 deg/s and 3.33 mg.",
           false},
      .method = "measured",
-     .gyro = {.present = true, .white = 2.452, .instability = 38.91},
-     .accel = {.present = true, .white = 0.3635, .instability = 372}},
+     .gyro = {.present = true, .white = 2.452, .instability = 38.91, .resolution = 0.05},
+     .accel = {.present = true, .white = 0.2469, .instability = 372, .resolution = 3.33}},
     {.device = {"ADIS16448 EuRoC", "industrial MEMS",
                 "rpng/open_vins: config/euroc_mav/kalibr_imu_chain.yaml",
-                "Settings of an estimator. The random walk of the accelerometer bias (3e-3 "
+                "Settings of an estimator, 1.6968e-4 rad/s/sqrt(Hz) and 2e-3 m/s^2/sqrt(Hz), "
+                "two-sided as it uses them. The random walk of the accelerometer bias (3e-3 "
                 "m/s^3/sqrt(Hz)) was tuned for a filter and is left out.",
                 false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.5833, .random_walk = 240},
      .accel = {.present = true, .white = 0.12}},
-    {.device = {"ADIS16448 RotorS", "industrial MEMS",
-                "ethz-asl/rotors_simulator: rotors_description/urdf/component_snippets.xacro",
-                "Settings of a simulator, twice those of the EuRoC file; stated as two-sided. "
-                "Turn-on 0.0087 rad/s and 0.196 m/s^2.",
-                false},
+    {.device =
+         {"ADIS16448 RotorS", "industrial MEMS",
+          "ethz-asl/rotors_simulator: rotors_description/urdf/component_snippets.xacro",
+          "Settings of a simulator, twice those of the EuRoC file for the same device; stated as "
+          "two-sided. Turn-on 0.0087 rad/s and 0.196 m/s^2. Its bias forgets with time constants "
+          "of 1000 s (gyro) and 300 s: not included, so K holds for shorter times only.",
+          false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 1.167, .random_walk = 480, .repeatability = 1794.503814},
      .accel = {.present = true, .white = 0.24, .repeatability = 19986.43777}},
@@ -222,21 +121,23 @@ const imki_device_entry imki_device_table[] = {
      .gyro = {.present = true, .white = 0.2, .instability = 3},
      .accel = {.present = true, .white = 0.2}},
     {.device = {"Leador-A15", "navigation", "i2Nav-WHU/KF-GINS: dataset/kf-gins.yaml",
-                "0.027 deg/h and 15 mGal are the standard deviations of a filter's slow biases, "
-                "not Allan figures: given here as repeatability.",
+                "0.027 deg/h and 15 mGal are the standard deviations of a filter's slow biases "
+                "(correlation time 4 h), not Allan figures: given here as repeatability.",
                 false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.003, .repeatability = 0.027},
      .accel = {.present = true, .white = 0.03, .repeatability = 15.3}},
     {.device = {"AHRS380SA", "industrial MEMS",
                 "Aceinna/gnss-ins-sim: gnss_ins_sim/sim/imu_model.py",
-                "The low-accuracy setting of a simulator; floors divided by 0.664.", false},
+                "The low-accuracy setting of a simulator; floors (accelerometer 2e-4 m/s^2) "
+                "divided by 0.664; there they are Gauss-Markov processes of 100 s.",
+                false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.75, .instability = 10, .is_floor = true},
      .accel = {.present = true, .white = 0.05, .instability = 20.39, .is_floor = true}},
     {.device = {"IMU381", "industrial MEMS", "Aceinna/gnss-ins-sim: gnss_ins_sim/sim/imu_model.py",
-                "The mid-accuracy setting of a simulator, partly from the IMU381; floors divided "
-                "by 0.664.",
+                "The mid-accuracy setting of a simulator, partly from the IMU381; floors "
+                "(accelerometer 5e-5 m/s^2) divided by 0.664.",
                 false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.25, .instability = 3.5, .is_floor = true},
@@ -283,9 +184,12 @@ const imki_device_entry imki_device_table[] = {
      .method = "measured",
      .gyro = {.present = true, .instability = 0.1877, .random_walk = 2.182, .range = 400},
      .accel = {.present = true, .white = 0.08684, .instability = 27.55, .range = 5}},
-    {.device = {"MPU-6000", "consumer MEMS",
-                "microsoft/AirSim: AirLib/include/sensors/imu/ImuSimpleParams.hpp",
-                "Figures of a thesis quoted in the source; instabilities as given.", false},
+    {.device =
+         {"MPU-6000", "consumer MEMS",
+          "microsoft/AirSim: AirLib/include/sensors/imu/ImuSimpleParams.hpp",
+          "Figures of a thesis quoted in the source; instabilities as given, without their "
+          "correlation times (500 s, 800 s). 0.24 mg/sqrt(Hz) taken as two-sided, as used there.",
+          false},
      .method = "measured",
      .gyro = {.present = true, .white = 0.3, .instability = 4.6},
      .accel = {.present = true, .white = 0.1412, .instability = 36}},
@@ -296,33 +200,39 @@ const imki_device_entry imki_device_table[] = {
      .accel = {.present = true, .white = 0.05, .instability = 20, .range = 8, .is_floor = true}},
     {.device = {"MicroStrain MV5-AR", "industrial MEMS",
                 "leggedrobotics/graph_msf: doc/imu_parameters.md",
-                "0.0075 deg/s/sqrt(Hz) and 85 ug/sqrt(Hz); the page's own conversion of the latter "
-                "is 2 % off.",
+                "0.0075 deg/s/sqrt(Hz) and 85 ug/sqrt(Hz), converted here: the page's own "
+                "conversion of the latter is 2 % off. Densities taken as two-sided, as used there; "
+                "N is smaller by sqrt(2) if the maker's are one-sided.",
                 false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.45},
      .accel = {.present = true, .white = 0.05001}},
     {.device = {"Xsens MTi-G-700", "industrial MEMS",
                 "rpng/kalibr_allan: matlab/SCRIPT_noise_conversion.m",
-                "0.01 deg/s/sqrt(Hz) and 60 ug/sqrt(Hz).", false},
+                "0.01 deg/s/sqrt(Hz) and 60 ug/sqrt(Hz). Densities taken as two-sided, as used "
+                "there; N is smaller by sqrt(2) if the maker's are one-sided.",
+                false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.6},
      .accel = {.present = true, .white = 0.0353}},
     {.device = {"CH Robotics UM7", "consumer MEMS",
                 "nickcharron/kalibr_allan: matlab/SCRIPT_noise_conversion.m",
-                "0.005 deg/s/sqrt(Hz) and 400 ug/sqrt(Hz); seen in an excerpt of the source.",
+                "0.005 deg/s/sqrt(Hz) and 400 ug/sqrt(Hz); seen in an excerpt of the source. "
+                "Densities taken as two-sided, as used there; N is smaller by sqrt(2) if the "
+                "maker's are one-sided.",
                 false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.3},
      .accel = {.present = true, .white = 0.2354}},
     {.device = {"Xsens MTi-100", "industrial MEMS",
                 "rpng/open_vins: config/kaist/kalibr_imu_chain.yaml",
-                "Left out: the accelerometer noise, ten times the maker's 60 ug/sqrt(Hz), and a "
-                "rate random walk that the file itself calls a guess.",
+                "0.01 deg/s/sqrt(Hz), taken as two-sided, as used there. Left out: the "
+                "accelerometer (its noise is ten times the maker's 60 ug/sqrt(Hz), and nothing "
+                "else is stated), and a rate random walk that the file itself calls a guess.",
                 false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.6},
-     .accel = {.present = true}},
+     .accel = {.present = false}},
     {.device = {"RealSense T265", "consumer MEMS",
                 "rpng/open_vins: config/rs_t265/kalibr_imu_chain.yaml",
                 "BMI055, to general knowledge. Record of about 20 h; the file's safety factors of "
@@ -339,8 +249,9 @@ const imki_device_entry imki_device_table[] = {
      .gyro = {.present = true, .white = 0.3531, .random_walk = 13.74},
      .accel = {.present = true, .white = 0.06229}},
     {.device = {"RealSense D435i", "consumer MEMS", "ori-drs/allan_variance_ros: README.md",
-                "BMI055, to general knowledge. Record of 3 h, means of the axes (gyro minima 1.77, "
-                "4.88, 3.15 deg/h); plain minima, divided by 0.664 here.",
+                "BMI055, to general knowledge. Record of 3 h, means of the axes (gyro N 0.472, "
+                "0.592, 0.503 deg/sqrt(h), minima 1.77, 4.88, 3.15 deg/h); plain minima, divided "
+                "by 0.664 here. The white noises agree with the page's own estimator settings.",
                 false},
      .method = "measured",
      .gyro = {.present = true,
@@ -348,7 +259,11 @@ const imki_device_entry imki_device_table[] = {
               .instability = 3.267,
               .random_walk = 33.12,
               .is_floor = true},
-     .accel = {.present = true, .white = 0.3785, .instability = 88.38, .is_floor = true}},
+     .accel = {.present = true,
+               .white = 0.3785,
+               .instability = 88.38,
+               .random_walk = 714,
+               .is_floor = true}},
     {.device = {"TUM-VI", "consumer MEMS", "rpng/open_vins: config/tum_vi/kalibr_imu_chain.yaml",
                 "BMI160, to general knowledge. Figures of the data set's authors; the rate random "
                 "walk is large, as filters are tuned.",
@@ -382,14 +297,17 @@ const imki_device_entry imki_device_table[] = {
     {.device =
          {"Xsens MTi-630", "industrial MEMS",
           "JorgeDFR/3d_lidar_slam_benchmark_at_iilab: docs/content/dataset/sensors/imu/index.md",
-          "The page prints 8 deg/s of gyro bias, which can only be deg/h; accelerometer 10 to 15 "
-          "ug, the middle taken. Floors divided by 0.664.",
+          "0.007 deg/s/sqrt(Hz) and 60 ug/sqrt(Hz), taken as two-sided. The page prints 8 deg/s of "
+          "gyro bias, which can only be deg/h; accelerometer 10 to 15 ug, the middle taken. Floors "
+          "divided by 0.664.",
           false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.42, .instability = 8, .is_floor = true},
      .accel = {.present = true, .white = 0.0353, .instability = 12.5, .is_floor = true}},
     {.device = {"Xsens MTi-1", "industrial MEMS", "doi 10.2478/tar-2023-0022, table of the MTi-1",
-                "0.007 deg/s/sqrt(Hz), 120 ug/sqrt(Hz), 0.03 mg; floors divided by 0.664.", false},
+                "0.007 deg/s/sqrt(Hz) and 120 ug/sqrt(Hz), taken as two-sided, 0.03 mg; floors "
+                "divided by 0.664.",
+                false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.42, .instability = 10, .range = 2000, .is_floor = true},
      .accel =
@@ -398,11 +316,12 @@ const imki_device_entry imki_device_table[] = {
          {"ADIS16475-2", "industrial MEMS",
           "leggedrobotics/grand_tour_box: box_calibration, allan_variances/adis/allan_variance.csv",
           "Record of 36 h; B is the minimum / 0.664. The accelerometer curves show quantisation "
-          "(x, y) and drift (z): no figure taken.",
+          "(x, y) and drift (z), against 0.0576 m/s^2/sqrt(Hz) in the source's own settings: left "
+          "out.",
           false},
      .method = "measured",
      .gyro = {.present = true, .white = 0.0758, .instability = 1.81},
-     .accel = {.present = true}},
+     .accel = {.present = false}},
     {.device = {"Alphasense Core", "consumer MEMS",
                 "leggedrobotics/grand_tour_box: box_calibration, "
                 "allan_variances/alphasense/allan_variance.csv",
@@ -415,8 +334,8 @@ const imki_device_entry imki_device_table[] = {
     {.device =
          {"Leica AP20", "industrial MEMS",
           "leggedrobotics/grand_tour_box: box_calibration, allan_variances/ap20/allan_variance.csv",
-          "Record of 36 h; B is the minimum / 0.664. Gyro x falls with slope -0.91 at 1 s: "
-          "vibration or quantisation.",
+          "Record of 36 h; B is the minimum / 0.664. Gyro x falls with slope -0.91 at 1 s, from "
+          "vibration or quantisation: the mean white noise is an upper bound.",
           false},
      .method = "measured",
      .gyro = {.present = true, .white = 0.5783, .instability = 3.497},
@@ -442,25 +361,26 @@ const imki_device_entry imki_device_table[] = {
     {.device =
          {"LN-200", "tactical FOG", "SMAC-Group/avar: data/ln200_av.rda",
           "Published Allan variances of 6 h, taken as rad/s; B is the minimum / 0.664 at 1311 s, "
-          "still falling. The accelerometer is limited by quantisation: no figure taken.",
+          "still falling: an upper bound. The accelerometer is limited by quantisation: left out.",
           false},
      .method = "measured",
      .gyro = {.present = true, .white = 0.03927, .instability = 0.1013},
-     .accel = {.present = true}},
+     .accel = {.present = false}},
     {.device = {"iMAR", "tactical FOG", "SMAC-Group/avar: data/imar_av.rda",
-                "Published Allan variances of 4 h, taken as rad/s; B is the minimum / 0.664. "
-                "Called MEMS there, but the figures are those of a fibre-optic unit.",
+                "Gyros only. Published Allan variances of 4 h, taken as rad/s; B is the minimum / "
+                "0.664. Called MEMS there, but the figures are those of a fibre-optic unit, and it "
+                "is listed as one.",
                 false},
      .method = "measured",
      .gyro = {.present = true, .white = 0.1066, .instability = 0.3935},
-     .accel = {.present = true}},
+     .accel = {.present = false}},
     {.device = {"NavChip", "industrial MEMS", "SMAC-Group/avar: data/navchip_av.rda",
-                "Published Allan variances of 3.45 h, taken as rad/s; B is the minimum / 0.664. "
-                "Slope -0.1 at 1 s: no white noise to be read.",
+                "Gyros only. Published Allan variances of 3.45 h, taken as rad/s; B is the minimum "
+                "/ 0.664. Slope -0.1 at 1 s: no white noise to be read.",
                 false},
      .method = "measured",
      .gyro = {.present = true, .instability = 17.62},
-     .accel = {.present = true}},
+     .accel = {.present = false}},
     {.device = {"SBG IG-500N", "industrial MEMS", "milkytipo/Allan-variance: record of 2.44 h",
                 "From an Allan deviation of a 5 Hz record; B is the minimum / 0.664. The record "
                 "was thinned without a filter, which inflates the white noises: left out, and B is "
@@ -475,8 +395,8 @@ const imki_device_entry imki_device_table[] = {
                 "the output 0.01 deg/s and 1 mg.",
                 false},
      .method = "measured",
-     .gyro = {.present = true, .white = 0.3183, .instability = 1.804},
-     .accel = {.present = true, .white = 0.04939, .instability = 32.83}},
+     .gyro = {.present = true, .white = 0.3183, .instability = 1.804, .resolution = 0.01},
+     .accel = {.present = true, .white = 0.04939, .instability = 32.83, .resolution = 1}},
     {.device = {"hfi", "consumer MEMS", "dockermyself/allan_variance: data/allan_variance.csv",
                 "An unnamed MEMS unit; white noises read at 1 s.", false},
      .method = "measured",
@@ -495,7 +415,10 @@ const imki_device_entry imki_device_table[] = {
      .accel = {.present = true, .white = 0.1056, .instability = 10.2}},
     {.device = {"VN-100", "industrial MEMS",
                 "estimator settings citing the maker's support (repository not known)",
-                "0.0035 deg/s/sqrt(Hz) and 0.14 mg/sqrt(Hz).", false},
+                "0.0035 deg/s/sqrt(Hz) and 0.14 mg/sqrt(Hz); the maker's support gives the same "
+                "numbers as random walks there, so they are N. A random walk of the accelerometer "
+                "bias (5e-5 m/s^3/sqrt(Hz)) is a filter's and left out.",
+                false},
      .method = "datasheet",
      .gyro = {.present = true, .white = 0.21},
      .accel = {.present = true, .white = 0.08238}},

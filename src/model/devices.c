@@ -14,18 +14,21 @@
 /* SI values of the units of the table and of model files, for one kind of sensor. The scales are
  * those of the units' own table, so that 0.8 mg here is the double that "0.8 mg" reads as. */
 typedef struct table_units {
-    double white, instability, random_walk, range;
+    double white, instability, random_walk, quantization, range, resolution;
     double bias;         /* of fixed and repeatability as model files write them */
     double bias_divisor; /* from the table's unit to that one */
 } table_units;
 
 size_t imk_device_count(void)
 {
-    return imki_device_table_count;
+    return IMKI_PRESETS + imki_device_table_count;
 }
 
 const imk_device *imk_device_get(size_t index)
 {
+    if (index < IMKI_PRESETS)
+        return &imki_grade_presets[index].device;
+    index -= IMKI_PRESETS;
     return index < imki_device_table_count ? &imki_device_table[index].device : NULL;
 }
 
@@ -56,9 +59,9 @@ static bool same_name(const char *a, const char *b)
 
 const imk_device *imk_device_find(const char *name)
 {
-    for (size_t i = 0; name && i < imki_device_table_count; i++)
-        if (same_name(name, imki_device_table[i].device.name))
-            return &imki_device_table[i].device;
+    for (size_t i = 0; name && i < imk_device_count(); i++)
+        if (same_name(name, imk_device_get(i)->name))
+            return imk_device_get(i);
     return NULL;
 }
 
@@ -98,7 +101,11 @@ static void set_triad(imk_triad *triad, const imki_device_figures *figures, tabl
     set_all(&triad->noise.bias_instability, figures->instability * to_b * unit.instability);
     set_all(&triad->noise.random_walk, figures->random_walk * unit.random_walk);
     set_all(&triad->bias.repeatability, figures->repeatability / unit.bias_divisor * unit.bias);
+    set_all(&triad->noise.quantization, figures->quantization * unit.quantization);
     set_all(&triad->range, figures->range * unit.range);
+    set_all(&triad->resolution, figures->resolution * unit.resolution);
+    set_all(&triad->bandwidth, figures->bandwidth);
+    set_all(&triad->nonlinearity.k2, figures->k2 * imk_unit_of("ppm/g").scale);
     set_all(&triad->scale_factor.repeatability, figures->scale_factor * imk_unit_of("ppm").scale);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -111,7 +118,9 @@ static void set_triad(imk_triad *triad, const imki_device_figures *figures, tabl
 
 static void set_g_sensitivity(imk_triad *gyro, const imki_device_figures *figures)
 {
-    double unit = imk_unit_of("deg/h/g").scale;
+    double unit = imk_unit_of("deg/h/g").scale, unit2 = imk_unit_of("deg/h/g^2").scale;
+    for (int i = 0; i < 3; i++)
+        gyro->g2_sensitivity.value[i][i] = figures->g2_sensitivity * unit2;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             double own = i == j ? figures->g_sensitivity : 0;
@@ -125,13 +134,17 @@ void imk_device_model(const imk_device *device, imk_model *model)
     const table_units gyro_units = {.white = imk_unit_of("deg/sqrt(h)").scale,
                                     .instability = imk_unit_of("deg/h").scale,
                                     .random_walk = imk_unit_of("deg/h/sqrt(h)").scale,
+                                    .quantization = imk_unit_of("arcsec").scale,
                                     .range = imk_unit_of("deg/s").scale,
+                                    .resolution = imk_unit_of("deg/s").scale,
                                     .bias = imk_unit_of("deg/h").scale,
                                     .bias_divisor = 1};
     const table_units accel_units = {.white = imk_unit_of("m/s/sqrt(h)").scale,
                                      .instability = imk_unit_of("ug").scale,
                                      .random_walk = imk_unit_of("ug/sqrt(h)").scale,
+                                     .quantization = imk_unit_of("m/s").scale,
                                      .range = imk_unit_of("g").scale,
+                                     .resolution = imk_unit_of("mg").scale,
                                      .bias = imk_unit_of("mg").scale,
                                      .bias_divisor = 1000};
     const imki_device_entry *entry = (const imki_device_entry *)(const void *)device;

@@ -81,6 +81,8 @@ bool imki_field_equal(const imki_field *field, const imk_triad *a, const imk_tri
         return a->noise.density == b->noise.density;
     case IMKI_DIRECTION:
         return equal_directions(a, b);
+    case IMKI_PENDULOUS:
+        return equal_at(field, a, b, a->axis_count, false);
     case IMKI_LIST:
         return equal_lists(field, a, b, with_sigmas);
     case IMKI_POLYNOMIAL:
@@ -104,6 +106,8 @@ bool imki_field_absent(const imki_field *field, const imk_triad *triad)
         return triad->noise.density == IMK_DENSITY_UNSTATED;
     case IMKI_DIRECTION:
         return is_standard_triad(triad);
+    case IMKI_PENDULOUS:
+        return all_zero(triad->nonlinearity.pendulous_axis[0], (size_t)triad->axis_count * 3);
     case IMKI_LIST:
         return imki_list_count(field, triad) == 0;
     case IMKI_POLYNOMIAL:

@@ -74,6 +74,8 @@ const imki_field imki_triad_fields[] = {
      UNIT("ppm"), NO_UNITS, UNIT("1"), -2.0, 2.0},
     {ACCEL("cross_products"), IMKI_ROWS, 0, AT(nonlinearity.cross_products), NO_COUNT,
      UNIT("ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
+    {ACCEL("pendulous_axis"), IMKI_PENDULOUS, IMKI_BARE, AT(nonlinearity.pendulous_axis), NO_COUNT,
+     UNIT("1"), NO_UNITS, UNIT("1"), ANY},
     {BOTH("misalignment"), IMKI_OFF_DIAGONAL, 0, AT(misalignment), NO_COUNT, UNIT("mrad"), NO_UNITS,
      UNIT("rad"), ANY},
     {BOTH("cross_axis"), IMKI_OFF_DIAGONAL, 0, AT(cross_axis), NO_COUNT, UNIT("%"), NO_UNITS,
@@ -195,6 +197,7 @@ int imki_row_length(imki_shape shape)
     case IMKI_OFF_DIAGONAL:
     case IMKI_ROWS:
     case IMKI_DIRECTION:
+    case IMKI_PENDULOUS:
         return 3;
     case IMKI_QUADRATIC:
         return 6;

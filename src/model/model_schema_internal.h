@@ -19,6 +19,7 @@ typedef enum imki_shape {
     IMKI_POLYNOMIAL,   /* imk_temperature_polynomial */
     IMKI_DENSITY,      /* imk_density */
     IMKI_DIRECTION,    /* axis_count and direction */
+    IMKI_PENDULOUS,    /* pendulous_axis: a direction for each axis, or zeros */
     IMKI_LIST          /* a list of terms: struct { imk_axes … } [IMK_TERMS_MAX] and its count */
 } imki_shape;
 

@@ -209,6 +209,29 @@ static imk_status check_directions(const imk_triad *triad, const path *where, im
     return IMK_OK;
 }
 
+/* Zeros, or of unit length and at right angles to the sensing direction. */
+static imk_status check_pendulous(const imk_triad *triad, const path *where, imk_error *error)
+{
+    for (int i = 0; i < triad->axis_count; i++) {
+        const double *p = triad->nonlinearity.pendulous_axis[i], *e = triad->direction[i];
+        for (int j = 0; j < 3; j++)
+            if (!is_finite(p[j]))
+                return refuse(error, IMK_ERROR_NOT_FINITE, where, i, p[j], 0, "a finite number");
+        double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+        double along = p[0] * e[0] + p[1] * e[1] + p[2] * e[2];
+        if (square == 0)
+            continue;
+        if (!(square >= 1 - 2 * direction_tolerance && square <= 1 + 2 * direction_tolerance))
+            return refuse(error, IMK_ERROR_RANGE, where, i, square, 1,
+                          "a direction of unit length, or zeros (this is its square)");
+        if (!(along >= -direction_tolerance && along <= direction_tolerance))
+            return refuse(error, IMK_ERROR_RANGE, where, i, along, 0,
+                          "a direction at right angles to the sensing direction (this is the "
+                          "cosine between them)");
+    }
+    return IMK_OK;
+}
+
 static imk_status check_density(const imk_triad *triad, const path *where, imk_error *error)
 {
     int density = (int)triad->noise.density;
@@ -236,6 +259,8 @@ static imk_status check_field(const imki_field *field, const imk_triad *triad, i
         return check_density(triad, &where, error);
     case IMKI_DIRECTION:
         return check_directions(triad, &where, error);
+    case IMKI_PENDULOUS:
+        return check_pendulous(triad, &where, error);
     case IMKI_LIST:
         return check_list(field, triad, kind, &where, error);
     case IMKI_POLYNOMIAL:

@@ -117,6 +117,23 @@ static inline void random_directions(uint64_t *state, imk_triad *triad)
     }
 }
 
+/* Across the direction, on some axes. */
+static inline void random_pendulous(uint64_t *state, imk_triad *triad)
+{
+    for (int i = 0; i < triad->axis_count; i++) {
+        const double *e = triad->direction[i];
+        double *p = triad->nonlinearity.pendulous_axis[i], square = 0;
+        int k = fabs(e[0]) < 0.6 ? 0 : 1;
+        for (int j = 0; j < 3; j++) {
+            p[j] = (j == k ? 1 : 0) - e[k] * e[j];
+            square += p[j] * p[j];
+        }
+        bool is_stated = random_below(state, 2);
+        for (int j = 0; j < 3; j++)
+            p[j] = is_stated ? p[j] / sqrt(square) : 0;
+    }
+}
+
 static inline void random_field(uint64_t *state, const imki_field *field, int kind,
                                 imk_triad *triad)
 {
@@ -125,6 +142,9 @@ static inline void random_field(uint64_t *state, const imki_field *field, int ki
     int length = imki_row_length(field->shape);
     switch (field->shape) {
     case IMKI_DIRECTION:
+        break;
+    case IMKI_PENDULOUS:
+        random_pendulous(state, triad);
         break;
     case IMKI_DENSITY:
         triad->noise.density = (imk_density)random_below(state, 3);

@@ -155,6 +155,17 @@ static void redundant_axes_have_directions(void **state)
     assert_false(model.accel.present);
 }
 
+static void pendulous_axes_are_directions(void **state)
+{
+    (void)state;
+    imk_model model = parsed("imukit: 1\naccel:\n  pendulous_axis: [0 3 4, 0 0 0, 1 0 0]\n");
+    const double(*p)[3] = (const double(*)[3])model.accel.nonlinearity.pendulous_axis;
+    CHECK_CLOSE(p[0][1], 0.6, 1e-16);
+    CHECK_CLOSE(p[0][2], 0.8, 1e-16);
+    CHECK_CLOSE(p[1][0] + p[1][1] + p[1][2], 0, 0);
+    CHECK_CLOSE(p[2][0], 1, 0);
+}
+
 static void evidence_is_read(void **state)
 {
     (void)state;
@@ -250,6 +261,10 @@ static const refusal refusals[] = {
      "gyro.g_sensitivity[1]", "three numbers"},
     {"gyro: {misalignment: 1 2 mrad}", IMK_ERROR_SYNTAX, 2, 22, "gyro.misalignment", "six"},
     {"gyro: {direction: [0 0 0]}", IMK_ERROR_SYNTAX, 2, 20, "gyro.direction[0]", "x y z"},
+    {"accel: {pendulous_axis: [0 0 1]}", IMK_ERROR_SYNTAX, 2, 25, "accel.pendulous_axis",
+     "row x y z for each axis"},
+    {"accel: {pendulous_axis: [1 0 0, 0 0 0, 0 0 0]}", IMK_ERROR_RANGE, 2, 25,
+     "accel.pendulous_axis", "right angles"},
     {"gyro: {range: -3 deg/s}", IMK_ERROR_RANGE, 2, 15, "gyro.range", "negative"},
     {"gyro: {noise: {resonance: [{sigma: 1 deg/h, frequency: 5 Hz, q: 0.3}]}}", IMK_ERROR_RANGE, 2,
      65, "gyro.noise.resonance[0].q", "limit"},
@@ -665,6 +680,7 @@ int main(void)
         cmocka_unit_test(matrices_have_three_forms),
         cmocka_unit_test(temperature_is_read),
         cmocka_unit_test(redundant_axes_have_directions),
+        cmocka_unit_test(pendulous_axes_are_directions),
         cmocka_unit_test(evidence_is_read),
         cmocka_unit_test(json_is_the_same_tree),
         cmocka_unit_test(byte_order_mark_and_crlf_are_read),

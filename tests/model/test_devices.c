@@ -97,8 +97,9 @@ static void gyro_only_unit_has_no_accelerometer(void **state)
     assert_false(model.accel.present);
 }
 
-/* Each preset is of its class by the table, and the strategic one is below the 0.00145 deg/h that
- * its claim of 1 nmi in 24 h needs. */
+/* Each preset is of its class by the table, its biases in the range that the table prints for the
+ * class (down to 0.0001, 0.001 and 0.1 deg/h where no lower end is printed [ELSHEIMY2020]), and the
+ * strategic one is below the 0.00145 deg/h that its claim of 1 nmi in 24 h needs. */
 static void presets_have_their_grade(void **state)
 {
     (void)state;
@@ -112,6 +113,17 @@ static void presets_have_their_grade(void **state)
         assert_true(model.gyro.noise.random_walk.value[0] > 0);
         assert_true(model.gyro.scale_factor.repeatability.value[0] > 0);
         assert_true(model.accel.misalignment.value[0][1] > 0);
+        assert_true(model.gyro.range.value[0] > 0 && model.accel.range.value[0] > 0);
+        assert_true(model.accel.nonlinearity.k2.value[0] > 0);
+        /* integrating sensors quantise the integral, the others the output */
+        const bool integrates = i <= IMK_GRADE_TACTICAL;
+        assert_true(integrates == (model.gyro.noise.quantization.value[0] > 0));
+        assert_true(integrates == (model.accel.resolution.value[0] == 0));
+        static const double lowest[5] = {0.0001, 0.001, 0.1, 1, 10}; /* [deg/h] */
+        const imk_grade_row *row = imk_grade_table((imk_grade)i);
+        CHECK_BELOW(lowest[i] * degree_per_hour, result.gyro_bias);
+        CHECK_BELOW(result.gyro_bias, row->gyro_bias_limit);
+        CHECK_BELOW(result.accel_bias, row->accel_bias_limit);
         if (i == 0)
             CHECK_BELOW(result.gyro_bias, 0.00145 * degree_per_hour);
     }

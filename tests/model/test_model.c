@@ -134,6 +134,12 @@ static void wrong_structure_is_refused(void **state)
     REFUSED(model.gyro.axis_count = 0, IMK_ERROR_RANGE, "gyro.axis_count");
     REFUSED(model.gyro.axis_count = 9, IMK_ERROR_RANGE, "gyro.axis_count");
     REFUSED(model.gyro.direction[0][1] = 0.1, IMK_ERROR_RANGE, "gyro.direction");
+    REFUSED(model.accel.nonlinearity.pendulous_axis[1][2] = 1.1, IMK_ERROR_RANGE,
+            "accel.pendulous_axis");
+    REFUSED(model.accel.nonlinearity.pendulous_axis[1][1] = 1, IMK_ERROR_RANGE, /* along y */
+            "accel.pendulous_axis");
+    REFUSED(model.accel.nonlinearity.pendulous_axis[0][0] = (double)NAN, IMK_ERROR_NOT_FINITE,
+            "accel.pendulous_axis");
     REFUSED(model.gyro.noise.density = (imk_density)7, IMK_ERROR_RANGE, "gyro.noise.density");
     REFUSED(model.gyro.present = model.accel.present = false, IMK_ERROR_KEY_MISSING, "gyro");
     REFUSED(memset(model.name, 'x', sizeof model.name), IMK_ERROR_ARGUMENT, "name");
@@ -147,6 +153,8 @@ static void wrong_company_is_refused(void **state)
     REFUSED(model.gyro.lever_arm.value[0][0] = 1, IMK_ERROR_CONFLICT, "gyro.lever_arm");
     REFUSED(model.gyro.nonlinearity.cross_products.value[0][0] = 1, IMK_ERROR_CONFLICT,
             "gyro.cross_products");
+    REFUSED(model.gyro.nonlinearity.pendulous_axis[0][1] = 1, IMK_ERROR_CONFLICT,
+            "gyro.pendulous_axis");
     REFUSED(model.gyro.bandwidth.value[2] = 0, IMK_ERROR_CONFLICT, "gyro.damping");
     REFUSED(model.gyro.sensitivity.value[2] = 0, IMK_ERROR_CONFLICT, "gyro.sensitivity");
     REFUSED(model.accel.zero_offset.value[0] = 1, IMK_ERROR_CONFLICT, "accel.zero_offset");

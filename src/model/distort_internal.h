@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What forward and inverse map share: the loops over samples, by instruction set.
+ *
+ * Samples are taken in chunks, four vectors of eight lanes. A feature is a component or the product
+ * of two. Features of weight zero, and those the stimulus does not have, are left out of the loop
+ * by a bit mask that is the same for all samples; this changes no bit of a result, as no sum is
+ * ever -0. */
+#ifndef IMUKI_DISTORT_INTERNAL_H
+#define IMUKI_DISTORT_INTERNAL_H
+
+#include "imukit/distort.h"
+
+enum {
+    IMKI_CHUNK = 32,               /* samples */
+    IMKI_CORRECT_BLOCK = 64,       /* samples corrected together: some 30 kB of stack */
+    IMKI_OWN_FEATURES = 0x007,     /* w of a gyro, f of an accelerometer */
+    IMKI_PRODUCT_FEATURES = 0x1F8, /* products of components of the other kind */
+    IMKI_THIRD_FEATURES = 0xE00    /* f of a gyro, angular acceleration of an accelerometer */
+};
+
+/* Which of the weights of an axis are not zero; index of imk_axis_response.used. */
+enum { IMKI_INPUT, IMKI_OTHER, IMKI_PENDULOUS, IMKI_OUTPUT };
+
+/* One component of the motion, or a chunk of zeros that stays where it is. */
+typedef struct imki_component {
+    const double *at;
+    size_t moving; /* all ones, or 0 */
+} imki_component;
+
+/* A stimulus as one axis takes it. Feature k is factor[k][0], times factor[k][1] for a product. */
+typedef struct imki_exposure {
+    const double *factor[IMK_FEATURES][2];
+    uint32_t available; /* bit k: feature k is not zero throughout */
+    /* For an accelerometer away from the reference point: f, w and angular acceleration. The force
+     * at its place is computed once for all rows, with the weights of the first three features. */
+    imki_component force[3], rate[3], acceleration[3];
+    bool turns; /* w or the angular acceleration is not zero throughout */
+    const double *temperature, *temperature_rate, *warm_up, *hysteresis;
+} imki_exposure;
+
+imki_exposure imki_expose(int sensor, const imk_stimulus *stimulus);
+
+/* What an axis reads over whole chunks. */
+void imki_distort_chunks(imk_kernel kernel, const imk_axis_response *axis,
+                         const imki_exposure *exposure, size_t chunks, double *out);
+
+/* response = reading - response */
+void imki_residual(imk_kernel kernel, size_t chunks, const double *reading, double *response);
+/* sum += gain * residual */
+void imki_add_residual(imk_kernel kernel, size_t chunks, double gain, const double *residual,
+                       double *sum);
+/* x = x clipped to +-limit; what is not a number stays so */
+void imki_limit(imk_kernel kernel, size_t chunks, double limit, double *x);
+
+/* The same of one instruction set. */
+#define IMKI_DISTORT_LOOPS(isa)                                                                    \
+    void imki_distort_chunks_##isa(const imk_axis_response *axis, const imki_exposure *exposure,   \
+                                   size_t chunks, double *out);                                    \
+    void imki_residual_##isa(size_t chunks, const double *reading, double *response);              \
+    void imki_add_residual_##isa(size_t chunks, double gain, const double *residual, double *sum); \
+    void imki_limit_##isa(size_t chunks, double limit, double *x);
+IMKI_DISTORT_LOOPS(portable)
+IMKI_DISTORT_LOOPS(avx2)
+IMKI_DISTORT_LOOPS(avx512)
+
+#endif

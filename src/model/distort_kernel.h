@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The loops of distort_internal.h, to be compiled for each instruction set with vectors of LANES
+ * lanes, the width of its registers. Each sample sees the same operations in the same order
+ * whatever these are:
+ *
+ *     b = bias + rate dT/dt + warm_up e + width/2 p + d(c1 + d(c2 + …)),   d = clip(T) - reference
+ *     n = |u|(Koq u + asymmetry/2) + u^2 (K2 + K3 u)
+ *     y = ((b + other) + s u + n + c) + u
+ *
+ * The largest term comes last, so that the small ones lose nothing among themselves. */
+#ifndef IMUKI_DISTORT_KERNEL_H
+#define IMUKI_DISTORT_KERNEL_H
+
+#include "distort_internal.h"
+
+#define KERNEL static inline __attribute__((always_inline))
+
+/* Four vectors at a time hide the latency of a sum, and fit the registers. */
+enum { VECTORS = 4, STEP = VECTORS * LANES };
+
+/* Arrays of double of any alignment. */
+typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+typedef long long bits __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+
+#define VECTOR(array, v) (((const lanes *)(array))[v])
+
+KERNEL void add_features(lanes sum[VECTORS], uint32_t used, const double *weight,
+                         const imki_exposure *x, size_t start)
+{
+    for (uint32_t rest = used & ~(uint32_t)IMKI_PRODUCT_FEATURES; rest; rest &= rest - 1) {
+        const int k = __builtin_ctz(rest);
+        const double *a = x->factor[k][0] + start;
+        for (int v = 0; v < VECTORS; v++)
+            sum[v] += weight[k] * VECTOR(a, v);
+    }
+    for (uint32_t rest = used & IMKI_PRODUCT_FEATURES; rest; rest &= rest - 1) {
+        const int k = __builtin_ctz(rest);
+        const double *a = x->factor[k][0] + start, *b = x->factor[k][1] + start;
+        for (int v = 0; v < VECTORS; v++)
+            sum[v] += weight[k] * (VECTOR(a, v) * VECTOR(b, v));
+    }
+}
+
+KERNEL const double *component(const imki_component *c, size_t start)
+{
+    return c->at + (start & c->moving);
+}
+
+/* f + alpha x r + w x (w x r) */
+KERNEL void force_at(lanes place[3][VECTORS], const double r[3], const imki_exposure *x,
+                     size_t start)
+{
+    const double *f[3], *w[3], *alpha[3], r0 = r[0], r1 = r[1], r2 = r[2];
+    for (int j = 0; j < 3; j++) {
+        f[j] = component(&x->force[j], start);
+        w[j] = component(&x->rate[j], start);
+        alpha[j] = component(&x->acceleration[j], start);
+    }
+    for (int v = 0; v < VECTORS; v++) {
+        const lanes w0 = VECTOR(w[0], v), w1 = VECTOR(w[1], v), w2 = VECTOR(w[2], v);
+        const lanes a0 = VECTOR(alpha[0], v), a1 = VECTOR(alpha[1], v), a2 = VECTOR(alpha[2], v);
+        const lanes xx = w0 * w0, yy = w1 * w1, zz = w2 * w2;
+        const lanes xy = w0 * w1, yz = w1 * w2, zx = w2 * w0;
+        place[0][v] = VECTOR(f[0], v) + ((xy - a2) * r1 + (zx + a1) * r2 - (yy + zz) * r0);
+        place[1][v] = VECTOR(f[1], v) + ((xy + a2) * r0 + (yz - a0) * r2 - (xx + zz) * r1);
+        place[2][v] = VECTOR(f[2], v) + ((zx - a1) * r0 + (yz + a0) * r1 - (xx + yy) * r2);
+    }
+}
+
+/* A row times the force at the place of an accelerometer, or the features as they are. */
+KERNEL void add_row(lanes sum[VECTORS], uint32_t used, const double *weight, const imki_exposure *x,
+                    size_t start, lanes (*place)[VECTORS])
+{
+    if (!place) {
+        add_features(sum, used & x->available, weight, x, start);
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        if (used >> k & 1u)
+            for (int v = 0; v < VECTORS; v++)
+                sum[v] += weight[k] * place[k][v];
+}
+
+KERNEL void add_product(lanes sum[VECTORS], double weight, const double *factor)
+{
+    for (int v = 0; v < VECTORS; v++)
+        sum[v] += weight * VECTOR(factor, v);
+}
+
+/* A temperature that is not a number stays what it is. */
+KERNEL void clip(lanes *x, double minimum, double maximum)
+{
+    const lanes low = minimum - (lanes){0.0}, high = maximum - (lanes){0.0};
+    bits beyond = *x < low;
+    *x = (lanes)((beyond & (bits)low) | (~beyond & (bits)*x));
+    beyond = *x > high;
+    *x = (lanes)((beyond & (bits)high) | (~beyond & (bits)*x));
+}
+
+KERNEL void add_polynomial(lanes sum[VECTORS], int order, const double *coefficient,
+                           double reference, double minimum, double maximum,
+                           const double *temperature)
+{
+    lanes d[VECTORS], value[VECTORS];
+    for (int v = 0; v < VECTORS; v++) {
+        d[v] = VECTOR(temperature, v);
+        clip(&d[v], minimum, maximum);
+        d[v] -= reference;
+        value[v] = coefficient[order - 1] * d[v];
+    }
+    for (int k = order - 2; k >= 0; k--)
+        for (int v = 0; v < VECTORS; v++)
+            value[v] = (coefficient[k] + value[v]) * d[v];
+    for (int v = 0; v < VECTORS; v++)
+        sum[v] += value[v];
+}
+
+KERNEL void add_nonlinearity(lanes sum[VECTORS], const lanes u[VECTORS],
+                             const imk_axis_response *axis)
+{
+    const bits no_sign = 0x7FFFFFFFFFFFFFFF - (bits){0};
+    for (int v = 0; v < VECTORS; v++) {
+        const lanes size = (lanes)((bits)u[v] & no_sign);
+        sum[v] += size * (axis->koq * u[v] + axis->half_asymmetry) +
+                  (u[v] * u[v]) * (axis->k2 + axis->k3 * u[v]);
+    }
+}
+
+KERNEL void add_cross_products(lanes sum[VECTORS], const lanes u[VECTORS],
+                               const imk_axis_response *axis, const imki_exposure *x, size_t i,
+                               lanes (*place)[VECTORS])
+{
+    lanes p[VECTORS] = {{0.0}}, o[VECTORS] = {{0.0}};
+    add_row(p, axis->used[IMKI_PENDULOUS], axis->pendulous, x, i, place);
+    add_row(o, axis->used[IMKI_OUTPUT], axis->output, x, i, place);
+    for (int v = 0; v < VECTORS; v++)
+        sum[v] += u[v] * (axis->kip * p[v] + axis->kio * o[v]) + axis->kpo * (p[v] * o[v]);
+}
+
+KERNEL void distort_step(const imk_axis_response *axis, const imki_exposure *x, size_t i,
+                         double *out)
+{
+    lanes y[VECTORS], u[VECTORS] = {{0.0}}, scale[VECTORS];
+    for (int v = 0; v < VECTORS; v++) {
+        y[v] = (lanes){0.0} + axis->bias;
+        scale[v] = (lanes){0.0} + axis->scale;
+    }
+    if (axis->bias_order > 0 && x->temperature)
+        add_polynomial(y, axis->bias_order, axis->bias_temperature, axis->bias_reference,
+                       axis->bias_minimum, axis->bias_maximum, x->temperature + i);
+    if (axis->scale_order > 0 && x->temperature)
+        add_polynomial(scale, axis->scale_order, axis->scale_temperature, axis->scale_reference,
+                       axis->scale_minimum, axis->scale_maximum, x->temperature + i);
+    if (axis->temperature_rate != 0.0 && x->temperature_rate)
+        add_product(y, axis->temperature_rate, x->temperature_rate + i);
+    if (axis->warm_up != 0.0 && x->warm_up)
+        add_product(y, axis->warm_up, x->warm_up + i);
+    if (axis->half_hysteresis != 0.0 && x->hysteresis)
+        add_product(y, axis->half_hysteresis, x->hysteresis + i);
+    lanes force[3][VECTORS], (*place)[VECTORS] = axis->has_place && x->turns ? force : NULL;
+    if (place)
+        force_at(force, axis->place, x, i);
+    add_row(u, axis->used[IMKI_INPUT], axis->input, x, i, place);
+    add_row(y, axis->used[IMKI_OTHER], axis->other, x, i, place);
+    for (int v = 0; v < VECTORS; v++)
+        y[v] += scale[v] * u[v];
+    if (axis->has_nonlinearity)
+        add_nonlinearity(y, u, axis);
+    if (axis->has_cross_products)
+        add_cross_products(y, u, axis, x, i, place);
+    for (int v = 0; v < VECTORS; v++)
+        ((lanes *)(out + i))[v] = y[v] + u[v];
+}
+
+KERNEL void distort_chunks(const imk_axis_response *axis, const imki_exposure *x, size_t chunks,
+                           double *out)
+{
+    for (size_t i = 0; i < chunks * IMKI_CHUNK; i += STEP)
+        distort_step(axis, x, i, out);
+}
+
+KERNEL void residual(size_t chunks, const double *reading, double *response)
+{
+    for (size_t v = 0; v < chunks * (IMKI_CHUNK / LANES); v++)
+        ((lanes *)response)[v] = VECTOR(reading, v) - VECTOR(response, v);
+}
+
+KERNEL void add_residual(size_t chunks, double gain, const double *of, double *sum)
+{
+    for (size_t v = 0; v < chunks * (IMKI_CHUNK / LANES); v++)
+        ((lanes *)sum)[v] += gain * VECTOR(of, v);
+}
+
+KERNEL void limit_all(size_t chunks, double limit, double *x)
+{
+    for (size_t v = 0; v < chunks * (IMKI_CHUNK / LANES); v++)
+        clip(&((lanes *)x)[v], -limit, limit);
+}
+
+/* The loops as functions of one instruction set. */
+#define COMPILE_FOR(isa, target)                                                                   \
+    target void imki_distort_chunks_##isa(const imk_axis_response *axis, const imki_exposure *x,   \
+                                          size_t chunks, double *out)                              \
+    {                                                                                              \
+        distort_chunks(axis, x, chunks, out);                                                      \
+    }                                                                                              \
+    target void imki_residual_##isa(size_t chunks, const double *reading, double *response)        \
+    {                                                                                              \
+        residual(chunks, reading, response);                                                       \
+    }                                                                                              \
+    target void imki_add_residual_##isa(size_t chunks, double gain, const double *of, double *sum) \
+    {                                                                                              \
+        add_residual(chunks, gain, of, sum);                                                       \
+    }                                                                                              \
+    target void imki_limit_##isa(size_t chunks, double limit, double *x)                           \
+    {                                                                                              \
+        limit_all(chunks, limit, x);                                                               \
+    }
+
+#endif

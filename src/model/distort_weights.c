@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A model compiled into weights of the twelve features of distort.h.
+ *
+ * What an accelerometer at r is exposed to, along a row a (its direction, say), is
+ *
+ *     a.(f + alpha x r + w x (w x r)) = a.f + (r x a).alpha + sum over i <= j of W_ij w_i w_j
+ *     w x (w x r) = w (w.r) - r (w.w):   W_ii = a_i r_i - a.r,   W_ij = a_i r_j + a_j r_i  (i < j)
+ */
+#include "distort_internal.h"
+#include "model_internal.h"
+
+#include <string.h>
+
+enum { XX = 3, YY, ZZ, XY, YZ, ZX, THIRD };
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void place_row(const double a[3], const double r[3], double weight[IMK_FEATURES])
+{
+    for (int j = 0; j < 3; j++)
+        weight[j] = a[j];
+    weight[XX] = -(a[1] * r[1] + a[2] * r[2]);
+    weight[YY] = -(a[0] * r[0] + a[2] * r[2]);
+    weight[ZZ] = -(a[0] * r[0] + a[1] * r[1]);
+    weight[XY] = a[0] * r[1] + a[1] * r[0];
+    weight[YZ] = a[1] * r[2] + a[2] * r[1];
+    weight[ZX] = a[2] * r[0] + a[0] * r[2];
+    cross(r, a, weight + THIRD);
+}
+
+/* The body axis two places on, for a sensor along a body axis. */
+static bool default_pendulous(const double e[3], double p[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (e[(k + 1) % 3] == 0.0 && e[(k + 2) % 3] == 0.0) {
+            p[k] = p[(k + 1) % 3] = 0.0;
+            p[(k + 2) % 3] = 1.0;
+            return true;
+        }
+    return false;
+}
+
+static imk_status compile_cross_products(imk_axis_response *axis, const imk_triad *triad, int i,
+                                         imk_error *error)
+{
+    const double *k = triad->nonlinearity.cross_products.value[i], *e = triad->direction[i];
+    double p[3], o[3];
+    axis->kip = k[0];
+    axis->kio = k[1];
+    axis->kpo = k[2];
+    axis->has_cross_products = k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0;
+    if (!axis->has_cross_products)
+        return IMK_OK;
+    memcpy(p, triad->nonlinearity.pendulous_axis[i], sizeof p);
+    if (p[0] == 0.0 && p[1] == 0.0 && p[2] == 0.0 && !default_pendulous(e, p)) {
+        imk_error_set(error, IMK_ERROR_CONFLICT, "accel.cross_products",
+                      "cross_products of a sensor that is along no body axis need a pendulous axis",
+                      "add pendulous_axis, a row x y z for each axis");
+        if (error)
+            error->index = i;
+        return IMK_ERROR_CONFLICT;
+    }
+    cross(p, e, o);
+    place_row(p, triad->lever_arm.value[i], axis->pendulous);
+    place_row(o, triad->lever_arm.value[i], axis->output);
+    return IMK_OK;
+}
+
+static void compile_weights(imk_axis_response *axis, const imk_triad *triad, int sensor, int i)
+{
+    double other[3];
+    for (int j = 0; j < 3; j++)
+        other[j] = triad->misalignment.value[i][j] + triad->cross_axis.value[i][j];
+    if (sensor == IMK_ACCEL) {
+        place_row(triad->direction[i], triad->lever_arm.value[i], axis->input);
+        place_row(other, triad->lever_arm.value[i], axis->other);
+        memcpy(axis->place, triad->lever_arm.value[i], sizeof axis->place);
+        axis->has_place = axis->place[0] != 0.0 || axis->place[1] != 0.0 || axis->place[2] != 0.0;
+        return;
+    }
+    memcpy(axis->input, triad->direction[i], sizeof triad->direction[i]);
+    memcpy(axis->other, other, sizeof other);
+    memcpy(axis->other + XX, triad->g2_sensitivity.value[i], 6 * sizeof *axis->other);
+    memcpy(axis->other + THIRD, triad->g_sensitivity.value[i], 3 * sizeof *axis->other);
+}
+
+static int compile_polynomial(const imk_temperature_polynomial *from, int i, double *coefficient,
+                              double *reference, double *minimum, double *maximum)
+{
+    int order = 0;
+    for (int k = 0; k < from->order; k++) {
+        coefficient[k] = from->coefficient[k].value[i];
+        if (coefficient[k] != 0.0)
+            order = k + 1;
+    }
+    *reference = from->reference;
+    *minimum = from->minimum;
+    *maximum = from->maximum;
+    return order;
+}
+
+static uint16_t not_zero(const double weight[IMK_FEATURES])
+{
+    unsigned used = 0;
+    for (int k = 0; k < IMK_FEATURES; k++)
+        used |= weight[k] != 0.0 ? 1u << k : 0u;
+    return (uint16_t)used;
+}
+
+static void compile_numbers(imk_axis_response *axis, const imk_triad *triad, int i)
+{
+    const imk_nonlinearity *n = &triad->nonlinearity;
+    /* Adding +0 turns -0 into +0: no sum that begins so is ever -0. */
+    axis->bias = triad->bias.fixed.value[i] + 0.0;
+    axis->scale = triad->scale_factor.fixed.value[i];
+    axis->k2 = n->k2.value[i];
+    axis->koq = n->koq.value[i];
+    axis->k3 = n->k3.value[i];
+    axis->half_asymmetry = 0.5 * n->asymmetry.value[i];
+    axis->has_nonlinearity =
+        axis->k2 != 0.0 || axis->koq != 0.0 || axis->k3 != 0.0 || axis->half_asymmetry != 0.0;
+    axis->bias_order =
+        compile_polynomial(&triad->bias.temperature, i, axis->bias_temperature,
+                           &axis->bias_reference, &axis->bias_minimum, &axis->bias_maximum);
+    axis->scale_order =
+        compile_polynomial(&triad->scale_factor.temperature, i, axis->scale_temperature,
+                           &axis->scale_reference, &axis->scale_minimum, &axis->scale_maximum);
+    axis->temperature_rate = triad->bias.temperature_rate.value[i];
+    axis->warm_up = triad->bias.warm_up_amplitude.value[i];
+    axis->half_hysteresis = 0.5 * triad->bias.hysteresis.value[i];
+}
+
+imk_status imk_distortion_start(imk_distortion *distortion, const imk_model *model,
+                                const imk_run_constants *constants, imk_kernel kernel,
+                                imk_error *error)
+{
+    const imk_triad *triads[2] = {&model->gyro, &model->accel};
+    imk_status status = IMK_OK;
+    /* Nothing is written before it is known that nothing is wrong. */
+    for (int i = 0; model->accel.present && i < model->accel.axis_count; i++) {
+        imk_axis_response unused;
+        status = compile_cross_products(&unused, &model->accel, i, error);
+        if (status != IMK_OK)
+            return status;
+    }
+    memset(distortion, 0, sizeof *distortion);
+    distortion->cookie = IMKI_DISTORTION_COOKIE;
+    distortion->kernel = kernel;
+    for (int sensor = 0; sensor < 2; sensor++) {
+        distortion->axis_count[sensor] = triads[sensor]->present ? triads[sensor]->axis_count : 0;
+        for (int i = 0; i < distortion->axis_count[sensor]; i++) {
+            imk_axis_response *axis = &distortion->axis[sensor][i];
+            compile_numbers(axis, triads[sensor], i);
+            compile_weights(axis, triads[sensor], sensor, i);
+            if (sensor == IMK_ACCEL)
+                status = compile_cross_products(axis, triads[sensor], i, error);
+            if (constants) {
+                axis->bias += constants->bias[sensor][i];
+                axis->scale += constants->scale_factor[sensor][i];
+            }
+            axis->used[IMKI_INPUT] = not_zero(axis->input);
+            axis->used[IMKI_OTHER] = not_zero(axis->other);
+            axis->used[IMKI_PENDULOUS] = not_zero(axis->pendulous);
+            axis->used[IMKI_OUTPUT] = not_zero(axis->output);
+        }
+    }
+    return status;
+}
