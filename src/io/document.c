@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The tree of a model file, built from libyaml's events, so that anchors, aliases, tags and
- * duplicate keys, which a loader would resolve silently, are refused where they stand. */
+/* The tree of a model file or a script, built from libyaml's events, so that anchors, aliases, tags
+ * and duplicate keys, which a loader would resolve silently, are refused where they stand. */
 #include "document_internal.h"
 
 #include <stdio.h>
@@ -12,7 +12,8 @@
 typedef struct builder {
     imk_document *document;
     imk_error *error;
-    size_t *offset; /* byte of each character: libyaml's marks count characters */
+    const char *what; /* "model" */
+    size_t *offset;   /* byte of each character: libyaml's marks count characters */
     size_t character_count;
     int capacity;
     int open[IMKI_DOCUMENT_DEPTH_MAX];
@@ -28,6 +29,16 @@ static imk_status place_error(imk_error *error, imk_status status, size_t line, 
         error->column = column;
     }
     return status;
+}
+
+/* What files of this kind do not have. */
+static imk_status kind_error(builder *b, yaml_mark_t mark, const char *found, const char *before,
+                             const char *after)
+{
+    char expected[sizeof b->error->expected];
+    snprintf(expected, sizeof expected, "%s%s%s", before, b->what, after);
+    return place_error(b->error, IMK_ERROR_UNSUPPORTED, mark.line + 1, mark.column + 1, found,
+                       expected);
 }
 
 static imk_status mark_error(builder *b, yaml_mark_t mark, imk_status status, const char *found,
@@ -186,8 +197,8 @@ static imk_status add_node(builder *b, const yaml_event_t *event, imki_node_kind
 {
     imk_document *document = b->document;
     if (document->node_count == IMKI_DOCUMENT_NODES_MAX)
-        return mark_error(b, event->start_mark, IMK_ERROR_UNSUPPORTED, "too many values",
-                          "a model file of at most 10000 values");
+        return kind_error(b, event->start_mark, "too many values", "a ",
+                          " file of at most 10000 values");
     if (document->node_count == b->capacity) {
         int capacity = b->capacity ? 2 * b->capacity : 64;
         imki_node *grown = realloc(document->node, (size_t)capacity * sizeof *grown);
@@ -227,11 +238,11 @@ static imk_status refuse_extras(builder *b, const yaml_event_t *event, const yam
                                 const yaml_char_t *tag)
 {
     if (anchor)
-        return mark_error(b, event->start_mark, IMK_ERROR_UNSUPPORTED, "an anchor (&)",
-                          "write every value out: model files have no anchors and aliases");
+        return kind_error(b, event->start_mark, "an anchor (&)",
+                          "write every value out: ", " files have no anchors and aliases");
     if (tag)
-        return mark_error(b, event->start_mark, IMK_ERROR_UNSUPPORTED, (const char *)tag,
-                          "remove the tag: model files have none");
+        return kind_error(b, event->start_mark, (const char *)tag,
+                          "remove the tag: ", " files have none");
     return IMK_OK;
 }
 
@@ -305,12 +316,12 @@ static imk_status take_event(builder *b, const yaml_event_t *event)
         b->document->node[b->open[--b->depth]].end = byte_of(b, event->end_mark.index);
         return IMK_OK;
     case YAML_ALIAS_EVENT:
-        return mark_error(b, event->start_mark, IMK_ERROR_UNSUPPORTED, "an alias (*)",
-                          "write every value out: model files have no anchors and aliases");
+        return kind_error(b, event->start_mark, "an alias (*)",
+                          "write every value out: ", " files have no anchors and aliases");
     case YAML_DOCUMENT_START_EVENT:
         if (b->document->node_count > 0)
-            return mark_error(b, event->start_mark, IMK_ERROR_UNSUPPORTED,
-                              "a second document (---)", "put one model in a file");
+            return kind_error(b, event->start_mark, "a second document (---)", "put one ",
+                              " in a file");
         return IMK_OK;
     default:
         return IMK_OK;
@@ -367,12 +378,31 @@ static bool has_quoted_keys(const imk_document *document)
     return root->is_flow && root->first != IMKI_NONE && !document->node[root->first].is_plain;
 }
 
-imk_status imki_document_parse(const char *text, size_t size, imk_document **document,
-                               imk_error *error)
+/* What stands at the head of the file that is due. */
+static imk_status check_root(const builder *b, const char *head)
 {
+    const imk_document *document = b->document;
+    char expected[sizeof b->error->expected];
+    if (document->node_count == 0) {
+        snprintf(expected, sizeof expected, "a %s, beginning with %s", b->what, head);
+        return imk_error_set(b->error, IMK_ERROR_EMPTY, "", "", expected);
+    }
+    if (document->node[0].kind == IMKI_NODE_MAPPING)
+        return IMK_OK;
+    snprintf(expected, sizeof expected, "a %s file: keys and values, beginning with %s", b->what,
+             head);
+    return place_error(b->error, IMK_ERROR_FORMAT, document->node[0].line, document->node[0].column,
+                       "", expected);
+}
+
+imk_status imki_document_parse_as(const char *what, const char *head, const char *text, size_t size,
+                                  imk_document **document, imk_error *error)
+{
+    char expected[64];
+    snprintf(expected, sizeof expected, "a %s file", what);
     if (size > IMKI_DOCUMENT_SIZE_MAX)
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "a file longer than 1 MiB",
-                             "a model file");
+                             expected);
     imk_document *made = calloc(1, sizeof *made);
     if (made)
         made->text = malloc(size + 1);
@@ -384,16 +414,13 @@ imk_status imki_document_parse(const char *text, size_t size, imk_document **doc
         memcpy(made->text, text, size);
     made->text[size] = '\0';
     made->size = size;
-    builder b = {.document = made, .error = error};
+    builder b = {.document = made, .error = error, .what = what};
     imk_status status = index_characters(&b);
     if (status == IMK_OK)
         status = build(&b);
     free(b.offset);
-    if (status == IMK_OK && made->node_count == 0)
-        status = imk_error_set(error, IMK_ERROR_EMPTY, "", "", "a model, beginning with imukit: 1");
-    if (status == IMK_OK && made->node[0].kind != IMKI_NODE_MAPPING)
-        status = place_error(error, IMK_ERROR_FORMAT, made->node[0].line, made->node[0].column, "",
-                             "a model file: keys and values, beginning with imukit: 1");
+    if (status == IMK_OK)
+        status = check_root(&b, head);
     if (status != IMK_OK) {
         imk_document_free(made);
         return status;
@@ -401,6 +428,12 @@ imk_status imki_document_parse(const char *text, size_t size, imk_document **doc
     made->is_json = has_quoted_keys(made);
     *document = made;
     return IMK_OK;
+}
+
+imk_status imki_document_parse(const char *text, size_t size, imk_document **document,
+                               imk_error *error)
+{
+    return imki_document_parse_as("model", "imukit: 1", text, size, document, error);
 }
 
 void imk_document_free(imk_document *document)

@@ -46,6 +46,11 @@ struct imk_document {
 imk_status imki_document_parse(const char *text, size_t size, imk_document **document,
                                imk_error *error);
 
+/* The same for files of another kind, which messages call "a <what> file, beginning with <head>".
+ */
+imk_status imki_document_parse_as(const char *what, const char *head, const char *text, size_t size,
+                                  imk_document **document, imk_error *error);
+
 /* Value of a key of a mapping; IMKI_NONE when there is none. */
 int imki_document_value(const imk_document *document, int mapping, const char *key);
 

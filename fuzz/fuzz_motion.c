@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Fuzz entry point of the motion script: any bytes are read or refused; what is read has finite
+ * steps, and a short script is compiled into a trajectory that is valid. */
+#include "imukit/motion_file.h"
+
+#include "io/motion_file_internal.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(bool condition)
+{
+    if (!condition)
+        abort();
+}
+
+/* Check the steps. @return whether they are quickly compiled */
+static bool check_steps(const imki_script_reader *reader)
+{
+    double work = 0.0;
+    for (size_t i = 0; i < reader->step_count; i++) {
+        const imk_motion_step *step = &reader->step[i];
+        require(isfinite(step->amount) && isfinite(step->rate) && isfinite(step->duration) &&
+                isfinite(step->frequency));
+        require(step->rate >= 0.0 && step->duration >= 0.0 && step->frequency >= 0.0);
+        require(step->axis >= 0 && step->axis <= 2);
+        require(reader->step_node[i] > 0 && reader->step_node[i] < reader->document->node_count);
+        work += 1.0 + fabs(step->amount) + imk_motion_step_duration(&reader->script, i) +
+                step->duration * step->frequency * (1.0 + step->amount);
+    }
+    return work < 1e3 && fabs(reader->script.speed) < 1e3;
+}
+
+static bool read_steps(const char *text, size_t size, imk_status *status)
+{
+    imk_document *document = NULL;
+    imki_script_reader reader;
+    imk_error error = {.status = IMK_OK};
+    bool is_quick = false;
+    *status = imki_document_parse_as("motion", "imukit_motion: 1", text, size, &document, &error);
+    if (*status == IMK_OK) {
+        *status = imki_script_read(document, NULL, &reader, &error);
+        if (*status == IMK_OK)
+            is_quick = check_steps(&reader);
+        free(reader.step);
+        free(reader.step_node);
+    }
+    require(*status == error.status);
+    imk_document_free(document);
+    return is_quick;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    imk_status status;
+    imk_motion_file *file = NULL;
+    imk_error error = {.status = IMK_OK};
+    const bool is_quick = read_steps((const char *)data, size, &status);
+    if (status == IMK_OK && !is_quick)
+        return 0;
+    const imk_status whole = imk_motion_parse((const char *)data, size, NULL, 1, &file, &error);
+    require(whole == error.status && (file != NULL) == (whole == IMK_OK));
+    require(status == IMK_OK || whole == status);
+    if (file) {
+        require(imk_motion_file_duration(file) > 0.0);
+        require(imk_trajectory_validate(imk_motion_file_motion(file)->trajectory, NULL) == IMK_OK);
+    }
+    imk_motion_file_free(file);
+    return 0;
+}

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Motion from a table: which kind it is, its times, and what is checked of every column used. */
+#include "motion_file_internal.h"
+
+#include "imukit/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+imk_status imki_table_row_error(const char *name, imk_status status, size_t row, const char *found,
+                                const char *expected, imk_error *error)
+{
+    char field[96];
+    snprintf(field, sizeof field, "%.60s, row %zu", name, row);
+    return imk_error_set(error, status, field, found, expected);
+}
+
+imk_status imki_table_column_check(const imk_log *log, size_t column, const char *si,
+                                   imk_error *error)
+{
+    const imk_log_column *c = &log->column[column];
+    const imk_dimension due = imk_unit_of(si).dimension;
+    char found[96], expected[160];
+    if (c->label)
+        return imk_error_set(error, IMK_ERROR_COLUMN, c->name, "this column contains texts",
+                             "a column of numbers");
+    /* An angle that says no unit could be in degrees or radians. A bare quaternion is right. */
+    if (c->unit.text[0] == '\0' && si[0] != '1') {
+        snprintf(expected, sizeof expected, "write it in the header, as in %s [%s]", c->name,
+                 strcmp(si, "rad") == 0 ? "deg" : si);
+        return imk_error_set(error, IMK_ERROR_UNIT_MISSING, "", c->name, expected);
+    }
+    if (!imk_dimension_equal(c->unit.dimension, due)) {
+        snprintf(found, sizeof found, "\"%.40s\" is %.48s", c->unit.text,
+                 imk_dimension_name(c->unit.dimension));
+        snprintf(expected, sizeof expected, "%.60s, such as %.80s", imk_dimension_name(due),
+                 imk_dimension_examples(due));
+        return imk_error_set(error, IMK_ERROR_DIMENSION, c->name, found, expected);
+    }
+    for (size_t i = 0; i < log->rows; i++) {
+        if (isfinite(log->data[column][i]))
+            continue;
+        const imk_status status = imki_table_row_error(c->name, IMK_ERROR_NOT_FINITE, i + 1, "",
+                                                       "a number in every row", error);
+        if (error)
+            error->value = log->data[column][i];
+        return status;
+    }
+    return IMK_OK;
+}
+
+/* Times of the rows, from 0; by the rate where there is no column. */
+static imk_status read_times(const imk_log *log, const imk_log_settings *settings, double **times,
+                             imk_error *error)
+{
+    const int column = imk_log_find(log, IMK_QUANTITY_TIME, -1);
+    double *time = malloc((log->rows + 1) * sizeof *time);
+    if (!time)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    imk_status status = IMK_OK;
+    if (column >= 0)
+        status = imki_table_column_check(log, (size_t)column, "s", error);
+    for (size_t i = 0; status == IMK_OK && i < log->rows; i++) {
+        time[i] =
+            column >= 0 ? log->data[column][i] - log->data[column][0] : (double)i / settings->rate;
+        if (i > 0 && !(time[i] > time[i - 1])) {
+            status = imki_table_row_error("time", IMK_ERROR_TIME_ORDER, i + 1,
+                                          "it is not later than the row before",
+                                          "remove one of the two, or put them in order", error);
+        }
+    }
+    if (status == IMK_OK)
+        *times = time;
+    else
+        free(time);
+    return status;
+}
+
+static bool has_sensors(const imk_log *log)
+{
+    for (size_t i = 0; i < log->column_count; i++)
+        if (log->column[i].quantity == IMK_QUANTITY_ANGULAR_RATE ||
+            log->column[i].quantity == IMK_QUANTITY_SPECIFIC_FORCE)
+            return true;
+    return false;
+}
+
+static imk_status open_poses(const imk_log *log, const imk_log_settings *settings,
+                             const imk_geodetic *place, imk_motion_file *file, imk_error *error)
+{
+    double *time = NULL;
+    imk_status status = read_times(log, settings, &time, error);
+    if (status == IMK_OK)
+        status = imki_poses_open(log, time, place, file, error);
+    if (status == IMK_OK)
+        file->duration = time[log->rows - 1];
+    free(time);
+    return status;
+}
+
+imk_status imki_motion_table_open(const char *path, const imk_log_settings *settings,
+                                  const imk_geodetic *place, imk_motion_file *file,
+                                  imk_error *error)
+{
+    const imk_log_settings from_header = imk_log_settings_default();
+    const imk_log_settings *how = settings ? settings : &from_header;
+    imk_status status = imk_log_load(path, how, NULL, NULL, &file->log, error);
+    if (status != IMK_OK)
+        return status;
+    const bool poses = imki_has_poses(&file->log), sensors = has_sensors(&file->log);
+    if (poses && sensors)
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "",
+                             "the table has both poses, and rates or forces",
+                             "take one of them out, or skip its columns by --columns with -");
+    if (!poses && !sensors)
+        return imk_error_set(
+            error, IMK_ERROR_COLUMN, "", "no column of a motion has a known name",
+            "one of latitude, longitude, height, x, y, z, roll, pitch, yaw, q_w … q_z, "
+            "or "
+            "gyro_x … accel_z");
+    if (file->log.rows < 2)
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "a single row is no motion",
+                             "two rows or more");
+    if (sensors)
+        return imki_recorded_open(&file->log, how, file, error);
+    status = open_poses(&file->log, how, place, file, error);
+    imk_log_free(&file->log);
+    return status;
+}

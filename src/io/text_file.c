@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A short text file in memory: model files and scripts. */
+#include "text_file_internal.h"
+
+#include "input_stream_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, size_t *size,
+                               imk_error *error)
+{
+    imki_input *input = NULL;
+    imk_status status = imki_input_open(path, &input, error);
+    if (status != IMK_OK)
+        return status;
+    const size_t capacity = limit + 1;
+    size_t used = 0;
+    char *buffer = malloc(capacity);
+    if (!buffer)
+        status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    for (size_t got = 1; status == IMK_OK && got > 0 && used < capacity; used += got) {
+        got = 0;
+        status = imki_input_read(input, buffer + used, capacity - used, &got, error);
+    }
+    imki_input_close(input);
+    if (status != IMK_OK) {
+        free(buffer);
+        return status;
+    }
+    *bytes = buffer;
+    *size = used;
+    return IMK_OK;
+}
+
+bool imki_is_script_name(const char *path)
+{
+    static const char *const endings[] = {".yaml", ".yml", ".json"};
+    const size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        const size_t ending = strlen(endings[i]);
+        if (length >= ending && strcmp(path + length - ending, endings[i]) == 0)
+            return true;
+    }
+    return false;
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A short text file in memory. */
+#ifndef IMUKI_TEXT_FILE_INTERNAL_H
+#define IMUKI_TEXT_FILE_INTERNAL_H
+
+#include "imukit/status.h"
+
+#include <stdbool.h>
+
+/* All bytes of a file ("-": standard input; compressed ones unpacked), but at most limit + 1, so
+ * that the reader sees that it is too long. *bytes is from malloc. The errors of imki_input_open()
+ * and imki_input_read(). */
+imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, size_t *size,
+                               imk_error *error);
+
+/* Is it a script by its name: .yaml, .yml, .json? */
+bool imki_is_script_name(const char *path);
+
+#endif
