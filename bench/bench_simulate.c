@@ -3,8 +3,10 @@
  *
  *   white_and_walk        white noise and random walk, against the C++ loop of mt19937_loop.cpp
  *   white_and_walk_2      the same on two threads, against one thread: the ratio is the speed-up
- *   complete_noise        N, B, K, two Gauss-Markov, Q and the deterministic terms, against drawing
- *                         its normals alone: the yardstick's share of our time
+ *   complete              every deterministic term of a moving unit whose temperature changes, N,
+ *                         B, K, two Gauss-Markov and Q, against drawing its normals alone: the
+ *                         yardstick's share of our time. The motion is given (a recorded one)
+ *   complete_against_loop the same against the C++ loop, which has white noise and random walk only
  *   terms one by one      each alone, against the normals it draws */
 #include "bench.h"
 
@@ -103,7 +105,25 @@ static void set_resonance(imk_triad *triad)
     triad->noise.resonance[0].q = axes(12.0);
 }
 
-static void set_complete(imk_triad *triad)
+static imk_rows rows(double value)
+{
+    imk_rows r = {.value = {{0.0}}};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            r.value[i][j] = i == j ? 0.0 : value * (i + 2 * j + 1);
+    return r;
+}
+
+static imk_temperature_polynomial cubic(double value)
+{
+    imk_temperature_polynomial t = {
+        .order = 3, .reference = 298.0, .minimum = 250.0, .maximum = 350.0};
+    for (int i = 0; i < 3; i++)
+        t.coefficient[i] = axes(value);
+    return t;
+}
+
+static void set_complete_noise(imk_triad *triad)
 {
     set_white(triad);
     set_walk(triad);
@@ -113,16 +133,79 @@ static void set_complete(imk_triad *triad)
     triad->noise.gauss_markov_count = 2;
     triad->noise.gauss_markov[1].sigma = axes(2e-4);
     triad->noise.gauss_markov[1].correlation_time = axes(20.0);
+}
+
+static void set_deterministic(imk_triad *triad)
+{
     triad->bias.fixed = axes(1e-3);
     triad->bias.repeatability = axes(1e-3);
+    triad->bias.temperature = cubic(1e-6);
+    triad->bias.temperature_rate = axes(1e-3);
+    triad->bias.warm_up_amplitude = axes(1e-3);
+    triad->bias.warm_up_time.value = 300.0;
+    triad->bias.hysteresis = axes(1e-4);
     triad->scale_factor.fixed = axes(1e-4);
+    triad->scale_factor.repeatability = axes(1e-4);
+    triad->scale_factor.temperature = cubic(1e-7);
+    triad->nonlinearity.k2 = triad->nonlinearity.koq = axes(1e-5);
+    triad->nonlinearity.k3 = axes(1e-6);
+    triad->nonlinearity.asymmetry = axes(1e-4);
+    triad->misalignment = rows(1e-4);
+    triad->cross_axis = rows(2e-4);
+    triad->dead_band = axes(1e-6);
     triad->range = axes(100.0);
 }
 
-static imk_simulator *start(const imk_model *model)
+static void set_complete(imk_triad *triad)
+{
+    set_complete_noise(triad);
+    set_deterministic(triad);
+}
+
+static void set_everything(imk_model *model)
+{
+    each_triad(model, set_complete);
+    model->accel.nonlinearity.cross_products = rows(1e-6);
+    model->accel.lever_arm = rows(0.01);
+    model->gyro.g_sensitivity = rows(1e-6);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 6; j++)
+            model->gyro.g2_sensitivity.value[i][j] = 1e-8 * (i + j + 1);
+}
+
+/* A motion known row by row, and a temperature that rises and falls. */
+enum { MOTION_ROWS = CALL * CALLS * (REPEATS + 10) };
+
+static imk_recorded_motion make_motion(void)
+{
+    imk_recorded_motion motion = {.count = MOTION_ROWS, .rate = 100.0};
+    for (int i = 0; i < 3; i++) {
+        double *column[3];
+        for (int c = 0; c < 3; c++) {
+            column[c] = malloc(MOTION_ROWS * sizeof(double));
+            for (size_t k = 0; column[c] && k < MOTION_ROWS; k++)
+                column[c][k] = sin(1e-3 * (double)k * (i + 1) + c);
+        }
+        motion.angular_rate[i] = column[0];
+        motion.specific_force[i] = column[1];
+        motion.angular_acceleration[i] = column[2];
+    }
+    return motion;
+}
+
+static const double profile_time[] = {0.0, 6e3, 2e4};
+static const double profile_temperature[] = {290.0, 330.0, 280.0};
+static const imk_temperature_profile profile = {.point_count = 3,
+                                                .time = profile_time,
+                                                .temperature = profile_temperature,
+                                                .time_constant = 300.0};
+
+static imk_simulator *start(const imk_model *model, const imk_recorded_motion *motion)
 {
     imk_simulation simulation = imk_simulation_default();
-    size_t size = (imk_simulator_size(model) + 63) / 64 * 64;
+    simulation.motion.recorded = motion;
+    simulation.temperature = motion ? &profile : NULL;
+    size_t size = (imk_simulator_size(model, &simulation) + 63) / 64 * 64;
     void *memory = aligned_alloc(64, size);
     imk_simulator *simulator = NULL;
     if (!memory ||
@@ -140,7 +223,7 @@ static void bench_against_loop(const char *isa)
     imk_model model = imk_model_default();
     each_triad(&model, set_white);
     each_triad(&model, set_walk);
-    job work = {start(&model), NULL, false};
+    job work = {start(&model, NULL), NULL, false};
     double ours = (double)INFINITY, loop = (double)INFINITY;
     for (int i = 0; i < 3; i++) {
         ours = fmin(ours, bench_best(REPEATS, run_job, &work) * per_row);
@@ -168,7 +251,7 @@ static void bench_against_normals(const char *name, void (*set)(imk_triad *triad
 {
     imk_model model = imk_model_default();
     each_triad(&model, set);
-    job work = {start(&model), NULL, false};
+    job work = {start(&model, NULL), NULL, false};
     draws normals = {imk_random_seeded(1), hundredths};
     double ours, drawing;
     bench_compare(REPEATS, run_job, &work, hundredths > 0 ? run_draws : NULL, &normals, &ours,
@@ -177,13 +260,35 @@ static void bench_against_normals(const char *name, void (*set)(imk_triad *triad
     free(work.simulator);
 }
 
+/* Each repetition goes on where the one before stopped: the motion is long enough for all. */
+static void bench_complete(const char *isa)
+{
+    const imk_recorded_motion motion = make_motion();
+    imk_model model = imk_model_default();
+    set_everything(&model);
+    job work = {start(&model, &motion), NULL, false};
+    /* white, walk, two Gauss-Markov, and flicker's 2 + 1/3 */
+    draws normals = {imk_random_seeded(1), 633};
+    double ours, drawing;
+    bench_compare(REPEATS, run_job, &work, run_draws, &normals, &ours, &drawing);
+    bench_row_time("complete", ours * per_row, drawing * per_row, "ns/row", isa, 1);
+    double loop = bench_program(BENCH_DIRECTORY "/mt19937_loop 20000 30 2>/dev/null");
+    bench_row_time("complete_against_loop", ours * per_row, loop, "ns/row", isa, 1);
+    free(work.simulator);
+    for (int i = 0; i < 3; i++) {
+        free((void *)motion.angular_rate[i]);
+        free((void *)motion.specific_force[i]);
+        free((void *)motion.angular_acceleration[i]);
+    }
+}
+
 int main(void)
 {
     bench_pin();
     const char *isa = imk_kernel_name(imk_random_seeded(0).kernel);
     bench_against_loop(isa);
-    /* white, walk, two Gauss-Markov, and flicker's 2 + 1/3 */
-    bench_against_normals("complete_noise", set_complete, 633, isa);
+    bench_complete(isa);
+    bench_against_normals("complete_noise", set_complete_noise, 633, isa);
     bench_against_normals("white", set_white, 100, isa);
     bench_against_normals("random_walk", set_walk, 100, isa);
     bench_against_normals("gauss_markov", set_gauss_markov, 100, isa);

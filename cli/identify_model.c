@@ -188,16 +188,17 @@ static imk_status twin_curves(identification *i, double *const *columns,
 static imk_status simulate_twin(identification *i, const imk_model *noise,
                                 const imk_executor *executor, imk_error *error)
 {
-    size_t n = i->channels.rows, channels = i->channels.count, size = imk_simulator_size(noise);
+    imk_simulation simulation = imk_simulation_default();
+    simulation.rate = 1 / i->channels.dt;
+    simulation.seed = i->options->seed;
+    simulation.earth = false;
+    size_t n = i->channels.rows, channels = i->channels.count;
+    size_t size = imk_simulator_size(noise, &simulation);
     void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     double *columns[IMK_LOG_COLUMNS_MAX];
     double *data = malloc((n + 1) * channels * sizeof *data);
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, "twin", NULL, NULL);
     if (memory && data) {
-        imk_simulation simulation = imk_simulation_default();
-        simulation.rate = 1 / i->channels.dt;
-        simulation.seed = i->options->seed;
-        simulation.earth = false;
         imk_simulator *simulator;
         for (size_t c = 0; c < channels; c++)
             columns[c] = data + c * (n + 1);

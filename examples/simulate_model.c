@@ -58,7 +58,7 @@ int main(int argc, char **argv)
     simulation.seed = 1;
 
     /* The simulator lives in memory of ours. */
-    size_t size = (imk_simulator_size(&model) + 63) / 64 * 64;
+    size_t size = (imk_simulator_size(&model, &simulation) + 63) / 64 * 64;
     void *memory = aligned_alloc(64, size);
     imk_simulator *simulator = NULL;
     if (!memory)

@@ -85,19 +85,19 @@ int main(int argc, char **argv)
         e.columns[axis] = malloc(SAMPLES * sizeof(double));
         e.workspace[axis] = malloc(e.workspace_size);
     }
-    void *memory = aligned_alloc(64, (imk_simulator_size(&model) + 63) / 64 * 64);
+    imk_simulation simulation = imk_simulation_default();
+    simulation.rate = RATE;
+    simulation.seed = seed;
+    const size_t size = (imk_simulator_size(&model, &simulation) + 63) / 64 * 64;
+    void *memory = aligned_alloc(64, size);
     imk_thread_pool *pool = imk_thread_pool_create(0);
     const imk_executor executor = imk_thread_pool_executor(pool);
     size_t quantization = 0, ramp = 0, shape = 0, gauss_markov = 0, failed = 0;
     for (size_t log = first; log < first + logs; log++) {
-        imk_simulation simulation = imk_simulation_default();
-        simulation.rate = RATE;
-        simulation.seed = seed;
         simulation.run = (uint32_t)log;
         imk_simulator *simulator;
         imk_error error;
-        if (imk_simulator_start(memory, imk_simulator_size(&model), &model, &simulation, &simulator,
-                                &error) != IMK_OK) {
+        if (imk_simulator_start(memory, size, &model, &simulation, &simulator, &error) != IMK_OK) {
             char text[512];
             imk_error_text(&error, NULL, text, sizeof text);
             fprintf(stderr, "%s\n", text);

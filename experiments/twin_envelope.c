@@ -95,14 +95,14 @@ int main(int argc, char **argv)
     work.deviation = real;
     imk_execute(&executor, CHANNELS, deviations_item, &work);
 
-    void *memory = aligned_alloc(64, (imk_simulator_size(&model) + 63) / 64 * 64);
+    imk_simulation simulation = imk_simulation_default();
+    simulation.rate = rate;
+    const size_t size = (imk_simulator_size(&model, &simulation) + 63) / 64 * 64;
+    void *memory = aligned_alloc(64, size);
     for (size_t t = 0; t < twins; t++) {
-        imk_simulation simulation = imk_simulation_default();
-        simulation.rate = rate;
         simulation.seed = first_seed + t;
         imk_simulator *simulator;
-        if (imk_simulator_start(memory, imk_simulator_size(&model), &model, &simulation, &simulator,
-                                &error) != IMK_OK)
+        if (imk_simulator_start(memory, size, &model, &simulation, &simulator, &error) != IMK_OK)
             return fail(&error, argv[2]);
         imk_simulator_next(simulator, log.rows, work.columns, &executor);
         work.deviation = twin[t];

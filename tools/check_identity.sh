@@ -26,10 +26,17 @@ done
 
 # simulate BUILD THREADS: the sum of the log's bytes, with the environment as it is
 simulate() {
-    "$out/$1/imukit" simulate "$model" --rate 100Hz --duration 20s --seed 1 --threads "$2" -o - |
-        sha256sum | cut -d' ' -f1
+    {
+        "$out/$1/imukit" simulate "$model" --rate 100Hz --duration 20s --seed 1 --threads "$2" -o -
+        "$out/$1/imukit" simulate "$model" --motion tests/identity/motion.yaml \
+            --temperature tests/identity/temperature.yaml --rate 100Hz --seed 1 --threads "$2" -o -
+    } 2>/dev/null | sha256sum | cut -d' ' -f1
 }
 
+# Both logs are made, or the sums mean nothing.
+"$out/gcc-O3/imukit" simulate "$model" --rate 100Hz --duration 1s -o "$out/rest.csv"
+"$out/gcc-O3/imukit" simulate "$model" --motion tests/identity/motion.yaml \
+    --temperature tests/identity/temperature.yaml --rate 100Hz -o "$out/moving.csv"
 reference=$(simulate gcc-O3 1)
 [ "$reference" != "$(printf '' | sha256sum | cut -d' ' -f1)" ] || { echo "no log was made"; exit 1; }
 variants=1

@@ -1,15 +1,28 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file simulate.h
- *  Model -> samples: a static log of an imperfect sensor, in blocks, the same bytes however the
+ *  Model + motion -> samples of an imperfect sensor unit, in blocks, the same bytes however the
  *  work is divided.
  *
- *  Each channel is a constant (the response of the deterministic terms to the Earth's rate and
- *  gravity, with biases and scale factors drawn for this run) plus its stochastic terms, then the
- *  output stage: range, quantization of the integral, resolution, counts. Some conventions:
- *   - the bandwidth shapes the white noise, exactly; the other terms are taken as they appear in
- *     the output, behind the filter;
- *   - the log has a constant temperature: temperature-rate terms vanish, and terms that depend on
- *     which temperature it is are refused;
+ *  What happens to a sample, in this order:
+ *
+ *      motion (means over the sample) and temperature
+ *      -> deterministic terms (distort.h), with this run's repeatabilities
+ *      -> bandwidth -> + noise -> dead band -> range -> quantization of the integral
+ *      -> resolution -> counts
+ *
+ *  Some conventions:
+ *   - row k is stamped k/rate. It covers the interval that ends there: a motion starts at time 0
+ *     with row 0, which still shows the body as it was before;
+ *   - samples are means. Terms that are not linear see the mean of each of `substeps` parts of a
+ *     sample;
+ *   - the bandwidth shapes the white noise, exactly, and the deterministic signal; the slower noise
+ *     terms are taken as they appear in the output, behind the filter;
+ *   - the dead band gives 0 for a sample within +-dead_band and leaves others as they are;
+ *   - without a temperature profile the temperature terms are zero;
+ *   - timing: the sample clock runs fast by rate_error, so that samples are shorter than they say;
+ *     each boundary between two samples is off by jitter (normal); accelerometers show what
+ * happened `skew` earlier than the gyros; a row is lost with the probability `drops`. Stamps stay
+ * k/rate;
  *   - with a sensitivity the output is whole counts, round(sensitivity * x + zero_offset);
  *   - every term of every axis has its own random stream, so that changing one changes no other:
  *     axes 0-7 are gyros, 8-15 accelerometers. Repeatabilities are normal 0 of the term
@@ -19,49 +32,50 @@
 
 #include "imukit/executor.h"
 #include "imukit/model.h"
+#include "imukit/motion.h"
 #include "imukit/random.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+enum { IMK_SUBSTEPS_MAX = 512 };
+
 /** What to simulate. Start from imk_simulation_default(), then change fields. */
 typedef struct imk_simulation {
     uint32_t cookie;
     double rate; /**< [Hz], > 0 */
     uint64_t seed;
-    uint32_t run;    /**< run number: another draw of the same model, other run-to-run constants */
-    bool earth;      /**< Earth rate and gravity at the place below (default true) */
-    double latitude; /**< geodetic [rad]; default 45 deg */
-    double height;   /**< above the ellipsoid [m], -1e4 … 1e5 */
+    uint32_t run; /**< run number: another draw of the same model, other run-to-run constants */
+    imk_motion motion;       /**< none of the two (default): at rest as follows */
+    bool earth;              /**< Earth rate and gravity at the place below (default true) */
+    double latitude;         /**< geodetic [rad]; default 45 deg */
+    double height;           /**< above the ellipsoid [m], -1e4 … 1e5 */
     double roll, pitch, yaw; /**< attitude of the body, north-east-down [rad] */
+    const imk_temperature_profile *temperature; /**< of the unit, time 0 at row 0; NULL: none */
+    size_t substeps; /**< parts of a sample, 1 … IMK_SUBSTEPS_MAX; 0 (default): as many as vibration
+                          needs, and 8 for a moving unit with a bandwidth */
 } imk_simulation;
 
 /** 100 Hz, seed 0, level and at rest at 45 deg north with Earth rate and gravity. */
 IMK_API imk_simulation imk_simulation_default(void);
 
-/** True angular rate [rad/s] and specific force [m/s^2] of a body at rest, in body axes. Without
- *  `earth` both are zero. Gravity by WGS84 (Somigliana and height) [NIMA-TR8350.2]. */
-IMK_API void imk_simulation_truth(const imk_simulation *simulation, double angular_rate[3],
-                                  double specific_force[3]);
-
 /** A running simulation. Opaque: memory of imk_simulator_size() bytes, given by the caller. */
 typedef struct imk_simulator imk_simulator;
 
-/** Bytes for a simulator of this model (which must be valid): about 35 kB a channel and 4 kB for
- *  each Gauss-Markov term, sinusoid and resonance of it. */
-IMK_API size_t imk_simulator_size(const imk_model *model);
+/** Bytes for a simulator of this model (which must be valid): about 35 kB a channel, 4 kB for each
+ *  Gauss-Markov term, sinusoid and resonance of it, and 1 to 10 MB for a unit that moves. */
+IMK_API size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation);
 
 /** Validate and start.
- *  @param memory  imk_simulator_size() bytes, 64-byte aligned; owns nothing else
- *  @return IMK_ERROR_UNSUPPORTED (field names the term) for a model this version cannot simulate
- *          exactly; the errors of imk_model_validate(); IMK_ERROR_RANGE; IMK_ERROR_WORKSPACE */
+ *  @param memory  imk_simulator_size() bytes, 64-byte aligned; owns nothing else. The motion and
+ *                 the temperature profile must stay while it runs
+ *  @return the errors of imk_model_validate() and of the motion; IMK_ERROR_RANGE;
+ * IMK_ERROR_CONFLICT (a clock error with a recorded motion, whose samples are what they are;
+ * another rate than the recorded motion's); IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model,
                                        const imk_simulation *simulation, imk_simulator **simulator,
                                        imk_error *error);
-
-/** Constant part of channel `channel` in this run, before the output stage [unit]. */
-IMK_API double imk_simulator_constant(const imk_simulator *simulator, size_t channel);
 
 /** Channels it makes: gyro axes, then accelerometer axes. */
 IMK_API size_t imk_simulator_channels(const imk_simulator *simulator);
@@ -73,6 +87,13 @@ IMK_API size_t imk_simulator_channels(const imk_simulator *simulator);
  *                  work items are channels; calls of some thousand samples are worth threads */
 IMK_API void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *columns,
                                 const imk_executor *executor);
+
+/** Time in the motion at the end of row `row` [s]; -1 is the beginning of row 0. It is row/rate
+ * from the start of the motion but for the timing errors. */
+IMK_API double imk_simulator_true_time(const imk_simulator *simulator, int64_t row);
+
+/** True when row `row` is lost (timing.drops). */
+IMK_API bool imk_simulator_dropped(const imk_simulator *simulator, uint64_t row);
 
 #ifdef __cplusplus
 }

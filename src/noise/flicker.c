@@ -164,7 +164,7 @@ enum { PARTS = IMK_NOISE_STEPS / 4 }; /* of 4 samples, in a segment */
  * also the first of the next when the offset is not 0. */
 static void add_held_stages(imk_flicker_state *state, double *block)
 {
-    double held[PARTS + 1][IMKI_SEGMENTS];
+    double held[(PARTS + 1) * IMKI_SEGMENTS];
     uint64_t first = state->next + state->phase;
     size_t offset = (size_t)(first % 4);
     size_t parts = IMK_NOISE_BLOCK / 4 + (offset > 0 ? 1 : 0);
@@ -178,15 +178,13 @@ static void add_held_stages(imk_flicker_state *state, double *block)
         }
         double sum = state->sigma * (state->above[3] + value);
         if (t < IMK_NOISE_BLOCK / 4)
-            held[t % PARTS][t / PARTS] = sum;
+            held[t % PARTS * IMKI_SEGMENTS + t / PARTS] = sum;
         if (t % PARTS == 0 && t > 0)
-            held[PARTS][t / PARTS - 1] = sum;
+            held[PARTS * IMKI_SEGMENTS + t / PARTS - 1] = sum;
     }
     state->value[2] = value;
     state->next += IMK_NOISE_BLOCK;
-    for (size_t i = 0; i < IMK_NOISE_STEPS; i++)
-        for (size_t s = 0; s < IMKI_SEGMENTS; s++)
-            block[i * IMKI_SEGMENTS + s] += held[(i + offset) / 4][s];
+    imki_add_held(state->random.kernel, held, offset, block);
 }
 
 void imki_flicker_block(imk_flicker_state *state, double *block)

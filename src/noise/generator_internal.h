@@ -75,8 +75,15 @@ void imki_add_sums(imk_kernel kernel, double gain, const double *normals, double
                    double *block);
 /* Replace rates by quantised ones (quantization.c); *residual is carried. */
 void imki_quantize(imk_kernel kernel, double lsb, double dt, double *residual, double *block);
+/* Elements within +-dead_band become 0, those beyond +-range the end of it (0 and infinity: none).
+ */
+void imki_saturate(imk_kernel kernel, double dead_band, double range, double *block);
+/* Add values that stay for 4 samples: held[16 t + s] from sample 4 t - offset of segment s on. */
+void imki_add_held(imk_kernel kernel, const double *held, size_t offset, double *block);
 /* out = block in time order */
 void imki_to_time_order(imk_kernel kernel, const double *block, double *out);
+/* the reverse */
+void imki_to_segment_order(imk_kernel kernel, const double *samples, double *block);
 
 /* ---- one block of each term, added in segment order: what the public generators hand out ---- */
 

@@ -93,13 +93,32 @@ KERNEL void quantize(double lsb, double dt, double *restrict residual, double *r
         }
 }
 
-/* Transpose 8 steps of 8 segments: pairs of elements, then pairs of pairs, then halves change
- * places between vectors. */
-KERNEL void transpose_lanes(const double *restrict block, double *restrict out)
+/* Plain loops: comparisons of vectors are taken apart by the compiler. */
+KERNEL void saturate(double dead_band, double range, double *restrict block)
+{
+    for (size_t j = 0; j < IMK_NOISE_BLOCK; j++) {
+        double x = block[j], size = x < 0.0 ? -x : x;
+        x = size < dead_band ? 0.0 : x;
+        x = x < -range ? -range : x;
+        block[j] = x > range ? range : x;
+    }
+}
+
+KERNEL void add_held(const double *restrict held, size_t offset, double *restrict block)
+{
+    for (size_t i = 0; i < STEPS; i++)
+        for (size_t h = 0; h < HALVES; h++)
+            AT(block, i, h) += CONST_AT(held, (i + offset) / 4, h);
+}
+
+/* Transpose 8 rows of 8: pairs of elements, then pairs of pairs, then halves change places between
+ * vectors. */
+KERNEL void transpose_lanes(const double *restrict in, size_t in_stride, double *restrict out,
+                            size_t out_stride)
 {
     lanes a[LANES], b[LANES];
     for (size_t i = 0; i < LANES; i++)
-        a[i] = CONST_AT(block, i, 0);
+        a[i] = *(const lanes *)(in + i * in_stride);
     for (size_t i = 0; i < LANES; i += 2) {
         b[i] = __builtin_shufflevector(a[i], a[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
         b[i + 1] = __builtin_shufflevector(a[i], a[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
@@ -110,9 +129,9 @@ KERNEL void transpose_lanes(const double *restrict block, double *restrict out)
             a[j + 2] = __builtin_shufflevector(b[j], b[j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
         }
     for (size_t s = 0; s < 4; s++) {
-        *(lanes *)(out + s * STEPS) =
+        *(lanes *)(out + s * out_stride) =
             __builtin_shufflevector(a[s], a[s + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-        *(lanes *)(out + (s + 4) * STEPS) =
+        *(lanes *)(out + (s + 4) * out_stride) =
             __builtin_shufflevector(a[s], a[s + 4], 4, 5, 6, 7, 12, 13, 14, 15);
     }
 }
@@ -121,7 +140,16 @@ KERNEL void to_time_order(const double *restrict block, double *restrict out)
 {
     for (size_t half = 0; half < HALVES; half++)
         for (size_t i = 0; i < STEPS; i += LANES)
-            transpose_lanes(block + i * SEGMENTS + half * LANES, out + half * LANES * STEPS + i);
+            transpose_lanes(block + i * SEGMENTS + half * LANES, SEGMENTS,
+                            out + half * LANES * STEPS + i, STEPS);
+}
+
+KERNEL void to_segment_order(const double *restrict samples, double *restrict block)
+{
+    for (size_t half = 0; half < HALVES; half++)
+        for (size_t i = 0; i < STEPS; i += LANES)
+            transpose_lanes(samples + half * LANES * STEPS + i, STEPS,
+                            block + i * SEGMENTS + half * LANES, SEGMENTS);
 }
 
 #endif

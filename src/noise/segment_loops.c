@@ -23,9 +23,21 @@
     {                                                                                              \
         quantize(lsb, dt, residual, block);                                                        \
     }                                                                                              \
+    target static void saturate_##isa(double dead_band, double range, double *block)               \
+    {                                                                                              \
+        saturate(dead_band, range, block);                                                         \
+    }                                                                                              \
+    target static void add_held_##isa(const double *held, size_t offset, double *block)            \
+    {                                                                                              \
+        add_held(held, offset, block);                                                             \
+    }                                                                                              \
     target static void to_time_order_##isa(const double *block, double *out)                       \
     {                                                                                              \
         to_time_order(block, out);                                                                 \
+    }                                                                                              \
+    target static void to_segment_order_##isa(const double *samples, double *block)                \
+    {                                                                                              \
+        to_segment_order(samples, block);                                                          \
     }
 
 COMPILE_FOR(portable, )
@@ -68,7 +80,22 @@ void imki_quantize(imk_kernel kernel, double lsb, double dt, double *residual, d
     CALL(kernel, quantize, lsb, dt, residual, block);
 }
 
+void imki_saturate(imk_kernel kernel, double dead_band, double range, double *block)
+{
+    CALL(kernel, saturate, dead_band, range, block);
+}
+
+void imki_add_held(imk_kernel kernel, const double *held, size_t offset, double *block)
+{
+    CALL(kernel, add_held, held, offset, block);
+}
+
 void imki_to_time_order(imk_kernel kernel, const double *block, double *out)
 {
     CALL(kernel, to_time_order, block, out);
+}
+
+void imki_to_segment_order(imk_kernel kernel, const double *samples, double *block)
+{
+    CALL(kernel, to_segment_order, samples, block);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One channel: its stochastic terms added block by block, and the output stage
+/* One channel: its response to the motion, its stochastic terms added block by block, and the
+ * output stage
  *
- *     x -> range -> quantization of the integral -> resolution -> counts.
+ *     x -> bandwidth -> + noise -> dead band -> range -> quantization of the integral
+ *       -> resolution -> counts.
  *
  * Samples are made in blocks of 512 counted from sample 0, so it does not matter how many are asked
  * for at a time. */
@@ -115,16 +117,42 @@ static imk_status start_lists(imki_channel *channel, imki_axis axis, double dt, 
     return IMK_OK;
 }
 
-imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, imk_random random,
-                              uint32_t run, imk_error *error)
+static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double part,
+                                   imk_error *error)
 {
+    imk_low_pass filter = {axis.triad->bandwidth.value[axis.axis],
+                           axis.triad->damping.value[axis.axis]};
+    if (filter.bandwidth == 0.0)
+        return IMK_OK;
+    imk_status status = imki_check_low_pass(filter, part);
+    if (status != IMK_OK)
+        return refused(error, status, axis, "bandwidth", filter.bandwidth);
+    imki_dynamics dynamics = imki_filter_dynamics(1.0, filter);
+    imki_stretch stretch = imki_stretch_of_time(&dynamics, part);
+    imki_band_limit *limit = &channel->band_limit;
+    limit->present = true;
+    for (int i = 0; i < 2; i++) {
+        limit->mean[i] = stretch.g[i] / part;
+        for (int j = 0; j < 2; j++)
+            limit->phi[i][j] = stretch.phi[i][j];
+    }
+    return IMK_OK;
+}
+
+imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, size_t substeps,
+                              imk_random random, uint32_t run, imk_error *error)
+{
+    channel->sensor = axis.sensor;
+    channel->axis = axis.axis;
     channel->kernel = random.kernel;
+    channel->dead_band = axis.triad->dead_band.value[axis.axis];
     channel->range = axis.triad->range.value[axis.axis];
     channel->resolution = axis.triad->resolution.value[axis.axis];
     channel->sensitivity = axis.triad->sensitivity.value[axis.axis];
     channel->zero_offset = axis.triad->zero_offset.value[axis.axis];
-    channel->used = IMK_NOISE_BLOCK;
-    imk_status status = start_white(channel, axis, dt, random, run, error);
+    imk_status status = start_band_limit(channel, axis, dt / (double)substeps, error);
+    if (status == IMK_OK)
+        status = start_white(channel, axis, dt, random, run, error);
     if (status == IMK_OK)
         status = start_drifts(channel, axis, dt, random, run, error);
     if (status == IMK_OK)
@@ -132,14 +160,80 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
     return status;
 }
 
+/* ---- the deterministic part ---- */
+
+static void limit_band(imki_band_limit *limit, size_t count, double *signal)
+{
+    if (!limit->started) { /* as if the first input had lasted for ever */
+        limit->x = signal[0];
+        limit->v = 0.0;
+        limit->started = true;
+    }
+    double x = limit->x, v = limit->v;
+    for (size_t i = 0; i < count; i++) {
+        double u = signal[i], away = x - u;
+        signal[i] = u + (limit->mean[0] * away + limit->mean[1] * v);
+        x = u + (limit->phi[0][0] * away + limit->phi[0][1] * v);
+        v = limit->phi[1][0] * away + limit->phi[1][1] * v;
+    }
+    limit->x = x;
+    limit->v = v;
+}
+
+/* The stimulus from part `first` on. */
+static imk_stimulus later(const imk_stimulus *stimulus, size_t first)
+{
+    imk_stimulus s = *stimulus;
+    for (int i = 0; i < 3; i++) {
+        s.angular_rate[i] += first;
+        s.specific_force[i] += first;
+        if (s.angular_acceleration[i])
+            s.angular_acceleration[i] += first;
+    }
+    if (s.temperature) {
+        s.temperature += first;
+        s.temperature_rate += first;
+    }
+    for (int i = 0; i < 2; i++) {
+        if (s.warm_up[i])
+            s.warm_up[i] += first;
+        if (s.hysteresis[i])
+            s.hysteresis[i] += first;
+    }
+    return s;
+}
+
+void imki_channel_response(imki_channel *channel, const imk_distortion *distortion,
+                           const imki_scene *scene, size_t part, size_t rows, double *out)
+{
+    double parts[IMK_NOISE_BLOCK];
+    const size_t substeps = scene->substeps;
+    const size_t rows_at_once = IMK_NOISE_BLOCK / substeps;
+    for (size_t row = 0; row < rows; row += rows_at_once) {
+        const size_t now = rows - row < rows_at_once ? rows - row : rows_at_once;
+        const size_t count = now * substeps;
+        double *signal = substeps == 1 ? out + row : parts;
+        imk_stimulus stimulus = later(&scene->stimulus[channel->sensor], part + row * substeps);
+        imk_distort(distortion, channel->sensor, channel->axis, &stimulus, count, signal);
+        if (channel->band_limit.present)
+            limit_band(&channel->band_limit, count, signal);
+        for (size_t k = 0; k < now && substeps > 1; k++) {
+            double sum = parts[k * substeps];
+            for (size_t j = 1; j < substeps; j++)
+                sum += parts[k * substeps + j];
+            out[row + k] = sum / (double)substeps;
+        }
+    }
+}
+
+/* ---- noise and output ---- */
+
 static void output_stage(imki_channel *channel, double *block)
 {
-    double range = channel->range, step = channel->resolution;
-    if (range > 0.0)
-        for (size_t j = 0; j < IMK_NOISE_BLOCK; j++) {
-            double low = block[j] < -range ? -range : block[j];
-            block[j] = low > range ? range : low;
-        }
+    double step = channel->resolution;
+    if (channel->dead_band > 0.0 || channel->range > 0.0)
+        imki_saturate(channel->kernel, channel->dead_band,
+                   channel->range > 0.0 ? channel->range : (double)INFINITY, block);
     imki_quantization_block(&channel->quantization, channel->kernel, block);
     if (step > 0.0)
         for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
@@ -149,12 +243,14 @@ static void output_stage(imki_channel *channel, double *block)
             block[j] = imki_round(channel->sensitivity * block[j] + channel->zero_offset);
 }
 
-/* The next 512 samples, in time order. */
-static void channel_block(imki_channel *channel, double *out)
+void imki_channel_block(imki_channel *channel, bool constant, double *out)
 {
     double block[IMK_NOISE_BLOCK];
-    for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
-        block[j] = channel->constant;
+    if (constant)
+        for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
+            block[j] = channel->constant;
+    else
+        imki_to_segment_order(channel->kernel, out, block);
     if (channel->ramp != 0.0)
         for (size_t k = 0; k < IMK_NOISE_BLOCK; k++)
             block[imki_place(k)] += channel->ramp * (double)(channel->next + k);
@@ -175,25 +271,4 @@ static void channel_block(imki_channel *channel, double *out)
     output_stage(channel, block);
     imki_to_time_order(channel->kernel, block, out);
     channel->next += IMK_NOISE_BLOCK;
-}
-
-void imki_channel_next(imki_channel *channel, size_t count, double *out)
-{
-    size_t done = 0;
-    while (done < count) {
-        if (channel->used == IMK_NOISE_BLOCK && count - done >= IMK_NOISE_BLOCK) {
-            channel_block(channel, out + done);
-            done += IMK_NOISE_BLOCK;
-            continue;
-        }
-        if (channel->used == IMK_NOISE_BLOCK) {
-            channel_block(channel, channel->sample);
-            channel->used = 0;
-        }
-        size_t left = IMK_NOISE_BLOCK - channel->used;
-        size_t take = count - done < left ? count - done : left;
-        memcpy(out + done, channel->sample + channel->used, take * sizeof *out);
-        channel->used += take;
-        done += take;
-    }
 }

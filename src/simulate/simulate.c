@@ -1,15 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The simulator: truth at rest on the Earth, memory, channels, threads. */
+/* The simulator: memory, channels, and the order in which rows are made. */
 #include "imukit/simulate.h"
 
-#include "imukit/earth.h"
 #include "simulate/simulate_internal.h"
 
 #include <string.h>
 
-enum { COOKIE = 0x5131A710, ALIGNMENT = 64 };
+enum { COOKIE = 0x5131A711, ALIGNMENT = 64 };
 
 struct imk_simulator {
+    imki_scene scene;
+    imk_distortion distortion;
+    imk_random random;
+    uint64_t drop_stream;
+    double drops;
+    uint64_t next; /* first row of the block to be made next */
+    size_t left;   /* rows of the channels' blocks not yet handed out */
     size_t channels;
     imki_channel *channel;
 };
@@ -18,21 +24,6 @@ imk_simulation imk_simulation_default(void)
 {
     return (imk_simulation){
         .cookie = COOKIE, .rate = 100.0, .earth = true, .latitude = 0.25 * IMKI_PI};
-}
-
-void imk_simulation_truth(const imk_simulation *simulation, double angular_rate[3],
-                          double specific_force[3])
-{
-    imk_vector3 rate = {{0.0}}, force = {{0.0}};
-    if (simulation->earth) {
-        imk_matrix3 to_body = imk_matrix3_transpose(
-            imk_matrix3_from_euler(simulation->roll, simulation->pitch, simulation->yaw));
-        force.v[2] = -imk_normal_gravity(simulation->latitude, simulation->height);
-        force = imk_matrix3_apply(to_body, force);
-        rate = imk_matrix3_apply(to_body, imk_earth_rate(simulation->latitude));
-    }
-    memcpy(angular_rate, rate.v, sizeof rate.v);
-    memcpy(specific_force, force.v, sizeof force.v);
 }
 
 static imk_status range_error(imk_error *error, const char *field, double value,
@@ -62,6 +53,8 @@ static imk_status check_simulation(const imk_simulation *simulation, imk_error *
     for (int i = 0; i < 3; i++)
         if (!(fabs(angle[i]) <= 1e4))
             return range_error(error, name[i], angle[i], "an angle");
+    if (s->substeps > IMK_SUBSTEPS_MAX)
+        return range_error(error, "substeps", (double)s->substeps, "at most 512 parts of a sample");
     return IMK_OK;
 }
 
@@ -83,11 +76,12 @@ static size_t list_size(const imk_noise *noise)
            aligned((size_t)noise->resonance_count * sizeof(imk_arma_state));
 }
 
-size_t imk_simulator_size(const imk_model *model)
+size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
 {
     size_t gyros = axes_of(&model->gyro), accels = axes_of(&model->accel);
     return aligned(sizeof(imk_simulator)) + aligned((gyros + accels) * sizeof(imki_channel)) +
-           gyros * list_size(&model->gyro.noise) + accels * list_size(&model->accel.noise);
+           gyros * list_size(&model->gyro.noise) + accels * list_size(&model->accel.noise) +
+           aligned(imki_scene_size(model, simulation) * sizeof(double));
 }
 
 static void *take(unsigned char **memory, size_t size)
@@ -105,25 +99,71 @@ static void assign_lists(imki_channel *channel, const imk_noise *noise, unsigned
     channel->resonance = take(memory, (size_t)noise->resonance_count * sizeof(imk_arma_state));
 }
 
+/* ---- start ---- */
+
+static imki_axis axis_of(const imk_model *model, size_t channel)
+{
+    size_t gyros = axes_of(&model->gyro);
+    if (channel < gyros)
+        return (imki_axis){&model->gyro, "gyro", IMK_GYRO, (int)channel, (uint8_t)channel};
+    size_t axis = channel - gyros;
+    return (imki_axis){&model->accel, "accel", IMK_ACCEL, (int)axis,
+                       (uint8_t)(axis + IMK_AXES_MAX)};
+}
+
+/* One draw for the whole run. */
+static double repeatability(const imk_axes *sigma, imki_axis axis, uint8_t instance,
+                            imk_random random, uint32_t run)
+{
+    double normal;
+    imk_random_normals(random, imk_stream(run, IMK_TERM_REPEATABILITY, instance, axis.stream_axis),
+                       0, 1, &normal);
+    return sigma->value[axis.axis] * normal;
+}
+
+static imk_status start_distortion(imk_simulator *made, const imk_model *model,
+                                   const imk_simulation *simulation, imk_error *error)
+{
+    imk_run_constants constants = {.bias = {{0.0}}};
+    for (size_t i = 0; i < made->channels; i++) {
+        imki_axis axis = axis_of(model, i);
+        constants.bias[axis.sensor][axis.axis] =
+            repeatability(&axis.triad->bias.repeatability, axis, 0, made->random, simulation->run);
+        constants.scale_factor[axis.sensor][axis.axis] = repeatability(
+            &axis.triad->scale_factor.repeatability, axis, 1, made->random, simulation->run);
+    }
+    return imk_distortion_start(&made->distortion, model, &constants, made->random.kernel, error);
+}
+
+/* The response of a unit at rest. */
+static double constant_response(const imk_simulator *made, const imki_channel *channel)
+{
+    imk_motion_state state;
+    imk_trajectory_state(made->scene.trajectory, made->scene.start, &state);
+    imk_stimulus stimulus = {.temperature = NULL};
+    for (int i = 0; i < 3; i++) {
+        stimulus.angular_rate[i] = &state.angular_rate.v[i];
+        stimulus.specific_force[i] = &state.specific_force.v[i];
+    }
+    double response;
+    imk_distort(&made->distortion, channel->sensor, channel->axis, &stimulus, 1, &response);
+    return response;
+}
+
 static imk_status start_channels(imk_simulator *made, unsigned char *memory, const imk_model *model,
                                  const imk_simulation *simulation, imk_error *error)
 {
-    double rate[3], force[3];
-    imk_simulation_truth(simulation, rate, force);
-    imk_random random = imk_random_seeded(simulation->seed);
-    size_t gyros = axes_of(&model->gyro);
     for (size_t i = 0; i < made->channels; i++) {
-        bool gyro = i < gyros;
-        int axis = (int)(gyro ? i : i - gyros);
-        imki_axis place = {gyro ? &model->gyro : &model->accel, gyro ? "gyro" : "accel", axis,
-                           (uint8_t)(gyro ? axis : axis + IMK_AXES_MAX)};
+        imki_axis axis = axis_of(model, i);
         imki_channel *channel = &made->channel[i];
-        assign_lists(channel, &place.triad->noise, &memory);
-        channel->constant = imki_static_output(place, rate, force, random, simulation->run);
-        imk_status status = imki_channel_start(channel, place, 1.0 / simulation->rate, random,
-                                               simulation->run, error);
+        assign_lists(channel, &axis.triad->noise, &memory);
+        imk_status status =
+            imki_channel_start(channel, axis, 1.0 / simulation->rate, made->scene.substeps,
+                               made->random, simulation->run, error);
         if (status != IMK_OK)
             return status;
+        if (!made->scene.varies)
+            channel->constant = constant_response(made, channel);
     }
     return IMK_OK;
 }
@@ -135,29 +175,30 @@ imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model
     imk_status status = imk_model_validate(model, error);
     if (status == IMK_OK)
         status = check_simulation(simulation, error);
-    if (status == IMK_OK)
-        status = imki_check_supported(model, error);
     if (status != IMK_OK)
         return status;
-    if (size < imk_simulator_size(model))
+    if (size < imk_simulator_size(model, simulation))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_simulator_size() bytes");
     if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
-    memset(memory, 0, imk_simulator_size(model));
+    memset(memory, 0, imk_simulator_size(model, simulation));
     unsigned char *rest = memory;
     imk_simulator *made = take(&rest, sizeof *made);
+    made->random = imk_random_seeded(simulation->seed);
+    made->drops = model->timing.drops.value;
+    made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
     made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
     made->channel = take(&rest, made->channels * sizeof *made->channel);
-    status = start_channels(made, rest, model, simulation, error);
+    double *columns = take(&rest, imki_scene_size(model, simulation) * sizeof(double));
+    status = imki_scene_start(&made->scene, model, simulation, columns, error);
+    if (status == IMK_OK)
+        status = start_distortion(made, model, simulation, error);
+    if (status == IMK_OK)
+        status = start_channels(made, rest, model, simulation, error);
     if (status == IMK_OK)
         *simulator = made;
     return status;
-}
-
-double imk_simulator_constant(const imk_simulator *simulator, size_t channel)
-{
-    return simulator->channel[channel].constant;
 }
 
 size_t imk_simulator_channels(const imk_simulator *simulator)
@@ -165,21 +206,116 @@ size_t imk_simulator_channels(const imk_simulator *simulator)
     return simulator->channels;
 }
 
-typedef struct channel_work {
+double imk_simulator_true_time(const imk_simulator *simulator, int64_t row)
+{
+    return simulator->scene.start + imki_row_end(&simulator->scene, row);
+}
+
+bool imk_simulator_dropped(const imk_simulator *simulator, uint64_t row)
+{
+    uint32_t word;
+    if (!(simulator->drops > 0.0))
+        return false;
+    imk_random_words(simulator->random, simulator->drop_stream, row, 1, &word);
+    return (double)word < simulator->drops * 0x1p32;
+}
+
+/* ---- rows ---- */
+
+/* Rows first … of the blocks that begin at `out`: their deterministic part, and whatever blocks
+ * they complete. */
+typedef struct row_work {
     imk_simulator *simulator;
-    size_t count;
-    double *const *columns;
-} channel_work;
+    size_t first, rows;
+    double *const *out;
+} row_work;
 
 static void run_channel(void *context, size_t item)
 {
-    const channel_work *work = context;
-    imki_channel_next(&work->simulator->channel[item], work->count, work->columns[item]);
+    const row_work *work = context;
+    imk_simulator *simulator = work->simulator;
+    imki_channel *channel = &simulator->channel[item];
+    const bool varies = simulator->scene.varies;
+    double *out = work->out[item];
+    const size_t end = work->first + work->rows;
+    if (!varies) {
+        for (size_t row = work->first; row < end; row += IMK_NOISE_BLOCK)
+            imki_channel_block(channel, true, out + row);
+        return;
+    }
+    const size_t substeps = simulator->scene.substeps;
+    for (size_t row = work->first; row < end;) {
+        size_t to = (row / IMK_NOISE_BLOCK + 1) * IMK_NOISE_BLOCK;
+        size_t rows = (to < end ? to : end) - row;
+        imki_channel_response(channel, &simulator->distortion, &simulator->scene,
+                              (row - work->first) * substeps, rows, out + row);
+        row += rows;
+        if (row % IMK_NOISE_BLOCK == 0)
+            imki_channel_block(channel, false, out + row - IMK_NOISE_BLOCK);
+    }
+}
+
+/* Rows made at a time: a power of two of them, so that stretches and blocks fit each other. */
+static size_t stretch_rows(const imk_simulator *simulator, const imk_executor *executor)
+{
+    size_t parts = executor && executor->threads > 1 ? IMKI_STRETCH : IMKI_STRETCH_SERIAL;
+    size_t rows = IMKI_STRETCH;
+    while (rows > 1 && rows * simulator->scene.substeps > parts)
+        rows /= 2;
+    return rows;
+}
+
+/* `blocks` blocks of every channel. */
+static void make_blocks(imk_simulator *simulator, size_t blocks, double *const *out,
+                        const imk_executor *executor)
+{
+    const size_t rows = blocks * IMK_NOISE_BLOCK;
+    const bool varies = simulator->scene.varies;
+    const size_t stretch = varies ? stretch_rows(simulator, executor) : rows;
+    for (size_t first = 0; first < rows; first += stretch) {
+        row_work work = {simulator, first, rows - first < stretch ? rows - first : stretch, out};
+        if (varies)
+            imki_scene_fill(&simulator->scene, simulator->next + first, work.rows, executor);
+        imk_execute(executor, simulator->channels, run_channel, &work);
+    }
+    simulator->next += rows;
+}
+
+/* Hand out rows of the blocks the channels hold. */
+static size_t hand_out(imk_simulator *simulator, size_t count, double *const *out)
+{
+    size_t now = count < simulator->left ? count : simulator->left;
+    for (size_t i = 0; i < simulator->channels; i++)
+        memcpy(out[i], simulator->channel[i].sample + IMK_NOISE_BLOCK - simulator->left,
+               now * sizeof(double));
+    simulator->left -= now;
+    return now;
+}
+
+static void advance(double *column[2 * IMK_AXES_MAX], size_t channels, size_t rows)
+{
+    for (size_t i = 0; i < channels; i++)
+        column[i] += rows;
 }
 
 void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *columns,
                         const imk_executor *executor)
 {
-    channel_work work = {simulator, count, columns};
-    imk_execute(executor, simulator->channels, run_channel, &work);
+    double *out[2 * IMK_AXES_MAX] = {NULL}, *held[2 * IMK_AXES_MAX] = {NULL};
+    const size_t channels = simulator->channels;
+    for (size_t i = 0; i < channels; i++) {
+        out[i] = columns[i];
+        held[i] = simulator->channel[i].sample;
+    }
+    size_t done = hand_out(simulator, count, out);
+    advance(out, channels, done);
+    const size_t blocks = (count - done) / IMK_NOISE_BLOCK;
+    make_blocks(simulator, blocks, out, executor);
+    advance(out, channels, blocks * IMK_NOISE_BLOCK);
+    done += blocks * IMK_NOISE_BLOCK;
+    if (done == count)
+        return;
+    make_blocks(simulator, 1, held, executor);
+    simulator->left = IMK_NOISE_BLOCK;
+    hand_out(simulator, count - done, out);
 }

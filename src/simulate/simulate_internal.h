@@ -1,24 +1,95 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A channel of the simulator: one sensing axis, and what a model means for it at rest. */
+/* The parts of the simulator: what the unit is exposed to, and a channel, one sensing axis. */
 #ifndef IMUKIT_SIMULATE_INTERNAL_H
 #define IMUKIT_SIMULATE_INTERNAL_H
 
+#include "imukit/distort.h"
 #include "imukit/simulate.h"
+#include "noise/arma_internal.h"
 #include "noise/generator_internal.h"
+
+/* ---- scene.c: motion and temperature, a stretch of parts of samples at a time ---- */
+
+/* Parts of samples made at a time: enough to share among threads, small enough for the cache. */
+enum { IMKI_STRETCH = 8192, IMKI_STRETCH_SERIAL = 1024 };
+
+/* Columns of a stretch. */
+enum {
+    IMKI_RATE = 0,
+    IMKI_FORCE = 3,
+    IMKI_ACCELERATION = 6,
+    IMKI_LATE = 9, /* rate, force, acceleration again, for accelerometers that lag */
+    IMKI_TEMPERATURE = 18,
+    IMKI_TEMPERATURE_RATE,
+    IMKI_HYSTERESIS,
+    IMKI_WARM_UP = IMKI_HYSTERESIS + 2,
+    IMKI_TIME = IMKI_WARM_UP + 2, /* scratch: times */
+    IMKI_COLUMNS
+};
+
+typedef struct imki_scene {
+    imk_kernel kernel;
+    imk_random random;
+    uint64_t jitter_stream;
+    imk_trajectory rest; /* at rest, when the caller gives no motion */
+    imk_trajectory_piece rest_piece;
+    const imk_trajectory *trajectory; /* or recorded */
+    const imk_recorded_motion *recorded;
+    const imk_temperature_profile *temperature; /* or NULL */
+    double start;                               /* time of row 0 in the motion */
+    double interval, jitter, skew;              /* of true time [s] */
+    size_t substeps;
+    bool motion_varies, varies; /* in time; anything at all */
+    bool needs_acceleration, hysteresis_present[2], warm_up_present[2];
+    double warm_up_time[2];
+    imk_hysteresis hysteresis[2];
+    double *warm_up_table; /* 2 x IMK_NOISE_BLOCK: e^(-i part/time) */
+    double *column[IMKI_COLUMNS];
+    double *boundary;         /* IMKI_STRETCH + 1 */
+    imk_stimulus stimulus[2]; /* of gyros and accelerometers: the stretch made last */
+} imki_scene;
+
+/* Parts of a sample this simulation needs. */
+size_t imki_substeps(const imk_model *model, const imk_simulation *simulation);
+/* Doubles of memory for the columns; 0 when nothing varies. */
+size_t imki_scene_size(const imk_model *model, const imk_simulation *simulation);
+imk_status imki_scene_start(imki_scene *scene, const imk_model *model,
+                               const imk_simulation *simulation, double *memory, imk_error *error);
+/* Make the rows first … first + rows - 1, rows * substeps <= IMKI_STRETCH. Stretches follow one
+ * another. */
+void imki_scene_fill(imki_scene *scene, uint64_t first, size_t rows,
+                        const imk_executor *executor);
+/* True time at the end of a row, from the start of the motion. */
+double imki_row_end(const imki_scene *scene, int64_t row);
+
+/* ---- channel.c ---- */
 
 /* One axis of a triad, and where it stands. */
 typedef struct imki_axis {
     const imk_triad *triad;
     const char *kind;    /* "gyro" or "accel": where errors point */
+    int sensor;          /* IMK_GYRO or IMK_ACCEL */
     int axis;            /* in the triad */
     uint8_t stream_axis; /* in stream numbers */
 } imki_axis;
 
+/* The bandwidth, on a signal given by its means over equal parts of time: between two parts the
+ * state (x, v) decays towards the steady state (u, 0) of the input,
+ *
+ *     X <- U + phi (X - U),     mean of x over the part = u + g (X - U)/h. */
+typedef struct imki_band_limit {
+    bool present, started;
+    double phi[2][2], mean[2]; /* g/h */
+    double x, v;
+} imki_band_limit;
+
 typedef struct imki_channel {
-    double constant, ramp; /* [unit], [unit per sample] */
-    double range, resolution, sensitivity, zero_offset;
+    int sensor, axis;
+    double constant, ramp; /* of a unit at rest [unit]; [unit per sample] */
+    double dead_band, range, resolution, sensitivity, zero_offset;
     imk_kernel kernel;
     uint64_t next; /* sample */
+    imki_band_limit band_limit;
     bool white_present, arma_present, flicker_present, random_walk_present;
     imk_white_state white;
     imk_arma_state arma; /* filtered white noise */
@@ -29,22 +100,19 @@ typedef struct imki_channel {
     imk_gauss_markov_state *gauss_markov;
     imk_sinusoid_state *sinusoid;
     imk_arma_state *resonance;
-    size_t used; /* of the samples below, made and not yet handed out */
-    double sample[IMK_NOISE_BLOCK];
+    double sample[IMK_NOISE_BLOCK]; /* a block not yet handed out completely */
 } imki_channel;
 
-/* Refuse what cannot be simulated exactly. */
-imk_status imki_check_supported(const imk_model *model, imk_error *error);
-
-/* Mean output of an axis at rest, with this run's repeatabilities [unit]. */
-double imki_static_output(imki_axis axis, const double angular_rate[3],
-                          const double specific_force[3], imk_random random, uint32_t run);
-
 /* Start the stochastic terms and the output stage. The arrays of the channel have been assigned. */
-imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, imk_random random,
-                              uint32_t run, imk_error *error);
+imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, size_t substeps,
+                              imk_random random, uint32_t run, imk_error *error);
 
-/* The next `count` samples. */
-void imki_channel_next(imki_channel *channel, size_t count, double *out);
+/* The deterministic part of `rows` rows, out of the stretch from its part `part` on. */
+void imki_channel_response(imki_channel *channel, const imk_distortion *distortion,
+                           const imki_scene *scene, size_t part, size_t rows, double *out);
+
+/* Noise and output stage of the next 512 samples. @param block  deterministic part, replaced by the
+ * output. @param constant  true: the part is channel->constant, and block is output only */
+void imki_channel_block(imki_channel *channel, bool constant, double *block);
 
 #endif

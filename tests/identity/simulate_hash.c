@@ -4,6 +4,7 @@
  * For processors that only an emulator runs here (tools/check_identity.sh); it needs libimukit and
  * a C library. Every term is present, and the samples are hashed as the decimal text a log has. */
 #include "imukit/decimal.h"
+#include "imukit/motion_script.h"
 #include "imukit/simulate.h"
 
 #include <stdio.h>
@@ -34,6 +35,16 @@ static void set_triad(imk_triad *triad, double unit)
     set(&triad->bias.repeatability, 2e-3 * unit, 1);
     set(&triad->scale_factor.fixed, 1e-4, -1);
     set(&triad->scale_factor.repeatability, 1e-4, 1);
+    triad->bias.temperature =
+        (imk_temperature_polynomial){.order = 2, .reference = 298, .minimum = 270, .maximum = 310};
+    set(&triad->bias.temperature.coefficient[0], 1e-4 * unit, -1);
+    set(&triad->bias.temperature.coefficient[1], 1e-6 * unit, 1);
+    set(&triad->bias.temperature_rate, 1e-3 * unit, 1);
+    set(&triad->bias.hysteresis, 1e-3 * unit, 1);
+    set(&triad->bias.warm_up_amplitude, 1e-3 * unit, -1);
+    triad->bias.warm_up_time.value = 5;
+    set(&triad->nonlinearity.k2, 1e-5, -1);
+    set(&triad->nonlinearity.asymmetry, 1e-4, 1);
     set_rows(&triad->misalignment, 2e-4);
     set_rows(&triad->cross_axis, 1e-3);
     imk_noise *noise = &triad->noise;
@@ -62,6 +73,30 @@ static uint64_t add_text(uint64_t hash, const char *text, size_t length)
     return hash;
 }
 
+/* A vehicle that starts, turns, and is shaken. */
+static const imk_trajectory *make_motion(void)
+{
+    static const imk_motion_step step[] = {
+        {.kind = IMK_STEP_ACCELERATE, .amount = 10, .rate = 3},
+        {.kind = IMK_STEP_TURN, .amount = 1, .rate = 0.3, .banked = true},
+        {.kind = IMK_STEP_CONING, .axis = 2, .amount = 0.02, .frequency = 3, .duration = 5},
+        {.kind = IMK_STEP_HOLD, .duration = 10}};
+    static const imk_vibration_line line = {2, 1e-4, 40, 0.3};
+    static imk_trajectory trajectory;
+    imk_motion_script script = imk_motion_script_default();
+    script.step = step;
+    script.step_count = sizeof step / sizeof step[0];
+    size_t count;
+    if (imk_motion_script_pieces(&script, &count, NULL) != IMK_OK)
+        return NULL;
+    imk_trajectory_piece *piece = malloc(count * sizeof *piece); /* stays till the end */
+    if (!piece || imk_motion_script_compile(&script, piece, count, &trajectory, NULL) != IMK_OK)
+        return NULL;
+    trajectory.line = &line;
+    trajectory.line_count = 1;
+    return &trajectory;
+}
+
 int main(void)
 {
     static imk_model model;
@@ -69,6 +104,8 @@ int main(void)
     set_triad(&model.gyro, degree);
     set_triad(&model.accel, 9.80665);
     set_rows(&model.gyro.g_sensitivity, 1e-7);
+    set_rows(&model.accel.lever_arm, 0.01);
+    set_rows(&model.accel.nonlinearity.cross_products, 1e-6);
     /* On one axis each: rounding would hide the last bits of the others. */
     model.gyro.noise.quantization.value[0] = 1e-7;
     model.accel.resolution.value[2] = 1e-4;
@@ -76,11 +113,12 @@ int main(void)
     imk_simulation simulation = imk_simulation_default();
     simulation.rate = 100;
     simulation.seed = 1;
-    simulation.roll = 0.1;
-    simulation.pitch = -0.2;
-    simulation.yaw = 1.5;
+    static const double time[] = {0, 10}, temperature[] = {280, 315};
+    const imk_temperature_profile profile = {2, time, temperature, 3};
+    simulation.motion.trajectory = make_motion();
+    simulation.temperature = &profile;
 
-    const size_t size = (imk_simulator_size(&model) + 63) / 64 * 64;
+    const size_t size = (imk_simulator_size(&model, &simulation) + 63) / 64 * 64;
     void *memory = aligned_alloc(64, size);
     imk_simulator *simulator = NULL;
     imk_error error;

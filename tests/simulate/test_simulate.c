@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The simulator: truth and deterministic terms by hand, the output stage, independence of the bytes
- * from blocks, threads and instruction set, and what it refuses. Statistics of the generators are
- * in test_noise_generators.c. */
+/* The simulator: a unit at rest, the output stage, independence of the bytes from blocks, threads
+ * and instruction set, and what it refuses. Each term by itself: test_deterministic_terms.c,
+ * test_stochastic_terms.c; motion and timing: test_moving_unit.c. */
 #define _POSIX_C_SOURCE 200809L /* setenv, aligned_alloc */
 #include "check.h"
 
 #include "imukit/distributions.h"
-#include "imukit/earth.h"
 #include "imukit/noise.h"
 #include "imukit/simulate.h"
 #include "imukit/thread_pool.h"
@@ -25,7 +24,7 @@ typedef struct log6 {
 
 static imk_simulator *start(const imk_model *model, const imk_simulation *simulation)
 {
-    size_t size = imk_simulator_size(model);
+    size_t size = imk_simulator_size(model, simulation);
     void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     assert_non_null(memory);
     imk_simulator *simulator = NULL;
@@ -94,37 +93,48 @@ static imk_model full_model(void)
 
 /* ---- truth and deterministic terms ----------------------------------------------------------- */
 
+/* One row of a unit at rest. */
+static void first_row(const imk_model *model, const imk_simulation *simulation,
+                      double row[CHANNELS])
+{
+    double *columns[CHANNELS] = {row, row + 1, row + 2, row + 3, row + 4, row + 5};
+    imk_simulator *simulator = start(model, simulation);
+    imk_simulator_next(simulator, 1, columns, NULL);
+    free(simulator);
+}
+
 static void test_truth(void **state)
 {
     (void)state;
+    const imk_model model = imk_model_default();
     imk_simulation simulation = imk_simulation_default();
-    double rate[3], force[3];
-    imk_simulation_truth(&simulation, rate, force);
-    CHECK_CLOSE(rate[0], rate45, 1e-19);
-    CHECK_CLOSE(rate[1], 0.0, 0.0);
-    CHECK_CLOSE(rate[2], -rate45, 1e-19);
-    CHECK_CLOSE(force[0], 0.0, 0.0);
-    CHECK_CLOSE(force[2], -g45, 1e-9); /* at rest -g along down */
+    double row[CHANNELS];
+    first_row(&model, &simulation, row);
+    CHECK_CLOSE(row[0], rate45, 1e-19);
+    CHECK_CLOSE(row[1], 0.0, 1e-20);
+    CHECK_CLOSE(row[2], -rate45, 1e-19);
+    CHECK_CLOSE(row[3], 0.0, 1e-11); /* the direction of gravity, to 1e-12 rad */
+    CHECK_CLOSE(row[5], -g45, 1e-9); /* at rest -g along down */
     /* nose up: f along +x is +g */
     simulation.pitch = 1.5707963267948966;
-    imk_simulation_truth(&simulation, rate, force);
-    CHECK_CLOSE(force[0], g45, 1e-9);
-    CHECK_CLOSE(force[2], 0.0, 1e-14);
-    CHECK_CLOSE(rate[0], rate45, 1e-19); /* up is minus down */
+    first_row(&model, &simulation, row);
+    CHECK_CLOSE(row[3], g45, 1e-9);
+    CHECK_CLOSE(row[5], 0.0, 1e-11);
+    CHECK_CLOSE(row[0], rate45, 1e-19); /* up is minus down */
     /* right wing down: gravity reaction along -y */
     simulation.pitch = 0.0;
     simulation.roll = 1.5707963267948966;
-    imk_simulation_truth(&simulation, rate, force);
-    CHECK_CLOSE(force[1], -g45, 1e-9);
+    first_row(&model, &simulation, row);
+    CHECK_CLOSE(row[4], -g45, 1e-9);
     /* heading east: body y points south */
     simulation.roll = 0.0;
     simulation.yaw = 1.5707963267948966;
-    imk_simulation_truth(&simulation, rate, force);
-    CHECK_CLOSE(rate[1], -rate45, 1e-19);
+    first_row(&model, &simulation, row);
+    CHECK_CLOSE(row[1], -rate45, 1e-19);
     simulation.earth = false;
-    imk_simulation_truth(&simulation, rate, force);
-    CHECK_CLOSE(rate[1], 0.0, 0.0);
-    CHECK_CLOSE(force[2], 0.0, 0.0);
+    first_row(&model, &simulation, row);
+    CHECK_CLOSE(row[1], 0.0, 0.0);
+    CHECK_CLOSE(row[5], 0.0, 0.0);
 }
 
 static void test_perfect_unit(void **state)
@@ -133,56 +143,12 @@ static void test_perfect_unit(void **state)
     static log6 log;
     imk_model model = imk_model_default();
     imk_simulation simulation = imk_simulation_default();
+    double first[CHANNELS];
     simulate(&model, &simulation, &log);
-    double rate[3], force[3];
-    imk_simulation_truth(&simulation, rate, force);
+    first_row(&model, &simulation, first);
     for (size_t row = 0; row < ROWS; row++)
-        for (size_t i = 0; i < 3; i++) {
-            CHECK_CLOSE(log.value[i][row], rate[i], 0.0);
-            CHECK_CLOSE(log.value[3 + i][row], force[i], 0.0);
-        }
-}
-
-static double constant_of(const imk_model *model, size_t channel)
-{
-    imk_simulation simulation = imk_simulation_default();
-    imk_simulator *simulator = start(model, &simulation);
-    double value = imk_simulator_constant(simulator, channel);
-    free(simulator);
-    return value;
-}
-
-/* Each deterministic term alone, by hand: level, 45 deg, f = (0, 0, -g), w = (r, 0, -r). */
-static void test_deterministic_terms(void **state)
-{
-    (void)state;
-    const double g = imk_normal_gravity(0.25 * 3.141592653589793, 0.0), r = rate45;
-    imk_model model = imk_model_default();
-    model.gyro.bias.fixed.value[1] = 0.01;
-    model.gyro.scale_factor.fixed.value[0] = 0.5;
-    model.gyro.misalignment.value[1][0] = 0.1;
-    model.gyro.cross_axis.value[1][2] = 0.2;
-    CHECK_CLOSE(constant_of(&model, 1), 0.01 + 0.1 * r - 0.2 * r, 1e-17);
-    CHECK_CLOSE(constant_of(&model, 0), 1.5 * r, 1e-19);
-    model = imk_model_default();
-    model.gyro.g_sensitivity.value[0][2] = 1e-3;
-    model.gyro.g2_sensitivity.value[0][2] = 1e-4; /* fz^2 */
-    CHECK_CLOSE(constant_of(&model, 0), r - 1e-3 * g + 1e-4 * g * g, 1e-16);
-    model = imk_model_default();
-    model.accel.nonlinearity.k2.value[2] = 1e-3;
-    model.accel.nonlinearity.koq.value[2] = 2e-3;
-    model.accel.nonlinearity.k3.value[2] = 3e-4;
-    model.accel.nonlinearity.asymmetry.value[2] = 0.01;
-    model.accel.lever_arm.value[0][0] = 1e6; /* a size effect one can see: -(wy^2 + wz^2) rx */
-    CHECK_CLOSE(constant_of(&model, 5),
-                -g + 1e-3 * g * g - 2e-3 * g * g - 3e-4 * g * g * g + 0.005 * g, 1e-14);
-    CHECK_RELATIVE(constant_of(&model, 3), -r * r * 1e6, 1e-12);
-    /* one sensing direction of its own, skew to the body axes */
-    model = imk_model_default();
-    model.accel.axis_count = 1;
-    model.accel.direction[0][0] = 0.6;
-    model.accel.direction[0][2] = -0.8;
-    CHECK_CLOSE(constant_of(&model, 3), 0.8 * g, 1e-14);
+        for (size_t i = 0; i < CHANNELS; i++)
+            CHECK_CLOSE(log.value[i][row], first[i], 0.0);
 }
 
 /* Repeatability: one draw per run and axis, of the variance stated; the same within a run. */
@@ -196,14 +162,12 @@ static void test_repeatability(void **state)
     imk_simulation simulation = imk_simulation_default();
     double bias = 0.0, scale = 0.0, product = 0.0;
     for (simulation.run = 0; simulation.run < RUNS; simulation.run++) {
-        imk_simulator *simulator = start(&model, &simulation);
-        double x = imk_simulator_constant(simulator, 0) - rate45;
-        double y = imk_simulator_constant(simulator, 1);
-        double z = imk_simulator_constant(simulator, 5) / -g45 - 1.0;
+        double row[CHANNELS];
+        first_row(&model, &simulation, row);
+        double x = row[0] - rate45, y = row[1], z = row[5] / -g45 - 1.0;
         bias += x * x / 4.0 + y * y / 4.0;
         product += x * y / 4.0;
         scale += z * z / 0.01;
-        free(simulator);
     }
     /* exact chi-square, probability 1e-7 each side */
     double probability = imk_chi_square_probability(bias, 2.0 * RUNS);
@@ -447,7 +411,7 @@ static void test_ramp(void **state)
 static void expect(const imk_model *model, const imk_simulation *simulation, imk_status status,
                    const char *field)
 {
-    size_t size = imk_simulator_size(model);
+    size_t size = imk_simulator_size(model, simulation);
     void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     imk_simulator *untouched = (imk_simulator *)&size, *simulator = untouched;
     imk_error error;
@@ -457,30 +421,6 @@ static void expect(const imk_model *model, const imk_simulation *simulation, imk
     assert_ptr_equal(simulator, untouched);
     CHECK_STATUS(imk_simulator_start(memory, size, model, simulation, &simulator, NULL), status);
     free(memory);
-}
-
-static void test_unsupported(void **state)
-{
-    (void)state;
-    imk_simulation simulation = imk_simulation_default();
-    imk_model model = imk_model_default();
-    model.accel.dead_band.value[2] = 0.1;
-    expect(&model, &simulation, IMK_ERROR_UNSUPPORTED, "accel.dead_band");
-    model = imk_model_default();
-    model.gyro.bias.temperature = (imk_temperature_polynomial){
-        .order = 1, .reference = 298.0, .minimum = 250.0, .maximum = 350.0};
-    model.gyro.bias.temperature.coefficient[0].value[0] = 1e-3;
-    expect(&model, &simulation, IMK_ERROR_UNSUPPORTED, "gyro.bias.temperature");
-    model = imk_model_default();
-    model.timing.jitter.value = 1e-6;
-    expect(&model, &simulation, IMK_ERROR_UNSUPPORTED, "timing.jitter");
-    model = imk_model_default();
-    model.gyro.bias.warm_up_amplitude.value[0] = 1e-6;
-    model.gyro.bias.warm_up_time.value = 100.0;
-    expect(&model, &simulation, IMK_ERROR_UNSUPPORTED, "gyro.bias.warm_up");
-    model = imk_model_default();
-    model.gyro.bias.temperature_rate.value[0] = 1e-6; /* the temperature is constant */
-    free(start(&model, &simulation));
 }
 
 static void test_errors(void **state)
@@ -503,7 +443,7 @@ static void test_errors(void **state)
     expect(&model, &simulation, IMK_ERROR_RANGE, "gyro.bandwidth");
 
     model = imk_model_default();
-    size_t size = imk_simulator_size(&model);
+    size_t size = imk_simulator_size(&model, &simulation);
     unsigned char *memory = aligned_alloc(64, (size + 127) / 64 * 64);
     assert_non_null(memory);
     imk_simulator *simulator;
@@ -519,7 +459,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_truth),
         cmocka_unit_test(test_perfect_unit),
-        cmocka_unit_test(test_deterministic_terms),
         cmocka_unit_test(test_repeatability),
         cmocka_unit_test(test_streams),
         cmocka_unit_test(test_axes_do_not_touch_each_other),
@@ -529,7 +468,6 @@ int main(void)
         cmocka_unit_test(test_range_resolution_counts),
         cmocka_unit_test(test_quantization),
         cmocka_unit_test(test_ramp),
-        cmocka_unit_test(test_unsupported),
         cmocka_unit_test(test_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
