@@ -7,7 +7,7 @@
 #include <signal.h>
 #include <string.h>
 
-static const verb *const verbs[] = {&identify_verb, &simulate_verb, &allan_verb,
+static const verb *const verbs[] = {&identify_verb, &simulate_verb, &compensate_verb, &allan_verb,
                                     &devices_verb,  &grade_verb,    &convert_verb};
 enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
 

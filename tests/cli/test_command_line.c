@@ -19,7 +19,8 @@ static void test_newcomer(void **state)
     assert_string_equal(err, "");
 }
 
-static const char *const verbs[] = {"simulate", "allan", "identify", "devices", "grade", "convert"};
+static const char *const verbs[] = {"simulate", "compensate", "allan",  "identify",
+                                    "devices",  "grade",      "convert"};
 
 /* Help, man page and completion of every verb; examples first, no colours into a file. */
 static void test_help_of_every_verb(void **state)

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parts of imukit compensate: what a model says about a log's columns, what is taken out of them.
+ */
+#ifndef IMUKIT_COMPENSATE_PARTS_H
+#define IMUKIT_COMPENSATE_PARTS_H
+
+#include "log_input.h"
+
+#include "imukit/compensate.h"
+#include "imukit/model_file.h"
+
+typedef struct compensate_options {
+    log_input log;
+    const char *output, *to_gyro_unit, *to_accel_unit;
+    double temperature, temperature_time, powered_for, rate_limit, force_limit;
+    uint64_t decimals, threads;
+    bool flags, json, strict;
+} compensate_options;
+
+/* How columns of a log and axes of a model belong together, and which columns are written. */
+typedef struct compensate_columns {
+    int axis[2][IMK_AXES_MAX]; /* of the log: the column of each axis of the model */
+    int temperature, time;     /* or -1 */
+    size_t count;              /* written */
+    imk_log_column column[IMK_LOG_COLUMNS_MAX];
+    struct {
+        int source;            /* column of the log that is copied, or -1 */
+        int sensor, component; /* else what is corrected; sensor 2: the flags */
+    } content[IMK_LOG_COLUMNS_MAX];
+} compensate_columns;
+
+/* Find the columns of the model's axes; sensors that the log has not, and on which nothing else
+ * depends, are taken out of the model. @return -1 or the exit code, the message printed */
+int compensate_match(const compensate_options *o, const imk_log_reader *reader, const char *log,
+                     const char *name, imk_model *model, compensate_columns *columns);
+/* Columns of the corrected log. @return -1 or the exit code, the message printed */
+int compensate_describe(const compensate_options *o, const imk_log_reader *reader,
+                        const imk_compensator *compensator, compensate_columns *columns);
+
+/* Terms of a model, as their keys in the model file. */
+enum { TERMS_MAX = 64 };
+typedef struct term_list {
+    size_t count;
+    char name[TERMS_MAX][40]; /* "gyro.bias.fixed" */
+} term_list;
+/* What compensation takes out, and what it leaves in the log. */
+term_list compensate_terms(const imk_model *model, bool taken_out);
+/* The first term that needs a temperature, or NULL. */
+const char *compensate_temperature_term(const imk_model *model);
+
+#endif

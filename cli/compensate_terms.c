@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Which terms of a model compensation takes out, and which stay in the log because the model knows
+ * their size and not their course. */
+#include "compensate_parts.h"
+
+#include <string.h>
+
+typedef enum term_kind { OF_AXES, OF_ROWS, OF_QUADRATIC, OF_POLYNOMIAL } term_kind;
+
+typedef struct term {
+    const char *name;
+    size_t offset; /* in the triad */
+    term_kind kind;
+    bool taken_out, needs_temperature;
+} term;
+
+#define TRIAD(field) offsetof(imk_triad, field)
+static const term terms[] = {
+    {"bias.fixed", TRIAD(bias.fixed), OF_AXES, true, false},
+    {"bias.temperature", TRIAD(bias.temperature), OF_POLYNOMIAL, true, true},
+    {"bias.temperature_rate", TRIAD(bias.temperature_rate), OF_AXES, true, true},
+    {"bias.warm_up", TRIAD(bias.warm_up_amplitude), OF_AXES, true, false},
+    {"scale_factor.fixed", TRIAD(scale_factor.fixed), OF_AXES, true, false},
+    {"scale_factor.temperature", TRIAD(scale_factor.temperature), OF_POLYNOMIAL, true, true},
+    {"nonlinearity.k2", TRIAD(nonlinearity.k2), OF_AXES, true, false},
+    {"nonlinearity.koq", TRIAD(nonlinearity.koq), OF_AXES, true, false},
+    {"nonlinearity.k3", TRIAD(nonlinearity.k3), OF_AXES, true, false},
+    {"nonlinearity.asymmetry", TRIAD(nonlinearity.asymmetry), OF_AXES, true, false},
+    {"cross_products", TRIAD(nonlinearity.cross_products), OF_ROWS, true, false},
+    {"misalignment", TRIAD(misalignment), OF_ROWS, true, false},
+    {"cross_axis", TRIAD(cross_axis), OF_ROWS, true, false},
+    {"g_sensitivity", TRIAD(g_sensitivity), OF_ROWS, true, false},
+    {"g2_sensitivity", TRIAD(g2_sensitivity), OF_QUADRATIC, true, false},
+    {"lever_arm", TRIAD(lever_arm), OF_ROWS, true, false},
+    {"sensitivity", TRIAD(sensitivity), OF_AXES, true, false},
+    {"bias.repeatability", TRIAD(bias.repeatability), OF_AXES, false, false},
+    {"bias.hysteresis", TRIAD(bias.hysteresis), OF_AXES, false, false},
+    {"scale_factor.repeatability", TRIAD(scale_factor.repeatability), OF_AXES, false, false},
+    {"bandwidth", TRIAD(bandwidth), OF_AXES, false, false},
+    {"dead_band", TRIAD(dead_band), OF_AXES, false, false},
+    {"resolution", TRIAD(resolution), OF_AXES, false, false},
+};
+
+static bool any_value(const double *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (values[i] != 0)
+            return true;
+    return false;
+}
+
+static bool is_there(const imk_triad *triad, const term *t)
+{
+    const char *place = (const char *)triad + t->offset;
+    size_t axes = (size_t)triad->axis_count;
+    const imk_temperature_polynomial *polynomial = (const void *)place;
+    switch (t->kind) {
+    case OF_AXES:
+        return any_value(((const imk_axes *)(const void *)place)->value, axes);
+    case OF_ROWS:
+        return any_value(&((const imk_rows *)(const void *)place)->value[0][0], 3 * axes);
+    case OF_QUADRATIC:
+        return any_value(&((const imk_quadratic_rows *)(const void *)place)->value[0][0], 6 * axes);
+    case OF_POLYNOMIAL:
+        for (int i = 0; i < polynomial->order; i++)
+            if (any_value(polynomial->coefficient[i].value, axes))
+                return true;
+    }
+    return false;
+}
+
+static bool is_skewed(const imk_triad *triad)
+{
+    for (int i = 0; i < triad->axis_count; i++)
+        for (int k = 0; k < 3; k++)
+            if (triad->direction[i][k] != 0 && triad->direction[i][k] != 1)
+                return true;
+    return false;
+}
+
+static bool has_noise(const imk_noise *noise, int axis_count)
+{
+    size_t axes = (size_t)axis_count;
+    return any_value(noise->white.value, axes) || any_value(noise->bias_instability.value, axes) ||
+           any_value(noise->random_walk.value, axes) || any_value(noise->ramp.value, axes) ||
+           any_value(noise->quantization.value, axes) || noise->gauss_markov_count > 0 ||
+           noise->sinusoid_count > 0 || noise->resonance_count > 0;
+}
+
+static void add(term_list *list, const char *sensor, const char *name)
+{
+    if (list->count < TERMS_MAX)
+        snprintf(list->name[list->count++], sizeof list->name[0], "%s.%s", sensor, name);
+}
+
+static void add_triad(term_list *list, const imk_triad *triad, const char *sensor, bool taken_out)
+{
+    if (!triad->present)
+        return;
+    if (taken_out && is_skewed(triad))
+        add(list, sensor, "direction");
+    for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++)
+        if (terms[i].taken_out == taken_out && is_there(triad, &terms[i]))
+            add(list, sensor, terms[i].name);
+    if (!taken_out && has_noise(&triad->noise, triad->axis_count))
+        add(list, sensor, "noise");
+}
+
+term_list compensate_terms(const imk_model *model, bool taken_out)
+{
+    term_list list = {0};
+    add_triad(&list, &model->gyro, "gyro", taken_out);
+    add_triad(&list, &model->accel, "accel", taken_out);
+    const struct {
+        const char *name;
+        double value;
+    } timing[] = {{"rate_error", model->timing.rate_error.value},
+                  {"jitter", model->timing.jitter.value},
+                  {"skew", model->timing.skew.value},
+                  {"drops", model->timing.drops.value}};
+    for (size_t i = 0; i < 4 && !taken_out; i++)
+        if (timing[i].value != 0)
+            add(&list, "timing", timing[i].name);
+    return list;
+}
+
+const char *compensate_temperature_term(const imk_model *model)
+{
+    static const char *const gyro[] = {"gyro.bias.temperature", "gyro.bias.temperature_rate",
+                                       "gyro.scale_factor.temperature"};
+    static const char *const accel[] = {"accel.bias.temperature", "accel.bias.temperature_rate",
+                                        "accel.scale_factor.temperature"};
+    size_t found = 0;
+    for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++) {
+        if (!terms[i].needs_temperature)
+            continue;
+        if (model->gyro.present && is_there(&model->gyro, &terms[i]))
+            return gyro[found];
+        if (model->accel.present && is_there(&model->accel, &terms[i]))
+            return accel[found];
+        found++;
+    }
+    return NULL;
+}
