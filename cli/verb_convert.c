@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit convert: logs and model files between formats. */
+/* imukit convert: logs, model files and parameter files of other programs between formats. */
 #include "command.h"
+#include "convert_motion.h"
+#include "convert_parameters.h"
 #include "log_input.h"
 #include "progress.h"
 
@@ -11,6 +13,8 @@
 
 typedef struct convert_options {
     log_input log;
+    parameter_options parameters;
+    convert_motion_options motion;
     const char *to_gyro_unit, *to_accel_unit, *to_time_unit, *to_temperature_unit, *select;
     uint64_t decimals, threads;
 } convert_options;
@@ -42,20 +46,28 @@ static int run(int count, char **words);
 
 const verb convert_verb = {
     .name = "convert",
-    .summary = "logs and model files between formats",
+    .summary = "logs, models and parameter files between formats",
     .operands = "IN OUT",
     .operands_minimum = 2,
     .operands_maximum = 2,
     .examples =
         {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
           "a log without units becomes one that says everything"},
-         {"imukit convert model.yaml model.json",
-          "the same model as JSON; .yaml, .yml and .json are model files"}},
+         {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
+          "a model becomes a parameter file of another program; without --to the way back"}},
     .description =
         "A log is .csv (also .gz, .zst) or .npy; - is standard input or output, as CSV. Increments "
-        "become rates. Values keep their units unless an option changes them.",
+        "become rates. Values keep their units unless an option changes them.\n\n"
+        "A model (.yaml, .yml, .json) is converted between YAML and JSON. Parameter files of "
+        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins and px4 "
+        "are recognised by their content; what was assumed about units and densities, and what a "
+        "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
     .groups = {{"Options", sizeof convert_option_table / sizeof convert_option_table[0],
                 convert_option_table, 0},
+               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table,
+                offsetof(convert_options, parameters)},
+               {"Another point, without gravity", CONVERT_MOTION_OPTIONS,
+                convert_motion_option_table, offsetof(convert_options, motion)},
                {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
                 offsetof(convert_options, log)}},
     .run = run};
@@ -178,8 +190,8 @@ static int set_units(const convert_options *o, conversion *c)
 
 enum { BLOCK_ROWS = 65536 };
 
-static int copy_rows(imk_log_reader *reader, imk_log_writer *writer, const conversion *c,
-                     const char *in, const imk_executor *executor)
+static int copy_rows(imk_log_reader *reader, convert_motion *motion, imk_log_writer *writer,
+                     const conversion *c, const char *in, const imk_executor *executor)
 {
     double *read[IMK_LOG_COLUMNS_MAX] = {NULL}, *written[IMK_LOG_COLUMNS_MAX];
     double *memory = malloc(imk_log_column_count(reader) * BLOCK_ROWS * sizeof *memory);
@@ -195,7 +207,7 @@ static int copy_rows(imk_log_reader *reader, imk_log_writer *writer, const conve
     uint64_t total = 0;
     while (status == IMK_OK && rows > 0 && wrote) {
         uint64_t done, size;
-        status = imk_log_read(reader, BLOCK_ROWS, read, &rows, &error);
+        status = convert_motion_read(motion, reader, BLOCK_ROWS, read, &rows, &error);
         if (status == IMK_OK && rows > 0)
             wrote = imk_log_write(writer, rows, (const double *const *)written, executor) == IMK_OK;
         total += rows;
@@ -222,8 +234,8 @@ static const char *label_of(void *reader, size_t index)
     return imk_log_label(reader, index);
 }
 
-static int write_log(const convert_options *o, imk_log_reader *reader, const conversion *c,
-                     const char *in, const char *out)
+static int write_log(const convert_options *o, imk_log_reader *reader, convert_motion *motion,
+                     const conversion *c, const char *in, const char *out)
 {
     int decimals[IMK_LOG_COLUMNS_MAX];
     bool fixed = o->decimals != decimals_shortest;
@@ -237,7 +249,7 @@ static int write_log(const convert_options *o, imk_log_reader *reader, const con
     imk_log_write_labels(writer, label_of, reader);
     imk_thread_pool *pool = imk_thread_pool_create(o->threads);
     imk_executor executor = imk_thread_pool_executor(pool);
-    int code = copy_rows(reader, writer, c, in, &executor);
+    int code = copy_rows(reader, motion, writer, c, in, &executor);
     imk_thread_pool_destroy(pool);
     return code;
 }
@@ -248,32 +260,45 @@ static int convert_log(const convert_options *o, const char *in, const char *out
     imk_log_reader *reader;
     imk_log_settings settings = log_input_settings(&o->log);
     conversion c;
+    convert_motion *motion = NULL;
     if (imk_log_open(in, &settings, &reader, &error) != IMK_OK)
         return command_log_error(&error, in);
     int code = select_columns(o, reader, &c);
     if (code < 0)
         code = set_units(o, &c);
     if (code < 0)
-        code = write_log(o, reader, &c, in, out);
+        code = convert_motion_start(&o->motion, reader, in, &motion);
+    if (code < 0)
+        code = write_log(o, reader, motion, &c, in, out);
+    convert_motion_end(motion);
     imk_log_close(reader);
     return code;
 }
 
 static int run(int count, char **words)
 {
-    convert_options o = {.decimals = decimals_shortest};
+    convert_options o = {.decimals = decimals_shortest, .motion = convert_motion_default()};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&convert_verb, count, words, &o, operands);
     if (code >= 0)
         return code;
     if (o.decimals != decimals_shortest && o.decimals > 17)
         return command_misused("--decimals %llu: expected 0 to 17", (unsigned long long)o.decimals);
+    if (parameters_wanted(&o.parameters, operands[0]))
+        return convert_parameters(&o.parameters, o.log.rate, operands[0], operands[1]);
+    if (o.parameters.json || o.parameters.sensor || o.parameters.density)
+        return command_misused("%s: --json, --sensor and --density are for parameter files; "
+                               "--from says which kind it is",
+                               operands[0]);
     bool from_model = is_model(operands[0]), to_model = is_model(operands[1]);
     if (from_model != to_model)
         return command_misused("%s is a %s and %s a %s: a log and a model cannot become each "
                                "other; use identify or simulate",
                                operands[0], from_model ? "model" : "log", operands[1],
                                to_model ? "model" : "log");
+    if (from_model && (o.motion.to_point || o.motion.gravity_free))
+        return command_misused("--to-point and --gravity-free are for logs, and %s is a model",
+                               operands[0]);
     return from_model ? convert_model(operands[0], operands[1])
                       : convert_log(&o, operands[0], operands[1]);
 }

@@ -49,10 +49,16 @@ typedef struct imk_parameter_notes {
 /** How to read or write. Start from imk_parameter_settings_default(). */
 typedef struct imk_parameter_settings {
     uint32_t cookie;
-    imk_parameter_format format; /**< UNKNOWN: detect */
-    double rate;         /**< [Hz]; needed where a format states noise per sample (Gazebo) */
-    imk_density density; /**< of formats that leave it open; UNSTATED: refuse, naming the option */
-    const char *sensor;  /**< which of several sensors in the file; NULL: the only one */
+    imk_parameter_format format; /**< UNKNOWN: detect (reading); needed for writing */
+    /** [Hz], 0: not given. Needed where a format states noise per sample (Gazebo without
+     *  update_rate) or an infinite correlation time means white noise per sample (gnss-ins-sim,
+     *  NaveGo). In a VINS file it says that the numbers are per sample. */
+    double rate;
+    /** Of formats that leave it open: VINS (the numbers are densities, not per sample) and MATLAB
+     *  (instead of what imuSensor makes of them). UNSTATED: as the format's program takes it; where
+     *  that is not settled, refuse, naming the options. */
+    imk_density density;
+    const char *sensor; /**< which of several sensors in the file; NULL: the only one */
 } imk_parameter_settings;
 IMK_API imk_parameter_settings imk_parameter_settings_default(void);
 
@@ -62,11 +68,25 @@ IMK_API imk_parameter_settings imk_parameter_settings_default(void);
 IMK_API imk_status imk_parameters_read(const char *path, const imk_parameter_settings *settings,
                                        imk_model *model, imk_parameter_notes *notes,
                                        imk_error *error);
+/** The same from memory. */
+IMK_API imk_status imk_parameters_parse(const char *text, size_t size,
+                                        const imk_parameter_settings *settings, imk_model *model,
+                                        imk_parameter_notes *notes, imk_error *error);
 /** Write; comments in the file state every unit where the format has comments.
- *  @return IMK_ERROR_UNSUPPORTED when nothing of the model fits; errors of writing */
+ *
+ *  What was written is read back and compared with the model: whatever does not come back is noted
+ *  as lost.
+ *  @return IMK_ERROR_UNSUPPORTED when nothing of the model fits, _KEY_MISSING (error.expected: the
+ *          option to add); errors of validation and of writing */
 IMK_API imk_status imk_parameters_write(const char *path, const imk_parameter_settings *settings,
                                         const imk_model *model, imk_parameter_notes *notes,
                                         imk_error *error);
+
+/** The same into memory obtained from malloc(), which the caller frees. `path` decides only
+ *  between JSON (.json) and YAML where a format has both; NULL is YAML. */
+IMK_API imk_status imk_parameters_print(const char *path, const imk_parameter_settings *settings,
+                                        const imk_model *model, char **text, size_t *size,
+                                        imk_parameter_notes *notes, imk_error *error);
 
 #ifdef __cplusplus
 }

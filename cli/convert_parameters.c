@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit convert: parameter files of kalibr, Gazebo and others become models, and models such
+ * files. */
+#include "convert_parameters.h"
+
+#include "json_output.h"
+
+#include "imukit/model_file.h"
+#include "imukit/parameter_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Position 0 is what is in force when the option is not given. The names stand in the order of
+ * imk_parameter_format and imk_density. */
+static const char formats[] = "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4";
+static const char target_formats[] =
+    "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4";
+
+const option parameter_option_table[PARAMETER_OPTIONS] = {
+    {"from", 0, OPTION_CHOICE, "FORMAT", NULL, formats,
+     "of the parameter file read; default: by its content", offsetof(parameter_options, from)},
+    {"to", 0, OPTION_CHOICE, "FORMAT", NULL, target_formats,
+     "of the parameter file written; default: a model file", offsetof(parameter_options, to)},
+    {"density", 0, OPTION_CHOICE, "SIDES", NULL, "as-the-program|two-sided|one-sided",
+     "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)",
+     offsetof(parameter_options, density)},
+    {"sensor", 0, OPTION_TEXT, "NAME", NULL, NULL, "which of several in the parameter file",
+     offsetof(parameter_options, sensor)},
+    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print what was assumed and left out as JSON",
+     offsetof(parameter_options, json)},
+};
+
+/* Files that may hold parameters; logs are not looked into. */
+static bool may_be_parameters(const char *path)
+{
+    static const char *const ends[] = {".yaml", ".yml",  ".json",  ".m",      ".sdf",
+                                       ".xml",  ".urdf", ".world", ".params", ".param"};
+    size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+        size_t end = strlen(ends[i]);
+        if (length > end && strcmp(path + length - end, ends[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+bool parameters_wanted(const parameter_options *options, const char *in)
+{
+    return options->from > 0 || options->to > 0 ||
+           (may_be_parameters(in) && imk_parameter_format_detect(in) != IMK_PARAMETERS_UNKNOWN);
+}
+
+/* What was left out is a warning; what was assumed is worth a line. */
+static void print_notes(const imk_parameter_notes *notes)
+{
+    for (size_t i = 0; i < notes->count; i++) {
+        const char *text = notes->note[i].text;
+        if (notes->note[i].lost)
+            command_warn("lost", "%s", text);
+        else
+            fprintf(stderr, "imukit convert: note: %s\n", text);
+    }
+}
+
+static void add_notes(json_t *list, const imk_parameter_notes *notes)
+{
+    for (size_t i = 0; i < notes->count; i++)
+        json_array_append_new(list, json_pack("{s:s, s:s}", "kind",
+                                              notes->note[i].lost ? "lost" : "assumed", "text",
+                                              notes->note[i].text));
+}
+
+/* What the two halves of a conversion have to say. */
+typedef struct conversion_notes {
+    imk_parameter_notes read, written;
+} conversion_notes;
+
+static int print_json(const parameter_options *o, imk_parameter_format from, const char *in,
+                      const char *out, const conversion_notes *notes)
+{
+    json_t *list = json_array();
+    add_notes(list, &notes->read);
+    add_notes(list, &notes->written);
+    const char *source = imk_parameter_format_name(from);
+    const char *target = imk_parameter_format_name((imk_parameter_format)o->to);
+    json_t *inputs = json_pack("{s:s, s:s}", "file", in, "format", source ? source : "model");
+    json_t *result = json_pack("{s:s, s:s, s:o}", "file", out, "format", target ? target : "model",
+                               "notes", list);
+    return json_print("convert", inputs, result, EXIT_DONE);
+}
+
+static int read_source(const parameter_options *o, const imk_parameter_settings *settings,
+                       const char *in, imk_model *model, imk_parameter_format *format,
+                       imk_parameter_notes *notes)
+{
+    imk_error error;
+    imk_parameter_settings reading = *settings;
+    reading.format = (imk_parameter_format)o->from;
+    if (o->from == 0 && strcmp(in, "-") != 0)
+        reading.format = imk_parameter_format_detect(in);
+    *format = reading.format;
+    if (reading.format == IMK_PARAMETERS_UNKNOWN)
+        return command_model(in, model, NULL);
+    if (imk_parameters_read(in, &reading, model, notes, &error) != IMK_OK)
+        return command_log_error(&error, in);
+    return -1;
+}
+
+static int write_target(const parameter_options *o, const imk_parameter_settings *settings,
+                        const char *in, const char *out, const imk_model *model,
+                        imk_parameter_notes *notes)
+{
+    imk_error error;
+    imk_parameter_settings writing = *settings;
+    writing.format = (imk_parameter_format)o->to;
+    writing.sensor = NULL;
+    if (o->to == 0)
+        return imk_model_write(out, model, NULL, &error) == IMK_OK ? -1
+                                                                   : command_error(&error, NULL);
+    imk_status status = imk_parameters_write(out, &writing, model, notes, &error);
+    if (status == IMK_OK)
+        return -1;
+    bool of_output = status == IMK_ERROR_OPEN || status == IMK_ERROR_WRITE;
+    return command_log_error(&error, of_output ? NULL : in);
+}
+
+int convert_parameters(const parameter_options *options, double rate, const char *in,
+                       const char *out)
+{
+    imk_parameter_settings settings = imk_parameter_settings_default();
+    settings.rate = rate;
+    settings.density = (imk_density)options->density;
+    settings.sensor = options->sensor;
+    if (options->json && strcmp(out, "-") == 0)
+        return command_misused("--json and the file would both go to standard output");
+    imk_model *model = malloc(sizeof *model);
+    conversion_notes *notes = calloc(1, sizeof *notes);
+    imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
+    if (!model || !notes) {
+        free(model);
+        free(notes);
+        return command_failed("memory is exhausted");
+    }
+    int code = read_source(options, &settings, in, model, &format, &notes->read);
+    if (code < 0)
+        code = write_target(options, &settings, in, out, model, &notes->written);
+    if (code < 0) {
+        print_notes(&notes->read);
+        print_notes(&notes->written);
+        code = options->json ? print_json(options, format, in, out, notes) : EXIT_DONE;
+    }
+    free(notes);
+    free(model);
+    return code;
+}

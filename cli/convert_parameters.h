@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parameter files of other programs: the part of `convert` that turns them into models and back. */
+#ifndef IMUKIT_CONVERT_PARAMETERS_H
+#define IMUKIT_CONVERT_PARAMETERS_H
+
+#include "command.h"
+
+typedef struct parameter_options {
+    int from, to; /* imk_parameter_format; 0: not given */
+    int density;  /* imk_density; 0: not given */
+    const char *sensor;
+    bool json;
+} parameter_options;
+
+enum { PARAMETER_OPTIONS = 5 };
+extern const option parameter_option_table[PARAMETER_OPTIONS];
+
+/* Is this a conversion of parameters: by the options, or by what the file holds? */
+bool parameters_wanted(const parameter_options *options, const char *in);
+
+/* @param rate  [Hz], 0: not given. @return the exit code, messages printed */
+int convert_parameters(const parameter_options *options, double rate, const char *in,
+                       const char *out);
+
+#endif

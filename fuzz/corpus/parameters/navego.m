@@ -1,0 +1,11 @@
+D2R = (pi/180);
+unit.arw = 2 .* ones(1,3);   % deg/root-hour
+unit.vrw = [0.1, 0.2 0.3];
+unit.arrw = zeros(1,3);
+unit.gb_sta = [3 -2 1 - 0.5];
+unit.ab_sta = (40 + 10) .* ones(1,3);
+unit.gb_dyn = 7.2/3600 .* ones(1,3);
+unit.ab_dyn = 0.2;
+unit.gb_corr = 100 .* ones(1,3);
+unit.ab_corr = Inf;
+unit.freq = 100;

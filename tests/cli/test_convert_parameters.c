@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit convert with parameter files of other programs: what it says, the exit code, the next
+ * command it shows, and nothing left behind. */
+#include "run_command.h"
+
+#define CORPUS "'" SOURCE_DIRECTORY "/fuzz/corpus/parameters/"
+
+/* The formats are found by content, the model is the one expected. */
+static void test_to_model(void **state)
+{
+    (void)state;
+    put("imu.yaml", "gyroscope_noise_density: 1e-4\naccelerometer_noise_density: 0.02\n");
+    check_message("$I convert imu.yaml model.yaml", 0, "");
+    char text[512];
+    FILE *file = fopen("model.yaml", "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    assert_string_equal(text, "imukit: 1\n"
+                              "gyro:\n"
+                              "  noise:\n"
+                              "    angle_random_walk: 0.34377467707849396 deg/sqrt(h)\n"
+                              "accel:\n"
+                              "  noise:\n"
+                              "    velocity_random_walk: 1.2 m/s/sqrt(h)\n");
+    assert_int_equal(run("$I simulate model.yaml --rate 10Hz --duration 2s --seed 1 -o log.csv"),
+                     0);
+    check_message("$I convert imu.yaml - --from kalibr | head -1 | grep -q imukit", 0, "");
+    assert_int_equal(run("$I convert - out.yaml --from kalibr < imu.yaml"), 0);
+    assert_int_equal(sweep(), 4);
+}
+
+static void test_from_model(void **state)
+{
+    (void)state;
+    put("model.yaml", "imukit: 1\nname: a unit\ngyro:\n  noise: {angle_random_walk: 0.3 "
+                      "deg/sqrt(h), bias_instability: 5 deg/h}\n");
+    check_message("$I convert model.yaml out.yaml --to kalibr --rate 200Hz", 0,
+                  "imukit convert: warning: gyroscope_random_walk is 0, which kalibr and OpenVINS "
+                  "do not take: set it\n"
+                  "imukit convert: warning: gyro.noise.bias_instability is not held by the format "
+                  "kalibr\n");
+    check_message("$I convert model.yaml out.sdf --to gazebo", 1,
+                  "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and "
+                  "the sample rate is not known; add --rate 200Hz (samples per second)\n"
+                  "Next: imukit convert model.yaml out.sdf --to gazebo --rate 200Hz\n");
+    check_message("$I convert ADIS16465 out.m --to navego --rate 200Hz 2>/dev/null", 0, "");
+    check_message(
+        "$I convert model.yaml out.x --to kalibra", 2,
+        "imukit convert: error: --to kalibra: expected one of "
+        "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4\n" TRY("convert"));
+    check_message("$I convert model.yaml /nowhere/out.yaml --to kalibr", 1,
+                  "imukit convert: error: /nowhere/out.yaml: the file cannot be opened: No such "
+                  "file or directory\n");
+    assert_int_equal(sweep(), 3);
+}
+
+static void test_refused(void **state)
+{
+    (void)state;
+    check_message("$I convert " CORPUS "vins.yaml' out.yaml | cat", 0,
+                  "imukit convert: error: " SOURCE_DIRECTORY
+                  "/fuzz/corpus/parameters/vins.yaml: acc_n: \"acc_n\" and the others are per "
+                  "sample or per sqrt(Hz), which is not known; add --rate 200Hz (if per sample, as "
+                  "VINS itself takes them; or --density two-sided if they are densities)\n"
+                  "Next: imukit convert " SOURCE_DIRECTORY
+                  "/fuzz/corpus/parameters/vins.yaml out.yaml --rate 200Hz\n");
+    put("deg.yaml", "gyroscope_noise_density: 0.3\n");
+    check_message(
+        "$I convert deg.yaml out.yaml", 1,
+        "imukit convert: error: deg.yaml:1:26: gyroscope_noise_density: \"0.3\" cannot be "
+        "in rad/s/sqrt(Hz), it looks like deg/sqrt(h); this format has rad/s/sqrt(Hz): "
+        "write 8.72665e-05, or correct the value if it is wrong\n");
+    put("two.yaml", "imu0: {gyroscope_noise_density: 1e-4}\nimu1: {gyroscope_noise_density: "
+                    "2e-4}\n");
+    assert_int_equal(run("$I convert two.yaml out.yaml"), 1);
+    check_contains(err, "add --sensor NAME with one of imu0, imu1", "two.yaml");
+    put("log.csv", "time [s],gyro_x [deg/s]\n0,1\n0.1,2\n");
+    assert_int_equal(run("$I convert log.csv out.csv --sensor a"), 2);
+    check_contains(err, "are for parameter files", "log.csv");
+    assert_int_equal(run("$I convert deg.yaml - --from kalibr --json"), 2);
+    assert_int_equal(access("out.yaml", F_OK), -1);
+    assert_int_equal(sweep(), 3);
+}
+
+/* Every sample becomes a model, and from the model a file that becomes the same model: the second
+ * file is the first, byte for byte, where no products of matrices are rounded in between. */
+static void test_round_trip(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file, *format, *options;
+        bool exact;
+    } samples[] = {{"kalibr.yaml", "kalibr", "", false},
+                   {"gazebo_old.sdf", "gazebo", "--rate 100Hz", true},
+                   {"matlab.json", "matlab", "", false},
+                   {"gnss_ins_sim.json", "gnss-ins-sim", "--rate 100Hz", true},
+                   {"navego.m", "navego", "", true},
+                   {"openvins.yaml", "openvins", "", false},
+                   {"px4.params", "px4", "", true},
+                   {"vins.yaml", "vins", "--density two-sided", true}};
+    char line[1500];
+    for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++) {
+        const char *format = samples[i].format, *options = samples[i].options;
+        snprintf(line, sizeof line,
+                 "$I convert " CORPUS "%s' a.yaml %s 2>/dev/null && "
+                 "$I convert a.yaml b --to %s %s 2>/dev/null && "
+                 "$I convert b c.yaml --from %s %s 2>/dev/null && "
+                 "$I convert c.yaml d --to %s %s 2>/dev/null && %s",
+                 samples[i].file, options, format, options, format, options, format, options,
+                 samples[i].exact ? "cmp b d" : "test -s d");
+        if (run(line) != 0) {
+            print_error("%s\n%s%s", line, out, err);
+            fail();
+        }
+        sweep();
+    }
+}
+
+static void test_json(void **state)
+{
+    (void)state;
+    json_error_t error;
+    assert_int_equal(run("$I convert " CORPUS "matlab.json' out.yaml --json 2>/dev/null"), 0);
+    json_t *root = json_loads(out, 0, &error);
+    assert_non_null(root);
+    json_t *result = json_object_get(root, "result");
+    assert_string_equal(json_string_value(json_object_get(result, "format")), "model");
+    assert_string_equal(
+        json_string_value(json_object_get(json_object_get(root, "inputs"), "format")), "matlab");
+    json_t *notes = json_object_get(result, "notes");
+    bool assumed = false, lost = false;
+    for (size_t i = 0; i < json_array_size(notes); i++) {
+        const char *kind = json_string_value(json_object_get(json_array_get(notes, i), "kind"));
+        assumed = assumed || strcmp(kind, "assumed") == 0;
+        lost = lost || strcmp(kind, "lost") == 0;
+    }
+    assert_true(assumed && lost);
+    assert_true(json_array_size(json_object_get(root, "warnings")) > 0);
+    json_decref(root);
+    sweep();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_to_model), cmocka_unit_test(test_from_model),
+        cmocka_unit_test(test_refused),  cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_json),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
