@@ -233,7 +233,7 @@ static void output_stage(imki_channel *channel, double *block)
     double step = channel->resolution;
     if (channel->dead_band > 0.0 || channel->range > 0.0)
         imki_saturate(channel->kernel, channel->dead_band,
-                   channel->range > 0.0 ? channel->range : (double)INFINITY, block);
+                      channel->range > 0.0 ? channel->range : (double)INFINITY, block);
     imki_quantization_block(&channel->quantization, channel->kernel, block);
     if (step > 0.0)
         for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)

@@ -191,13 +191,13 @@ static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
             imk_exp(-((double)i * part) / e->warm_up_time[sensor]);
 }
 
-imk_status imki_scene_start(imki_scene *e, const imk_model *model,
-                               const imk_simulation *simulation, double *memory, imk_error *error)
+imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_simulation *simulation,
+                            double *memory, imk_error *error)
 {
     *e = (imki_scene){.random = imk_random_seeded(simulation->seed),
-                         .temperature = simulation->temperature,
-                         .jitter = model->timing.jitter.value,
-                         .skew = model->timing.skew.value};
+                      .temperature = simulation->temperature,
+                      .jitter = model->timing.jitter.value,
+                      .skew = model->timing.skew.value};
     e->kernel = e->random.kernel;
     e->jitter_stream = imk_stream(simulation->run, IMK_TERM_JITTER, 0, 0);
     imk_status status = start_motion(e, model, simulation, error);

@@ -54,11 +54,10 @@ size_t imki_substeps(const imk_model *model, const imk_simulation *simulation);
 /* Doubles of memory for the columns; 0 when nothing varies. */
 size_t imki_scene_size(const imk_model *model, const imk_simulation *simulation);
 imk_status imki_scene_start(imki_scene *scene, const imk_model *model,
-                               const imk_simulation *simulation, double *memory, imk_error *error);
+                            const imk_simulation *simulation, double *memory, imk_error *error);
 /* Make the rows first … first + rows - 1, rows * substeps <= IMKI_STRETCH. Stretches follow one
  * another. */
-void imki_scene_fill(imki_scene *scene, uint64_t first, size_t rows,
-                        const imk_executor *executor);
+void imki_scene_fill(imki_scene *scene, uint64_t first, size_t rows, const imk_executor *executor);
 /* True time at the end of a row, from the start of the motion. */
 double imki_row_end(const imki_scene *scene, int64_t row);
 

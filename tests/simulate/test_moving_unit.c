@@ -52,7 +52,8 @@ static const imk_vibration_line slow_lines[] = {
 static double mean_of_line(const imk_vibration_line *line, int order, double begin, double end)
 {
     const double w = 2.0 * pi * line->frequency;
-    double complex value = line->amplitude * cpow(i1 * w, order) * cexp(2.0 * pi * i1 * line->phase);
+    double complex value =
+        line->amplitude * cpow(i1 * w, order) * cexp(2.0 * pi * i1 * line->phase);
     value *= (cexp(i1 * w * end) - cexp(i1 * w * begin)) / (i1 * w * (end - begin));
     return cimag(value);
 }
