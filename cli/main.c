@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The command imukit: finds the verb and hands it the rest of the line. */
+#define _POSIX_C_SOURCE 200809L
 #include "command.h"
 
 #include "imukit/output_file.h"
@@ -98,6 +99,9 @@ static int help(int count, char **words)
     return command_finish(EXIT_DONE);
 }
 
+static const int ending_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+enum { ENDING_SIGNALS = sizeof ending_signals / sizeof ending_signals[0] };
+
 /* Interrupted: leave no half-written file behind, and end as the signal would have. */
 static void interrupted(int number)
 {
@@ -106,10 +110,22 @@ static void interrupted(int number)
     raise(number);
 }
 
+/* A second signal, which shells and timeout(1) send soon after the first, waits until the files are
+ * gone. A signal that the parent has switched off, as nohup(1) does, stays off. */
+static void catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = interrupted}, before;
+    sigemptyset(&action.sa_mask);
+    for (int i = 0; i < ENDING_SIGNALS; i++)
+        sigaddset(&action.sa_mask, ending_signals[i]);
+    for (int i = 0; i < ENDING_SIGNALS; i++)
+        if (sigaction(ending_signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(ending_signals[i], &action, NULL);
+}
+
 int main(int argc, char **argv)
 {
-    signal(SIGINT, interrupted);
-    signal(SIGTERM, interrupted);
+    catch_signals();
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         command_welcome(stdout);
         return command_finish(EXIT_DONE);

@@ -54,10 +54,10 @@ static imk_status write_rows(recording *r, uint64_t first, size_t count)
     return imk_log_write(r->writer, count, (const double *const *)r->column, r->executor);
 }
 
-static int stream(recording *r)
+static int stream(recording *r, const char *label)
 {
     imk_error error;
-    progress p = progress_begin("simulating", "rows", 1);
+    progress p = progress_begin(label, "rows", 1);
     imk_status status = IMK_OK;
     const uint64_t rows = r->scene->rows;
     for (uint64_t first = 0; first < rows && status == IMK_OK; first += BLOCK_ROWS) {
@@ -84,7 +84,7 @@ static int create(const simulate_options *o, recording *r, const char *path)
 }
 
 int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
-                 const log_layout *layout, const imk_executor *executor, const char *path)
+                 const log_layout *layout, const imk_executor *executor, const log_target *target)
 {
     imk_error error;
     recording r = {
@@ -101,9 +101,9 @@ int simulate_log(const simulate_options *o, const imk_model *model, const scene 
              IMK_OK)
         code = command_error(&error, NULL);
     if (code < 0)
-        code = create(o, &r, path);
+        code = create(o, &r, target->path);
     if (code < 0)
-        code = stream(&r);
+        code = stream(&r, target->label);
     free(block);
     free(memory);
     return code;

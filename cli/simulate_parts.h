@@ -4,7 +4,7 @@
 #ifndef IMUKIT_SIMULATE_PARTS_H
 #define IMUKIT_SIMULATE_PARTS_H
 
-#include "command.h"
+#include "term_selection.h"
 
 #include "imukit/motion_file.h"
 #include "imukit/simulate.h"
@@ -14,7 +14,8 @@ typedef struct simulate_options {
     uint64_t seed, run, runs, decimals, threads, substeps;
     bool no_earth, increments;
     const char *output, *format, *gyro_unit, *accel_unit;
-    const char *motion, *temperature, *truth, *only, *without;
+    const char *motion, *temperature, *truth;
+    term_selection terms;
 } simulate_options;
 
 extern const uint64_t decimals_shortest; /* of the option --decimals */
@@ -55,10 +56,15 @@ int time_decimals(double rate, double start);
 
 /* ---- simulate_log.c, simulate_truth.c ---- */
 
+typedef struct log_target {
+    const char *path, *label; /* what the progress says: "run 3 (4 of 20)" */
+} log_target;
+
 /* One run of the scene into one file. @return the exit code, the message printed */
 int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
-                 const log_layout *layout, const imk_executor *executor, const char *path);
-/* What perfect sensors would have read, and where the unit was. */
+                 const log_layout *layout, const imk_executor *executor, const log_target *target);
+/* What perfect sensors would have read, and where the unit was. @return -1 or the exit code, the
+ * message printed */
 int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
                    const imk_executor *executor, const char *path);
 

@@ -41,7 +41,9 @@ typedef struct truth {
     const imk_trajectory *trajectory; /* NULL: recorded */
     imk_simulator *simulator;
     imk_random random;
-    double boundary[BLOCK_ROWS + 1];
+    size_t parts;                    /* of a row: vibration may be faster than rows */
+    double boundary[BLOCK_ROWS + 1]; /* of parts, as many as fit */
+    double part[SENSOR_COLUMNS][BLOCK_ROWS];
     double block[COLUMNS][BLOCK_ROWS];
 } truth;
 
@@ -65,24 +67,46 @@ static void fill_state(truth *t, uint64_t row, size_t k)
         t->block[1 + c][k] = values[c];
 }
 
+static void copy_recorded(truth *t, uint64_t first, size_t count)
+{
+    const imk_recorded_motion *recorded = t->scene->simulation.motion.recorded;
+    for (size_t i = 0; i < 3; i++) {
+        memcpy(t->block[1 + STATE_COLUMNS + i], recorded->angular_rate[i] + first,
+               count * sizeof(double));
+        memcpy(t->block[4 + STATE_COLUMNS + i], recorded->specific_force[i] + first,
+               count * sizeof(double));
+    }
+}
+
+/* Means over rows from the means over their parts, which vibration moves through less than a
+ * sixteenth of a cycle. */
 static void fill_sensors(truth *t, uint64_t first, size_t count)
 {
-    double *rate[3], *force[3];
-    for (size_t i = 0; i < 3; i++) {
-        rate[i] = t->block[1 + STATE_COLUMNS + i];
-        force[i] = t->block[4 + STATE_COLUMNS + i];
-    }
-    if (!t->trajectory) {
-        const imk_recorded_motion *recorded = t->scene->simulation.motion.recorded;
-        for (size_t i = 0; i < 3; i++) {
-            memcpy(rate[i], recorded->angular_rate[i] + first, count * sizeof(double));
-            memcpy(force[i], recorded->specific_force[i] + first, count * sizeof(double));
+    const size_t rows_at_once = BLOCK_ROWS / t->parts;
+    double *rate[3] = {t->part[0], t->part[1], t->part[2]};
+    double *force[3] = {t->part[3], t->part[4], t->part[5]};
+    for (size_t row = 0; row < count; row += rows_at_once) {
+        const size_t now = count - row < rows_at_once ? count - row : rows_at_once;
+        const int64_t before = (int64_t)(first + row) - 1;
+        double end = imk_simulator_true_time(t->simulator, before);
+        for (size_t k = 0; k < now; k++) {
+            const double begin = end;
+            end = imk_simulator_true_time(t->simulator, before + 1 + (int64_t)k);
+            for (size_t j = 0; j < t->parts; j++)
+                t->boundary[k * t->parts + j] =
+                    begin + (end - begin) * ((double)j / (double)t->parts);
         }
-        return;
+        t->boundary[now * t->parts] = end;
+        imk_trajectory_means(t->trajectory, t->random.kernel, now * t->parts, t->boundary, rate,
+                             NULL, force);
+        for (size_t i = 0; i < SENSOR_COLUMNS; i++)
+            for (size_t k = 0; k < now; k++) {
+                double sum = 0;
+                for (size_t j = 0; j < t->parts; j++)
+                    sum += t->part[i][k * t->parts + j];
+                t->block[1 + STATE_COLUMNS + i][row + k] = sum / (double)t->parts;
+            }
     }
-    for (size_t k = 0; k <= count; k++)
-        t->boundary[k] = imk_simulator_true_time(t->simulator, (int64_t)(first + k) - 1);
-    imk_trajectory_means(t->trajectory, t->random.kernel, count, t->boundary, rate, NULL, force);
 }
 
 static size_t choose_columns(const truth *t, imk_log_column *columns, double **data, truth *memory)
@@ -121,7 +145,10 @@ static int stream(truth *t, const imk_executor *executor, const char *path)
             if (t->trajectory)
                 fill_state(t, first + k, k);
         }
-        fill_sensors(t, first, now);
+        if (t->trajectory)
+            fill_sensors(t, first, now);
+        else
+            copy_recorded(t, first, now);
         status = imk_log_write(writer, now, (const double *const *)data, executor);
         progress_update(&p, first + now, rows);
     }
@@ -129,6 +156,12 @@ static int stream(truth *t, const imk_executor *executor, const char *path)
     if (imk_log_commit(writer, &error) != IMK_OK)
         return command_error(&error, NULL);
     return status == IMK_OK ? -1 : command_failed("%s", imk_status_text(status));
+}
+
+static size_t truth_parts(const imk_trajectory *trajectory, const imk_simulation *simulation)
+{
+    const size_t needed = imk_trajectory_substeps(trajectory, 1.0 / simulation->rate);
+    return needed < BLOCK_ROWS ? needed : BLOCK_ROWS;
 }
 
 int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
@@ -156,6 +189,7 @@ int simulate_truth(const simulate_options *o, const imk_model *model, const scen
                 code = command_error(&error, NULL);
             t->trajectory = &rest;
         }
+        t->parts = t->trajectory ? truth_parts(t->trajectory, simulation) : 1;
         /* Only for the true times of its rows. */
         if (code < 0 &&
             imk_simulator_start(memory, size, model, simulation, &t->simulator, &error) != IMK_OK)

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 
 const uint64_t decimals_shortest = UINT64_MAX;
+static const uint64_t no_runs = UINT64_MAX; /* of the option --runs */
 
 static const option simulate_option_table[] = {
     {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", NULL,
@@ -53,14 +54,6 @@ static const option simulate_option_table[] = {
     {"threads", 0, OPTION_INTEGER, "N", NULL, NULL,
      "threads to use; default: all processors. The bytes do not depend on it",
      offsetof(simulate_options, threads)},
-};
-
-static const option term_option_table[] = {
-    {"only", 0, OPTION_TEXT, "TERMS", NULL, NULL,
-     "keep these terms of the model alone, such as angle_random_walk,scale_factor or gyro.bias",
-     offsetof(simulate_options, only)},
-    {"without", 0, OPTION_TEXT, "TERMS", NULL, NULL, "leave these terms out",
-     offsetof(simulate_options, without)},
 };
 
 static const option motion_option_table[] = {
@@ -109,47 +102,10 @@ const verb simulate_verb = {
         "motion begins.",
     .groups = {{"Options", sizeof simulate_option_table / sizeof simulate_option_table[0],
                 simulate_option_table, 0},
-               {"Terms", sizeof term_option_table / sizeof term_option_table[0], term_option_table,
-                0},
+               {"Terms", TERM_OPTIONS, term_options, offsetof(simulate_options, terms)},
                {"Motion and place", sizeof motion_option_table / sizeof motion_option_table[0],
                 motion_option_table, 0}},
     .run = run};
-
-/* ---- switching terms ---- */
-
-enum { TERMS_MAX = 64 };
-
-/* "a,b" -> two texts in `storage`. @return how many, or -1 for too many */
-static int split(char *storage, const char **names)
-{
-    int count = 0;
-    for (char *name = strtok(storage, ","); name; name = strtok(NULL, ",")) {
-        if (count == TERMS_MAX)
-            return -1;
-        names[count++] = name;
-    }
-    return count;
-}
-
-static int select_terms(const char *option_name, const char *list, bool keep, imk_model *model)
-{
-    char storage[1024];
-    const char *names[TERMS_MAX];
-    imk_error error;
-    if (!list)
-        return -1;
-    snprintf(storage, sizeof storage, "%s", list);
-    int count = strlen(list) < sizeof storage ? split(storage, names) : -1;
-    if (count <= 0)
-        return command_misused("--%s %s: expected names of terms between commas", option_name,
-                               list);
-    if (imk_model_select(model, keep, (size_t)count, names, &error) != IMK_OK) {
-        char text[600];
-        imk_error_text(&error, NULL, text, sizeof text);
-        return command_misused("--%s: %s", option_name, text);
-    }
-    return -1;
-}
 
 /* ---- runs ---- */
 
@@ -161,26 +117,40 @@ static bool is_directory(const char *path)
            (path[length - 1] == '/' || (stat(path, &status) == 0 && S_ISDIR(status.st_mode)));
 }
 
+/* One log per run, DIR/run_000.csv and so on. */
 static int simulate_runs(const simulate_options *o, const imk_model *model, scene *s,
                          const log_layout *layout, const imk_executor *executor)
 {
-    if (mkdir(o->output, 0777) != 0 && errno != EEXIST)
-        return command_failed("%s: %s", o->output, strerror(errno));
     const size_t length = strlen(o->output);
     for (uint64_t i = 0; i < o->runs; i++) {
-        char path[4096];
+        char path[4096], label[64];
         const uint64_t number = o->run + i;
         int written = snprintf(path, sizeof path, "%s%srun_%03llu.%s", o->output,
                                o->output[length - 1] == '/' ? "" : "/", (unsigned long long)number,
                                o->format ? o->format : "csv");
         if (written < 0 || (size_t)written >= sizeof path)
             return command_failed("%s: the name is too long", o->output);
+        snprintf(label, sizeof label, "run %llu (%llu of %llu)", (unsigned long long)number,
+                 (unsigned long long)i + 1, (unsigned long long)o->runs);
         s->simulation.run = (uint32_t)number;
-        int code = simulate_log(o, model, s, layout, executor, path);
+        int code = simulate_log(o, model, s, layout, executor, &(log_target){path, label});
         if (code != EXIT_DONE)
             return code;
     }
     return EXIT_DONE;
+}
+
+static int write_logs(const simulate_options *o, const imk_model *model, scene *s,
+                      const log_layout *layout, const imk_executor *executor)
+{
+    /* A truth that cannot be written is known before the logs are made. */
+    int code = o->truth ? simulate_truth(o, model, s, executor, o->truth) : -1;
+    if (code >= 0)
+        return code;
+    if (o->runs != no_runs)
+        return simulate_runs(o, model, s, layout, executor);
+    return simulate_log(o, model, s, layout, executor,
+                        &(log_target){o->output ? o->output : "-", "simulating"});
 }
 
 static int simulate(const simulate_options *o, const imk_model *model)
@@ -190,51 +160,56 @@ static int simulate(const simulate_options *o, const imk_model *model)
     int code = scene_open(o, model, &s);
     if (code < 0)
         code = log_layout_make(o, model, &s, &layout);
+    if (code < 0 && o->runs != no_runs && mkdir(o->output, 0777) != 0 && errno != EEXIST)
+        code = command_failed("%s: %s", o->output, strerror(errno));
     if (code < 0) {
         imk_thread_pool *pool = imk_thread_pool_create(o->threads);
         imk_executor executor = imk_thread_pool_executor(pool);
-        const char *output = o->output ? o->output : "-";
-        if (o->runs > 0)
-            code = simulate_runs(o, model, &s, &layout, &executor);
-        else
-            code = simulate_log(o, model, &s, &layout, &executor, output);
-        s.simulation.run = (uint32_t)o->run;
-        if (code == EXIT_DONE && o->truth) {
-            int truth = simulate_truth(o, model, &s, &executor, o->truth);
-            code = truth < 0 ? EXIT_DONE : truth;
-        }
+        code = write_logs(o, model, &s, &layout, &executor);
         imk_thread_pool_destroy(pool);
     }
     scene_free(&s);
     return code;
 }
 
-static int check(const simulate_options *o)
+/* Files that would be written one over the other, or into each other. */
+static int check_outputs(const simulate_options *o)
 {
     static const char *const formats[] = {"csv", "csv.gz", "csv.zst", "npy"};
-    if (o->decimals != decimals_shortest && o->decimals > 17)
-        return command_misused("--decimals %llu: expected 0 to 17",
-                               (unsigned long long)o->decimals);
-    if (o->run > UINT32_MAX || o->runs > UINT32_MAX - o->run)
-        return command_misused("run numbers: expected at most %u", UINT32_MAX);
-    if (o->substeps > IMK_SUBSTEPS_MAX)
-        return command_misused("--substeps %llu: expected at most %d",
-                               (unsigned long long)o->substeps, IMK_SUBSTEPS_MAX);
-    if (o->runs > 0 && !is_directory(o->output))
+    const char *output = o->output ? o->output : "-";
+    if (o->runs == 0)
+        return command_misused("--runs 0: expected at least 1");
+    if (o->runs != no_runs && !is_directory(o->output))
         return command_misused("--runs writes one log per run into a directory: add -o DIR/");
-    if (o->runs == 0 && o->output && *o->output && o->output[strlen(o->output) - 1] == '/')
-        return command_misused("-o %s is a directory: name a file, or add --runs N", o->output);
+    if (o->runs == no_runs && *output && output[strlen(output) - 1] == '/')
+        return command_misused("-o %s is a directory: name a file, or add --runs N", output);
     bool known = !o->format;
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
         known = known || strcmp(o->format, formats[i]) == 0;
     if (!known)
         return command_misused("--format %s: expected csv, csv.gz, csv.zst or npy", o->format);
-    if (o->format && o->runs == 0)
+    if (o->format && o->runs == no_runs)
         return command_misused("--format is for --runs: a single log has it in its name, -o LOG.%s",
                                o->format);
-    if (o->only && o->without)
-        return command_misused("--only and --without exclude each other");
+    if (o->truth && strcmp(o->truth, "-") == 0 && strcmp(output, "-") == 0)
+        return command_misused("the log and the truth cannot both go to standard output: add -o "
+                               "LOG");
+    if (o->truth && strcmp(o->truth, output) == 0)
+        return command_misused("the log and the truth cannot both go to %s", output);
     return -1;
+}
+
+static int check(const simulate_options *o)
+{
+    if (o->decimals != decimals_shortest && o->decimals > 17)
+        return command_misused("--decimals %llu: expected 0 to 17",
+                               (unsigned long long)o->decimals);
+    if (o->run > UINT32_MAX || (o->runs != no_runs && o->runs > UINT32_MAX - o->run + 1))
+        return command_misused("run numbers: expected at most %u", UINT32_MAX);
+    if (o->substeps > IMK_SUBSTEPS_MAX)
+        return command_misused("--substeps %llu: expected at most %d",
+                               (unsigned long long)o->substeps, IMK_SUBSTEPS_MAX);
+    return check_outputs(o);
 }
 
 static int run(int count, char **words)
@@ -244,6 +219,7 @@ static int run(int count, char **words)
                           .duration = missing,
                           .latitude = missing,
                           .seed = 1,
+                          .runs = no_runs,
                           .decimals = decimals_shortest};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&simulate_verb, count, words, &o, operands);
@@ -256,9 +232,7 @@ static int run(int count, char **words)
         return command_failed("memory is exhausted");
     code = command_model(operands[0], model, NULL);
     if (code < 0)
-        code = select_terms("only", o.only, true, model);
-    if (code < 0)
-        code = select_terms("without", o.without, false, model);
+        code = term_selection_apply(&o.terms, model);
     if (code < 0)
         code = simulate(&o, model);
     free(model);

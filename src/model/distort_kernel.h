@@ -24,6 +24,20 @@ typedef long long bits __attribute__((vector_size(8 * LANES), aligned(8), may_al
 
 #define VECTOR(array, v) (((const lanes *)(array))[v])
 
+/* All six products of three components: x (a x + d y + f z) + y (b y + e z) + z c z. */
+KERNEL void add_all_products(lanes sum[VECTORS], const double *weight, const imki_exposure *x,
+                             size_t start)
+{
+    const double *q = weight + 3, *f[3];
+    for (int j = 0; j < 3; j++)
+        f[j] = x->factor[3 + j][0] + start;
+    for (int v = 0; v < VECTORS; v++) {
+        const lanes f0 = VECTOR(f[0], v), f1 = VECTOR(f[1], v), f2 = VECTOR(f[2], v);
+        sum[v] += (f0 * (q[0] * f0 + q[3] * f1 + q[5] * f2) + f1 * (q[1] * f1 + q[4] * f2)) +
+                  f2 * (q[2] * f2);
+    }
+}
+
 KERNEL void add_features(lanes sum[VECTORS], uint32_t used, const double *weight,
                          const imki_exposure *x, size_t start)
 {
@@ -32,6 +46,10 @@ KERNEL void add_features(lanes sum[VECTORS], uint32_t used, const double *weight
         const double *a = x->factor[k][0] + start;
         for (int v = 0; v < VECTORS; v++)
             sum[v] += weight[k] * VECTOR(a, v);
+    }
+    if ((used & IMKI_PRODUCT_FEATURES) == IMKI_PRODUCT_FEATURES) {
+        add_all_products(sum, weight, x, start);
+        return;
     }
     for (uint32_t rest = used & IMKI_PRODUCT_FEATURES; rest; rest &= rest - 1) {
         const int k = __builtin_ctz(rest);
@@ -97,22 +115,48 @@ KERNEL void clip(lanes *x, double minimum, double maximum)
     *x = (lanes)((beyond & (bits)high) | (~beyond & (bits)*x));
 }
 
-KERNEL void add_polynomial(lanes sum[VECTORS], int order, const double *coefficient,
-                           double reference, double minimum, double maximum,
-                           const double *temperature)
+/* d = clip(T) - reference */
+KERNEL void difference(lanes d[VECTORS], double reference, double minimum, double maximum,
+                       const double *temperature)
 {
-    lanes d[VECTORS], value[VECTORS];
     for (int v = 0; v < VECTORS; v++) {
         d[v] = VECTOR(temperature, v);
         clip(&d[v], minimum, maximum);
         d[v] -= reference;
-        value[v] = coefficient[order - 1] * d[v];
     }
+}
+
+KERNEL void add_polynomial(lanes sum[VECTORS], int order, const double *coefficient,
+                           const lanes d[VECTORS])
+{
+    lanes value[VECTORS];
+    for (int v = 0; v < VECTORS; v++)
+        value[v] = coefficient[order - 1] * d[v];
     for (int k = order - 2; k >= 0; k--)
         for (int v = 0; v < VECTORS; v++)
             value[v] = (coefficient[k] + value[v]) * d[v];
     for (int v = 0; v < VECTORS; v++)
         sum[v] += value[v];
+}
+
+/* Both polynomials; a sensor whose two have one range and reference needs one difference. */
+KERNEL void add_temperature(lanes bias[VECTORS], lanes scale[VECTORS],
+                            const imk_axis_response *axis, const double *temperature)
+{
+    lanes d[VECTORS];
+    const bool same = axis->bias_order > 0 && axis->bias_reference == axis->scale_reference &&
+                      axis->bias_minimum == axis->scale_minimum &&
+                      axis->bias_maximum == axis->scale_maximum;
+    if (axis->bias_order > 0) {
+        difference(d, axis->bias_reference, axis->bias_minimum, axis->bias_maximum, temperature);
+        add_polynomial(bias, axis->bias_order, axis->bias_temperature, d);
+    }
+    if (axis->scale_order > 0) {
+        if (!same)
+            difference(d, axis->scale_reference, axis->scale_minimum, axis->scale_maximum,
+                       temperature);
+        add_polynomial(scale, axis->scale_order, axis->scale_temperature, d);
+    }
 }
 
 KERNEL void add_nonlinearity(lanes sum[VECTORS], const lanes u[VECTORS],
@@ -145,12 +189,8 @@ KERNEL void distort_step(const imk_axis_response *axis, const imki_exposure *x, 
         y[v] = (lanes){0.0} + axis->bias;
         scale[v] = (lanes){0.0} + axis->scale;
     }
-    if (axis->bias_order > 0 && x->temperature)
-        add_polynomial(y, axis->bias_order, axis->bias_temperature, axis->bias_reference,
-                       axis->bias_minimum, axis->bias_maximum, x->temperature + i);
-    if (axis->scale_order > 0 && x->temperature)
-        add_polynomial(scale, axis->scale_order, axis->scale_temperature, axis->scale_reference,
-                       axis->scale_minimum, axis->scale_maximum, x->temperature + i);
+    if (x->temperature)
+        add_temperature(y, scale, axis, x->temperature + i);
     if (axis->temperature_rate != 0.0 && x->temperature_rate)
         add_product(y, axis->temperature_rate, x->temperature_rate + i);
     if (axis->warm_up != 0.0 && x->warm_up)

@@ -2,7 +2,7 @@
 /* Thermal hysteresis. Between two temperatures the direction does not change, and the equation of
  * distort.h has the solution
  *
- *     p <- p + (sign(dT) - p)(1 - e^(-|dT|/L)),
+ *     p <- p (1 - E) + sign(dT) E,     E = 1 - e^(-|dT|/L),
  *
  * which is the same whatever steps the temperature takes on its way, as long as it does not turn.
  */
@@ -36,8 +36,10 @@ void imk_hysteresis_next(imk_hysteresis *hysteresis, size_t count, const double 
     for (size_t i = 0; i < count; i++) {
         const double change = temperature[i] - last;
         if (change != 0.0 && change == change) {
+            /* What waits for p is one multiplication and one addition. */
             const double sign = change > 0.0 ? 1.0 : -1.0;
-            p += (sign - p) * approach(sign * change * per_span);
+            const double gone = approach(sign * change * per_span);
+            p = p * (1.0 - gone) + sign * gone;
         }
         /* A temperature that is missing changes nothing. */
         if (temperature[i] == temperature[i])

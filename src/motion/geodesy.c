@@ -31,11 +31,11 @@ imk_geodetic imk_geodetic_from_ecef(imk_vector3 position)
 {
     const double x = position.v[0], y = position.v[1], z = position.v[2];
     const double pp = x * x + y * y;
-    const slope tangent = geodetic_slope(pp, z);
+    const slope vertical = vertical_at(pp, z);
     return (imk_geodetic){
-        .latitude = imk_atan2(tangent.s, tangent.k * sqrt(pp)),
+        .latitude = imk_atan2(vertical.s, vertical.k * sqrt(pp)),
         .longitude = pp > 0.0 ? imk_atan2(y, x) : 0.0,
-        .height = height_along(normalised(tangent, pp), pp, z),
+        .height = height_along(vertical, pp, z),
     };
 }
 

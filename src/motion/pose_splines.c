@@ -11,6 +11,9 @@
 #include "imukit/motion.h"
 
 #include <math.h>
+#include <string.h>
+
+enum { COMPONENTS = 7 };
 
 /* Arrays of count each in the workspace. */
 typedef struct spline_system {
@@ -19,12 +22,12 @@ typedef struct spline_system {
     double *sign;    /* of each quaternion, so that neighbours are less than half a turn apart */
     double *inverse; /* of the pivots */
     double *upper;   /* upper diagonal times the inverse pivot */
-    double *second;  /* m */
+    double *second;  /* m, COMPONENTS of each pose */
 } spline_system;
 
 size_t imk_trajectory_poses_workspace(size_t count)
 {
-    return 4 * count;
+    return (3 + COMPONENTS) * count;
 }
 
 static imk_status refuse(imk_error *error, imk_status status, const char *field, size_t row,
@@ -103,64 +106,88 @@ static double lower_of(const spline_system *system, size_t i)
                                                         : before;
 }
 
-/* m of one component, values[stride i], whose signs are turned when `sign` is not NULL. */
-static void solve(const spline_system *system, const double *values, size_t stride,
-                  const double *sign)
+/* The components of pose i: position and quaternion, its sign turned where it must be. */
+static void load_pose(const spline_system *system, const double *const position[3],
+                      const imk_quaternion *attitude, size_t i, double value[COMPONENTS])
+{
+    for (int axis = 0; axis < 3; axis++)
+        value[axis] = position[axis][i];
+    value[3] = system->sign[i] * attitude[i].w;
+    value[4] = system->sign[i] * attitude[i].x;
+    value[5] = system->sign[i] * attitude[i].y;
+    value[6] = system->sign[i] * attitude[i].z;
+}
+
+/* m of the components, side by side, forward. */
+static void eliminate(const spline_system *system, const double *const position[3],
+                      const imk_quaternion *attitude)
+{
+    double value[2][COMPONENTS], chord[COMPONENTS] = {0};
+    load_pose(system, position, attitude, 0, value[0]);
+    for (size_t i = 0; i + 1 < system->count; i++) {
+        const double length = system->time[i + 1] - system->time[i];
+        const double lower = i > 1 ? lower_of(system, i) : 0.0;
+        double *const second = system->second + COMPONENTS * i;
+        load_pose(system, position, attitude, i + 1, value[1]);
+        for (size_t c = 0; c < COMPONENTS; c++) {
+            const double next = (value[1][c] - value[0][c]) / length;
+            if (i > 0) {
+                double right = 6.0 * (next - chord[c]);
+                if (i > 1)
+                    right -= lower * second[c - COMPONENTS];
+                second[c] = right * system->inverse[i];
+            }
+            chord[c] = next;
+            value[0][c] = value[1][c];
+        }
+    }
+}
+
+/* And backward, with the ends. */
+static void substitute(const spline_system *system)
 {
     const size_t n = system->count;
     const double *const time = system->time;
-    double *const second = system->second;
-    double value[2] = {values[0] * (sign ? sign[0] : 1.0), 0.0}, chord = 0.0;
-    for (size_t i = 0; i + 1 < n; i++) {
-        value[1] = values[stride * (i + 1)] * (sign ? sign[i + 1] : 1.0);
-        const double next = (value[1] - value[0]) / (time[i + 1] - time[i]);
-        if (i > 0) {
-            double right = 6.0 * (next - chord);
-            if (i > 1)
-                right -= lower_of(system, i) * second[i - 1];
-            second[i] = right * system->inverse[i];
-        }
-        chord = next;
-        value[0] = value[1];
-    }
+    double *const first = system->second, *const last = first + COMPONENTS * (n - 1);
     for (size_t i = n - 2; i-- > 1;)
-        second[i] -= system->upper[i] * second[i + 1];
-    second[0] = second[n - 1] = 0.0;
+        for (size_t c = 0; c < COMPONENTS; c++)
+            first[COMPONENTS * i + c] -= system->upper[i] * first[COMPONENTS * (i + 1) + c];
+    for (size_t c = 0; c < COMPONENTS; c++)
+        first[c] = last[c] = 0.0;
     if (n < 4)
         return;
-    const double first = (time[1] - time[0]) / (time[2] - time[1]);
-    const double last = (time[n - 1] - time[n - 2]) / (time[n - 2] - time[n - 3]);
-    second[0] = second[1] + first * (second[1] - second[2]);
-    second[n - 1] = second[n - 2] + last * (second[n - 2] - second[n - 3]);
+    const double begin = (time[1] - time[0]) / (time[2] - time[1]);
+    const double end = (time[n - 1] - time[n - 2]) / (time[n - 2] - time[n - 3]);
+    for (size_t c = 0; c < COMPONENTS; c++) {
+        const double *const one = first + COMPONENTS + c, *const before = last - COMPONENTS + c;
+        first[c] = one[0] + begin * (one[0] - one[COMPONENTS]);
+        last[c] = before[0] + end * (before[0] - *(before - COMPONENTS));
+    }
 }
 
 /* y + (d - h (2 m + m_next)/6) s + m/2 s^2 + (m_next - m)/(6 h) s^3 */
 static void set_cubic(double now, double next, double h, const double *second, double *coefficient)
 {
     coefficient[0] = now;
-    coefficient[1] = (next - now) / h - h * ((2.0 * second[0] + second[1]) / 6.0);
+    coefficient[1] = (next - now) / h - h * ((2.0 * second[0] + second[COMPONENTS]) / 6.0);
     coefficient[2] = 0.5 * second[0];
-    coefficient[3] = (second[1] - second[0]) / (6.0 * h);
+    coefficient[3] = (second[COMPONENTS] - second[0]) / (6.0 * h);
 }
 
-static void set_components(const spline_system *system, const double *const position[3],
-                           const imk_quaternion *attitude, imk_trajectory_piece *piece)
+static void set_pieces(const spline_system *system, const double *const position[3],
+                       const imk_quaternion *attitude, imk_trajectory_piece *piece)
 {
-    const double *const parts[4] = {&attitude->w, &attitude->x, &attitude->y, &attitude->z};
-    const size_t stride = sizeof *attitude / sizeof(double);
-    const double *const time = system->time, *const sign = system->sign;
-    for (int axis = 0; axis < 3; axis++) {
-        solve(system, position[axis], 1, NULL);
-        for (size_t i = 0; i + 1 < system->count; i++)
-            set_cubic(position[axis][i], position[axis][i + 1], time[i + 1] - time[i],
-                      system->second + i, piece[i].position[axis]);
-    }
-    for (int part = 0; part < 4; part++) {
-        solve(system, parts[part], stride, sign);
-        for (size_t i = 0; i + 1 < system->count; i++)
-            set_cubic(sign[i] * parts[part][stride * i],
-                      sign[i + 1] * parts[part][stride * (i + 1)], time[i + 1] - time[i],
-                      system->second + i, piece[i].quaternion[part]);
+    double value[2][COMPONENTS];
+    load_pose(system, position, attitude, 0, value[0]);
+    for (size_t i = 0; i + 1 < system->count; i++) {
+        const double length = system->time[i + 1] - system->time[i];
+        const double *const second = system->second + COMPONENTS * i;
+        piece[i] = (imk_trajectory_piece){.start = system->time[i], .length = length};
+        load_pose(system, position, attitude, i + 1, value[1]);
+        for (size_t c = 0; c < COMPONENTS; c++)
+            set_cubic(value[0][c], value[1][c], length, second + c,
+                      c < 3 ? piece[i].position[c] : piece[i].quaternion[c - 3]);
+        memcpy(value[0], value[1], sizeof value[0]);
     }
 }
 
@@ -183,9 +210,10 @@ imk_status imk_trajectory_from_poses(size_t count, const double *time,
     for (size_t i = 0; i + 1 < count; i++) {
         const double cosine = product(attitude[i], attitude[i + 1]);
         system.sign[i + 1] = cosine < 0.0 ? -system.sign[i] : system.sign[i];
-        piece[i] = (imk_trajectory_piece){.start = time[i], .length = time[i + 1] - time[i]};
     }
     factorise(&system);
-    set_components(&system, position, attitude, piece);
+    eliminate(&system, position, attitude);
+    substitute(&system);
+    set_pieces(&system, position, attitude, piece);
     return IMK_OK;
 }

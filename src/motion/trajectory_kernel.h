@@ -85,12 +85,13 @@ KERNEL node delayed_node(const node *before, const node *now)
 }
 
 /* The node at the end of an interval is that at the beginning of the next one. */
-KERNEL void sample_means(const imk_trajectory *trajectory, bool shaken,
+KERNEL void sample_means(const imk_trajectory *trajectory, bool shaken, bool cubic,
                          const imk_trajectory_piece *piece, size_t count, const double *boundary,
                          const imki_means *means)
 {
     coefficients from;
     from.same = true;
+    from.cubic = cubic;
     from.position = &piece->position[0][0];
     from.quaternion = &piece->quaternion[0][0];
     const real start = spread(piece->start);
@@ -121,26 +122,29 @@ KERNEL real across(const double *const first[LANES], size_t i)
     return all;
 }
 
-static void gather(const imk_trajectory_piece *const *piece, coefficients *from)
+KERNEL void gather(const imk_trajectory_piece *const *piece, bool cubic, coefficients *from)
 {
     const double *position[LANES], *quaternion[LANES];
     for (size_t lane = 0; lane < LANES; lane++) {
         position[lane] = &piece[lane]->position[0][0];
         quaternion[lane] = &piece[lane]->quaternion[0][0];
     }
+    from->same = false;
+    from->cubic = cubic;
     for (size_t i = 0; i < 21; i++)
-        from->gathered_position[i] = across(position, i);
+        if (!cubic || i % 7 < 4)
+            from->gathered_position[i] = across(position, i);
     for (size_t i = 0; i < 24; i++)
-        from->gathered_quaternion[i] = across(quaternion, i);
+        if (!cubic || i % 6 < 4)
+            from->gathered_quaternion[i] = across(quaternion, i);
 }
 
-KERNEL void interval_group(const imk_trajectory *trajectory, bool shaken, size_t group,
+KERNEL void interval_group(const imk_trajectory *trajectory, bool shaken, bool cubic, size_t group,
                            imki_intervals *intervals)
 {
     coefficients from;
     real start;
-    gather(intervals->piece + group, &from);
-    from.same = false;
+    gather(intervals->piece + group, cubic, &from);
     for (int lane = 0; lane < LANES; lane++)
         start[lane] = intervals->piece[group + lane]->start;
     const real t0 = load(intervals->begin + group), t1 = load(intervals->end + group);
@@ -156,19 +160,38 @@ KERNEL void interval_group(const imk_trajectory *trajectory, bool shaken, size_t
     }
 }
 
+/* ---- the ways to do it ----------------------------------------------------------------------- */
+
+/* Without powers above the third, as in splines through poses: half the work. */
+static bool is_cubic(const imk_trajectory_piece *piece)
+{
+    bool higher = false;
+    for (int axis = 0; axis < 3; axis++)
+        higher |= (piece->position[axis][4] != 0.0) | (piece->position[axis][5] != 0.0) |
+                  (piece->position[axis][6] != 0.0);
+    for (int part = 0; part < 4; part++)
+        higher |= (piece->quaternion[part][4] != 0.0) | (piece->quaternion[part][5] != 0.0);
+    return !higher;
+}
+
 static void means_of_samples(const imk_trajectory *trajectory, const imk_trajectory_piece *piece,
                              size_t count, const double *boundary, const imki_means *means)
 {
     if (trajectory->line_count > 0)
-        sample_means(trajectory, true, piece, count, boundary, means);
+        sample_means(trajectory, true, false, piece, count, boundary, means);
+    else if (is_cubic(piece))
+        sample_means(trajectory, false, true, piece, count, boundary, means);
     else
-        sample_means(trajectory, false, piece, count, boundary, means);
+        sample_means(trajectory, false, false, piece, count, boundary, means);
 }
 
 /* Lanes beyond the last interval repeat it. */
 static void means_of_intervals(const imk_trajectory *trajectory, size_t count,
                                imki_intervals *intervals)
 {
+    bool cubic = true;
+    for (size_t i = 0; cubic && i < count; i++)
+        cubic = is_cubic(intervals->piece[i]);
     for (size_t i = count; i % LANES != 0; i++) {
         intervals->begin[i] = intervals->begin[count - 1];
         intervals->end[i] = intervals->end[count - 1];
@@ -176,8 +199,10 @@ static void means_of_intervals(const imk_trajectory *trajectory, size_t count,
     }
     for (size_t group = 0; group < count; group += LANES) {
         if (trajectory->line_count > 0)
-            interval_group(trajectory, true, group, intervals);
+            interval_group(trajectory, true, false, group, intervals);
+        else if (cubic)
+            interval_group(trajectory, false, true, group, intervals);
         else
-            interval_group(trajectory, false, group, intervals);
+            interval_group(trajectory, false, false, group, intervals);
     }
 }

@@ -6,12 +6,12 @@
  *
  *     u = 2 vec(q* q')/n,   u' = 2 vec(q* q'')/n - u 2 (q.q')/n         relative to the axes
  *     w = u + e,            w' = u' - u x e                             in inertial space
- *     f = C (r'' - g) + 2 e x C r'
+ *     f = C (r'' + 2 w_ie x r' - g)
  *
- * and with a displacement d of vibration in body axes
+ * and with a displacement d of vibration in body axes, v = d' + u x d its velocity,
  *
- *     C r' + d' + u x d                                instead of C r'
- *     C r'' + d'' + 2 u x d' + u' x d + u x (u x d)    instead of C r''
+ *     r' + C^T v                                      instead of r'
+ *     f + d'' + u' x d + u x (d' + v) + 2 e x v       instead of f
  *
  * Its rotation C_v = Rx Ry Rz acts last: one axis k after the other, by the angle a,
  *
@@ -43,6 +43,7 @@ typedef struct node {
 /* Where coefficients come from: one piece for all lanes, or gathered lane by lane. */
 typedef struct coefficients {
     bool same;
+    bool cubic; /* the powers above the third are 0 and left out */
     const double *position, *quaternion;
     real gathered_position[21], gathered_quaternion[24];
 } coefficients;
@@ -102,19 +103,24 @@ KERNEL real quaternion_coefficient(const coefficients *from, size_t part, size_t
                       : from->gathered_quaternion[6 * part + power];
 }
 
-/* The derivative of the order given: p = c[n] n!/(n - order)!, p = p s + ... */
+/* The derivative of s^power is this times s^(power - order), order <= 2. */
+KERNEL double derivative_factor(int power, int order)
+{
+    return order == 0 ? 1.0 : order == 1 ? power : (double)(power * (power - 1));
+}
+
+/* The derivative of the order given: p = c[n] n!/(n - order)!, p = p s + ... Leaving out powers
+ * whose coefficients are 0 does not change a bit of what is not itself 0. */
 KERNEL vector position_derivative(const coefficients *from, real s, int order)
 {
+    const int top = from->cubic ? 3 : 6;
     vector result;
     for (size_t axis = 0; axis < 3; axis++) {
         real p = spread(0.0);
-        for (int power = 6; power >= order; power--) {
-            const double factor = order == 0   ? 1.0
-                                  : order == 1 ? power
-                                               : (double)(power * (power - 1));
-            const real c = position_coefficient(from, axis, (size_t)power);
-            const real term = order == 0 || factor == 1.0 ? c : factor * c;
-            p = power == 6 ? term : p * s + term;
+        for (int power = top; power >= order; power--) {
+            const real term =
+                derivative_factor(power, order) * position_coefficient(from, axis, (size_t)power);
+            p = power == top ? term : p * s + term;
         }
         result.v[axis] = p;
     }
@@ -123,15 +129,13 @@ KERNEL vector position_derivative(const coefficients *from, real s, int order)
 
 KERNEL void quaternion_derivative(const coefficients *from, real s, int order, real result[4])
 {
+    const int top = from->cubic ? 3 : 5;
     for (size_t part = 0; part < 4; part++) {
         real p = spread(0.0);
-        for (int power = 5; power >= order; power--) {
-            const double factor = order == 0   ? 1.0
-                                  : order == 1 ? power
-                                               : (double)(power * (power - 1));
-            const real c = quaternion_coefficient(from, part, (size_t)power);
-            const real term = order == 0 || factor == 1.0 ? c : factor * c;
-            p = power == 5 ? term : p * s + term;
+        for (int power = top; power >= order; power--) {
+            const real term =
+                derivative_factor(power, order) * quaternion_coefficient(from, part, (size_t)power);
+            p = power == top ? term : p * s + term;
         }
         result[part] = p;
     }
@@ -309,32 +313,35 @@ KERNEL node node_at(const imk_trajectory *trajectory, bool shaken, const coeffic
 {
     const double earth_rate = trajectory->earth ? IMK_EARTH_RATE : 0.0;
     const orientation at = orientation_at(from, s);
-    node result = {.rotation = zero_vector(), .position = position_derivative(from, s, 0)};
+    node result = {.rotation = zero_vector(),
+                   .position = position_derivative(from, s, 0),
+                   .velocity = position_derivative(from, s, 1)};
+    vector acceleration = position_derivative(from, s, 2);
+    acceleration.v[0] -= 2.0 * earth_rate * result.velocity.v[1];
+    acceleration.v[1] += 2.0 * earth_rate * result.velocity.v[0];
+    const vector earth = scaled(earth_rate * at.inverse, at.row[2]);
     tremor shaking;
-    vector displacement = zero_vector();
+    vector shaken_force = zero_vector();
     if (shaken) {
         add_up_lines(trajectory, time, &shaking);
-        displacement = (vector){{shaking.value[0], shaking.value[1], shaking.value[2]}};
-        result.position = sum(result.position, from_body(&at, displacement));
-    }
-    result.gravity = gravity ? *gravity : gravity_of(trajectory, result.position);
-    const vector earth = scaled(earth_rate * at.inverse, at.row[2]);
-    vector velocity = to_body(&at, position_derivative(from, s, 1));
-    vector force = to_body(&at, difference(position_derivative(from, s, 2), result.gravity));
-    if (shaken) {
+        const vector shift = {{shaking.value[0], shaking.value[1], shaking.value[2]}};
         const vector rate = {{shaking.rate[0], shaking.rate[1], shaking.rate[2]}};
         const vector change = {{shaking.change[0], shaking.change[1], shaking.change[2]}};
-        const vector sweep = cross(at.turn, displacement);
-        velocity = sum(velocity, sum(rate, sweep));
-        force = sum(force, sum(change, cross(at.turn_change, displacement)));
-        force = sum(force, cross(at.turn, sum(scaled(spread(2.0), rate), sweep)));
+        const vector sweep = cross(at.turn, shift), velocity = sum(rate, sweep);
+        shaken_force = sum(change, cross(at.turn_change, shift));
+        shaken_force = sum(shaken_force, cross(at.turn, sum(rate, velocity)));
+        shaken_force = sum(shaken_force, scaled(spread(2.0), cross(earth, velocity)));
+        result.position = sum(result.position, from_body(&at, shift));
+        result.velocity = sum(result.velocity, from_body(&at, velocity));
     }
-    result.velocity = from_body(&at, velocity);
-    result.force = sum(force, scaled(spread(2.0), cross(earth, velocity)));
+    result.gravity = gravity ? *gravity : gravity_of(trajectory, result.position);
+    result.force = to_body(&at, difference(acceleration, result.gravity));
     result.rate = sum(at.turn, earth);
     result.acceleration = difference(at.turn_change, cross(at.turn, earth));
-    if (shaken)
+    if (shaken) {
+        result.force = sum(result.force, shaken_force);
         for (int axis = 0; axis < 3; axis++)
             turn_about(&result, &shaking, axis);
+    }
     return result;
 }

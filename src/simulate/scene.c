@@ -172,9 +172,9 @@ static imk_stimulus stimulus_of(const imki_scene *e, double *const *column, int 
     }
     for (int i = 0; i < 2; i++) {
         if (e->temperature && e->hysteresis_present[i])
-            s.hysteresis[i] = column[IMKI_HYSTERESIS + i];
+            s.hysteresis[i] = column[IMKI_HYSTERESIS + (e->same_hysteresis ? 0 : i)];
         if (e->warm_up_present[i])
-            s.warm_up[i] = column[IMKI_WARM_UP + i];
+            s.warm_up[i] = column[IMKI_WARM_UP + (e->same_warm_up ? 0 : i)];
     }
     return s;
 }
@@ -215,6 +215,10 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
     assign_columns(e, memory);
     start_triad(e, &model->gyro, IMK_GYRO);
     start_triad(e, &model->accel, IMK_ACCEL);
+    e->same_hysteresis = e->hysteresis_present[0] && e->hysteresis_present[1] &&
+                         e->hysteresis[0].span == e->hysteresis[1].span;
+    e->same_warm_up =
+        e->warm_up_present[0] && e->warm_up_present[1] && e->warm_up_time[0] == e->warm_up_time[1];
     if (!e->motion_varies)
         fill_rest(e, e->column, IMKI_STRETCH);
     e->stimulus[IMK_GYRO] = stimulus_of(e, e->column, 0);
@@ -339,7 +343,7 @@ static void fill_temperature(imki_scene *e, uint64_t first, size_t count)
     for (size_t i = 0; i < count; i++)
         time[i] = ((double)(first + i) + 0.5 - (double)e->substeps) * part;
     imk_temperature_at(e->temperature, count, time, temperature, e->column[IMKI_TEMPERATURE_RATE]);
-    for (int sensor = 0; sensor < 2; sensor++)
+    for (int sensor = 0; sensor < (e->same_hysteresis ? 1 : 2); sensor++)
         if (e->hysteresis_present[sensor])
             imk_hysteresis_next(&e->hysteresis[sensor], count, temperature,
                                 e->column[IMKI_HYSTERESIS + sensor]);
@@ -371,7 +375,7 @@ void imki_scene_fill(imki_scene *e, uint64_t first, size_t rows, const imk_execu
         fill_trajectory(e, first, rows, executor);
     if (e->temperature)
         fill_temperature(e, part, count);
-    for (int sensor = 0; sensor < 2; sensor++)
+    for (int sensor = 0; sensor < (e->same_warm_up ? 1 : 2); sensor++)
         if (e->warm_up_present[sensor])
             fill_warm_up(e, sensor, part, count);
 }

@@ -182,7 +182,8 @@ imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model
                              "imk_simulator_size() bytes");
     if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
-    memset(memory, 0, imk_simulator_size(model, simulation));
+    const size_t columns_size = aligned(imki_scene_size(model, simulation) * sizeof(double));
+    memset(memory, 0, imk_simulator_size(model, simulation) - columns_size);
     unsigned char *rest = memory;
     imk_simulator *made = take(&rest, sizeof *made);
     made->random = imk_random_seeded(simulation->seed);
@@ -190,7 +191,9 @@ imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model
     made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
     made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
     made->channel = take(&rest, made->channels * sizeof *made->channel);
-    double *columns = take(&rest, imki_scene_size(model, simulation) * sizeof(double));
+    /* The columns of the scene come last. */
+    double *columns = (double *)(void *)((unsigned char *)memory +
+                                         imk_simulator_size(model, simulation) - columns_size);
     status = imki_scene_start(&made->scene, model, simulation, columns, error);
     if (status == IMK_OK)
         status = start_distortion(made, model, simulation, error);

@@ -11,7 +11,7 @@
 /* ---- scene.c: motion and temperature, a stretch of parts of samples at a time ---- */
 
 /* Parts of samples made at a time: enough to share among threads, small enough for the cache. */
-enum { IMKI_STRETCH = 8192, IMKI_STRETCH_SERIAL = 1024 };
+enum { IMKI_STRETCH = 8192, IMKI_STRETCH_SERIAL = 512 };
 
 /* Columns of a stretch. */
 enum {
@@ -41,6 +41,7 @@ typedef struct imki_scene {
     size_t substeps;
     bool motion_varies, varies; /* in time; anything at all */
     bool needs_acceleration, hysteresis_present[2], warm_up_present[2];
+    bool same_hysteresis, same_warm_up; /* of both kinds of sensor: made once */
     double warm_up_time[2];
     imk_hysteresis hysteresis[2];
     double *warm_up_table; /* 2 x IMK_NOISE_BLOCK: e^(-i part/time) */

@@ -9,14 +9,14 @@
 
 enum { MOST = 400 };
 
-static double times[MOST], x[MOST], y[MOST], z[MOST], workspace[4 * MOST];
+static double times[MOST], x[MOST], y[MOST], z[MOST], workspace[10 * MOST];
 static const double *const position[3] = {x, y, z};
 static imk_quaternion attitude[MOST];
 static imk_trajectory_piece piece[MOST];
 
 static imk_trajectory through(size_t count)
 {
-    assert_true(imk_trajectory_poses_workspace(count) <= 4 * MOST);
+    assert_true(imk_trajectory_poses_workspace(count) <= 10 * MOST);
     CHECK_OK(imk_trajectory_from_poses(count, times, position, attitude, workspace, piece, NULL));
     const imk_trajectory trajectory = {.piece_count = count - 1, .piece = piece};
     CHECK_OK(imk_trajectory_validate(&trajectory, NULL));
