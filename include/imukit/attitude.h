@@ -62,7 +62,7 @@ IMK_API imk_quaternion imk_quaternion_normalise(imk_quaternion a);
 IMK_API imk_vector3 imk_quaternion_rotate(imk_quaternion q, imk_vector3 v);
 /** Exact for a constant rotation vector [rad]; series where its norm is small. Bit-reproducible. */
 IMK_API imk_quaternion imk_quaternion_from_rotation_vector(imk_vector3 rotation);
-/** The rotation vector [rad] of at most half a turn; q and -q give the same. By libm's atan2. */
+/** The rotation vector [rad] of at most half a turn; q and -q give the same. Bit-reproducible. */
 IMK_API imk_vector3 imk_quaternion_to_rotation_vector(imk_quaternion q);
 /** Rotation matrix of a unit quaternion. */
 IMK_API imk_matrix3 imk_quaternion_to_matrix(imk_quaternion q);
@@ -70,7 +70,7 @@ IMK_API imk_matrix3 imk_quaternion_to_matrix(imk_quaternion q);
 IMK_API imk_quaternion imk_quaternion_from_matrix(imk_matrix3 c);
 /** C_nb from roll, pitch, yaw [rad], with the bit-reproducible sine and cosine. */
 IMK_API imk_matrix3 imk_matrix3_from_euler(double roll, double pitch, double yaw);
-/** Roll, pitch, yaw [rad] of C_nb, by libm's atan2; at pitch = +-90 deg (cosine below 1e-12) roll
+/** Roll, pitch, yaw [rad] of C_nb, bit-reproducible; at pitch = +-90 deg (cosine below 1e-12) roll
  *  is 0. */
 IMK_API void imk_matrix3_to_euler(imk_matrix3 c, double *roll, double *pitch, double *yaw);
 

@@ -69,7 +69,7 @@ imk_vector3 imk_quaternion_to_rotation_vector(imk_quaternion q)
     const double sine = imk_vector3_norm(vector);
     /* q and -q are the same rotation: the one with w >= 0 turns by at most half a turn. */
     const double w = fabs(q.w);
-    const double factor = sine > 0.0 ? 2.0 * atan2(sine, w) / sine : 2.0;
+    const double factor = sine > 0.0 ? 2.0 * imk_atan2(sine, w) / sine : 2.0;
     return imk_vector3_scale(vector, q.w < 0.0 ? -factor : factor);
 }
 
@@ -118,14 +118,14 @@ imk_matrix3 imk_matrix3_from_euler(double roll, double pitch, double yaw)
 void imk_matrix3_to_euler(imk_matrix3 c, double *roll, double *pitch, double *yaw)
 {
     const double cosine = hypot(c.m[2][1], c.m[2][2]);
-    *pitch = atan2(-c.m[2][0], cosine);
+    *pitch = imk_atan2(-c.m[2][0], cosine);
     /* Nearer to the vertical than this, rounding decides about roll: only the sum with yaw is
      * known. */
     if (cosine < 1e-12) {
         *roll = 0.0;
-        *yaw = atan2(-c.m[0][1], c.m[1][1]);
+        *yaw = imk_atan2(-c.m[0][1], c.m[1][1]);
         return;
     }
-    *roll = atan2(c.m[2][1], c.m[2][2]);
-    *yaw = atan2(c.m[1][0], c.m[0][0]);
+    *roll = imk_atan2(c.m[2][1], c.m[2][2]);
+    *yaw = imk_atan2(c.m[1][0], c.m[0][0]);
 }
