@@ -109,9 +109,10 @@ IMK_API void imk_trajectory_state(const imk_trajectory *trajectory, double time,
  *  imk_trajectory_state() says, to the bit. The bits of a sample do not depend on the others asked
  *  for with it. At rest outside the span the lines of vibration go on.
  *
- *  Cost at 2.7 GHz: 70 ns a sample with AVX-512, 110 with AVX2, 210 scalar, 1.6 times that where
- *  each sample has its own piece, 2 ns a line and node of vibration; at rest next to nothing. Calls
- *  with many samples are best, at least 8.
+ *  Cost at 2.7 GHz: 50 ns a sample with AVX-512, 75 with AVX2, 155 scalar, and 40, 60, 125 where no
+ *  power is above the third, as in tables of poses; about twice that where each sample has its own
+ *  piece, 2 ns a line and node of vibration; at rest next to nothing. Calls with many samples are
+ *  best, at least 8.
  *
  *  @param boundary  count + 1 increasing times [s]; sample k covers boundary[k] … boundary[k+1]
  *  @param kernel    of imk_random_seeded(), or IMK_KERNEL_SCALAR; the bits do not depend on it

@@ -41,17 +41,15 @@ typedef struct slope {
     real s, k;
 } slope;
 
-/* (1 + x)^(-1/2) - 1 for |x| < 0.015: the next term is below 1e-17. */
+/* (1 + x)^(-1/2) - 1 for |x| < 0.015: the next term is below 1e-17. Summed in pairs, as the terms
+ * of one chain would wait for one another. */
 static inline real root_deficit(real x)
 {
-    real p = x * (6435.0 / 32768.0) - 429.0 / 2048.0;
-    p = p * x + 231.0 / 1024.0;
-    p = p * x - 63.0 / 256.0;
-    p = p * x + 35.0 / 128.0;
-    p = p * x - 5.0 / 16.0;
-    p = p * x + 3.0 / 8.0;
-    p = p * x - 1.0 / 2.0;
-    return p * x;
+    const real xx = x * x;
+    const real low = 3.0 / 8.0 - 5.0 / 16.0 * x;
+    const real middle = 35.0 / 128.0 - 63.0 / 256.0 * x;
+    const real high = (231.0 / 1024.0 - 429.0 / 2048.0 * x) + 6435.0 / 32768.0 * xx;
+    return xx * (low + xx * (middle + xx * high)) - 0.5 * x;
 }
 
 /* u, from z and 1/r */
@@ -88,7 +86,8 @@ static inline real height_along(slope vertical, real pp, real z)
     return pp * vertical.k + z * vertical.s - SEMI_MAJOR_AXIS * root;
 }
 
-/* Normal gravity, along the ellipsoid's normal; the magnitude as in imk_normal_gravity(). */
+/* Normal gravity, along the ellipsoid's normal; the magnitude as in imk_normal_gravity(), but for
+ * 2e-16 of it, as one e^2 serves the height and the magnitude. */
 static inline void gravity_at(const real position[3], real gravity[3])
 {
     const real x = position[0], y = position[1], z = position[2];

@@ -2,9 +2,10 @@
 /* Means of what sensors on a trajectory read, written once for every instruction set. No include
  * guard: each trajectory_*.c defines first
  *
- *     LANES              how many intervals are worked at once: 2, 4 or 8
+ *     LANES              how many intervals are worked at once: 1, 2, 4 or 8
  *     real               a vector of LANES doubles
  *     square_root(a)     correctly rounded, lane by lane
+ *     KERNEL             how small functions are declared, unless they shall always be inlined
  *
  * Each lane sees the same operations in the same order whatever LANES is.
  *
@@ -12,6 +13,8 @@
  * 1/2 and 1, whose weights are 1/20, 49/180, 16/45 [ABRAMOWITZ1964, 25.4.32]; as differences to the
  * middle, so that the mean of a constant is that constant. */
 #include "motion/trajectory_node.h"
+
+#include <string.h>
 
 /* ---- one interval ---------------------------------------------------------------------------- */
 
@@ -30,9 +33,37 @@ KERNEL vector lobatto_mean(vector begin, vector early, vector middle, vector lat
     return mean;
 }
 
+/* What the mean over an interval needs of its nodes. */
+typedef struct reading {
+    vector rate, force, gravity;
+} reading;
+
+/* Gravity in the middle and at the end of an interval, found before all else: these long chains of
+ * operations then go on beside the rest. */
+typedef struct gravities {
+    vector middle, end;
+} gravities;
+
+KERNEL gravities gravity_ahead(const imk_trajectory *trajectory, bool shaken,
+                               const coefficients *from, real s0, real s1)
+{
+    if (shaken)
+        return (gravities){zero_vector(), zero_vector()};
+    return (gravities){smooth_gravity(trajectory, from, s0 + 0.5 * (s1 - s0)),
+                       smooth_gravity(trajectory, from, s1)};
+}
+
+/* Where a trajectory is shaken, each node finds its own gravity; otherwise it may be known. */
+KERNEL reading reading_at(const imk_trajectory *trajectory, bool shaken, const coefficients *from,
+                          real time, real s, const vector *gravity)
+{
+    const node at = node_at(trajectory, shaken, from, time, s, shaken ? NULL : gravity);
+    return (reading){at.rate, at.force, at.gravity};
+}
+
 /* The quadratic through gravity at the ends and in the middle, at fraction x of the interval: over
  * 1 km its error is 1e-13 of gravity. */
-KERNEL vector gravity_between(const node *begin, vector middle, const node *end, double x)
+KERNEL vector gravity_between(const reading *begin, vector middle, const reading *end, double x)
 {
     const double away = 2.0 * x - 1.0;
     const vector drift = scaled(spread(0.5), difference(end->gravity, begin->gravity));
@@ -42,18 +73,18 @@ KERNEL vector gravity_between(const node *begin, vector middle, const node *end,
 }
 
 KERNEL void interval_means(const imk_trajectory *trajectory, bool shaken, const coefficients *from,
-                           real start, real t0, real t1, const node *begin, const node *end,
-                           vector *rate, vector *force)
+                           real start, real t0, real t1, const reading *begin, const reading *end,
+                           const gravities *ahead, vector *rate, vector *force)
 {
     const real s0 = t0 - start, s1 = t1 - start;
-    const node middle =
-        node_at(trajectory, shaken, from, t0 + 0.5 * (t1 - t0), s0 + 0.5 * (s1 - s0), NULL);
+    const reading middle = reading_at(trajectory, shaken, from, t0 + 0.5 * (t1 - t0),
+                                      s0 + 0.5 * (s1 - s0), &ahead->middle);
     const double x[] = {INNER_NODE, 1.0 - INNER_NODE};
-    node inner[2];
+    reading inner[2];
     for (int i = 0; i < 2; i++) {
         const vector gravity = gravity_between(begin, middle.gravity, end, x[i]);
-        inner[i] = node_at(trajectory, shaken, from, t0 + x[i] * (t1 - t0), s0 + x[i] * (s1 - s0),
-                           shaken ? NULL : &gravity);
+        inner[i] = reading_at(trajectory, shaken, from, t0 + x[i] * (t1 - t0),
+                              s0 + x[i] * (s1 - s0), &gravity);
     }
     *rate = lobatto_mean(begin->rate, inner[0].rate, middle.rate, inner[1].rate, end->rate);
     *force = lobatto_mean(begin->force, inner[0].force, middle.force, inner[1].force, end->force);
@@ -68,14 +99,17 @@ KERNEL real delayed(real before, real now)
     return __builtin_shufflevector(before, now, 7, 8, 9, 10, 11, 12, 13, 14);
 #elif LANES == 4
     return __builtin_shufflevector(before, now, 3, 4, 5, 6);
-#else
+#elif LANES == 2
     return __builtin_shufflevector(before, now, 1, 2);
+#else
+    (void)now;
+    return before;
 #endif
 }
 
-KERNEL node delayed_node(const node *before, const node *now)
+KERNEL reading delayed_reading(const reading *before, const reading *now)
 {
-    node result = *now;
+    reading result;
     for (int i = 0; i < 3; i++) {
         result.rate.v[i] = delayed(before->rate.v[i], now->rate.v[i]);
         result.force.v[i] = delayed(before->force.v[i], now->force.v[i]);
@@ -96,13 +130,15 @@ KERNEL void sample_means(const imk_trajectory *trajectory, bool shaken, bool cub
     from.quaternion = &piece->quaternion[0][0];
     const real start = spread(piece->start);
     const real first = spread(boundary[0]);
-    node before = node_at(trajectory, shaken, &from, first, first - start, NULL);
+    reading before = reading_at(trajectory, shaken, &from, first, first - start, NULL);
     for (size_t k = 0; k < count; k += LANES) {
         const real t0 = load(boundary + k), t1 = load(boundary + k + 1);
-        const node end = node_at(trajectory, shaken, &from, t1, t1 - start, NULL);
-        const node begin = delayed_node(&before, &end);
+        const gravities ahead = gravity_ahead(trajectory, shaken, &from, t0 - start, t1 - start);
+        const reading end = reading_at(trajectory, shaken, &from, t1, t1 - start, &ahead.end);
+        const reading begin = delayed_reading(&before, &end);
         vector rate, force;
-        interval_means(trajectory, shaken, &from, start, t0, t1, &begin, &end, &rate, &force);
+        interval_means(trajectory, shaken, &from, start, t0, t1, &begin, &end, &ahead, &rate,
+                       &force);
         for (int i = 0; i < 3; i++) {
             store(means->rate[i] + k, rate.v[i]);
             store(means->force[i] + k, force.v[i]);
@@ -148,10 +184,11 @@ KERNEL void interval_group(const imk_trajectory *trajectory, bool shaken, bool c
     for (int lane = 0; lane < LANES; lane++)
         start[lane] = intervals->piece[group + lane]->start;
     const real t0 = load(intervals->begin + group), t1 = load(intervals->end + group);
-    const node begin = node_at(trajectory, shaken, &from, t0, t0 - start, NULL);
-    const node end = node_at(trajectory, shaken, &from, t1, t1 - start, NULL);
+    const gravities ahead = gravity_ahead(trajectory, shaken, &from, t0 - start, t1 - start);
+    const reading begin = reading_at(trajectory, shaken, &from, t0, t0 - start, NULL);
+    const reading end = reading_at(trajectory, shaken, &from, t1, t1 - start, &ahead.end);
     vector rate, force;
-    interval_means(trajectory, shaken, &from, start, t0, t1, &begin, &end, &rate, &force);
+    interval_means(trajectory, shaken, &from, start, t0, t1, &begin, &end, &ahead, &rate, &force);
     for (int i = 0; i < 3; i++) {
         store(intervals->rate[i] + group, rate.v[i]);
         store(intervals->force[i] + group, force.v[i]);
@@ -162,16 +199,25 @@ KERNEL void interval_group(const imk_trajectory *trajectory, bool shaken, bool c
 
 /* ---- the ways to do it ----------------------------------------------------------------------- */
 
-/* Without powers above the third, as in splines through poses: half the work. */
+static uint64_t bits_of(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* Without powers above the third, as in splines through poses: half the work. By the bits, as
+ * comparing doubles takes as long as a node; a -0 is merely taken for a power. */
 static bool is_cubic(const imk_trajectory_piece *piece)
 {
-    bool higher = false;
+    uint64_t higher = 0;
     for (int axis = 0; axis < 3; axis++)
-        higher |= (piece->position[axis][4] != 0.0) | (piece->position[axis][5] != 0.0) |
-                  (piece->position[axis][6] != 0.0);
+        for (int power = 4; power < 7; power++)
+            higher |= bits_of(piece->position[axis][power]);
     for (int part = 0; part < 4; part++)
-        higher |= (piece->quaternion[part][4] != 0.0) | (piece->quaternion[part][5] != 0.0);
-    return !higher;
+        for (int power = 4; power < 6; power++)
+            higher |= bits_of(piece->quaternion[part][power]);
+    return higher == 0;
 }
 
 static void means_of_samples(const imk_trajectory *trajectory, const imk_trajectory_piece *piece,

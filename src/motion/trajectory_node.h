@@ -19,7 +19,9 @@
 #include "motion/gravity_kernel.h"
 #include "motion/trajectory_internal.h"
 
+#ifndef KERNEL
 #define KERNEL static inline __attribute__((always_inline))
+#endif
 
 typedef double real_in_array __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
 typedef int64_t word __attribute__((vector_size(8 * LANES)));
@@ -173,13 +175,12 @@ KERNEL orientation orientation_at(const coefficients *from, real s)
     const real twice = 2.0 * inverse;
     const real growth =
         twice * ((q[0] * rate[0] + q[1] * rate[1]) + (q[2] * rate[2] + q[3] * rate[3]));
-    orientation at = {
-        .row = {{{(ww + xx) - (yy + zz), 2.0 * (xy - wz), 2.0 * (xz + wy)}},
-                {{2.0 * (xy + wz), (ww - xx) + (yy - zz), 2.0 * (yz - wx)}},
-                {{2.0 * (xz - wy), 2.0 * (yz + wx), (ww - xx) - (yy - zz)}}},
-        .inverse = inverse,
-        .turn = scaled(twice, turned_back(q, rate)),
-    };
+    orientation at;
+    at.row[0] = (vector){{(ww + xx) - (yy + zz), 2.0 * (xy - wz), 2.0 * (xz + wy)}};
+    at.row[1] = (vector){{2.0 * (xy + wz), (ww - xx) + (yy - zz), 2.0 * (yz - wx)}};
+    at.row[2] = (vector){{2.0 * (xz - wy), 2.0 * (yz + wx), (ww - xx) - (yy - zz)}};
+    at.inverse = inverse;
+    at.turn = scaled(twice, turned_back(q, rate));
     at.turn_change = difference(scaled(twice, turned_back(q, change)), scaled(growth, at.turn));
     return at;
 }
@@ -307,15 +308,22 @@ KERNEL vector gravity_of(const imk_trajectory *trajectory, vector position)
     return gravity;
 }
 
-/* `gravity` may be known already. */
+/* On the smooth trajectory. */
+KERNEL vector smooth_gravity(const imk_trajectory *trajectory, const coefficients *from, real s)
+{
+    return gravity_of(trajectory, position_derivative(from, s, 0));
+}
+
+/* `gravity` is NULL unless it is known already. */
 KERNEL node node_at(const imk_trajectory *trajectory, bool shaken, const coefficients *from,
                     real time, real s, const vector *gravity)
 {
     const double earth_rate = trajectory->earth ? IMK_EARTH_RATE : 0.0;
     const orientation at = orientation_at(from, s);
-    node result = {.rotation = zero_vector(),
-                   .position = position_derivative(from, s, 0),
-                   .velocity = position_derivative(from, s, 1)};
+    node result;
+    result.position = position_derivative(from, s, 0);
+    result.velocity = position_derivative(from, s, 1);
+    result.rotation = zero_vector();
     vector acceleration = position_derivative(from, s, 2);
     acceleration.v[0] -= 2.0 * earth_rate * result.velocity.v[1];
     acceleration.v[1] += 2.0 * earth_rate * result.velocity.v[0];

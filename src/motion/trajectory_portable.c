@@ -1,12 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Means over a trajectory in portable C, two intervals at once: for every processor, and the
- * reference of the others; also the state at one instant. */
+/* Means over a trajectory in portable C: two intervals at once where a processor has pairs of
+ * doubles, else one, in functions that stay apart as what has no such registers has little memory,
+ * too. For every processor, and the reference of the other kernels; also the state at one instant.
+ */
 #include <math.h>
 #include <stdint.h>
 
+#if defined(__SSE2__) || defined(__aarch64__)
 #define LANES 2
+#else
+#define LANES 1
+#define KERNEL static
+#endif
 
-typedef double real __attribute__((vector_size(16)));
+typedef double real __attribute__((vector_size(8 * LANES)));
 
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -18,7 +25,9 @@ static inline real square_root(real a)
 #else
 static inline real square_root(real a)
 {
-    return (real){sqrt(a[0]), sqrt(a[1])};
+    for (int lane = 0; lane < LANES; lane++)
+        a[lane] = sqrt(a[lane]);
+    return a;
 }
 #endif
 
