@@ -101,7 +101,7 @@ static const char *needed_for(const imk_model *model, int sensor)
 {
     static const char *const needs[2][2] = {{"accel.lever_arm", ""},
                                             {"gyro.g_sensitivity", "gyro.g2_sensitivity"}};
-    term_list list = compensate_terms(model, true);
+    term_list list = compensate_taken_out(model);
     for (size_t i = 0; i < list.count; i++)
         for (size_t k = 0; k < 2; k++)
             if (strcmp(list.name[i], needs[sensor][k]) == 0)

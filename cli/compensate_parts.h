@@ -5,6 +5,7 @@
 #define IMUKIT_COMPENSATE_PARTS_H
 
 #include "log_input.h"
+#include "term_selection.h"
 
 #include "imukit/compensate.h"
 #include "imukit/model_file.h"
@@ -15,6 +16,7 @@ typedef struct compensate_options {
     double temperature, temperature_time, powered_for, rate_limit, force_limit;
     uint64_t decimals, threads;
     bool flags, json, strict;
+    term_selection terms;
 } compensate_options;
 
 /* How columns of a log and axes of a model belong together, and which columns are written. */
@@ -43,8 +45,14 @@ typedef struct term_list {
     size_t count;
     char name[TERMS_MAX][40]; /* "gyro.bias.fixed" */
 } term_list;
-/* What compensation takes out, and what it leaves in the log. */
-term_list compensate_terms(const imk_model *model, bool taken_out);
+/* Take out the terms that the options name. What the output stage does (range, resolution,
+ * quantization) is not a matter of taking out, but tells which readings are saturated: it stays.
+ * @return -1 or the exit code, the message printed */
+int compensate_select(const compensate_options *o, imk_model *model);
+/* What compensation takes out. */
+term_list compensate_taken_out(const imk_model *model);
+/* What it leaves in the log: of the terms of the whole model, as far as the sensors are there. */
+term_list compensate_left_in(const imk_model *model, const imk_model *whole);
 /* The first term that needs a temperature, or NULL. */
 const char *compensate_temperature_term(const imk_model *model);
 

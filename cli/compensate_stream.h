@@ -12,7 +12,8 @@ typedef struct compensate_counts {
 } compensate_counts;
 
 typedef struct compensation {
-    imk_model *model;
+    imk_model *model; /* what is taken out */
+    imk_model *whole; /* the same before terms were selected */
     imk_log_reader *reader;
     compensate_columns columns;
     imk_compensator compensator;

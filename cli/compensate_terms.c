@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which terms of a model compensation takes out, and which stay in the log because the model knows
- * their size and not their course. */
+/* Which terms of a model compensation takes out, and which stay in the log: because they were not
+ * selected, or because the model knows their size and not their course. */
 #include "compensate_parts.h"
 
 #include <string.h>
@@ -40,6 +40,7 @@ static const term terms[] = {
     {"dead_band", TRIAD(dead_band), OF_AXES, false, false},
     {"resolution", TRIAD(resolution), OF_AXES, false, false},
 };
+enum { TERM_COUNT = sizeof terms / sizeof terms[0] };
 
 static bool any_value(const double *values, size_t count)
 {
@@ -93,35 +94,69 @@ static void add(term_list *list, const char *sensor, const char *name)
         snprintf(list->name[list->count++], sizeof list->name[0], "%s.%s", sensor, name);
 }
 
-static void add_triad(term_list *list, const imk_triad *triad, const char *sensor, bool taken_out)
+static void add_taken_out(term_list *list, const imk_triad *triad, const char *sensor)
+{
+    if (triad->present && is_skewed(triad))
+        add(list, sensor, "direction");
+    for (size_t i = 0; i < TERM_COUNT; i++)
+        if (triad->present && terms[i].taken_out && is_there(triad, &terms[i]))
+            add(list, sensor, terms[i].name);
+}
+
+static void add_left_in(term_list *list, const imk_triad *triad, const imk_triad *whole,
+                        const char *sensor)
 {
     if (!triad->present)
         return;
-    if (taken_out && is_skewed(triad))
-        add(list, sensor, "direction");
-    for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++)
-        if (terms[i].taken_out == taken_out && is_there(triad, &terms[i]))
+    for (size_t i = 0; i < TERM_COUNT; i++)
+        if (is_there(whole, &terms[i]) && !(terms[i].taken_out && is_there(triad, &terms[i])))
             add(list, sensor, terms[i].name);
-    if (!taken_out && has_noise(&triad->noise, triad->axis_count))
+    if (has_noise(&whole->noise, whole->axis_count))
         add(list, sensor, "noise");
 }
 
-term_list compensate_terms(const imk_model *model, bool taken_out)
+term_list compensate_taken_out(const imk_model *model)
 {
     term_list list = {0};
-    add_triad(&list, &model->gyro, "gyro", taken_out);
-    add_triad(&list, &model->accel, "accel", taken_out);
+    add_taken_out(&list, &model->gyro, "gyro");
+    add_taken_out(&list, &model->accel, "accel");
+    return list;
+}
+
+term_list compensate_left_in(const imk_model *model, const imk_model *whole)
+{
+    term_list list = {0};
+    add_left_in(&list, &model->gyro, &whole->gyro, "gyro");
+    add_left_in(&list, &model->accel, &whole->accel, "accel");
     const struct {
         const char *name;
         double value;
-    } timing[] = {{"rate_error", model->timing.rate_error.value},
-                  {"jitter", model->timing.jitter.value},
-                  {"skew", model->timing.skew.value},
-                  {"drops", model->timing.drops.value}};
-    for (size_t i = 0; i < 4 && !taken_out; i++)
+    } timing[] = {{"rate_error", whole->timing.rate_error.value},
+                  {"jitter", whole->timing.jitter.value},
+                  {"skew", whole->timing.skew.value},
+                  {"drops", whole->timing.drops.value}};
+    for (size_t i = 0; i < 4; i++)
         if (timing[i].value != 0)
             add(&list, "timing", timing[i].name);
     return list;
+}
+
+int compensate_select(const compensate_options *o, imk_model *model)
+{
+    imk_triad *triads[2] = {&model->gyro, &model->accel};
+    imk_axes kept[2][3];
+    for (int sensor = 0; sensor < 2; sensor++) {
+        kept[sensor][0] = triads[sensor]->range;
+        kept[sensor][1] = triads[sensor]->resolution;
+        kept[sensor][2] = triads[sensor]->noise.quantization;
+    }
+    int code = term_selection_apply(&o->terms, model);
+    for (int sensor = 0; sensor < 2; sensor++) {
+        triads[sensor]->range = kept[sensor][0];
+        triads[sensor]->resolution = kept[sensor][1];
+        triads[sensor]->noise.quantization = kept[sensor][2];
+    }
+    return code;
 }
 
 const char *compensate_temperature_term(const imk_model *model)
@@ -131,7 +166,7 @@ const char *compensate_temperature_term(const imk_model *model)
     static const char *const accel[] = {"accel.bias.temperature", "accel.bias.temperature_rate",
                                         "accel.scale_factor.temperature"};
     size_t found = 0;
-    for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++) {
+    for (size_t i = 0; i < TERM_COUNT; i++) {
         if (!terms[i].needs_temperature)
             continue;
         if (model->gyro.present && is_there(&model->gyro, &terms[i]))

@@ -89,6 +89,25 @@ int time_decimals(double rate, double start)
     return 9;
 }
 
+/* Counts are of the rate, whatever unit is asked for. */
+static int check_counts(const simulate_options *o, const imk_model *model)
+{
+    const bool gyro = model->gyro.present && model->gyro.sensitivity.value[0] > 0;
+    const bool accel = model->accel.present && model->accel.sensitivity.value[0] > 0;
+    if (o->increments && (gyro || accel))
+        return command_misused("--increments: a model with a sensitivity makes counts, which are "
+                               "rates; leave the option out");
+    if (o->gyro_unit && gyro)
+        return command_misused("--gyro-unit %s: the model's gyros have a sensitivity and make "
+                               "counts; leave the option out",
+                               o->gyro_unit);
+    if (o->accel_unit && accel)
+        return command_misused("--accel-unit %s: the model's accelerometers have a sensitivity "
+                               "and make counts; leave the option out",
+                               o->accel_unit);
+    return -1;
+}
+
 int log_layout_make(const simulate_options *o, const imk_model *model, const scene *s,
                     log_layout *layout)
 {
@@ -101,6 +120,8 @@ int log_layout_make(const simulate_options *o, const imk_model *model, const sce
     int code = parse_unit("gyro-unit", o->gyro_unit, steps ? "deg" : "deg/s", &gyro.unit);
     if (code < 0)
         code = parse_unit("accel-unit", o->accel_unit, steps ? "m/s" : "m/s^2", &accel.unit);
+    if (code < 0)
+        code = check_counts(o, model);
     if (code >= 0)
         return code;
     *layout = (log_layout){.count = 1, .temperature = s->simulation.temperature != NULL};

@@ -54,14 +54,23 @@ static imk_status write_rows(recording *r, uint64_t first, size_t count)
     return imk_log_write(r->writer, count, (const double *const *)r->column, r->executor);
 }
 
+/* Vibration makes rows so slow to compute that fewer at a time keep the progress going. */
+static size_t rows_at_once(const imk_simulation *simulation)
+{
+    const imk_trajectory *trajectory = simulation->motion.trajectory;
+    size_t parts = trajectory ? imk_trajectory_substeps(trajectory, 1 / simulation->rate) : 1;
+    return parts < BLOCK_ROWS / 1024 ? BLOCK_ROWS / parts : 1024;
+}
+
 static int stream(recording *r, const char *label)
 {
     imk_error error;
     progress p = progress_begin(label, "rows", 1);
     imk_status status = IMK_OK;
     const uint64_t rows = r->scene->rows;
-    for (uint64_t first = 0; first < rows && status == IMK_OK; first += BLOCK_ROWS) {
-        size_t count = rows - first < BLOCK_ROWS ? (size_t)(rows - first) : BLOCK_ROWS;
+    const size_t step = rows_at_once(&r->scene->simulation);
+    for (uint64_t first = 0; first < rows && status == IMK_OK; first += step) {
+        size_t count = rows - first < step ? (size_t)(rows - first) : step;
         status = write_rows(r, first, count);
         progress_update(&p, first + count, rows);
     }

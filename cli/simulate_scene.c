@@ -5,10 +5,32 @@
 #include <math.h>
 #include <string.h>
 
+static const double quarter_turn = 1.57079632679489661923; /* [rad] */
+
 static imk_geodetic place_of(const simulate_options *o)
 {
     imk_simulation standard = imk_simulation_default();
     return (imk_geodetic){isnan(o->latitude) ? standard.latitude : o->latitude, 0.0, o->height};
+}
+
+static bool lacks_rate(const imk_error *error)
+{
+    return strncmp(error->expected, "add --rate", 10) == 0;
+}
+
+/* Options that say how to read a log are of `imukit convert`, not of this verb. */
+static int table_error(imk_error *error, const char *path)
+{
+    if (strncmp(error->expected, "add --columns", 13) == 0) {
+        snprintf(error->expected, sizeof error->expected,
+                 "a header with names and units, time [s] among them");
+    } else if (strncmp(error->expected, "add --", 6) == 0 && !lacks_rate(error)) {
+        char options[76];
+        snprintf(options, sizeof options, "%.75s", error->expected + 4);
+        snprintf(error->expected, sizeof error->expected, "imukit convert %.60s NEW.csv %s", path,
+                 options);
+    }
+    return command_error(error, path);
 }
 
 static int open_motion(const simulate_options *o, scene *s)
@@ -18,10 +40,33 @@ static int open_motion(const simulate_options *o, scene *s)
     if (o->roll != 0 || o->pitch != 0 || o->yaw != 0)
         return command_misused("--roll, --pitch and --yaw are of a unit at rest: with --motion the "
                                "attitude is in the motion file");
-    if (imk_motion_read(o->motion, NULL, isnan(o->latitude) ? NULL : &place, o->seed, &s->motion,
-                        &error) != IMK_OK)
-        return command_error(&error, o->motion);
+    if (o->no_earth)
+        return command_misused("--no-earth is of a unit at rest: a motion script says `earth: no`");
+    const imk_geodetic *stated = isnan(o->latitude) ? NULL : &place;
+    imk_status status = imk_motion_read(o->motion, NULL, stated, o->seed, &s->motion, &error);
+    if (status != IMK_OK && lacks_rate(&error) && o->rate > 0) {
+        /* A table without time has the rate of the log. */
+        imk_log_settings settings = imk_log_settings_default();
+        settings.rate = o->rate;
+        status = imk_motion_read(o->motion, &settings, stated, o->seed, &s->motion, &error);
+    }
+    if (status != IMK_OK)
+        return table_error(&error, o->motion);
     s->simulation.motion = *imk_motion_file_motion(s->motion);
+    const char *note = imk_motion_file_note(s->motion);
+    if (*note)
+        command_warn("motion", "%s: %s", o->motion, note);
+    return -1;
+}
+
+static int check_clock(const simulate_options *o, const imk_model *model, const scene *s)
+{
+    const imk_timing *timing = &model->timing;
+    if (s->simulation.motion.recorded &&
+        (timing->rate_error.value != 0 || timing->jitter.value != 0 || timing->skew.value != 0))
+        return command_misused("%s is known at its samples only, and the model has errors of the "
+                               "clock: add --without rate_error,jitter,skew",
+                               o->motion);
     return -1;
 }
 
@@ -46,7 +91,7 @@ static int open_temperature(const simulate_options *o, const imk_model *model, s
         return -1;
     }
     if (imk_temperature_read(o->temperature, &s->temperature, &error) != IMK_OK)
-        return command_error(&error, o->temperature);
+        return table_error(&error, o->temperature);
     s->simulation.temperature = imk_temperature_file_profile(s->temperature);
     return -1;
 }
@@ -59,7 +104,25 @@ static int choose_rate(const simulate_options *o, scene *s)
         return command_misused("the sample rate is missing: add --rate 100Hz");
     if (!(s->simulation.rate > 0))
         return command_misused("--rate must be positive");
+    if (recorded && fabs(s->simulation.rate - recorded->rate) > 1e-9 * recorded->rate)
+        return command_misused("--rate %g Hz: the recorded motion has %g Hz; leave the option out",
+                               s->simulation.rate, recorded->rate);
     return -1;
+}
+
+/* Vibration that the parts of a sample cannot follow is neither averaged nor rectified rightly. */
+static void warn_of_vibration(const simulate_options *o, const scene *s)
+{
+    const imk_trajectory *trajectory = s->simulation.motion.trajectory;
+    const double rate = s->simulation.rate;
+    if (!trajectory || o->substeps > 0)
+        return;
+    size_t parts = imk_trajectory_substeps(trajectory, 1 / rate);
+    if (parts > IMK_SUBSTEPS_MAX)
+        command_warn("vibration",
+                     "the vibration needs %zu parts to a sample, and %d are the most: what it "
+                     "does comes out wrong below --rate %.0fHz",
+                     parts, IMK_SUBSTEPS_MAX, ceil(rate * (double)parts / IMK_SUBSTEPS_MAX));
 }
 
 /* A motion given without a length is simulated to its end, the last row included. */
@@ -80,9 +143,12 @@ static int choose_length(const simulate_options *o, scene *s)
         return command_misused("%g s at %g Hz is %.3g rows: expected 1 to 1e15", o->duration, rate,
                                rate * o->duration);
     if (o->duration > length + 1.5 / rate)
-        return command_misused("--duration %g s: the motion ends after %g s (leave the option out, "
-                               "or let the motion end with `then: hold`)",
-                               o->duration, length);
+        return command_misused("--duration %g s: the motion ends after %g s (leave the option "
+                               "out%s)",
+                               o->duration, length,
+                               imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT
+                                   ? ", or let the motion end with `then: hold`"
+                                   : "");
     s->rows = (uint64_t)llround(o->duration * rate);
     return -1;
 }
@@ -91,6 +157,9 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
 {
     imk_geodetic place = place_of(o);
     memset(s, 0, sizeof *s);
+    if (!(fabs(place.latitude) <= quarter_turn))
+        return command_misused("--latitude %g deg: expected -90deg to 90deg",
+                               place.latitude * 90 / quarter_turn);
     s->simulation = imk_simulation_default();
     s->simulation.seed = o->seed;
     s->simulation.run = (uint32_t)o->run;
@@ -103,11 +172,15 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
     s->simulation.substeps = o->substeps;
     int code = o->motion ? open_motion(o, s) : -1;
     if (code < 0)
+        code = check_clock(o, model, s);
+    if (code < 0)
         code = open_temperature(o, model, s);
     if (code < 0)
         code = choose_rate(o, s);
     if (code < 0)
         code = choose_length(o, s);
+    if (code < 0)
+        warn_of_vibration(o, s);
     if (s->simulation.motion.trajectory) {
         double last;
         imk_trajectory_span(s->simulation.motion.trajectory, &s->start, &last);

@@ -189,7 +189,7 @@ int simulate_truth(const simulate_options *o, const imk_model *model, const scen
                 code = command_error(&error, NULL);
             t->trajectory = &rest;
         }
-        t->parts = t->trajectory ? truth_parts(t->trajectory, simulation) : 1;
+        t->parts = code < 0 && t->trajectory ? truth_parts(t->trajectory, simulation) : 1;
         /* Only for the true times of its rows. */
         if (code < 0 &&
             imk_simulator_start(memory, size, model, simulation, &t->simulator, &error) != IMK_OK)

@@ -74,6 +74,7 @@ const verb compensate_verb = {
         "acceleration is the central difference of the rates. A gap in time begins anew.",
     .groups = {{"Options", sizeof compensate_option_table / sizeof compensate_option_table[0],
                 compensate_option_table, 0},
+               {"Terms", TERM_OPTIONS, term_options, offsetof(compensate_options, terms)},
                {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
                 offsetof(compensate_options, log)}},
     .run = run};
@@ -137,8 +138,8 @@ static int print_json(const compensation *c, const char *log, const char *name, 
                                       c->counts.flagged[i] > 0
                                           ? json_integer((json_int_t)c->counts.first_flagged[i])
                                           : json_null()));
-    term_list taken_out = compensate_terms(c->model, true);
-    term_list left = compensate_terms(c->model, false);
+    term_list taken_out = compensate_taken_out(c->model);
+    term_list left = compensate_left_in(c->model, c->whole);
     json_t *result = json_pack(
         "{s:I, s:I, s:o, s:I, s:o, s:o, s:o, s:o, s:o}", "rows", (json_int_t)c->counts.rows,
         "stretches", (json_int_t)c->counts.stretches, "flagged", flagged, "iterations",
@@ -158,8 +159,8 @@ static int report(const compensate_options *o, const compensation *c, const char
     int code = o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE;
     if (o->json)
         return print_json(c, log, name, code);
-    term_list taken_out = compensate_terms(c->model, true);
-    term_list left = compensate_terms(c->model, false);
+    term_list taken_out = compensate_taken_out(c->model);
+    term_list left = compensate_left_in(c->model, c->whole);
     print_list("Taken out", &taken_out);
     print_list("Left in", &left);
     fprintf(stderr, "%llu samples, %llu flagged\n", (unsigned long long)c->counts.rows,
@@ -187,8 +188,9 @@ static int check_model(const compensate_options *o, const compensation *c, const
     if (c->model->residual_of[0])
         command_warn("residual", "%s is what is left after compensating with %s: do that first",
                      name, c->model->residual_of);
-    if (compensate_terms(c->model, true).count == 0)
-        command_warn("nothing", "%s has no deterministic term: there is nothing to take out", name);
+    if (compensate_taken_out(c->model).count == 0)
+        command_warn("nothing", "%s has no deterministic term%s: there is nothing to take out",
+                     name, o->terms.only || o->terms.without ? " of those selected" : "");
     return -1;
 }
 
@@ -197,7 +199,11 @@ static int compensate(const compensate_options *o, compensation *c, const char *
 {
     imk_error error;
     imk_log_settings settings = log_input_settings(&o->log);
-    int code = command_model(name, c->model, NULL);
+    int code = command_model(name, c->whole, NULL);
+    if (code >= 0)
+        return code;
+    *c->model = *c->whole;
+    code = compensate_select(o, c->model);
     if (code >= 0)
         return code;
     if (imk_log_open(log, &settings, &c->reader, &error) != IMK_OK)
@@ -244,14 +250,15 @@ static int run(int count, char **words)
     if (code >= 0)
         return code;
     compensation *c = calloc(1, sizeof *c);
-    imk_model *model = malloc(sizeof *model);
-    if (c && model) {
-        c->model = model;
+    imk_model *models = malloc(2 * sizeof *models);
+    if (c && models) {
+        c->model = &models[0];
+        c->whole = &models[1];
         code = compensate(&o, c, operands[0], operands[1]);
     } else {
         code = command_failed("memory is exhausted");
     }
-    free(model);
+    free(models);
     free(c);
     return code;
 }

@@ -14,7 +14,8 @@
  *  The rate of temperature, where a model needs it, is the slope from sample to sample smoothed
  *  over a time tau, which is exact for a steady slope: rate[k] = rate[k-1] + (1 - e^(-dt/tau))
  *  ((T[k] - T[k-1])/dt - rate[k-1]). It starts at zero and takes a few tau to settle. A
- *  temperature that is NaN stands for the last one that was known.
+ *  temperature that is NaN stands for the last one that was known. Warm-up is that of the middle of
+ *  the interval that ends at a sample's time, of which the sample is the mean.
  *
  *  No allocation; the loop cannot fail. Streams, blocks and whole records give the same bits. */
 #ifndef IMUKIT_COMPENSATE_H

@@ -32,7 +32,7 @@ typedef struct imk_geodetic {
 IMK_API imk_vector3 imk_ecef_from_geodetic(imk_geodetic place);
 
 /** The inverse, bit-reproducible, for heights from -10 km to 10000 km: error below 1e-15 rad in the
- *  angles, and in height some units in the last place of the distance from the centre: 3e-9 m up
+ *  angles, and in height some units in the last place of the distance from the centre: 4e-9 m up
  *  to 100 km, 1e-8 m up to 10000 km. At the poles the longitude is that of the point, 0 on the axis
  *  itself. Bowring's formula [BOWRING1985]. */
 IMK_API imk_geodetic imk_geodetic_from_ecef(imk_vector3 position);

@@ -128,7 +128,8 @@ static void take_in(imk_compensator *c, const imk_readings *readings, size_t fir
                          BEFORE + j, l);
     for (int sensor = 0; sensor < 2; sensor++)
         for (size_t j = 0; c->warm_up_time[sensor] > 0.0 && j < count; j++) {
-            const double time = c->start_time + (double)(c->count + j) * c->dt;
+            /* A sample is the mean over the interval that ends at its time. */
+            const double time = c->start_time + ((double)(c->count + j) - 0.5) * c->dt;
             l->warm_up[sensor][BEFORE + j] = imk_exp(-time / c->warm_up_time[sensor]);
         }
     c->count += count;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Terms of a model switched off by name. A name is any run of whole components of a field's path in
  * the file: with the path gyro.noise.gauss_markov, "gauss_markov", "noise", "gyro.noise" and "gyro"
- * name it. So one rule serves keys, terms, groups and sensors, and a new row of the schema has its
- * names at once. */
+ * name it, and "gyro.gauss_markov" that of the gyros. So one rule serves keys, terms, groups and
+ * sensors, and a new row of the schema has its names at once. */
 #include "model_schema_internal.h"
 
 #include "base/nearest_name_internal.h"
@@ -42,23 +42,31 @@ static bool names_path(const char *name, const char *path)
     return false;
 }
 
+/* Of a name that begins with the sensor the rest is what any name is: "gyro.angle_random_walk". */
+static bool names_of_sensor(const char *name, int kind, const char *first, const char *second)
+{
+    const size_t length = strlen(kind_names[kind]);
+    char path[PATH_SIZE];
+    join(path, kind_names[kind], first, second);
+    if (names_path(name, path))
+        return true;
+    return strncmp(name, kind_names[kind], length) == 0 && name[length] == '.' &&
+           names_path(name + length + 1, path + length + 1);
+}
+
 /* A list is named by the keys of its elements too. */
 static bool names_field(const char *name, const imki_field *field, int kind)
 {
-    char path[PATH_SIZE];
     if (!field->path[kind])
         return false;
-    join(path, kind_names[kind], field->path[kind], NULL);
-    if (names_path(name, path))
+    if (names_of_sensor(name, kind, field->path[kind], NULL))
         return true;
     if (field->shape != IMKI_LIST)
         return false;
     const imki_list list = imki_list_of(field);
-    for (size_t i = 0; i < list.field_count; i++) {
-        join(path, kind_names[kind], field->path[kind], list.field[i].path[kind]);
-        if (names_path(name, path))
+    for (size_t i = 0; i < list.field_count; i++)
+        if (names_of_sensor(name, kind, field->path[kind], list.field[i].path[kind]))
             return true;
-    }
     return false;
 }
 

@@ -70,7 +70,7 @@ static void add_temperature(imk_model *model, record *r)
         r->temperature[i] = 290 + 0.5 * i * dt;
         r->temperature_rate[i] = 0.5;
         r->warm_up[IMK_GYRO][i] = 0;
-        r->warm_up[IMK_ACCEL][i] = exp(-i * dt / 10);
+        r->warm_up[IMK_ACCEL][i] = exp(-(i - 0.5) * dt / 10);
     }
 }
 
@@ -472,7 +472,7 @@ static void test_temperature_rate(void **state)
     free(c);
 }
 
-/* Warm-up counts from power-on. */
+/* Warm-up counts from power-on, and is that of the middle of a sample, which ends at its time. */
 static void test_warm_up(void **state)
 {
     (void)state;
@@ -486,7 +486,7 @@ static void test_warm_up(void **state)
     for (int i = 0; i < 3; i++) {
         imk_compensator_sample sample = {.temperature = (double)NAN};
         assert_true(imk_compensator_next(c, &sample));
-        CHECK_CLOSE(sample.force[1], -0.5 * exp(-(30 + i * dt) / 60), 1e-15);
+        CHECK_CLOSE(sample.force[1], -0.5 * exp(-(30 + (i - 0.5) * dt) / 60), 1e-15);
         assert_int_equal(sample.flags, 0); /* it needs no temperature */
     }
     free(c);

@@ -157,10 +157,17 @@ static void timing_is_a_group(void **state)
 static void several_names(void **state)
 {
     (void)state;
-    imk_model model = full_model();
+    const imk_model full = full_model();
+    imk_model model = full;
     const char *const names[] = {"bias.fixed", "gyro.bias", "range"};
     CHECK_OK(imk_model_select(&model, true, 3, names, NULL));
     assert_int_equal(count_kept(&model), 7 + 1 + 2);
+    /* What lies between the sensor and the name may be left out, as when the sensor is. */
+    const char *const of_gyros[] = {"gyro.fixed", "gyro.angle_random_walk"};
+    model = full;
+    CHECK_OK(imk_model_select(&model, true, 2, of_gyros, NULL));
+    assert_int_equal(count_kept(&model), 3);
+    assert_memory_equal(&model.gyro.bias.fixed, &full.gyro.bias.fixed, sizeof full.gyro.bias.fixed);
 }
 
 /* Names nobody has: the nearest is offered, with the sensor; the model stays. */
