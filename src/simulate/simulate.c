@@ -285,10 +285,10 @@ static void make_blocks(imk_simulator *simulator, size_t blocks, double *const *
 }
 
 /* Hand out rows of the blocks the channels hold. */
-static size_t hand_out(imk_simulator *simulator, size_t count, double *const *out)
+static size_t hand_out(imk_simulator *simulator, size_t channels, size_t count, double *const *out)
 {
     size_t now = count < simulator->left ? count : simulator->left;
-    for (size_t i = 0; i < simulator->channels; i++)
+    for (size_t i = 0; i < channels; i++)
         memcpy(out[i], simulator->channel[i].sample + IMK_NOISE_BLOCK - simulator->left,
                now * sizeof(double));
     simulator->left -= now;
@@ -310,7 +310,7 @@ void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *c
         out[i] = columns[i];
         held[i] = simulator->channel[i].sample;
     }
-    size_t done = hand_out(simulator, count, out);
+    size_t done = hand_out(simulator, channels, count, out);
     advance(out, channels, done);
     const size_t blocks = (count - done) / IMK_NOISE_BLOCK;
     make_blocks(simulator, blocks, out, executor);
@@ -320,5 +320,5 @@ void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *c
         return;
     make_blocks(simulator, 1, held, executor);
     simulator->left = IMK_NOISE_BLOCK;
-    hand_out(simulator, count - done, out);
+    hand_out(simulator, channels, count - done, out);
 }

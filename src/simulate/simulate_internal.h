@@ -111,8 +111,9 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
 void imki_channel_response(imki_channel *channel, const imk_distortion *distortion,
                            const imki_scene *scene, size_t part, size_t rows, double *out);
 
-/* Noise and output stage of the next 512 samples. @param block  deterministic part, replaced by the
- * output. @param constant  true: the part is channel->constant, and block is output only */
-void imki_channel_block(imki_channel *channel, bool constant, double *block);
+/* Noise and output stage of the next 512 samples.
+ * @param constant  true: the deterministic part is channel->constant; false: it stands in out
+ * @param out       in time order */
+void imki_channel_block(imki_channel *channel, bool constant, double *out);
 
 #endif
