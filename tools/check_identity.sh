@@ -34,7 +34,7 @@ simulate() {
 }
 
 # Both logs are made, or the sums mean nothing.
-"$out/gcc-O3/imukit" simulate "$model" --rate 100Hz --duration 1s -o "$out/rest.csv"
+"$out/gcc-O3/imukit" simulate "$model" --rate 100Hz --duration 1s -o "$out/rest.csv" 2>/dev/null
 "$out/gcc-O3/imukit" simulate "$model" --motion tests/identity/motion.yaml \
     --temperature tests/identity/temperature.yaml --rate 100Hz -o "$out/moving.csv"
 reference=$(simulate gcc-O3 1)
