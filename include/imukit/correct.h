@@ -42,6 +42,7 @@ typedef struct imk_correction_settings {
     double tolerance;
     imk_kernel kernel; /**< default IMK_KERNEL_SCALAR; the bits do not depend on it */
 } imk_correction_settings;
+/** Limits from the model, tolerance 1e-14. */
 IMK_API imk_correction_settings imk_correction_default(void);
 
 /** A model, ready to be taken out. About 12 kB; plain data. Starting takes some 30 kB of stack,

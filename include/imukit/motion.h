@@ -179,6 +179,7 @@ typedef struct imk_temperature_profile {
     const double *carried;     /**< NULL, or what imk_temperature_carry() made, for long profiles */
 } imk_temperature_profile;
 
+/** Check numbers and order of the points. */
 IMK_API imk_status imk_temperature_validate(const imk_temperature_profile *profile,
                                             imk_error *error);
 /** Temperature of the unit at each point, point_count values, for `carried`: then every call of

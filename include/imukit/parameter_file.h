@@ -60,6 +60,7 @@ typedef struct imk_parameter_settings {
     imk_density density;
     const char *sensor; /**< which of several sensors in the file; NULL: the only one */
 } imk_parameter_settings;
+/** Detect the format; no rate, density not stated. */
 IMK_API imk_parameter_settings imk_parameter_settings_default(void);
 
 /** Read. @return IMK_ERROR_FORMAT (none of the formats), _KEY_MISSING (error.expected: the option
