@@ -173,8 +173,9 @@ static void set_everything(imk_model *model)
             model->gyro.g2_sensitivity.value[i][j] = 1e-8 * (i + j + 1);
 }
 
-/* A motion known row by row, and a temperature that rises and falls. The rows fit the cache, as
- * those of a trajectory do, which are made a stretch at a time just before they are used. */
+/* A motion known row by row, and a temperature that rises and falls. The rows fit the cache and are
+ * aligned to its lines, as those of a trajectory are, which are made a stretch at a time just
+ * before they are used. */
 enum { MOTION_CALLS = 2, MOTION_ROWS = CALL * MOTION_CALLS };
 
 static imk_recorded_motion make_motion(void)
@@ -183,7 +184,7 @@ static imk_recorded_motion make_motion(void)
     for (int i = 0; i < 3; i++) {
         double *column[3];
         for (int c = 0; c < 3; c++) {
-            column[c] = malloc(MOTION_ROWS * sizeof(double));
+            column[c] = aligned_alloc(64, MOTION_ROWS * sizeof(double));
             for (size_t k = 0; column[c] && k < MOTION_ROWS; k++)
                 column[c][k] = sin(1e-3 * (double)k * (i + 1) + c);
         }

@@ -113,7 +113,10 @@ typedef struct imk_hysteresis {
     double span;        /**< L [K] */
     double temperature; /**< last [K]; NaN before the first */
     double state;       /**< p; starts at 0 */
+    double direction;   /**< sign of the last change; 0 before the first */
+    double distance;    /**< 1 - direction p, from the side of the loop that is approached */
 } imk_hysteresis;
+/** State 0, before the first temperature. */
 IMK_API imk_hysteresis imk_hysteresis_start(const imk_triad *triad);
 /** The state after each of the next `count` temperatures. */
 IMK_API void imk_hysteresis_next(imk_hysteresis *hysteresis, size_t count,

@@ -177,7 +177,7 @@ typedef struct imk_flicker_state {
     double value[IMK_FLICKER_STAGES];     /**< of the held stages, of unit variance */
     double above[IMK_FLICKER_STAGES + 1]; /**< sums of value[j] and slower stages */
     uint64_t changes[IMK_FLICKER_STAGES]; /**< of the held stages so far */
-    double normals[IMK_FLICKER_STAGES][IMK_FLICKER_BUFFER]; /**< drawn ahead for them */
+    double ahead[IMK_FLICKER_STAGES][IMK_FLICKER_BUFFER]; /**< innovations of stages 3 … */
     imk_noise_block block;
 } imk_flicker_state;
 /** Takes the streams of 16 instances: `stream` and the next 15. */

@@ -134,15 +134,24 @@ imk_status imk_flicker_start(imk_flicker_state *state, double instability, doubl
     return IMK_OK;
 }
 
-/* Change a held stage to its next value. */
-static double change_stage(imk_flicker_state *state, size_t stage, double value)
+enum { CHANGES = IMKI_FLICKER_CHANGES };
+
+/* What drives the next `count` changes of a held stage. */
+static void draw_innovations(imk_flicker_state *state, size_t stage, size_t count, double *out)
 {
-    size_t i = state->changes[stage] % IMK_FLICKER_BUFFER;
+    imk_random_normals(state->random, stage_stream(state, stage), state->changes[stage], count,
+                       out);
+    for (size_t k = 0; k < count; k++)
+        out[k] *= state->innovation;
+}
+
+static void change_stage(imk_flicker_state *state, size_t stage)
+{
+    const size_t i = state->changes[stage] % IMK_FLICKER_BUFFER;
     if (i == 0)
-        imk_random_normals(state->random, stage_stream(state, stage), state->changes[stage],
-                           IMK_FLICKER_BUFFER, state->normals[stage]);
+        draw_innovations(state, stage, IMK_FLICKER_BUFFER, state->ahead[stage]);
     state->changes[stage]++;
-    return state->power[1][1] * value + state->innovation * state->normals[stage][i];
+    state->value[stage] = state->power[1][1] * state->value[stage] + state->ahead[stage][i];
 }
 
 /* Change stage 3 and each slower one whose moment this is, then their sums, slowest first. */
@@ -152,52 +161,52 @@ static void change_slow_stages(imk_flicker_state *state, uint64_t count)
     while (slowest + 1 < STAGES && count % ((uint64_t)1 << 2 * slowest) == 0)
         slowest++;
     for (size_t stage = slowest; stage >= 3; stage--) {
-        state->value[stage] = change_stage(state, stage, state->value[stage]);
+        change_stage(state, stage);
         state->above[stage] = state->above[stage + 1] + state->value[stage];
     }
 }
 
-enum { PARTS = IMK_NOISE_STEPS / 4 }; /* of 4 samples, in a segment */
+/* The changes of stage 2 in a block, in groups of four that begin with a change of stage 3. The
+ * first group may have begun before the block, `lead` changes ago. */
+enum { GROUP = 4, GROUPED = CHANGES + 2 * GROUP };
 
-/* The held stages' sum is the same for 4 samples at a time; a block begins `offset` samples after
- * such a change. Part t of the block belongs to segment t/PARTS, and the last part of a segment is
- * also the first of the next when the offset is not 0. */
-static void add_held_stages(imk_flicker_state *state, double *block)
+/* The sums of all held stages: sum[lead + k] from change k on, sum[lead - 1] before. */
+static void sum_held_stages(imk_flicker_state *state, uint64_t first_change,
+                            const double value[GROUPED], double *sum)
 {
-    double held[(PARTS + 1) * IMKI_SEGMENTS];
-    uint64_t first = state->next + state->phase;
-    size_t offset = (size_t)(first % 4);
-    size_t parts = IMK_NOISE_BLOCK / 4 + (offset > 0 ? 1 : 0);
-    double value = state->value[2];
-    for (size_t t = 0; t < parts; t++) {
-        uint64_t count = first - offset + 4 * t;
-        if (t > 0 || offset == 0) {
-            value = change_stage(state, 2, value);
-            if (count % 16 == 0)
-                change_slow_stages(state, count);
-        }
-        double sum = state->sigma * (state->above[3] + value);
-        if (t < IMK_NOISE_BLOCK / 4)
-            held[t % PARTS * IMKI_SEGMENTS + t / PARTS] = sum;
-        if (t % PARTS == 0 && t > 0)
-            held[PARTS * IMKI_SEGMENTS + t / PARTS - 1] = sum;
+    const size_t lead = (size_t)(first_change % GROUP);
+    const double before = state->sigma * (state->above[3] + state->value[2]);
+    for (size_t k = 0; k < lead + CHANGES; k += GROUP) {
+        if (k >= lead)
+            change_slow_stages(state, 4 * (first_change - lead + k));
+        for (size_t j = k; j < k + GROUP; j++)
+            sum[j] = state->sigma * (state->above[3] + value[j]);
     }
-    state->value[2] = value;
-    state->next += IMK_NOISE_BLOCK;
-    imki_add_held(state->random.kernel, held, offset, block);
+    sum[(ptrdiff_t)lead - 1] = before;
+    state->value[2] = value[lead + CHANGES - 1];
+    state->changes[2] += CHANGES;
 }
 
 void imki_flicker_block(imk_flicker_state *state, double *block)
 {
-    double normals[IMK_NOISE_BLOCK];
+    double normals[2][IMK_NOISE_BLOCK], value[GROUPED] = {0.0}, sums[1 + GROUPED];
+    imki_recursion stages[2];
     for (size_t stage = 0; stage < 2; stage++) {
-        double gain = state->sigma * (stage == 0 ? state->fast_innovation : state->innovation);
+        const double innovation = stage == 0 ? state->fast_innovation : state->innovation;
+        stages[stage] = (imki_recursion){.gain = state->sigma * innovation,
+                                         .power = state->power[stage],
+                                         .normals = normals[stage],
+                                         .value = &state->fast[stage]};
         imk_random_normals(state->random, stage_stream(state, stage), state->next, IMK_NOISE_BLOCK,
-                           normals);
-        imki_add_recursion(state->random.kernel, gain, state->power[stage], normals,
-                           &state->fast[stage], block);
+                           normals[stage]);
     }
-    add_held_stages(state, block);
+    const uint64_t first = state->next + state->phase, first_change = (first + 3) / 4;
+    const size_t offset = (size_t)(first % 4), lead = (size_t)(first_change % GROUP);
+    draw_innovations(state, 2, CHANGES, value + lead);
+    imki_add_flicker(state->random.kernel, stages, state->value[2], value + lead, block);
+    sum_held_stages(state, first_change, value, sums + 1);
+    imki_add_held(state->random.kernel, sums + lead + (offset > 0 ? 0 : 1), offset, block);
+    state->next += IMK_NOISE_BLOCK;
 }
 
 static void next_block(void *state, double *block)

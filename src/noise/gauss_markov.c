@@ -104,18 +104,32 @@ imk_status imk_gauss_markov_start(imk_gauss_markov_state *state, imk_gauss_marko
     return IMK_OK;
 }
 
-void imki_gauss_markov_block(imk_gauss_markov_state *state, double *block)
+/* Up to this many together. */
+enum { TOGETHER = 2 };
+
+void imki_gauss_markov_blocks(imk_gauss_markov_state *states, size_t count, double *block)
 {
-    double normals[IMK_NOISE_BLOCK];
-    imk_random_normals(state->random, state->stream, state->next, IMK_NOISE_BLOCK, normals);
-    state->next += IMK_NOISE_BLOCK;
-    imki_add_recursion(state->random.kernel, state->gain, state->power, normals, &state->value,
-                       block);
+    double normals[TOGETHER][IMK_NOISE_BLOCK];
+    imki_recursion recursions[TOGETHER];
+    for (size_t first = 0; first < count; first += TOGETHER) {
+        const size_t now = count - first < TOGETHER ? count - first : TOGETHER;
+        for (size_t i = 0; i < now; i++) {
+            imk_gauss_markov_state *state = &states[first + i];
+            imk_random_normals(state->random, state->stream, state->next, IMK_NOISE_BLOCK,
+                               normals[i]);
+            state->next += IMK_NOISE_BLOCK;
+            recursions[i] = (imki_recursion){.gain = state->gain,
+                                             .power = state->power,
+                                             .normals = normals[i],
+                                             .value = &state->value};
+        }
+        imki_add_recursions(states->random.kernel, recursions, now, block);
+    }
 }
 
 static void next_block(void *state, double *block)
 {
-    imki_gauss_markov_block(state, block);
+    imki_gauss_markov_blocks(state, 1, block);
 }
 
 void imk_gauss_markov_add(imk_gauss_markov_state *state, size_t count, double *out)

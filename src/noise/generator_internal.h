@@ -67,9 +67,17 @@ void imki_add_blocks(imk_noise_block *block, void (*next)(void *state, double *b
 
 /* block += scale * normals */
 void imki_add_scaled(imk_kernel kernel, double scale, const double *normals, double *block);
-/* block += gain y,  y[k] = phi y[k-1] + n[k];  *value is y before and after */
-void imki_add_recursion(imk_kernel kernel, double gain, const double *power, const double *normals,
-                        double *value, double *block);
+/* One of several recursions that run together, because each alone waits for its own sums:
+ * y[k] = phi y[k-1] + n[k]. */
+typedef struct imki_recursion {
+    double gain;
+    const double *power; /* phi^i, i = 0 … IMK_NOISE_STEPS */
+    double *normals;     /* n of this block; overwritten */
+    double *value;       /* the last y of the block before, then of this one */
+} imki_recursion;
+/* block += gain y of each, in this order */
+void imki_add_recursions(imk_kernel kernel, const imki_recursion *recursions, size_t count,
+                         double *block);
 /* block += gain y,  y[k+1] = y[k] + n[k];  *value is y[0] of this block, then of the next */
 void imki_add_sums(imk_kernel kernel, double gain, const double *normals, double *value,
                    double *block);
@@ -78,7 +86,13 @@ void imki_quantize(imk_kernel kernel, double lsb, double dt, double *residual, d
 /* Elements within +-dead_band become 0, those beyond +-range the end of it (0 and infinity: none).
  */
 void imki_saturate(imk_kernel kernel, double dead_band, double range, double *block);
-/* Add values that stay for 4 samples: held[16 t + s] from sample 4 t - offset of segment s on. */
+/* Two recursions as above, and the changes of a held stage: change[k] = phi change[k-1] + change[k]
+ * with the phi of the second one, change[-1] being `held`. */
+enum { IMKI_FLICKER_CHANGES = IMK_NOISE_BLOCK / 4 };
+void imki_add_flicker(imk_kernel kernel, const imki_recursion recursions[2], double held,
+                      double *change, double *block);
+/* Add values that stay for 4 samples: held[0] ends after 4 - offset samples, 0 <= offset < 4; the
+ * block takes IMK_NOISE_BLOCK/4 of them, and one more if offset > 0. */
 void imki_add_held(imk_kernel kernel, const double *held, size_t offset, double *block);
 /* out = block in time order */
 void imki_to_time_order(imk_kernel kernel, const double *block, double *out);
@@ -91,7 +105,7 @@ void imki_white_block(imk_white_state *state, double *block);
 void imki_arma_block(imk_arma_state *state, double *block);
 void imki_flicker_block(imk_flicker_state *state, double *block);
 void imki_random_walk_block(imk_random_walk_state *state, double *block);
-void imki_gauss_markov_block(imk_gauss_markov_state *state, double *block);
+void imki_gauss_markov_blocks(imk_gauss_markov_state *states, size_t count, double *block);
 void imki_sinusoid_block(imk_sinusoid_state *state, double *block);
 /* Applies, instead of adding. Not to be mixed with imk_quantization_apply() within a block. */
 void imki_quantization_block(imk_quantization_state *state, imk_kernel kernel, double *block);

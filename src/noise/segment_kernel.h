@@ -1,63 +1,111 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The loops over a block in segment order, to be compiled for each instruction set. A step of the
- * 16 segments is two vectors of 8 lanes, which the compiler maps to the registers there are. Each
- * element sees the same operations in the same order whatever these are. */
+/* The loops over a block in segment order, to be compiled for each instruction set with vectors of
+ * LANES lanes, the width of its registers. A step of the 16 segments is a few vectors. Each element
+ * sees the same operations in the same order whatever these are. */
 #ifndef IMUKIT_SEGMENT_KERNEL_H
 #define IMUKIT_SEGMENT_KERNEL_H
 
-#include "noise/generator_internal.h"
+#include "noise/segment_internal.h"
 
 #define KERNEL static inline __attribute__((always_inline))
 
-enum { STEPS = IMK_NOISE_STEPS, SEGMENTS = IMKI_SEGMENTS, LANES = 8, HALVES = SEGMENTS / LANES };
+enum { STEPS = IMK_NOISE_STEPS, SEGMENTS = IMKI_SEGMENTS, VECTORS = SEGMENTS / LANES };
+enum { TOGETHER = 2 }; /* recursions */
 
 /* Blocks are arrays of double of any alignment. */
-typedef double lanes __attribute__((vector_size(64), aligned(8), may_alias));
+typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
 
-#define AT(block, i, half) (*(lanes *)((block) + (i)*SEGMENTS + (half)*LANES))
-#define CONST_AT(block, i, half) (*(const lanes *)((block) + (i)*SEGMENTS + (half)*LANES))
+#define AT(block, i, v) (*(lanes *)((block) + (i)*SEGMENTS + (v)*LANES))
+#define CONST_AT(block, i, v) (*(const lanes *)((block) + (i)*SEGMENTS + (v)*LANES))
 
 KERNEL void add_scaled(double scale, const double *restrict normals, double *restrict block)
 {
     for (size_t i = 0; i < STEPS; i++)
-        for (size_t h = 0; h < HALVES; h++)
-            AT(block, i, h) += scale * CONST_AT(normals, i, h);
+        for (size_t v = 0; v < VECTORS; v++)
+            AT(block, i, v) += scale * CONST_AT(normals, i, v);
 }
 
-KERNEL void add_recursion(double gain, const double *restrict power, const double *restrict normals,
-                          double *restrict value, double *restrict block)
+/* A recursion of single values, which waits for itself all the time: it is given two steps whenever
+ * something else is done. */
+typedef struct chain {
+    double phi, last;
+    double *next;
+} chain;
+
+KERNEL void two_links(chain *c)
 {
-    double local[IMK_NOISE_BLOCK], start[SEGMENTS];
-    lanes now[HALVES];
-    for (size_t h = 0; h < HALVES; h++)
-        AT(local, 0, h) = now[h] = CONST_AT(normals, 0, h);
-    for (size_t i = 1; i < STEPS; i++)
-        for (size_t h = 0; h < HALVES; h++)
-            AT(local, i, h) = now[h] = power[1] * now[h] + CONST_AT(normals, i, h);
-    double carried = *value;
-    for (size_t s = 0; s < SEGMENTS; s++) {
-        start[s] = carried;
-        carried = power[STEPS] * carried + local[(STEPS - 1) * SEGMENTS + s];
+    c->next[0] = c->last = c->phi * c->last + c->next[0];
+    c->next[1] = c->last = c->phi * c->last + c->next[1];
+    c->next += 2;
+}
+
+/* `count` is a constant where this is called. The sums of one recursion wait for each other: those
+ * of the others fill the time. */
+KERNEL void add_together(const imki_recursion *recursions, size_t count, chain *beside,
+                         double *restrict block)
+{
+    double start[TOGETHER][SEGMENTS], carried[TOGETHER];
+    lanes now[TOGETHER][VECTORS] = {{{0.0}}};
+    imki_recursion r[TOGETHER];
+    for (size_t c = 0; c < count; c++) {
+        r[c] = recursions[c];
+        carried[c] = *r[c].value;
     }
-    *value = carried;
-    for (size_t i = 0; i < STEPS; i++)
-        for (size_t h = 0; h < HALVES; h++)
-            AT(block, i, h) +=
-                gain * (CONST_AT(local, i, h) + power[i + 1] * CONST_AT(start, 0, h));
+    for (size_t i = 0; i < STEPS; i++) {
+        for (size_t c = 0; c < count; c++)
+            for (size_t v = 0; v < VECTORS; v++)
+                AT(r[c].normals, i, v) = now[c][v] =
+                    r[c].power[1] * now[c][v] + CONST_AT(r[c].normals, i, v);
+        if (beside)
+            two_links(beside);
+    }
+    for (size_t s = 0; s < SEGMENTS; s++)
+        for (size_t c = 0; c < count; c++) {
+            start[c][s] = carried[c];
+            carried[c] = r[c].power[STEPS] * carried[c] + r[c].normals[(STEPS - 1) * SEGMENTS + s];
+        }
+    for (size_t c = 0; c < count; c++)
+        *r[c].value = carried[c];
+    for (size_t i = 0; i < STEPS; i++) {
+        for (size_t v = 0; v < VECTORS; v++) {
+            lanes sum = AT(block, i, v);
+            for (size_t c = 0; c < count; c++)
+                sum += r[c].gain * (CONST_AT(r[c].normals, i, v) +
+                                    r[c].power[i + 1] * CONST_AT(start[c], 0, v));
+            AT(block, i, v) = sum;
+        }
+        if (beside)
+            two_links(beside);
+    }
+}
+
+KERNEL void add_recursions(const imki_recursion *r, size_t count, double *restrict block)
+{
+    for (; count >= TOGETHER; r += TOGETHER, count -= TOGETHER)
+        add_together(r, TOGETHER, NULL, block);
+    if (count > 0)
+        add_together(r, 1, NULL, block);
+}
+
+KERNEL void add_flicker(const imki_recursion *r, double held, double *change,
+                        double *restrict block)
+{
+    chain beside = {r[1].power[1], held, change};
+    add_together(r, 2, &beside, block);
 }
 
 KERNEL void add_sums(double gain, const double *restrict normals, double *restrict value,
                      double *restrict block)
 {
     double local[IMK_NOISE_BLOCK], total[SEGMENTS], start[SEGMENTS];
-    lanes now[HALVES] = {{0.0}};
+    lanes now[VECTORS] = {{0.0}};
     for (size_t i = 0; i < STEPS; i++)
-        for (size_t h = 0; h < HALVES; h++) {
-            AT(local, i, h) = now[h];
-            now[h] += CONST_AT(normals, i, h);
+        for (size_t v = 0; v < VECTORS; v++) {
+            AT(local, i, v) = now[v];
+            now[v] += CONST_AT(normals, i, v);
         }
-    for (size_t h = 0; h < HALVES; h++)
-        AT(total, 0, h) = now[h];
+    for (size_t v = 0; v < VECTORS; v++)
+        AT(total, 0, v) = now[v];
     double carried = *value;
     for (size_t s = 0; s < SEGMENTS; s++) {
         start[s] = carried;
@@ -65,18 +113,18 @@ KERNEL void add_sums(double gain, const double *restrict normals, double *restri
     }
     *value = carried;
     for (size_t i = 0; i < STEPS; i++)
-        for (size_t h = 0; h < HALVES; h++)
-            AT(block, i, h) += gain * (CONST_AT(local, i, h) + CONST_AT(start, 0, h));
+        for (size_t v = 0; v < VECTORS; v++)
+            AT(block, i, v) += gain * (CONST_AT(local, i, v) + CONST_AT(start, 0, v));
 }
 
 KERNEL void quantize(double lsb, double dt, double *restrict residual, double *restrict block)
 {
     const double per_step = 1.0 / lsb, rate_step = lsb / dt, shift = 0x1.8p52;
     double local[IMK_NOISE_BLOCK], start[SEGMENTS];
-    lanes now[HALVES] = {{0.0}}, counted[HALVES] = {{0.0}};
+    lanes now[VECTORS] = {{0.0}};
     for (size_t i = 0; i < STEPS; i++)
-        for (size_t h = 0; h < HALVES; h++)
-            AT(local, i, h) = now[h] = now[h] + CONST_AT(block, i, h) * dt;
+        for (size_t v = 0; v < VECTORS; v++)
+            AT(local, i, v) = now[v] = now[v] + CONST_AT(block, i, v) * dt;
     double carried = *residual;
     for (size_t s = 0; s < SEGMENTS; s++) {
         start[s] = carried;
@@ -84,13 +132,17 @@ KERNEL void quantize(double lsb, double dt, double *restrict residual, double *r
         carried = integral - imki_round(integral * per_step) * lsb;
     }
     *residual = carried;
-    for (size_t i = 0; i < STEPS; i++)
-        for (size_t h = 0; h < HALVES; h++) {
-            lanes steps = (CONST_AT(start, 0, h) + CONST_AT(local, i, h)) * per_step;
+    /* Vector by vector: the first one need not wait for the segments of the others. */
+    for (size_t v = 0; v < VECTORS; v++) {
+        const lanes before = CONST_AT(start, 0, v);
+        lanes counted = {0.0};
+        for (size_t i = 0; i < STEPS; i++) {
+            lanes steps = (before + CONST_AT(local, i, v)) * per_step;
             steps = (steps + shift) - shift; /* imki_round() of all lanes */
-            AT(block, i, h) = (steps - counted[h]) * rate_step;
-            counted[h] = steps;
+            AT(block, i, v) = (steps - counted) * rate_step;
+            counted = steps;
         }
+    }
 }
 
 /* Plain loops: comparisons of vectors are taken apart by the compiler. */
@@ -104,52 +156,103 @@ KERNEL void saturate(double dead_band, double range, double *restrict block)
     }
 }
 
-KERNEL void add_held(const double *restrict held, size_t offset, double *restrict block)
-{
-    for (size_t i = 0; i < STEPS; i++)
-        for (size_t h = 0; h < HALVES; h++)
-            AT(block, i, h) += CONST_AT(held, (i + offset) / 4, h);
-}
+enum { ROWS = 8 };
+typedef double row __attribute__((vector_size(8 * ROWS), aligned(8), may_alias));
 
 /* Transpose 8 rows of 8: pairs of elements, then pairs of pairs, then halves change places between
  * vectors. */
-KERNEL void transpose_lanes(const double *restrict in, size_t in_stride, double *restrict out,
-                            size_t out_stride)
+KERNEL void transpose(const double *restrict in, size_t in_stride, double *restrict out,
+                      size_t out_stride)
 {
-    lanes a[LANES], b[LANES];
-    for (size_t i = 0; i < LANES; i++)
-        a[i] = *(const lanes *)(in + i * in_stride);
-    for (size_t i = 0; i < LANES; i += 2) {
+    row a[ROWS], b[ROWS];
+    for (size_t i = 0; i < ROWS; i++)
+        a[i] = *(const row *)(in + i * in_stride);
+    for (size_t i = 0; i < ROWS; i += 2) {
         b[i] = __builtin_shufflevector(a[i], a[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
         b[i + 1] = __builtin_shufflevector(a[i], a[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
     }
-    for (size_t i = 0; i < LANES; i += 4)
+    for (size_t i = 0; i < ROWS; i += 4)
         for (size_t j = i; j < i + 2; j++) {
             a[j] = __builtin_shufflevector(b[j], b[j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
             a[j + 2] = __builtin_shufflevector(b[j], b[j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
         }
     for (size_t s = 0; s < 4; s++) {
-        *(lanes *)(out + s * out_stride) =
+        *(row *)(out + s * out_stride) =
             __builtin_shufflevector(a[s], a[s + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-        *(lanes *)(out + (s + 4) * out_stride) =
+        *(row *)(out + (s + 4) * out_stride) =
             __builtin_shufflevector(a[s], a[s + 4], 4, 5, 6, 7, 12, 13, 14, 15);
     }
 }
 
+enum { HOLDS = STEPS / 4 }; /* in a segment */
+
+/* The last hold of a segment is also the first one of the next when the offset is not 0. */
+KERNEL void add_held(const double *restrict held, size_t offset, double *restrict block)
+{
+    double parts[(HOLDS + 1) * SEGMENTS];
+    for (size_t s = 0; s < SEGMENTS; s += ROWS)
+        transpose(held + s * HOLDS, HOLDS, parts + s, SEGMENTS);
+    for (size_t s = 0; s < SEGMENTS && offset > 0; s++)
+        parts[HOLDS * SEGMENTS + s] = held[HOLDS * (s + 1)];
+    for (size_t i = 0; i < STEPS; i++)
+        for (size_t v = 0; v < VECTORS; v++)
+            AT(block, i, v) += CONST_AT(parts, (i + offset) / 4, v);
+}
+
 KERNEL void to_time_order(const double *restrict block, double *restrict out)
 {
-    for (size_t half = 0; half < HALVES; half++)
-        for (size_t i = 0; i < STEPS; i += LANES)
-            transpose_lanes(block + i * SEGMENTS + half * LANES, SEGMENTS,
-                            out + half * LANES * STEPS + i, STEPS);
+    for (size_t s = 0; s < SEGMENTS; s += ROWS)
+        for (size_t i = 0; i < STEPS; i += ROWS)
+            transpose(block + i * SEGMENTS + s, SEGMENTS, out + s * STEPS + i, STEPS);
 }
 
 KERNEL void to_segment_order(const double *restrict samples, double *restrict block)
 {
-    for (size_t half = 0; half < HALVES; half++)
-        for (size_t i = 0; i < STEPS; i += LANES)
-            transpose_lanes(samples + half * LANES * STEPS + i, STEPS,
-                            block + i * SEGMENTS + half * LANES, SEGMENTS);
+    for (size_t s = 0; s < SEGMENTS; s += ROWS)
+        for (size_t i = 0; i < STEPS; i += ROWS)
+            transpose(samples + s * STEPS + i, STEPS, block + i * SEGMENTS + s, SEGMENTS);
 }
+
+/* The loops as functions of one instruction set. */
+#define COMPILE_FOR(isa, target)                                                                   \
+    target void imki_add_scaled_##isa(double scale, const double *normals, double *block)          \
+    {                                                                                              \
+        add_scaled(scale, normals, block);                                                         \
+    }                                                                                              \
+    target void imki_add_recursions_##isa(const imki_recursion *recursions, size_t count,          \
+                                          double *block)                                           \
+    {                                                                                              \
+        add_recursions(recursions, count, block);                                                  \
+    }                                                                                              \
+    target void imki_add_flicker_##isa(const imki_recursion *recursions, double held,              \
+                                       double *change, double *block)                              \
+    {                                                                                              \
+        add_flicker(recursions, held, change, block);                                              \
+    }                                                                                              \
+    target void imki_add_sums_##isa(double gain, const double *normals, double *value,             \
+                                    double *block)                                                 \
+    {                                                                                              \
+        add_sums(gain, normals, value, block);                                                     \
+    }                                                                                              \
+    target void imki_quantize_##isa(double lsb, double dt, double *residual, double *block)        \
+    {                                                                                              \
+        quantize(lsb, dt, residual, block);                                                        \
+    }                                                                                              \
+    target void imki_saturate_##isa(double dead_band, double range, double *block)                 \
+    {                                                                                              \
+        saturate(dead_band, range, block);                                                         \
+    }                                                                                              \
+    target void imki_add_held_##isa(const double *held, size_t offset, double *block)              \
+    {                                                                                              \
+        add_held(held, offset, block);                                                             \
+    }                                                                                              \
+    target void imki_to_time_order_##isa(const double *block, double *out)                         \
+    {                                                                                              \
+        to_time_order(block, out);                                                                 \
+    }                                                                                              \
+    target void imki_to_segment_order_##isa(const double *samples, double *block)                  \
+    {                                                                                              \
+        to_segment_order(samples, block);                                                          \
+    }
 
 #endif

@@ -262,8 +262,7 @@ void imki_channel_block(imki_channel *channel, bool constant, double *out)
         imki_flicker_block(&channel->flicker, block);
     if (channel->random_walk_present)
         imki_random_walk_block(&channel->random_walk, block);
-    for (int i = 0; i < channel->gauss_markov_count; i++)
-        imki_gauss_markov_block(&channel->gauss_markov[i], block);
+    imki_gauss_markov_blocks(channel->gauss_markov, (size_t)channel->gauss_markov_count, block);
     for (int i = 0; i < channel->sinusoid_count; i++)
         imki_sinusoid_block(&channel->sinusoid[i], block);
     for (int i = 0; i < channel->resonance_count; i++)
