@@ -173,9 +173,10 @@ static void set_everything(imk_model *model)
             model->gyro.g2_sensitivity.value[i][j] = 1e-8 * (i + j + 1);
 }
 
-/* A motion known row by row, and a temperature that rises and falls. The rows fit the cache and are
- * aligned to its lines, as those of a trajectory are, which are made a stretch at a time just
- * before they are used. */
+/* A motion known row by row, and a temperature that rises and falls as a table says, without the
+ * lag of the unit: what they cost is not the model's. The rows fit the cache and are aligned to its
+ * lines, as those of a trajectory are, which are made a stretch at a time just before they are
+ * used. */
 enum { MOTION_CALLS = 2, MOTION_ROWS = CALL * MOTION_CALLS };
 
 static imk_recorded_motion make_motion(void)
@@ -197,10 +198,8 @@ static imk_recorded_motion make_motion(void)
 
 static const double profile_time[] = {0.0, 6e3, 2e4};
 static const double profile_temperature[] = {290.0, 330.0, 280.0};
-static const imk_temperature_profile profile = {.point_count = 3,
-                                                .time = profile_time,
-                                                .temperature = profile_temperature,
-                                                .time_constant = 300.0};
+static const imk_temperature_profile profile = {
+    .point_count = 3, .time = profile_time, .temperature = profile_temperature};
 
 static imk_simulation simulation_of(const imk_recorded_motion *motion)
 {

@@ -62,10 +62,9 @@ static inline void store(double *out, real a)
 
 #include "base/normals_kernel.h"
 
-void imki_draw_groups_avx2(uint64_t seed, uint64_t stream, uint64_t group, size_t groups,
-                           double *out)
+void imki_draw_groups_avx2(uint64_t seed, const imki_draw *draws, size_t count)
 {
-    draw_groups(seed, stream, group, groups, out);
+    draw_groups(seed, draws, count);
 }
 
 #else

@@ -18,15 +18,27 @@
 #define IMKI_GROUP_BLOCKS 8
 #define IMKI_GROUP_NORMALS 32
 
-/* Draws whole groups of a stream, in the layout of random.h.
- *
- * seed    key of Philox
- * stream  upper half of its counter
- * group   first group; all groups have the same block number >> 32, which the kernels use to do
- *         half of the first two rounds once only
- * out     32 * groups doubles, no alignment needed */
-typedef void imki_draw_groups(uint64_t seed, uint64_t stream, uint64_t group, size_t groups,
-                              double *out);
+/* Whole groups of a stream. All have the same block number >> 32, which the kernels use to do half
+ * of the first two rounds once only. */
+typedef struct imki_draw {
+    uint64_t stream; /* upper half of Philox's counter */
+    uint64_t group;  /* the first one */
+    size_t groups;
+    double *out; /* 32 * groups doubles in the layout of random.h, no alignment needed */
+} imki_draw;
+
+/* Normals first … first + count of a stream: whole groups. */
+static inline imki_draw imki_draw_of(uint64_t stream, uint64_t first, size_t count, double *out)
+{
+    return (imki_draw){stream, first / IMKI_GROUP_NORMALS, count / IMKI_GROUP_NORMALS, out};
+}
+
+/* Several draws in a row: the kernels work on what comes next before the last one is finished, so
+ * one call for all costs less than one for each. `seed` is the key of Philox. */
+typedef void imki_draw_groups(uint64_t seed, const imki_draw *draws, size_t count);
+
+/* The same with the kernel of the source. */
+void imki_random_draws(imk_random source, const imki_draw *draws, size_t count);
 
 imki_draw_groups imki_draw_groups_scalar;
 imki_draw_groups imki_draw_groups_avx2;

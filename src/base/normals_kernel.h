@@ -168,32 +168,37 @@ static inline void rotate(word n, real rho, real *first, real *second)
 
 /* Each pass draws the numbers of one vector of blocks, splits those of the vector before, and
  * finishes the one before that: three independent strands, so that no division or root is waited
- * for. The first STRANDS - 1 passes finish nothing of use. */
-static void draw_groups(uint64_t seed, uint64_t stream, uint64_t group, size_t groups, double *out)
+ * for. The first STRANDS - 1 passes finish nothing of use, and as many at the end draw nothing. */
+static void draw_groups(uint64_t seed, const imki_draw *draws, size_t count)
 {
     enum { STRANDS = 3, PARTS = 4 };
-    const philox_plan plan = plan_philox(seed, stream, group * IMKI_GROUP_BLOCKS);
-    word block = lane_numbers() + spread(group * IMKI_GROUP_BLOCKS);
     word drawn[2] = {spread(0), spread(0)}, halved[2] = {spread(0), spread(0)};
     real e[2] = {as_real(spread(0)), as_real(spread(0))}, s[2] = {e[0], e[0]};
     double unused[IMKI_GROUP_NORMALS];
-    for (size_t pass = 0; pass < groups * SETS + STRANDS - 1; pass++) {
-        const size_t vector = pass - (STRANDS - 1);
-        double *lanes = unused;
-        if (pass >= STRANDS - 1)
-            lanes = out + vector / SETS * IMKI_GROUP_NORMALS + vector % SETS * LANES;
-        word next[2];
-        real normals[PARTS];
-        draw_numbers(&plan, block, next);
-        block = block + spread(LANES);
-        for (int i = 0; i < 2; i++) {
-            const real rho = radius(e[i], s[i]);
-            rotate(halved[i], rho, &normals[2 * i], &normals[2 * i + 1]);
-            split(drawn[i], &e[i], &s[i]);
-            halved[i] = drawn[i];
-            drawn[i] = next[i];
+    double *lanes = unused, *lanes_next = unused; /* of what is finished now, and next */
+    for (size_t d = 0; d <= count; d++) {
+        const imki_draw draw = d < count ? draws[d] : (imki_draw){.out = unused};
+        const size_t passes = d < count ? draw.groups * SETS : STRANDS - 1;
+        const philox_plan plan = plan_philox(seed, draw.stream, draw.group * IMKI_GROUP_BLOCKS);
+        word block = lane_numbers() + spread(draw.group * IMKI_GROUP_BLOCKS);
+        for (size_t pass = 0; pass < passes; pass++) {
+            word next[2];
+            real normals[PARTS];
+            draw_numbers(&plan, block, next);
+            block = block + spread(LANES);
+            for (int i = 0; i < 2; i++) {
+                const real rho = radius(e[i], s[i]);
+                rotate(halved[i], rho, &normals[2 * i], &normals[2 * i + 1]);
+                split(drawn[i], &e[i], &s[i]);
+                halved[i] = drawn[i];
+                drawn[i] = next[i];
+            }
+            for (int part = 0; part < PARTS; part++)
+                store(lanes + part * IMKI_GROUP_BLOCKS, normals[part]);
+            lanes = lanes_next;
+            lanes_next = d < count
+                             ? draw.out + pass / SETS * IMKI_GROUP_NORMALS + pass % SETS * LANES
+                             : unused;
         }
-        for (int part = 0; part < PARTS; part++)
-            store(lanes + part * IMKI_GROUP_BLOCKS, normals[part]);
     }
 }

@@ -82,12 +82,17 @@ static imki_draw_groups *groups_of(imk_kernel kernel)
     }
 }
 
+void imki_random_draws(imk_random source, const imki_draw *draws, size_t count)
+{
+    groups_of(source.kernel)(source.seed, draws, count);
+}
+
 /* Part of one group, through a buffer. */
 static void draw_part(imki_draw_groups *draw, uint64_t seed, uint64_t stream, uint64_t group,
                       size_t skip, size_t count, double *out)
 {
     double normals[IMKI_GROUP_NORMALS];
-    draw(seed, stream, group, 1, normals);
+    draw(seed, &(imki_draw){stream, group, 1, normals}, 1);
     memcpy(out, normals + skip, count * sizeof *out);
 }
 
@@ -110,7 +115,7 @@ void imk_random_normals(imk_random source, uint64_t stream, uint64_t first, size
         const uint64_t left = period - group % period;
         const size_t whole = count / IMKI_GROUP_NORMALS;
         const size_t groups = whole < left ? whole : (size_t)left;
-        draw(source.seed, stream, group, groups, out);
+        draw(source.seed, &(imki_draw){stream, group, groups, out}, 1);
         group += groups;
         out += groups * IMKI_GROUP_NORMALS;
         count -= groups * IMKI_GROUP_NORMALS;

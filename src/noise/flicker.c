@@ -13,6 +13,7 @@
  * The fastest stage also stands for those faster than dt, which are left out: its variance is
  * raised by FASTEST, chosen to make the largest deviation of the Allan deviation from the ideal one
  * smallest over 2 … 300 dt (tests/reference/flicker_stages.py). */
+#include "base/normals_internal.h"
 #include "noise/generator_internal.h"
 
 #define FASTEST 1.20785             /* tests/reference/flicker_stages.py */
@@ -136,20 +137,20 @@ imk_status imk_flicker_start(imk_flicker_state *state, double instability, doubl
 
 enum { CHANGES = IMKI_FLICKER_CHANGES };
 
-/* What drives the next `count` changes of a held stage. */
-static void draw_innovations(imk_flicker_state *state, size_t stage, size_t count, double *out)
+static void scale(double factor, size_t count, double *x)
 {
-    imk_random_normals(state->random, stage_stream(state, stage), state->changes[stage], count,
-                       out);
     for (size_t k = 0; k < count; k++)
-        out[k] *= state->innovation;
+        x[k] *= factor;
 }
 
 static void change_stage(imk_flicker_state *state, size_t stage)
 {
     const size_t i = state->changes[stage] % IMK_FLICKER_BUFFER;
-    if (i == 0)
-        draw_innovations(state, stage, IMK_FLICKER_BUFFER, state->ahead[stage]);
+    if (i == 0) {
+        imk_random_normals(state->random, stage_stream(state, stage), state->changes[stage],
+                           IMK_FLICKER_BUFFER, state->ahead[stage]);
+        scale(state->innovation, IMK_FLICKER_BUFFER, state->ahead[stage]);
+    }
     state->changes[stage]++;
     state->value[stage] = state->power[1][1] * state->value[stage] + state->ahead[stage][i];
 }
@@ -190,19 +191,22 @@ static void sum_held_stages(imk_flicker_state *state, uint64_t first_change,
 void imki_flicker_block(imk_flicker_state *state, double *block)
 {
     double normals[2][IMK_NOISE_BLOCK], value[GROUPED] = {0.0}, sums[1 + GROUPED];
+    const uint64_t first = state->next + state->phase, first_change = (first + 3) / 4;
+    const size_t offset = (size_t)(first % 4), lead = (size_t)(first_change % GROUP);
     imki_recursion stages[2];
+    imki_draw draws[3];
     for (size_t stage = 0; stage < 2; stage++) {
         const double innovation = stage == 0 ? state->fast_innovation : state->innovation;
         stages[stage] = (imki_recursion){.gain = state->sigma * innovation,
                                          .power = state->power[stage],
                                          .normals = normals[stage],
                                          .value = &state->fast[stage]};
-        imk_random_normals(state->random, stage_stream(state, stage), state->next, IMK_NOISE_BLOCK,
-                           normals[stage]);
+        draws[stage] =
+            imki_draw_of(stage_stream(state, stage), state->next, IMK_NOISE_BLOCK, normals[stage]);
     }
-    const uint64_t first = state->next + state->phase, first_change = (first + 3) / 4;
-    const size_t offset = (size_t)(first % 4), lead = (size_t)(first_change % GROUP);
-    draw_innovations(state, 2, CHANGES, value + lead);
+    draws[2] = imki_draw_of(stage_stream(state, 2), state->changes[2], CHANGES, value + lead);
+    imki_random_draws(state->random, draws, 3);
+    scale(state->innovation, CHANGES, value + lead);
     imki_add_flicker(state->random.kernel, stages, state->value[2], value + lead, block);
     sum_held_stages(state, first_change, value, sums + 1);
     imki_add_held(state->random.kernel, sums + lead + (offset > 0 ? 0 : 1), offset, block);

@@ -4,6 +4,7 @@
  *     y[k] = phi y[k-1] + q n[k],   phi = exp(-dt/T),   q = sigma sqrt(1 - phi^2),
  *
  * from a stationary y[-1]. expm1 keeps q accurate for dt << T, where 1 - phi^2 cancels. */
+#include "base/normals_internal.h"
 #include "noise/generator_internal.h"
 
 /* sum over k >= 3 of (-1)^k/k! [4 a^k - b^k - n c^k - d^k]: the bracket of either Allan variance,
@@ -111,18 +112,19 @@ void imki_gauss_markov_blocks(imk_gauss_markov_state *states, size_t count, doub
 {
     double normals[TOGETHER][IMK_NOISE_BLOCK];
     imki_recursion recursions[TOGETHER];
+    imki_draw draws[TOGETHER];
     for (size_t first = 0; first < count; first += TOGETHER) {
         const size_t now = count - first < TOGETHER ? count - first : TOGETHER;
         for (size_t i = 0; i < now; i++) {
             imk_gauss_markov_state *state = &states[first + i];
-            imk_random_normals(state->random, state->stream, state->next, IMK_NOISE_BLOCK,
-                               normals[i]);
+            draws[i] = imki_draw_of(state->stream, state->next, IMK_NOISE_BLOCK, normals[i]);
             state->next += IMK_NOISE_BLOCK;
             recursions[i] = (imki_recursion){.gain = state->gain,
                                              .power = state->power,
                                              .normals = normals[i],
                                              .value = &state->value};
         }
+        imki_random_draws(states->random, draws, now);
         imki_add_recursions(states->random.kernel, recursions, now, block);
     }
 }

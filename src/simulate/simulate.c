@@ -225,37 +225,31 @@ bool imk_simulator_dropped(const imk_simulator *simulator, uint64_t row)
 
 /* ---- rows ---- */
 
-/* Rows first … of the blocks that begin at `out`: their deterministic part, and whatever blocks
- * they complete. */
+/* Rows first … first + rows - 1 of the blocks that begin at `out`. */
 typedef struct row_work {
     imk_simulator *simulator;
     size_t first, rows;
     double *const *out;
 } row_work;
 
-static void run_channel(void *context, size_t item)
+/* The deterministic part of these rows in one channel. */
+static void run_response(void *context, size_t item)
 {
     const row_work *work = context;
     imk_simulator *simulator = work->simulator;
-    imki_channel *channel = &simulator->channel[item];
-    const bool varies = simulator->scene.varies;
-    double *out = work->out[item];
-    const size_t end = work->first + work->rows;
-    if (!varies) {
-        for (size_t row = work->first; row < end; row += IMK_NOISE_BLOCK)
-            imki_channel_block(channel, true, out + row);
-        return;
-    }
-    const size_t substeps = simulator->scene.substeps;
-    for (size_t row = work->first; row < end;) {
-        size_t to = (row / IMK_NOISE_BLOCK + 1) * IMK_NOISE_BLOCK;
-        size_t rows = (to < end ? to : end) - row;
-        imki_channel_response(channel, &simulator->distortion, &simulator->scene,
-                              (row - work->first) * substeps, rows, out + row);
-        row += rows;
-        if (row % IMK_NOISE_BLOCK == 0)
-            imki_channel_block(channel, false, out + row - IMK_NOISE_BLOCK);
-    }
+    imki_channel_response(&simulator->channel[item], &simulator->distortion, &simulator->scene, 0,
+                          work->rows, work->out[item] + work->first);
+}
+
+/* Noise and output of the blocks that these rows complete. */
+static void run_blocks(void *context, size_t item)
+{
+    const row_work *work = context;
+    imk_simulator *simulator = work->simulator;
+    const size_t begin = work->first / IMK_NOISE_BLOCK, end = work->first + work->rows;
+    for (size_t block = begin; (block + 1) * IMK_NOISE_BLOCK <= end; block++)
+        imki_channel_block(&simulator->channel[item], !simulator->scene.varies,
+                           work->out[item] + block * IMK_NOISE_BLOCK);
 }
 
 /* Rows made at a time: a power of two of them, so that stretches and blocks fit each other. */
@@ -277,9 +271,12 @@ static void make_blocks(imk_simulator *simulator, size_t blocks, double *const *
     const size_t stretch = varies ? stretch_rows(simulator, executor) : rows;
     for (size_t first = 0; first < rows; first += stretch) {
         row_work work = {simulator, first, rows - first < stretch ? rows - first : stretch, out};
-        if (varies)
+        if (varies) {
             imki_scene_fill(&simulator->scene, simulator->next + first, work.rows, executor);
-        imk_execute(executor, simulator->channels, run_channel, &work);
+            /* All channels before any noise, which would push the motion out of the cache. */
+            imk_execute(executor, simulator->channels, run_response, &work);
+        }
+        imk_execute(executor, simulator->channels, run_blocks, &work);
     }
     simulator->next += rows;
 }
