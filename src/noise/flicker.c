@@ -13,7 +13,6 @@
  * The fastest stage also stands for those faster than dt, which are left out: its variance is
  * raised by FASTEST, chosen to make the largest deviation of the Allan deviation from the ideal one
  * smallest over 2 … 300 dt (tests/reference/flicker_stages.py). */
-#include "base/normals_internal.h"
 #include "noise/generator_internal.h"
 
 #define FASTEST 1.20785             /* tests/reference/flicker_stages.py */
@@ -137,19 +136,14 @@ imk_status imk_flicker_start(imk_flicker_state *state, double instability, doubl
 
 enum { CHANGES = IMKI_FLICKER_CHANGES };
 
-static void scale(double factor, size_t count, double *x)
-{
-    for (size_t k = 0; k < count; k++)
-        x[k] *= factor;
-}
-
 static void change_stage(imk_flicker_state *state, size_t stage)
 {
     const size_t i = state->changes[stage] % IMK_FLICKER_BUFFER;
     if (i == 0) {
         imk_random_normals(state->random, stage_stream(state, stage), state->changes[stage],
                            IMK_FLICKER_BUFFER, state->ahead[stage]);
-        scale(state->innovation, IMK_FLICKER_BUFFER, state->ahead[stage]);
+        for (size_t k = 0; k < IMK_FLICKER_BUFFER; k++)
+            state->ahead[stage][k] *= state->innovation;
     }
     state->changes[stage]++;
     state->value[stage] = state->power[1][1] * state->value[stage] + state->ahead[stage][i];
@@ -188,25 +182,31 @@ static void sum_held_stages(imk_flicker_state *state, uint64_t first_change,
     state->changes[2] += CHANGES;
 }
 
-void imki_flicker_block(imk_flicker_state *state, double *block)
+size_t imki_flicker_draws(const imk_flicker_state *state, double *normals, imki_draw *draws)
 {
-    double normals[2][IMK_NOISE_BLOCK], value[GROUPED] = {0.0}, sums[1 + GROUPED];
+    for (size_t stage = 0; stage < 2; stage++)
+        draws[stage] = imki_draw_of(stage_stream(state, stage), state->next, IMK_NOISE_BLOCK,
+                                    normals + stage * IMK_NOISE_BLOCK);
+    draws[2] = imki_draw_of(stage_stream(state, 2), state->changes[2], CHANGES,
+                            normals + (size_t)2 * IMK_NOISE_BLOCK);
+    return 3;
+}
+
+void imki_flicker_block(imk_flicker_state *state, double *normals, double *block)
+{
+    double value[GROUPED] = {0.0}, sums[1 + GROUPED];
     const uint64_t first = state->next + state->phase, first_change = (first + 3) / 4;
     const size_t offset = (size_t)(first % 4), lead = (size_t)(first_change % GROUP);
     imki_recursion stages[2];
-    imki_draw draws[3];
     for (size_t stage = 0; stage < 2; stage++) {
         const double innovation = stage == 0 ? state->fast_innovation : state->innovation;
         stages[stage] = (imki_recursion){.gain = state->sigma * innovation,
                                          .power = state->power[stage],
-                                         .normals = normals[stage],
+                                         .normals = normals + stage * IMK_NOISE_BLOCK,
                                          .value = &state->fast[stage]};
-        draws[stage] =
-            imki_draw_of(stage_stream(state, stage), state->next, IMK_NOISE_BLOCK, normals[stage]);
     }
-    draws[2] = imki_draw_of(stage_stream(state, 2), state->changes[2], CHANGES, value + lead);
-    imki_random_draws(state->random, draws, 3);
-    scale(state->innovation, CHANGES, value + lead);
+    for (size_t k = 0; k < CHANGES; k++)
+        value[lead + k] = normals[2 * IMK_NOISE_BLOCK + k] * state->innovation;
     imki_add_flicker(state->random.kernel, stages, state->value[2], value + lead, block);
     sum_held_stages(state, first_change, value, sums + 1);
     imki_add_held(state->random.kernel, sums + lead + (offset > 0 ? 0 : 1), offset, block);
@@ -215,7 +215,11 @@ void imki_flicker_block(imk_flicker_state *state, double *block)
 
 static void next_block(void *state, double *block)
 {
-    imki_flicker_block(state, block);
+    imk_flicker_state *flicker = state;
+    double normals[IMKI_FLICKER_NORMALS];
+    imki_draw draws[3];
+    imki_random_draws(flicker->random, draws, imki_flicker_draws(flicker, normals, draws));
+    imki_flicker_block(flicker, normals, block);
 }
 
 void imk_flicker_add(imk_flicker_state *state, size_t count, double *out)

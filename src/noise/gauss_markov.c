@@ -4,7 +4,6 @@
  *     y[k] = phi y[k-1] + q n[k],   phi = exp(-dt/T),   q = sigma sqrt(1 - phi^2),
  *
  * from a stationary y[-1]. expm1 keeps q accurate for dt << T, where 1 - phi^2 cancels. */
-#include "base/normals_internal.h"
 #include "noise/generator_internal.h"
 
 /* sum over k >= 3 of (-1)^k/k! [4 a^k - b^k - n c^k - d^k]: the bracket of either Allan variance,
@@ -105,33 +104,33 @@ imk_status imk_gauss_markov_start(imk_gauss_markov_state *state, imk_gauss_marko
     return IMK_OK;
 }
 
-/* Up to this many together. */
-enum { TOGETHER = 2 };
-
-void imki_gauss_markov_blocks(imk_gauss_markov_state *states, size_t count, double *block)
+imki_draw imki_gauss_markov_draw(const imk_gauss_markov_state *state, double *normals)
 {
-    double normals[TOGETHER][IMK_NOISE_BLOCK];
-    imki_recursion recursions[TOGETHER];
-    imki_draw draws[TOGETHER];
-    for (size_t first = 0; first < count; first += TOGETHER) {
-        const size_t now = count - first < TOGETHER ? count - first : TOGETHER;
-        for (size_t i = 0; i < now; i++) {
-            imk_gauss_markov_state *state = &states[first + i];
-            draws[i] = imki_draw_of(state->stream, state->next, IMK_NOISE_BLOCK, normals[i]);
-            state->next += IMK_NOISE_BLOCK;
-            recursions[i] = (imki_recursion){.gain = state->gain,
-                                             .power = state->power,
-                                             .normals = normals[i],
-                                             .value = &state->value};
-        }
-        imki_random_draws(states->random, draws, now);
-        imki_add_recursions(states->random.kernel, recursions, now, block);
+    return imki_draw_of(state->stream, state->next, IMK_NOISE_BLOCK, normals);
+}
+
+void imki_gauss_markov_blocks(imk_gauss_markov_state *states, size_t count, double *normals,
+                              double *block)
+{
+    imki_recursion recursions[IMKI_TOGETHER];
+    for (size_t i = 0; i < count; i++) {
+        recursions[i] = (imki_recursion){.gain = states[i].gain,
+                                         .power = states[i].power,
+                                         .normals = normals + i * IMK_NOISE_BLOCK,
+                                         .value = &states[i].value};
+        states[i].next += IMK_NOISE_BLOCK;
     }
+    if (count > 0)
+        imki_add_recursions(states->random.kernel, recursions, count, block);
 }
 
 static void next_block(void *state, double *block)
 {
-    imki_gauss_markov_blocks(state, 1, block);
+    imk_gauss_markov_state *process = state;
+    double normals[IMK_NOISE_BLOCK];
+    const imki_draw draw = imki_gauss_markov_draw(process, normals);
+    imki_random_draws(process->random, &draw, 1);
+    imki_gauss_markov_blocks(process, 1, normals, block);
 }
 
 void imk_gauss_markov_add(imk_gauss_markov_state *state, size_t count, double *out)

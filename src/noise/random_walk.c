@@ -42,17 +42,24 @@ imk_status imk_random_walk_start(imk_random_walk_state *state, double k, double 
     return IMK_OK;
 }
 
-void imki_random_walk_block(imk_random_walk_state *state, double *block)
+imki_draw imki_random_walk_draw(const imk_random_walk_state *state, double *normals)
 {
-    double normals[IMK_NOISE_BLOCK];
-    imk_random_normals(state->random, state->stream, state->next, IMK_NOISE_BLOCK, normals);
+    return imki_draw_of(state->stream, state->next, IMK_NOISE_BLOCK, normals);
+}
+
+void imki_random_walk_block(imk_random_walk_state *state, const double *normals, double *block)
+{
     state->next += IMK_NOISE_BLOCK;
     imki_add_sums(state->random.kernel, state->step, normals, &state->value, block);
 }
 
 static void next_block(void *state, double *block)
 {
-    imki_random_walk_block(state, block);
+    imk_random_walk_state *walk = state;
+    double normals[IMK_NOISE_BLOCK];
+    const imki_draw draw = imki_random_walk_draw(walk, normals);
+    imki_random_draws(walk->random, &draw, 1);
+    imki_random_walk_block(walk, normals, block);
 }
 
 void imk_random_walk_add(imk_random_walk_state *state, size_t count, double *out)

@@ -34,17 +34,24 @@ imk_status imk_white_start(imk_white_state *state, double density, double dt, im
     return IMK_OK;
 }
 
-void imki_white_block(imk_white_state *state, double *block)
+imki_draw imki_white_draw(const imk_white_state *state, double *normals)
 {
-    double normals[IMK_NOISE_BLOCK];
-    imk_random_normals(state->random, state->stream, state->next, IMK_NOISE_BLOCK, normals);
+    return imki_draw_of(state->stream, state->next, IMK_NOISE_BLOCK, normals);
+}
+
+void imki_white_block(imk_white_state *state, const double *normals, double *block)
+{
     state->next += IMK_NOISE_BLOCK;
     imki_add_scaled(state->random.kernel, state->sigma, normals, block);
 }
 
 static void next_block(void *state, double *block)
 {
-    imki_white_block(state, block);
+    imk_white_state *white = state;
+    double normals[IMK_NOISE_BLOCK];
+    const imki_draw draw = imki_white_draw(white, normals);
+    imki_random_draws(white->random, &draw, 1);
+    imki_white_block(white, normals, block);
 }
 
 void imk_white_add(imk_white_state *state, size_t count, double *out)

@@ -144,6 +144,7 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
 {
     channel->sensor = axis.sensor;
     channel->axis = axis.axis;
+    channel->random = random;
     channel->kernel = random.kernel;
     channel->dead_band = axis.triad->dead_band.value[axis.axis];
     channel->range = axis.triad->range.value[axis.axis];
@@ -243,6 +244,49 @@ static void output_stage(imki_channel *channel, double *block)
             block[j] = imki_round(channel->sensitivity * block[j] + channel->zero_offset);
 }
 
+/* Draws of up to IMKI_TOGETHER Gauss-Markov terms from `first` on. @return how many */
+static size_t process_draws(const imki_channel *channel, size_t first, double *normals,
+                            imki_draw *draws)
+{
+    const size_t left = (size_t)channel->gauss_markov_count - first;
+    const size_t count = left < IMKI_TOGETHER ? left : IMKI_TOGETHER;
+    for (size_t i = 0; i < count; i++)
+        draws[i] = imki_gauss_markov_draw(&channel->gauss_markov[first + i],
+                                          normals + i * IMK_NOISE_BLOCK);
+    return count;
+}
+
+/* White noise, random walk, flicker and the first Gauss-Markov terms, their normals drawn in one
+ * call; then the other Gauss-Markov terms. */
+static void add_noise(imki_channel *channel, double *block)
+{
+    enum { BLOCK = IMK_NOISE_BLOCK, DRAWS = 5 + IMKI_TOGETHER };
+    double white[BLOCK], walk[BLOCK], flicker[IMKI_FLICKER_NORMALS], other[IMKI_TOGETHER * BLOCK];
+    imki_draw draws[DRAWS];
+    size_t count = 0;
+    if (channel->white_present)
+        draws[count++] = imki_white_draw(&channel->white, white);
+    if (channel->random_walk_present)
+        draws[count++] = imki_random_walk_draw(&channel->random_walk, walk);
+    if (channel->flicker_present)
+        count += imki_flicker_draws(&channel->flicker, flicker, draws + count);
+    size_t processes = process_draws(channel, 0, other, draws + count);
+    imki_random_draws(channel->random, draws, count + processes);
+    if (channel->white_present)
+        imki_white_block(&channel->white, white, block);
+    if (channel->flicker_present)
+        imki_flicker_block(&channel->flicker, flicker, block);
+    if (channel->random_walk_present)
+        imki_random_walk_block(&channel->random_walk, walk, block);
+    imki_gauss_markov_blocks(channel->gauss_markov, processes, other, block);
+    for (size_t first = processes; first < (size_t)channel->gauss_markov_count;
+         first += processes) {
+        processes = process_draws(channel, first, other, draws);
+        imki_random_draws(channel->random, draws, processes);
+        imki_gauss_markov_blocks(channel->gauss_markov + first, processes, other, block);
+    }
+}
+
 void imki_channel_block(imki_channel *channel, bool constant, double *out)
 {
     double block[IMK_NOISE_BLOCK];
@@ -254,15 +298,9 @@ void imki_channel_block(imki_channel *channel, bool constant, double *out)
     if (channel->ramp != 0.0)
         for (size_t k = 0; k < IMK_NOISE_BLOCK; k++)
             block[imki_place(k)] += channel->ramp * (double)(channel->next + k);
-    if (channel->white_present)
-        imki_white_block(&channel->white, block);
     if (channel->arma_present)
         imki_arma_block(&channel->arma, block);
-    if (channel->flicker_present)
-        imki_flicker_block(&channel->flicker, block);
-    if (channel->random_walk_present)
-        imki_random_walk_block(&channel->random_walk, block);
-    imki_gauss_markov_blocks(channel->gauss_markov, (size_t)channel->gauss_markov_count, block);
+    add_noise(channel, block);
     for (int i = 0; i < channel->sinusoid_count; i++)
         imki_sinusoid_block(&channel->sinusoid[i], block);
     for (int i = 0; i < channel->resonance_count; i++)

@@ -339,9 +339,10 @@ static void fill_recorded(imki_scene *e, uint64_t first, size_t rows)
 static void fill_temperature(imki_scene *e, uint64_t first, size_t count)
 {
     const double part = e->interval / (double)e->substeps;
+    const double begin = (double)first, parts = (double)e->substeps;
     double *time = e->column[IMKI_TIME], *temperature = e->column[IMKI_TEMPERATURE];
     for (size_t i = 0; i < count; i++)
-        time[i] = ((double)(first + i) + 0.5 - (double)e->substeps) * part;
+        time[i] = ((begin + (double)(int)i) + 0.5 - parts) * part;
     imk_temperature_at(e->temperature, count, time, temperature, e->column[IMKI_TEMPERATURE_RATE]);
     for (int sensor = 0; sensor < (e->same_hysteresis ? 1 : 2); sensor++)
         if (e->hysteresis_present[sensor])

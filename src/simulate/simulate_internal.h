@@ -87,6 +87,7 @@ typedef struct imki_channel {
     int sensor, axis;
     double constant, ramp; /* of a unit at rest [unit]; [unit per sample] */
     double dead_band, range, resolution, sensitivity, zero_offset;
+    imk_random random;
     imk_kernel kernel;
     uint64_t next; /* sample */
     imki_band_limit band_limit;
