@@ -223,9 +223,10 @@ static void simulate_day(void *context)
     free(memory);
 }
 
-/* The normals of a day, in pieces as the generators draw them, and its bytes. */
+/* The normals of a day, in long draws at the speed of bench_normals, and its bytes. */
 static void draw_and_write(void *context)
 {
+    enum { DRAW = 4096 };
     const job *work = context;
     const imk_random random = imk_random_seeded(1);
     const int file = open(work->path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -233,10 +234,12 @@ static void draw_and_write(void *context)
         stop("the yardstick's file", NULL);
     for (size_t first = 0; first < ROWS; first += BLOCK) {
         const size_t count = ROWS - first < BLOCK ? ROWS - first : BLOCK;
-        const size_t pieces = count * CHANNELS * DRAWS / 100 / 256;
-        for (size_t i = 0; i < pieces; i++) {
-            imk_random_normals(random, i / 800, first + i % 800 * 256, 256, block[0]);
+        size_t left = count * CHANNELS * DRAWS / 100;
+        for (uint64_t stream = 0; left > 0; stream++) {
+            const size_t now = left < DRAW ? left : DRAW;
+            imk_random_normals(random, stream, first / DRAW * DRAW, now, block[0]);
             bench_use(block);
+            left -= now;
         }
         const size_t bytes = count * sizeof matrix[0];
         if (write(file, matrix, bytes) != (ssize_t)bytes)
