@@ -25,6 +25,9 @@ PUBLIC = {
     "motion": "earth motion motion_script",
     "simulate": "simulate",
     "identify": "allan identify",
+    "physics": "fibre_optic free_gyro instrument mems_accelerometer pendulous_servo rate_gyro "
+               "rate_integrating_gyro ring_laser shell_gyro suspended_rotor tuned_gyro "
+               "tuning_fork vibrating_beam",
     "compensate": "compensate",
     "navigate": "navigate",
     "io": "io log model_file motion_file output_file parameter_file thread_pool",

@@ -16,6 +16,7 @@
 #include "imukit/executor.h"
 #include "imukit/fourier.h"
 #include "imukit/identify.h"
+#include "imukit/instrument.h"
 #include "imukit/least_squares.h"
 #include "imukit/linear_algebra.h"
 #include "imukit/model.h"

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file instrument.h
+ *  Instruments from first principles: what the parts of a gyro or an accelerometer do, from its
+ *  design parameters to its readings.
+ *
+ *  Each instrument has a header of its own (ring_laser.h, fibre_optic.h, …) with a design struct,
+ *  its `_default()`, `_validate()`, `_reduce()` and the closed forms that a designer computes by
+ *  hand; and a description, imk_instrument, through which all of them can be run alike:
+ *
+ *      const imk_instrument *instrument = imk_instrument_find("ring_laser");
+ *      instrument->set_default(design);                      // design_size bytes
+ *      instrument->init(design, &settings, state, &error);   // state_size bytes, 64-byte aligned
+ *      instrument->step(state, &exposure, outputs);          // as often as samples are wanted
+ *
+ *  Three levels describe the same instrument: the full dynamics (every carrier cycle, transit of
+ *  light, beat of the laser), a slow map or envelope of it, and the error model of model.h that
+ *  `reduce` computes. Each is tested against the one before.
+ *
+ *  The same design, settings and exposures give the same bits on every machine: + - * / sqrt and
+ *  the functions of elementary.h only, and random numbers by stream (term IMK_TERM_PHYSICS). */
+#ifndef IMUKIT_INSTRUMENT_H
+#define IMUKIT_INSTRUMENT_H
+
+#include "imukit/model.h"
+#include "imukit/random.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { IMK_INSTRUMENT_OUTPUTS_MAX = 8, IMK_INSTRUMENT_SIGNALS_MAX = 16, IMK_VIEW_CURVES_MAX = 4 };
+
+/** What an instrument is exposed to, in the axes of its case: x is the input axis of a single-axis
+ *  instrument; each header names y and z. Held constant over a step. */
+typedef struct imk_exposure {
+    double angular_rate[3];         /**< of the case in inertial space [rad/s] */
+    double angular_acceleration[3]; /**< [rad/s^2] */
+    double specific_force[3];       /**< [m/s^2] */
+    double temperature;             /**< [K] */
+    double temperature_rate;        /**< [K/s] */
+} imk_exposure;
+
+/** No motion, no force, 293.15 K. */
+IMK_API imk_exposure imk_exposure_default(void);
+
+/** How much of an instrument is computed. */
+typedef enum imk_level {
+    IMK_LEVEL_FULL = 0, /**< the dynamics of its parts, cycle by cycle */
+    IMK_LEVEL_SLOW = 1  /**< a map or envelope that leaves the fast part out */
+} imk_level;
+
+/** How to run an instrument. Start from imk_physics_settings_default(), then change fields. */
+typedef struct imk_physics_settings {
+    uint32_t cookie;
+    imk_level level;
+    double rate; /**< samples per second [Hz], > 0: a step of the interface is 1/rate */
+    double step; /**< internal step [s], shortened to a whole fraction of 1/rate; 0 (default): the
+                    longest that keeps the instrument's stated accuracy. One that would give wrong
+                    results is refused */
+    bool noise;  /**< false: nothing random, the run's constants included (default true) */
+    uint64_t seed;
+    uint32_t run; /**< another draw of the same instrument */
+    uint8_t axis; /**< of several identical instruments, 0 … 255: other draws */
+} imk_physics_settings;
+
+/** 100 Hz, full dynamics, noise, seed 0. */
+IMK_API imk_physics_settings imk_physics_settings_default(void);
+
+/* ---- design files ---------------------------------------------------------------------------- */
+
+typedef enum imk_design_kind {
+    IMK_DESIGN_NUMBER = 0, /**< a double with a unit */
+    IMK_DESIGN_COUNT,      /**< a whole number: int */
+    IMK_DESIGN_CHOICE,     /**< one of the words of `choices`: int, or an enum counting from 0 */
+    IMK_DESIGN_SWITCH      /**< yes or no: bool */
+} imk_design_kind;
+
+/** One parameter of a design: where it stands in its file and its struct, and what it may be.
+ *  Reading, writing, checking and help all walk the table of these. */
+typedef struct imk_design_field {
+    const char *path; /**< dotted: "dither.frequency" */
+    imk_design_kind kind;
+    size_t offset;
+    const char *unit;        /**< as it is written; gives the dimension; "1" for pure numbers */
+    double minimum, maximum; /**< in SI; of counts too */
+    bool open;               /**< the minimum itself is excluded */
+    const char *choices;     /**< "open|closed" */
+    const char *help;        /**< one line: "peak rate of the dither" */
+} imk_design_field;
+
+/* ---- signals --------------------------------------------------------------------------------- */
+
+/** A number an instrument shows: a reading, or something inside. */
+typedef struct imk_signal {
+    const char *name; /**< "operating_point" */
+    const char *si;   /**< SI unit of the value: "rad/s" */
+    const char *unit; /**< to show it in: "deg/h" */
+    const char *help;
+} imk_signal;
+
+/** A picture worth looking at: signals against time or against each other. */
+typedef struct imk_view {
+    const char *title, *caption;
+    int x; /**< signal on the horizontal axis; -1: time */
+    int curve_count;
+    int y[IMK_VIEW_CURVES_MAX]; /**< signals on the vertical axis, of one unit */
+    double duration;            /**< [s] */
+    double rate;                /**< samples per second of the picture [Hz] */
+    double settle;              /**< run this long before [s] */
+} imk_view;
+
+/* ---- the interface --------------------------------------------------------------------------- */
+
+/** A kind of instrument. */
+typedef struct imk_instrument {
+    const char *name;       /**< "ring_laser", as design files say it */
+    const char *title;      /**< "ring laser gyro" */
+    const char *technology; /**< as the table of grades calls it: "RLG"; "" when it does not */
+    const char *source;     /**< where the default design's figures come from */
+    int sensor;             /**< IMK_GYRO (0) or IMK_ACCEL (1) */
+    size_t design_size, state_size;
+    size_t field_count;
+    const imk_design_field *fields;
+    size_t output_count; /**< 1 … IMK_INSTRUMENT_OUTPUTS_MAX. Output 0 is the measured input:
+                            [rad/s] or [m/s^2], the mean over the step */
+    const imk_signal *outputs;
+    size_t signal_count; /**< internal signals, 0 … IMK_INSTRUMENT_SIGNALS_MAX */
+    const imk_signal *signals;
+    size_t view_count;
+    const imk_view *views;
+
+    /** A realistic design. */
+    void (*set_default)(void *design);
+    /** Every field finite and in its range, and the design possible as a whole.
+     *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
+    imk_status (*validate)(const void *design, imk_error *error);
+    /** Validate and start, in the state the instrument is in when it has been switched on.
+     *  @param state state_size bytes, 64-byte aligned; plain data that may be copied
+     *  @return errors of validate; IMK_ERROR_RANGE for a step (field "step") or rate that would
+     *          give wrong results; IMK_ERROR_UNSUPPORTED for a level it does not have */
+    imk_status (*init)(const void *design, const imk_physics_settings *settings, void *state,
+                       imk_error *error);
+    /** Advance by 1/rate under a constant exposure. */
+    void (*step)(void *state, const imk_exposure *exposure, double *outputs);
+    /** The internal signals as they are now. */
+    void (*observe)(const void *state, double *signals);
+    /** The error model of one instrument by closed forms: one axis, direction x, case axes as body
+     *  axes. The design must be valid. Fills the whole model. */
+    void (*reduce)(const void *design, imk_model *model);
+    /** Internal step that settings.step 0 gives [s], for a valid design. */
+    double (*step_length)(const void *design, const imk_physics_settings *settings);
+} imk_instrument;
+
+/** Number of kinds. */
+IMK_API size_t imk_instrument_count(void);
+/** Kind `index`; NULL beyond the end. */
+IMK_API const imk_instrument *imk_instrument_get(size_t index);
+/** Kind by name ("ring_laser", case, blanks, - and _ ignored); NULL when there is none. */
+IMK_API const imk_instrument *imk_instrument_find(const char *name);
+
+/** Check all fields of a design against the table: finite, in range, a word that exists. Part of
+ *  every validate. */
+IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void *design,
+                                    imk_error *error);
+
+/** Make a model of one axis (from reduce) one of three such instruments along body x, y and z; the
+ *  case axes y and z of each are the next body axes in turn. Evidence is kept for axis x only. */
+IMK_API void imk_model_three_axes(imk_model *model);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the instruments share: constants of nature, random draws, the run's slow bias, and the
+ * division of a sample into internal steps. */
+#ifndef IMUKI_PHYSICS_INTERNAL_H
+#define IMUKI_PHYSICS_INTERNAL_H
+
+#include "imukit/distort.h"
+#include "imukit/instrument.h"
+#include "imukit/noise.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define IMKI_PI 3.14159265358979323846
+/* Exact by definition of the SI [SI2019]. */
+#define IMKI_LIGHT_SPEED 299792458.0
+#define IMKI_PLANCK 6.62607015e-34
+#define IMKI_BOLTZMANN 1.380649e-23
+#define IMKI_ELEMENTARY_CHARGE 1.602176634e-19
+/* Vacuum permittivity [F/m], CODATA 2018. */
+#define IMKI_PERMITTIVITY 8.8541878128e-12
+
+/* Normals of one stream, drawn in blocks. `source` numbers the sources of randomness within an
+ * instrument and is fixed for ever. Without noise every draw is 0. */
+enum { IMKI_DRAWS = 256 };
+typedef struct imki_draws {
+    imk_random random;
+    uint64_t stream, next;
+    int position;
+    bool silent;
+    double buffer[IMKI_DRAWS];
+} imki_draws;
+
+void imki_draws_start(imki_draws *draws, const imk_physics_settings *settings, uint8_t source);
+void imki_draws_fill(imki_draws *draws);
+
+static inline double imki_draw(imki_draws *draws)
+{
+    if (draws->position == IMKI_DRAWS)
+        imki_draws_fill(draws);
+    return draws->buffer[draws->position++];
+}
+
+/* A quantity that differs from run to run and wanders within one: a constant drawn once with the
+ * 1 sigma `repeatability` and flicker noise of the instability B (model.h) at the sample rate.
+ * imki_wander() gives the value for the next sample. */
+enum { IMKI_WANDER_BLOCK = 64 };
+typedef struct imki_wander {
+    double constant;
+    imk_flicker_state flicker;
+    bool flickers;
+    int position;
+    double buffer[IMKI_WANDER_BLOCK];
+} imki_wander;
+
+imk_status imki_wander_start(imki_wander *wander, const imk_physics_settings *settings,
+                             uint8_t source, double repeatability, double instability);
+void imki_wander_fill(imki_wander *wander);
+
+static inline double imki_wander_next(imki_wander *wander)
+{
+    if (!wander->flickers)
+        return wander->constant;
+    if (wander->position == IMKI_WANDER_BLOCK)
+        imki_wander_fill(wander);
+    return wander->constant + wander->buffer[wander->position++];
+}
+
+/* Settings as they must be: cookie, a finite rate > 0, a known level, a step >= 0. */
+imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *error);
+
+/* Divide a sample of 1/rate into equal internal steps no longer than settings.step, or than
+ * `longest` when that is 0.
+ *  @param limit  a step beyond this is refused (field "step") with `reason`, the end of a sentence:
+ *                "at least 16 steps to a cycle of the drive"
+ *  @param count  steps per sample, >= 1;  *step its length [s] */
+imk_status imki_divide_sample(const imk_physics_settings *settings, double longest, double limit,
+                              const char *reason, size_t *count, double *step, imk_error *error);
+
+/* Refuse a design: field, value, limit, and what to do. Returns the status. */
+imk_status imki_design_refuse(imk_error *error, imk_status status, const char *field, double value,
+                              double limit, const char *expected);
+
+/* A model of one axis of this kind of sensor along x, nothing else in it, which says where it comes
+ * from. @return the triad to fill */
+imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrument);
+
+#endif
