@@ -29,8 +29,9 @@ PUBLIC = {
                "rate_integrating_gyro ring_laser shell_gyro suspended_rotor tuned_gyro "
                "tuning_fork vibrating_beam",
     "compensate": "compensate",
+    "calibrate": "laboratory",
     "navigate": "navigate",
-    "io": "io log model_file motion_file output_file parameter_file thread_pool",
+    "io": "design_file io log model_file motion_file output_file parameter_file thread_pool",
     "report": "report",
 }
 # Headers that gather others: imukit.h the core, for users only; io.h what is right of it.

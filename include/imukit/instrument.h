@@ -59,8 +59,9 @@ typedef struct imk_physics_settings {
                     results is refused */
     bool noise;  /**< false: nothing random, the run's constants included (default true) */
     uint64_t seed;
-    uint32_t run; /**< another draw of the same instrument */
-    uint8_t axis; /**< of several identical instruments, 0 … 255: other draws */
+    uint32_t run;     /**< another draw of the same instrument */
+    uint8_t axis;     /**< of several identical instruments, 0 … 255: other draws */
+    uint8_t occasion; /**< of one run, 0 … 255: other noise, the same constants of the run */
 } imk_physics_settings;
 
 /** 100 Hz, full dynamics, noise, seed 0. */

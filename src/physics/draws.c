@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Random numbers of the instruments. Instances of a stream: 0-63 draws, 64-71 constants of the
- * run, 128 + 16 k … the stages of flicker noise k. */
+ * run, 128 + 16 k … the stages of flicker noise k. Terms: IMK_TERM_PHYSICS + 256 times the
+ * occasion. */
 #include "physics/physics_internal.h"
 
 enum { CONSTANTS = 64, FLICKERS = 128, FLICKER_INSTANCES = 16 };
 
-static uint64_t stream_of(const imk_physics_settings *settings, int instance)
+static uint64_t stream_of(const imk_physics_settings *settings, int occasion, int instance)
 {
-    return imk_stream(settings->run, IMK_TERM_PHYSICS, (uint8_t)instance, settings->axis);
+    return imk_stream(settings->run, (uint16_t)(IMK_TERM_PHYSICS + 256 * occasion),
+                      (uint8_t)instance, settings->axis);
 }
 
 void imki_draws_start(imki_draws *draws, const imk_physics_settings *settings, uint8_t source)
 {
     draws->random = imk_random_seeded(settings->seed);
-    draws->stream = stream_of(settings, source);
+    draws->stream = stream_of(settings, settings->occasion, source);
     draws->next = 0;
     draws->position = IMKI_DRAWS;
     draws->silent = !settings->noise;
@@ -39,14 +41,15 @@ imk_status imki_wander_start(imki_wander *wander, const imk_physics_settings *se
     wander->flickers = settings->noise && instability > 0.0;
     wander->position = IMKI_WANDER_BLOCK;
     if (settings->noise) {
-        imk_random_normals(random, stream_of(settings, CONSTANTS + source), 0, 1,
+        imk_random_normals(random, stream_of(settings, 0, CONSTANTS + source), 0, 1,
                            &wander->constant);
         wander->constant *= repeatability;
     }
     if (!wander->flickers)
         return IMK_OK;
-    return imk_flicker_start(&wander->flicker, instability, 1.0 / settings->rate, random,
-                             stream_of(settings, FLICKERS + FLICKER_INSTANCES * source));
+    return imk_flicker_start(
+        &wander->flicker, instability, 1.0 / settings->rate, random,
+        stream_of(settings, settings->occasion, FLICKERS + FLICKER_INSTANCES * source));
 }
 
 void imki_wander_fill(imki_wander *wander)
