@@ -62,7 +62,8 @@ typedef struct imk_laboratory_point {
     double sigma;         /**< of the mean, from the scatter of 16 parts of the dwell */
 } imk_laboratory_point;
 
-/** One frequency. Input and output are both means over samples. */
+/** One frequency: the response to a continuous sine, of which the instrument was shown the means
+ *  over samples, at least 32 to a cycle. */
 typedef struct imk_laboratory_response {
     double frequency; /**< [Hz] */
     double gain;      /**< [1] */

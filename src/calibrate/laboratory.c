@@ -102,16 +102,17 @@ static void measure_sine(const imk_laboratory *laboratory, size_t per_cycle, imk
     }
     double phase = imk_atan2(out[0], out[1]) - imk_atan2(in[0], in[1]);
     phase -= 2.0 * IMKI_PI * floor(phase / (2.0 * IMKI_PI) + 0.5);
-    trial->sine = (imk_laboratory_response){
-        trial->frequency,
-        sqrt((out[0] * out[0] + out[1] * out[1]) / (in[0] * in[0] + in[1] * in[1])), phase};
+    /* holding the input over a sample takes a sinc from its sine, the mean of the output another */
+    const double sinc = imk_sin(0.5 * angle) / (0.5 * angle);
+    const double ratio = (out[0] * out[0] + out[1] * out[1]) / (in[0] * in[0] + in[1] * in[1]);
+    trial->sine = (imk_laboratory_response){trial->frequency, sqrt(ratio) / (sinc * sinc), phase};
 }
 
-/* Samples to a cycle: as the sample rate gives, at least 16. */
+/* Samples to a cycle: as the sample rate gives, at least 32. */
 static size_t samples_per_cycle(const imk_laboratory *laboratory, double frequency)
 {
     const double count = floor(laboratory->physics.rate / frequency + 0.5);
-    return count > 16.0 ? (size_t)count : 16;
+    return count > 32.0 ? (size_t)count : 32;
 }
 
 typedef struct bench {

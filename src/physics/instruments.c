@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The kinds of instruments there are, and what can be said of any design from its table. */
+#include "imukit/pendulous_servo.h"
+#include "imukit/ring_laser.h"
 #include "physics/physics_internal.h"
 
 #include <math.h>
@@ -8,7 +10,8 @@
 enum { SETTINGS_COOKIE = 0x494D4B21 };
 
 /* In the order of the lecture: spinning mass, optical, vibratory, accelerometers. */
-static const imk_instrument *const instruments[] = {NULL};
+static const imk_instrument *const instruments[] = {&imk_ring_laser_instrument,
+                                                    &imk_pendulous_servo_instrument, NULL};
 enum { INSTRUMENTS = sizeof instruments / sizeof instruments[0] - 1 };
 
 imk_exposure imk_exposure_default(void)
