@@ -8,8 +8,9 @@
 #include <signal.h>
 #include <string.h>
 
-static const verb *const verbs[] = {&identify_verb, &simulate_verb, &compensate_verb, &allan_verb,
-                                    &devices_verb,  &grade_verb,    &convert_verb};
+static const verb *const verbs[] = {&identify_verb, &simulate_verb, &compensate_verb,
+                                    &allan_verb,    &devices_verb,  &grade_verb,
+                                    &convert_verb,  &physics_verb};
 enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
 
 const verb *const *command_verbs(size_t *count)

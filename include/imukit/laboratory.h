@@ -4,7 +4,8 @@
  *  that its `reduce` computes from the design, found from readings alone.
  *
  *      rate table       constant inputs over +-full scale, or forces for an accelerometer:
- *                       bias, scale factor, nonlinearity, asymmetry
+ *                       bias, scale factor, nonlinearity, asymmetry; of a gyro also the response
+ *                       to rates about y and z
  *      threshold        ever smaller inputs: the smallest that gives half of its expected change
  *      tumble           specific forces of 1 g in 18 directions, and none: g- and g2-sensitivity of
  *                       a gyro, cross-axis response and cross products of an accelerometer
@@ -39,8 +40,8 @@ typedef struct imk_laboratory {
     const void *design;
     imk_physics_settings physics;
     imk_exposure surroundings; /**< what holds beside the input of each experiment */
-    double full_scale;         /**< largest input [rad/s or m/s^2]; 0: the range that reduce states,
-                                  else 1 rad/s or 10 m/s^2 */
+    double full_scale;         /**< largest input [rad/s or m/s^2]; 0: 0.8 of the range that reduce
+                                  states, else 1 rad/s or 10 m/s^2 */
     int points;                /**< of the rate table, 7 … 101, odd; 21. 0: no rate table */
     double settle;             /**< time left out at the begin of each point [s]; 0.2 */
     double dwell;              /**< time of which the mean is taken [s]; 1 */
@@ -73,6 +74,9 @@ typedef struct imk_laboratory_response {
 /** What was found. Some 60 kB. */
 typedef struct imk_laboratory_result {
     double full_scale;
+    double zero,
+        zero_scatter; /**< mean of eight readings without input, and 1 sigma of one of them:
+                         slow noise makes them differ by more than each one's sigma */
     int point_count;
     imk_laboratory_point point[IMK_LABORATORY_POINTS_MAX];
     double line_deviation; /**< largest distance from the least-squares line, of full scale [1] */
@@ -100,10 +104,12 @@ IMK_API imk_status imk_laboratory_run(const imk_laboratory *laboratory, void *wo
 
 /** One parameter of a model of one axis, in a list that is the same for all models of one kind. */
 typedef struct imk_laboratory_figure {
-    const char *key;  /**< "scale_factor.fixed", "g_sensitivity.y", "noise.angle_random_walk" */
-    const char *si;   /**< unit of the value */
-    const char *unit; /**< to show it in */
-    double value, sigma;
+    const char *key;     /**< "scale_factor.fixed", "g_sensitivity.y"; "misalignment.y" contains the
+                            cross-axis response */
+    const char *si;      /**< unit of the value */
+    const char *unit;    /**< to show it in */
+    double value, sigma; /**< the spread from run to run, and the instability, count as sigma of a
+                            bias and a scale factor */
 } imk_laboratory_figure;
 
 /** The figures of axis 0 of a model, in the order of the model file: for comparing what reduce

@@ -83,6 +83,12 @@ IMK_API double imk_pendulous_servo_rectification(const imk_pendulous_servo *desi
  *  2 k T b, readout, and pickoff against the hinge. */
 IMK_API double imk_pendulous_servo_noise(const imk_pendulous_servo *design);
 
+/** Q of the reading [m/s]: what the pickoff's noise and the Brownian torque leave in the pendulum's
+ *  momentum, standard deviation of (J phi' + b phi)/P. The torque of a sample is the force's plus
+ *  the difference of that between its ends, which is quantization noise by another cause. A model
+ *  has either this or a resolution; reduce states the resolution where there is one. */
+IMK_API double imk_pendulous_servo_quantization(const imk_pendulous_servo *design);
+
 /** See imk_instrument. Stated: fixed bias and what it does, scale factor, K2 of the torquer, the
  *  lever arm J/P, noise, bandwidth, range, resolution; K_ip where there is no integral action. */
 IMK_API void imk_pendulous_servo_reduce(const imk_pendulous_servo *design, imk_model *model);

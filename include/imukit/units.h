@@ -14,12 +14,13 @@ extern "C" {
 #endif
 
 /** Exponents of the base dimensions, in halves (so that 1/sqrt(Hz), time^{1/2}, is 1): metre,
- *  second, radian, kelvin, count. The angle is a dimension here: deg/s and Hz must not be mixed. */
+ *  second, radian, kelvin, count, kilogram, ampere. The angle is a dimension here: deg/s and Hz
+ *  must not be mixed, and a torsional stiffness is in N*m/rad. */
 typedef struct imk_dimension {
-    int8_t half[5];
+    int8_t half[7];
 } imk_dimension;
 
-enum { IMK_METRE, IMK_SECOND, IMK_RADIAN, IMK_KELVIN, IMK_COUNT };
+enum { IMK_METRE, IMK_SECOND, IMK_RADIAN, IMK_KELVIN, IMK_COUNT, IMK_KILOGRAM, IMK_AMPERE };
 
 /** A unit: SI value = scale * value + offset (offset only for degC). */
 typedef struct imk_unit {
@@ -40,7 +41,8 @@ typedef struct imk_unit {
  *  behind a `/`, where it can be read both ways. Exponents are ^2, ^-1, ^0.5, ^1/2, ², ³, ½, ⁻¹ and
  *  s2; roots are sqrt(…), √, rt- and root-. Only listed multiples exist (mg is a thousandth of g,
  *  min a minute); names are case-sensitive. degC has its offset only by itself: in degC/min it is a
- *  kelvin.
+ *  kelvin. g, mg and ug are accelerations: a mass is in kg, gram, milligram or microgram. dB is
+ * that of a power, ln(10)/10 in the exponent, so that dB/km is an attenuation.
  *
  *  @param begin,end  the text, blanks around it allowed
  *  @return IMK_ERROR_UNIT_MISSING for blank text, IMK_ERROR_UNIT_UNKNOWN (error.found is the part
@@ -60,6 +62,10 @@ IMK_API bool imk_dimension_equal(imk_dimension a, imk_dimension b);
 IMK_API const char *imk_dimension_name(imk_dimension dimension);
 /** The usual units of a dimension, never NULL. */
 IMK_API const char *imk_dimension_examples(imk_dimension dimension);
+
+/** The SI base units of a dimension as text: "rad/s", "kg*m^2/s^3".
+ *  @return length, or 0 when `size` is too small */
+IMK_API size_t imk_dimension_si(imk_dimension dimension, char *text, size_t size);
 
 /** Read `number… [± sigma…] unit`, a quantity of the model file: 1 or up to max_count numbers, then
  *  optionally ± (or +-) and as many 1-sigma values (or one for all), then the unit.

@@ -16,7 +16,7 @@ typedef struct readable {
 } readable;
 
 typedef struct dimension_entry {
-    imk_dimension dimension; /* metre, second, radian, kelvin, count, in halves */
+    imk_dimension dimension; /* metre, second, radian, kelvin, count, kilogram, ampere: halves */
     const char *name;
     const char *examples;
     readable units[READABLE_MAX]; /* from small to large; the first serves everything below */
@@ -180,6 +180,121 @@ static const dimension_entry entries[] = {
      "a ratio per fifth power of temperature",
      "ppm/degC^5",
      {{"ppm/degC^5", 0.0}}},
+
+    /* what instruments are made of: size, mass, force, electricity */
+    {{{4, 0, 0, 0, 0, 0, 0}},
+     "an area",
+     "mm^2, um^2 or m^2",
+     {{"um^2", 0.0}, {"mm^2", 0.01}, {"m^2", 0.01}}},
+    {{{6, 0, 0, 0, 0, 0, 0}}, "a volume", "mm^3 or m^3", {{"mm^3", 0.0}}},
+    {{{-2, 0, 0, 0, 0, 0, 0}},
+     "a number or attenuation per length",
+     "dB/km, 1/mm or 1/m",
+     {{"1/m", 0.0}}},
+    {{{2, 0, 0, -2, 0, 0, 0}}, "a length per temperature", "nm/K or um/K", {{"nm/K", 0.0}}},
+    {{{0, 1, 2, 0, 0, 0, 0}},
+     "a white-noise density of angle",
+     "urad/sqrt(Hz) or rad/sqrt(Hz)",
+     {{"urad/sqrt(Hz)", 0.0}}},
+    {{{2, 1, 0, 0, 0, 0, 0}},
+     "a white-noise density of displacement",
+     "pm/sqrt(Hz) or m/sqrt(Hz)",
+     {{"pm/sqrt(Hz)", 0.0}}},
+    {{{0, 1, 0, 0, 0, 0, 0}},
+     "a white-noise density of a ratio",
+     "1/sqrt(Hz) or ppm/sqrt(Hz)",
+     {{"ppm/sqrt(Hz)", 0.0}}},
+    {{{0, -2, 0, -2, 0, 0, 0}}, "a frequency per temperature", "Hz/K", {{"Hz/K", 0.0}}},
+    {{{-2, 2, 0, 0, 0, 0, 0}},
+     "a frequency per acceleration",
+     "Hz/g or 1/s/(m/s^2)",
+     {{"Hz/g", 0.0}}},
+    {{{0, 0, -2, 0, 0, 0, 0}}, "a number per angle", "1/rad or 1/arcsec", {{"1/rad", 0.0}}},
+    {{{-2, 0, 2, 0, 0, 0, 0}}, "an angle per length", "mrad/mm or rad/m", {{"rad/m", 0.0}}},
+    {{{0, 0, 0, 0, 0, 2, 0}},
+     "a mass",
+     "kg, gram, milligram or microgram",
+     {{"microgram", 0.0}, {"milligram", 1.0}, {"gram", 1.0}, {"kg", 1.0}}},
+    {{{-6, 0, 0, 0, 0, 2, 0}}, "a density", "kg/m^3", {{"kg/m^3", 0.0}}},
+    {{{2, 0, 0, 0, 0, 2, 0}},
+     "a mass times length (pendulosity, unbalance)",
+     "gram*cm or kg*m",
+     {{"gram*cm", 0.0}, {"kg*m", 1.0}}},
+    {{{4, 0, 0, 0, 0, 2, 0}},
+     "a moment of inertia",
+     "gram*cm^2 or kg*m^2",
+     {{"gram*cm^2", 0.0}, {"kg*m^2", 0.01}}},
+    {{{4, -2, 0, 0, 0, 2, 0}},
+     "an angular momentum",
+     "gram*cm^2/s, N*m*s or kg*m^2/s",
+     {{"gram*cm^2/s", 0.0}, {"N*m*s", 0.001}}},
+    {{{2, -4, 0, 0, 0, 2, 0}},
+     "a force",
+     "uN, mN or N",
+     {{"nN", 0.0}, {"uN", 1.0}, {"mN", 1.0}, {"N", 1.0}}},
+    {{{2, -3, 0, 0, 0, 2, 0}},
+     "a white-noise density of force",
+     "N/sqrt(Hz)",
+     {{"N/sqrt(Hz)", 0.0}}},
+    {{{4, -4, 0, 0, 0, 2, 0}},
+     "a torque or energy",
+     "nN*m, mN*m, N*m or J",
+     {{"nN*m", 0.0}, {"uN*m", 1.0}, {"mN*m", 1.0}, {"N*m", 1.0}}},
+    {{{4, -3, 0, 0, 0, 2, 0}},
+     "a white-noise density of torque",
+     "N*m/sqrt(Hz)",
+     {{"N*m/sqrt(Hz)", 0.0}}},
+    {{{4, -5, 0, 0, 0, 2, 0}},
+     "a random walk of torque",
+     "N*m/sqrt(h) or N*m/sqrt(s)",
+     {{"N*m/sqrt(h)", 0.0}}},
+    {{{4, -4, -2, 0, 0, 2, 0}}, "a torsional stiffness", "N*m/rad", {{"N*m/rad", 0.0}}},
+    {{{4, -2, -2, 0, 0, 2, 0}}, "a torsional damping", "N*m*s/rad", {{"N*m*s/rad", 0.0}}},
+    {{{0, -4, 0, 0, 0, 2, 0}}, "a stiffness", "N/m or mN/m", {{"N/m", 0.0}}},
+    {{{0, -2, 0, 0, 0, 2, 0}}, "a damping", "N*s/m", {{"N*s/m", 0.0}}},
+    {{{0, 4, 0, 0, 0, -2, 0}}, "a compliance", "nm/N or m/N", {{"nm/N", 0.0}}},
+    {{{4, -4, 0, -2, 0, 2, 0}}, "a torque per temperature", "nN*m/K or N*m/K", {{"nN*m/K", 0.0}}},
+    {{{2, -4, 0, -2, 0, 2, 0}}, "a force per temperature", "uN/K or N/K", {{"uN/K", 0.0}}},
+    {{{-2, -4, 0, 0, 0, 2, 0}},
+     "a pressure or elastic modulus",
+     "Pa, kPa, MPa or GPa",
+     {{"Pa", 0.0}, {"kPa", 1.0}, {"MPa", 1.0}, {"GPa", 1.0}}},
+    {{{-2, -2, 0, 0, 0, 2, 0}}, "a viscosity", "Pa*s", {{"Pa*s", 0.0}}},
+    {{{4, -6, 0, 0, 0, 2, 0}},
+     "a power",
+     "nW, uW, mW or W",
+     {{"nW", 0.0}, {"uW", 1.0}, {"mW", 1.0}, {"W", 1.0}}},
+    {{{0, 0, 0, 0, 0, 0, 2}},
+     "an electric current",
+     "nA, uA, mA or A",
+     {{"nA", 0.0}, {"uA", 1.0}, {"mA", 1.0}, {"A", 1.0}}},
+    {{{0, 1, 0, 0, 0, 0, 2}},
+     "a white-noise density of current",
+     "pA/sqrt(Hz) or A/sqrt(Hz)",
+     {{"pA/sqrt(Hz)", 0.0}}},
+    {{{0, 2, 0, 0, 0, 0, 2}}, "an electric charge", "A*s", {{"A*s", 0.0}}},
+    {{{4, -6, 0, 0, 0, 2, -2}}, "a voltage", "uV, mV or V", {{"uV", 0.0}, {"mV", 1.0}, {"V", 1.0}}},
+    {{{4, -5, 0, 0, 0, 2, -2}},
+     "a white-noise density of voltage",
+     "nV/sqrt(Hz) or V/sqrt(Hz)",
+     {{"nV/sqrt(Hz)", 0.0}}},
+    {{{2, -6, 0, 0, 0, 2, -2}}, "an electric field", "V/m or V/mm", {{"V/m", 0.0}}},
+    {{{4, -6, -2, 0, 0, 2, -2}}, "a voltage per angle", "V/rad or mV/deg", {{"V/rad", 0.0}}},
+    {{{4, -6, 0, 0, 0, 2, -4}},
+     "a resistance",
+     "ohm, kohm or Mohm",
+     {{"ohm", 0.0}, {"kohm", 1.0}, {"Mohm", 1.0}}},
+    {{{-4, 8, 0, 0, 0, -2, 4}},
+     "a capacitance",
+     "fF, pF, nF or uF",
+     {{"fF", 0.0}, {"pF", 1.0}, {"nF", 1.0}, {"uF", 1.0}}},
+    {{{-6, 8, 0, 0, 0, -2, 4}}, "a capacitance per length", "pF/um or F/m", {{"pF/um", 0.0}}},
+    {{{-4, 6, 0, 0, 0, -2, 2}},
+     "a current per power (responsivity)",
+     "A/W or mA/mW",
+     {{"A/W", 0.0}}},
+    {{{2, -4, 0, 0, 0, 2, -2}}, "a force per current", "N/A or mN/mA", {{"N/A", 0.0}}},
+    {{{4, -4, 0, 0, 0, 2, -2}}, "a torque per current", "N*m/A or mN*m/A", {{"N*m/A", 0.0}}},
 };
 
 bool imk_dimension_equal(imk_dimension a, imk_dimension b)
@@ -216,10 +331,12 @@ const char *imk_dimension_examples(imk_dimension dimension)
 imk_unit imk_unit_readable(imk_dimension dimension, double magnitude)
 {
     const dimension_entry *entry = find(dimension);
-    char text[48];
+    char text[IMKI_SI_TEXT_SIZE] = {0};
     if (!entry) {
+        imk_unit si = {.scale = 1.0, .dimension = dimension};
         imki_unit_si_text(dimension, false, text);
-        return imk_unit_of(text);
+        memcpy(si.text, text, sizeof si.text - 1); /* no unit met in practice is longer */
+        return si;
     }
     imk_unit best = imk_unit_of(entry->units[0].unit);
     for (size_t i = 1; i < READABLE_MAX && entry->units[i].unit; i++) {
@@ -245,7 +362,7 @@ static void put(writer *w, const char *text)
     w->length += length;
 }
 
-/* name^(half/2); |half| <= 128, so at most 4 characters of exponent. */
+/* name^(half/2), |half| <= 128: at most 5 characters behind the name. */
 static void put_power(writer *w, const char *name, int half)
 {
     char number[8];
@@ -266,10 +383,11 @@ static void put_power(writer *w, const char *name, int half)
     put(w, number + at);
 }
 
-void imki_unit_si_text(imk_dimension dimension, bool per_root_hertz, char text[48])
+void imki_unit_si_text(imk_dimension dimension, bool per_root_hertz, char text[IMKI_SI_TEXT_SIZE])
 {
-    static const char *const names[] = {"m", "s", "rad", "K", "count"};
-    static const int order[] = {IMK_COUNT, IMK_RADIAN, IMK_METRE, IMK_KELVIN, IMK_SECOND};
+    static const char *const names[] = {"m", "s", "rad", "K", "count", "kg", "A"};
+    static const int order[] = {IMK_COUNT,  IMK_RADIAN, IMK_KILOGRAM, IMK_METRE,
+                                IMK_AMPERE, IMK_KELVIN, IMK_SECOND};
     writer w = {text, 0};
     text[0] = '\0';
     if (per_root_hertz)
@@ -292,4 +410,15 @@ void imki_unit_si_text(imk_dimension dimension, bool per_root_hertz, char text[4
     }
     if (per_root_hertz)
         put(&w, "/sqrt(Hz)");
+}
+
+size_t imk_dimension_si(imk_dimension dimension, char *text, size_t size)
+{
+    char whole[IMKI_SI_TEXT_SIZE];
+    imki_unit_si_text(dimension, false, whole);
+    const size_t length = strlen(whole);
+    if (length >= size)
+        return 0;
+    memcpy(text, whole, length + 1);
+    return length;
 }

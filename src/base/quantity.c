@@ -58,7 +58,7 @@ static imk_status refuse_dimension(const source *s, const char *unit_begin, imk_
                                    imk_dimension expected)
 {
     imk_error text;
-    char si[48];
+    char si[IMKI_SI_TEXT_SIZE];
     (void)imk_error_set(&text, IMK_ERROR_DIMENSION, "", "is ", imk_dimension_name(expected));
     if (imki_dimension_known(found)) {
         append(text.found, sizeof text.found, imk_dimension_name(found));

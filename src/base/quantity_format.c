@@ -115,7 +115,7 @@ size_t imk_quantity_format(const double *values, const double *sigmas, size_t co
     if (text_size == 0 || count == 0)
         return 0;
     if (!put_quantity(&w, values, sigmas, count, unit->scale, unit->offset, unit->text)) {
-        char si[48];
+        char si[IMKI_SI_TEXT_SIZE];
         imki_unit_si_text(unit->dimension, unit->per_root_hertz, si);
         w = (writer){.text = text, .size = text_size};
         (void)put_quantity(&w, values, sigmas, count, 1.0, 0.0, si);

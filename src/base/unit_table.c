@@ -63,6 +63,60 @@
             2, -4, 0, 0, 0                                                                         \
         }                                                                                          \
     }
+#define MASS                                                                                       \
+    {                                                                                              \
+        {                                                                                          \
+            0, 0, 0, 0, 0, 2, 0                                                                    \
+        }                                                                                          \
+    }
+#define FORCE                                                                                      \
+    {                                                                                              \
+        {                                                                                          \
+            2, -4, 0, 0, 0, 2, 0                                                                   \
+        }                                                                                          \
+    }
+#define TORQUE                                                                                     \
+    {                                                                                              \
+        {                                                                                          \
+            4, -4, 0, 0, 0, 2, 0                                                                   \
+        }                                                                                          \
+    }
+#define PRESSURE                                                                                   \
+    {                                                                                              \
+        {                                                                                          \
+            -2, -4, 0, 0, 0, 2, 0                                                                  \
+        }                                                                                          \
+    }
+#define POWER                                                                                      \
+    {                                                                                              \
+        {                                                                                          \
+            4, -6, 0, 0, 0, 2, 0                                                                   \
+        }                                                                                          \
+    }
+#define CURRENT                                                                                    \
+    {                                                                                              \
+        {                                                                                          \
+            0, 0, 0, 0, 0, 0, 2                                                                    \
+        }                                                                                          \
+    }
+#define VOLTAGE                                                                                    \
+    {                                                                                              \
+        {                                                                                          \
+            4, -6, 0, 0, 0, 2, -2                                                                  \
+        }                                                                                          \
+    }
+#define RESISTANCE                                                                                 \
+    {                                                                                              \
+        {                                                                                          \
+            4, -6, 0, 0, 0, 2, -4                                                                  \
+        }                                                                                          \
+    }
+#define CAPACITANCE                                                                                \
+    {                                                                                              \
+        {                                                                                          \
+            -4, 8, 0, 0, 0, -2, 4                                                                  \
+        }                                                                                          \
+    }
 
 static const imki_named_unit units[] = {
     /* angle */
@@ -109,8 +163,11 @@ static const imki_named_unit units[] = {
     {"mHz", 1e-3, 0.0, FREQUENCY, true},
     {"kHz", 1e3, 0.0, FREQUENCY, true},
     {"MHz", 1e6, 0.0, FREQUENCY, true},
+    {"GHz", 1e9, 0.0, FREQUENCY, true},
+    {"THz", 1e12, 0.0, FREQUENCY, true},
     /* length; the foot by the agreement of 1959, the nautical mile by that of 1929 */
     {"m", 1.0, 0.0, LENGTH, false},
+    {"pm", 1e-12, 0.0, LENGTH, false},
     {"nm", 1e-9, 0.0, LENGTH, false},
     {"um", 1e-6, 0.0, LENGTH, false},
     {"mm", 1e-3, 0.0, LENGTH, false},
@@ -126,6 +183,50 @@ static const imki_named_unit units[] = {
     {"Gal", 1e-2, 0.0, ACCELERATION, false},
     {"mGal", 1e-5, 0.0, ACCELERATION, false},
     {"uGal", 1e-8, 0.0, ACCELERATION, false},
+    /* mass; g, mg and ug are accelerations */
+    {"kg", 1.0, 0.0, MASS, false},
+    {"gram", 1e-3, 0.0, MASS, false},
+    {"grams", 1e-3, 0.0, MASS, false},
+    {"milligram", 1e-6, 0.0, MASS, false},
+    {"microgram", 1e-9, 0.0, MASS, false},
+    {"nanogram", 1e-12, 0.0, MASS, false},
+    /* force, torque, pressure, energy, power */
+    {"N", 1.0, 0.0, FORCE, false},
+    {"mN", 1e-3, 0.0, FORCE, false},
+    {"uN", 1e-6, 0.0, FORCE, false},
+    {"nN", 1e-9, 0.0, FORCE, false},
+    {"pN", 1e-12, 0.0, FORCE, false},
+    {"Nm", 1.0, 0.0, TORQUE, false},
+    {"mNm", 1e-3, 0.0, TORQUE, false},
+    {"uNm", 1e-6, 0.0, TORQUE, false},
+    {"J", 1.0, 0.0, TORQUE, false},
+    {"Pa", 1.0, 0.0, PRESSURE, false},
+    {"kPa", 1e3, 0.0, PRESSURE, false},
+    {"MPa", 1e6, 0.0, PRESSURE, false},
+    {"GPa", 1e9, 0.0, PRESSURE, false},
+    {"W", 1.0, 0.0, POWER, false},
+    {"mW", 1e-3, 0.0, POWER, false},
+    {"uW", 1e-6, 0.0, POWER, false},
+    {"nW", 1e-9, 0.0, POWER, false},
+    /* electricity; no C, which many write for degC */
+    {"A", 1.0, 0.0, CURRENT, false},
+    {"mA", 1e-3, 0.0, CURRENT, false},
+    {"uA", 1e-6, 0.0, CURRENT, false},
+    {"nA", 1e-9, 0.0, CURRENT, false},
+    {"pA", 1e-12, 0.0, CURRENT, false},
+    {"V", 1.0, 0.0, VOLTAGE, false},
+    {"kV", 1e3, 0.0, VOLTAGE, false},
+    {"mV", 1e-3, 0.0, VOLTAGE, false},
+    {"uV", 1e-6, 0.0, VOLTAGE, false},
+    {"nV", 1e-9, 0.0, VOLTAGE, false},
+    {"ohm", 1.0, 0.0, RESISTANCE, false},
+    {"kohm", 1e3, 0.0, RESISTANCE, false},
+    {"Mohm", 1e6, 0.0, RESISTANCE, false},
+    {"F", 1.0, 0.0, CAPACITANCE, false},
+    {"uF", 1e-6, 0.0, CAPACITANCE, false},
+    {"nF", 1e-9, 0.0, CAPACITANCE, false},
+    {"pF", 1e-12, 0.0, CAPACITANCE, false},
+    {"fF", 1e-15, 0.0, CAPACITANCE, false},
     /* temperature */
     {"K", 1.0, 0.0, TEMPERATURE, false},
     {"mK", 1e-3, 0.0, TEMPERATURE, false},
@@ -139,6 +240,7 @@ static const imki_named_unit units[] = {
     {"percent", 1e-2, 0.0, NONE, false},
     {"ppm", 1e-6, 0.0, NONE, false},
     {"ppb", 1e-9, 0.0, NONE, false},
+    {"dB", 0.23025850929940458, 0.0, NONE, false}, /* ln(10)/10: of a power, in the exponent */
 };
 
 enum { UNIT_COUNT = (int)(sizeof units / sizeof units[0]) };

@@ -6,9 +6,11 @@
 #include "imukit/units.h"
 
 enum {
-    IMKI_DIMENSIONS = 5,
+    IMKI_DIMENSIONS = 7,
     /** Longest name of a unit after µ and ° are spelled out, with its terminating zero. */
-    IMKI_UNIT_NAME_SIZE = 32
+    IMKI_UNIT_NAME_SIZE = 32,
+    /** Longest text in SI base units, "count^29.5*kg^29.5*…/sqrt(Hz)", with room. */
+    IMKI_SI_TEXT_SIZE = 96
 };
 
 /** A unit with a name of its own. */
@@ -30,7 +32,7 @@ const char *imki_unit_nearest(const char *name);
 bool imki_dimension_known(imk_dimension dimension);
 
 /** Text of the SI base units of a dimension, like "rad/s^1.5" or "m/s^2/sqrt(Hz)". */
-void imki_unit_si_text(imk_dimension dimension, bool per_root_hertz, char text[48]);
+void imki_unit_si_text(imk_dimension dimension, bool per_root_hertz, char text[IMKI_SI_TEXT_SIZE]);
 
 /** First character that is not blank. */
 static inline const char *imki_skip_blanks(const char *at, const char *end)

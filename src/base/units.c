@@ -188,9 +188,9 @@ static size_t name_character(const reader *r)
 /* Read a name, with µ (both code points) as u and degree signs as deg. */
 static bool read_name(reader *r, char name[IMKI_UNIT_NAME_SIZE])
 {
-    static const char *const spellings[][2] = {{"µ", "u"},     {"μ", "u"},    {"°", "deg"},
-                                               {"º", "deg"},   {"℃", "degC"}, {"″", "arcsec"},
-                                               {"′", "arcmin"}};
+    static const char *const spellings[][2] = {{"µ", "u"},      {"μ", "u"},    {"°", "deg"},
+                                               {"º", "deg"},    {"℃", "degC"}, {"″", "arcsec"},
+                                               {"′", "arcmin"}, {"Ω", "ohm"},  {"Ω", "ohm"}};
     size_t length = 0;
     for (size_t bytes; r->at < r->end && (bytes = name_character(r)) > 0; r->at += bytes) {
         const char *source = r->at;

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { COOKIE = 0x494D4B22, BATCHES = 16, TRIALS_MAX = IMK_LABORATORY_POINTS_MAX };
+enum { COOKIE = 0x494D4B22, BATCHES = 16, RAMP = 32, TRIALS_MAX = IMK_LABORATORY_POINTS_MAX };
 
 imk_laboratory imk_laboratory_default(void)
 {
@@ -44,6 +44,22 @@ static size_t samples_in(double time, double rate)
     return count > 1.0 ? (size_t)count : 1;
 }
 
+/* The table is brought to speed: the input grows to its value in equal parts, one a sample. An
+ * instrument that has to follow, such as a fibre gyro its fringe, is not thrown at it. */
+static void bring_to_speed(const imk_laboratory *laboratory, const imki_trial *trial, void *state)
+{
+    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX];
+    for (int i = 1; i < RAMP; i++) {
+        imk_exposure exposure = trial->exposure;
+        const double missing = 1.0 - (double)i / RAMP;
+        if (laboratory->instrument->sensor == IMK_GYRO)
+            exposure.angular_rate[0] -= missing * trial->input;
+        else
+            exposure.specific_force[0] -= missing * trial->input;
+        laboratory->instrument->step(state, &exposure, outputs);
+    }
+}
+
 /* Mean of the dwell and its 1 sigma from the scatter of the means of its parts. */
 static void measure_constant(const imk_laboratory *laboratory, imki_trial *trial, void *state)
 {
@@ -51,6 +67,7 @@ static void measure_constant(const imk_laboratory *laboratory, imki_trial *trial
     const double rate = laboratory->physics.rate;
     const size_t part = (samples_in(laboratory->dwell, rate) + BATCHES - 1) / BATCHES;
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], batch[BATCHES], mean = 0.0, scatter = 0.0;
+    bring_to_speed(laboratory, trial, state);
     for (size_t i = samples_in(laboratory->settle, rate); i > 0; i--)
         instrument->step(state, &trial->exposure, outputs);
     for (int b = 0; b < BATCHES; b++) {
@@ -238,8 +255,8 @@ static double full_scale_of(const imk_laboratory *laboratory, const imk_triad *s
 {
     if (laboratory->full_scale > 0.0)
         return laboratory->full_scale;
-    if (stated->range.value[0] > 0.0)
-        return stated->range.value[0];
+    if (stated->range.value[0] > 0.0) /* a bias must not push a reading over the end */
+        return 0.8 * stated->range.value[0];
     return laboratory->instrument->sensor == IMK_GYRO ? 1.0 : 10.0;
 }
 
@@ -263,9 +280,13 @@ static void static_record(const imk_laboratory *laboratory, char *state, double 
     result->has_noise =
         imk_identify_channel(&settings, count, samples, &result->noise, samples + count,
                              imk_identify_workspace_size(count), NULL) == IMK_OK;
-    if (result->has_noise)
-        imk_identification_store(&result->noise, &result->model, instrument->sensor == IMK_ACCEL,
-                                 0);
+    if (!result->has_noise)
+        return;
+    imk_triad *triad = imki_triad_of(laboratory, result);
+    const imk_axes bandwidth = triad->bandwidth; /* the shaker's, not that of the noise */
+    imk_identification_store(&result->noise, &result->model, instrument->sensor == IMK_ACCEL, 0);
+    if (bandwidth.value[0] > 0.0)
+        triad->bandwidth = bandwidth;
 }
 
 /* A model of one axis with no errors, and what reduce says of the axes. */
@@ -298,8 +319,12 @@ imk_status imk_laboratory_run(const imk_laboratory *laboratory, void *workspace,
     const imk_triad stated = *imki_triad_of(laboratory, result);
     begin_model(&stated, instrument->sensor, &result->model);
     result->full_scale = full_scale_of(laboratory, &stated);
-    if (laboratory->points > 0)
+    imki_zero_readings(laboratory, states, executor, result);
+    if (laboratory->points > 0) {
         imki_rate_table(laboratory, states, executor, result);
+        if (instrument->sensor == IMK_GYRO)
+            imki_cross_rates(laboratory, states, executor, result);
+    }
     if (laboratory->threshold)
         imki_threshold(laboratory, states, executor, result);
     if (laboratory->tumble)

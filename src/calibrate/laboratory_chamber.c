@@ -109,10 +109,11 @@ void imki_tumble(const imk_laboratory *laboratory, const double pendulous[3], ch
         y[i] = trials[i].reading.output;
         noise += trials[i].reading.sigma * trials[i].reading.sigma / POSES;
     }
+    noise = imki_reading_sigma(result, sqrt(noise));
     if (laboratory->instrument->sensor == IMK_GYRO)
-        gyro_tumble(y, sqrt(noise), triad);
+        gyro_tumble(y, noise, triad);
     else
-        accel_tumble(y, sqrt(noise), pendulous, triad);
+        accel_tumble(y, noise, pendulous, triad);
 }
 
 /* ---- thermal chamber --------------------------------------------------------------------------
@@ -124,8 +125,9 @@ void imki_tumble(const imk_laboratory *laboratory, const double pendulous[3], ch
 static const double temperature_step = 10.0; /* [K] */
 static const double ramp = 0.01;             /* [K/s] */
 
-static void fit_line(const double *y, double noise, imk_axes *slope, imk_temperature_polynomial *p,
-                     double middle)
+/* @return 1 sigma of a reading: how far they are from their line, or their noise if that is more */
+static double fit_line(const double *y, double noise, imk_axes *slope,
+                       imk_temperature_polynomial *p, double middle)
 {
     double a[2 * TEMPERATURES], x[2], sigma[2];
     for (int i = 0; i < TEMPERATURES; i++) {
@@ -133,13 +135,14 @@ static void fit_line(const double *y, double noise, imk_axes *slope, imk_tempera
         a[2 * i + 1] = temperature_step * (i - TEMPERATURES / 2);
     }
     if (!imki_fit(TEMPERATURES, 2, a, y, noise, x, sigma))
-        return;
+        return noise;
     slope->value[0] = x[1];
     slope->sigma[0] = sigma[1];
     p->order = 1;
     p->reference = middle;
     p->minimum = middle - temperature_step * (TEMPERATURES / 2);
     p->maximum = middle + temperature_step * (TEMPERATURES / 2);
+    return sigma[0] * sqrt((double)TEMPERATURES);
 }
 
 void imki_chamber(const imk_laboratory *laboratory, char *states, const imk_executor *executor,
@@ -163,12 +166,12 @@ void imki_chamber(const imk_laboratory *laboratory, char *states, const imk_exec
     }
     for (int i = 0; i < TRIALS; i++)
         noise += trials[i].reading.sigma * trials[i].reading.sigma / TRIALS;
-    noise = sqrt(noise);
-    fit_line(bias, noise, &triad->bias.temperature.coefficient[0], &triad->bias.temperature,
-             middle);
+    noise = imki_reading_sigma(result, sqrt(noise));
+    const double scatter = fit_line(bias, noise, &triad->bias.temperature.coefficient[0],
+                                    &triad->bias.temperature, middle);
     fit_line(scale, noise / (sqrt(2.0) * half), &triad->scale_factor.temperature.coefficient[0],
              &triad->scale_factor.temperature, middle);
     triad->bias.temperature_rate.value[0] =
         (trials[TRIALS - 1].reading.output - bias[TEMPERATURES / 2]) / ramp;
-    triad->bias.temperature_rate.sigma[0] = sqrt(2.0) * noise / ramp;
+    triad->bias.temperature_rate.sigma[0] = sqrt(2.0) * scatter / ramp;
 }

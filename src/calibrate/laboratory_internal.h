@@ -33,9 +33,21 @@ enum { IMKI_FIT_ROWS = IMK_LABORATORY_POINTS_MAX, IMKI_FIT_COLUMNS = 10 };
 bool imki_fit(size_t rows, size_t columns, const double *a, const double *y, double reading_sigma,
               double *x, double *sigma);
 
-/* laboratory_table.c: rate table and threshold. */
+/* 1 sigma of a reading: its own noise, or the scatter of readings without input if that is more. */
+static inline double imki_reading_sigma(const imk_laboratory_result *result, double own)
+{
+    return own > result->zero_scatter ? own : result->zero_scatter;
+}
+
+/* laboratory_table.c: readings without input, rate table, rates across the input axis, threshold.
+ */
+void imki_zero_readings(const imk_laboratory *laboratory, char *states,
+                        const imk_executor *executor, imk_laboratory_result *result);
 void imki_rate_table(const imk_laboratory *laboratory, char *states, const imk_executor *executor,
                      imk_laboratory_result *result);
+/* Response of a gyro to rates across its input axis. */
+void imki_cross_rates(const imk_laboratory *laboratory, char *states, const imk_executor *executor,
+                      imk_laboratory_result *result);
 void imki_threshold(const imk_laboratory *laboratory, char *states, const imk_executor *executor,
                     imk_laboratory_result *result);
 /* laboratory_chamber.c: tumble and temperature. */

@@ -21,6 +21,7 @@ void imki_shaker(const imk_laboratory *laboratory, double bandwidth, char *state
                  const imk_executor *executor, imk_laboratory_result *result)
 {
     imki_trial trials[IMK_LABORATORY_FREQUENCIES_MAX];
+    imk_triad *triad = imki_triad_of(laboratory, result);
     const int count = laboratory->frequencies;
     const double rate = laboratory->physics.rate;
     const double lowest = laboratory->lowest > 0.0 ? laboratory->lowest
@@ -44,8 +45,9 @@ void imki_shaker(const imk_laboratory *laboratory, double bandwidth, char *state
         const double limit = result->response[0].gain / sqrt(2.0);
         if (r[0].gain >= limit && r[1].gain < limit) {
             result->bandwidth = crossing(&r[0], &r[1], limit);
+            triad->bandwidth.sigma[0] = (r[1].frequency - r[0].frequency) / sqrt(12.0);
             break;
         }
     }
-    imki_triad_of(laboratory, result)->bandwidth.value[0] = result->bandwidth;
+    triad->bandwidth.value[0] = result->bandwidth;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rate table (for an accelerometer: forces) and threshold.
+/* Rate table (for an accelerometer: forces), rates across the input axis, and threshold.
  *
  *     output - input = b + s u + K2 u^2 + Koq u|u| + K3 u^3 + asymmetry |u|/2 */
 #include "calibrate/laboratory_internal.h"
@@ -8,7 +8,24 @@
 
 #include <math.h>
 
-enum { TERMS = 6, SCAN = 22, BISECTIONS = 6 };
+enum { ZEROS = 8, TERMS = 6, SCAN = 22, BISECTIONS = 6 };
+
+void imki_zero_readings(const imk_laboratory *laboratory, char *states,
+                        const imk_executor *executor, imk_laboratory_result *result)
+{
+    imki_trial trials[ZEROS];
+    double scatter = 0.0;
+    for (int i = 0; i < ZEROS; i++)
+        trials[i] = imki_trial_of(laboratory, 0.0);
+    imki_trials_run(laboratory, ZEROS, trials, states, executor);
+    for (int i = 0; i < ZEROS; i++)
+        result->zero += trials[i].reading.output / ZEROS;
+    for (int i = 0; i < ZEROS; i++) {
+        const double difference = trials[i].reading.output - result->zero;
+        scatter += difference * difference / (ZEROS - 1);
+    }
+    result->zero_scatter = sqrt(scatter);
+}
 
 /* Largest distance of the outputs from their least-squares line. */
 static double deviation_from_line(int count, const imk_laboratory_point *point)
@@ -47,8 +64,8 @@ static void fit_table(imk_triad *triad, imk_laboratory_result *result)
         y[i] = point->output - point->input;
         noise += point->sigma * point->sigma;
     }
-    if (!imki_fit((size_t)result->point_count, TERMS, a, y, sqrt(noise / result->point_count), x,
-                  sigma))
+    noise = imki_reading_sigma(result, sqrt(noise / result->point_count));
+    if (!imki_fit((size_t)result->point_count, TERMS, a, y, noise, x, sigma))
         return;
     store(&triad->bias.fixed, x[0], sigma[0]);
     store(&triad->scale_factor.fixed, x[1] / scale, sigma[1] / scale);
@@ -74,15 +91,36 @@ void imki_rate_table(const imk_laboratory *laboratory, char *states, const imk_e
     fit_table(imki_triad_of(laboratory, result), result);
 }
 
+/* Plus and minus a quarter of full scale about y and about z: half of the difference. */
+void imki_cross_rates(const imk_laboratory *laboratory, char *states, const imk_executor *executor,
+                      imk_laboratory_result *result)
+{
+    imki_trial trials[4];
+    imk_triad *triad = imki_triad_of(laboratory, result);
+    const double rate = 0.25 * result->full_scale;
+    for (int i = 0; i < 4; i++) {
+        trials[i] = imki_trial_of(laboratory, 0.0);
+        trials[i].exposure.angular_rate[1 + i / 2] += i % 2 == 0 ? rate : -rate;
+    }
+    imki_trials_run(laboratory, 4, trials, states, executor);
+    for (int k = 0; k < 2; k++) {
+        const imk_laboratory_point *plus = &trials[2 * k].reading;
+        const imk_laboratory_point *minus = &trials[2 * k + 1].reading;
+        triad->cross_axis.value[0][1 + k] = (plus->output - minus->output) / (2.0 * rate);
+        const double own = sqrt(0.5 * (plus->sigma * plus->sigma + minus->sigma * minus->sigma));
+        triad->cross_axis.sigma[0][1 + k] = imki_reading_sigma(result, own) / (sqrt(2.0) * rate);
+    }
+}
+
 /* ---- threshold ------------------------------------------------------------------------------- */
 
 /* Is the change from the reading at zero half of the input or more? -1: noise hides it. */
-static int responds(const imk_laboratory_point *zero, const imk_laboratory_point *point)
+static int responds(const imk_laboratory_result *result, const imk_laboratory_point *point)
 {
-    const double sigma = sqrt(zero->sigma * zero->sigma + point->sigma * point->sigma);
-    if (!(5.0 * sigma < point->input))
+    const double sigma = imki_reading_sigma(result, point->sigma);
+    if (!(6.0 * sigma < point->input))
         return -1;
-    return point->output - zero->output >= 0.5 * point->input;
+    return point->output - result->zero >= 0.5 * point->input;
 }
 
 /* Inputs fall from full scale by sqrt(10) each, over 10.5 decades; below the first that fails, or
@@ -92,12 +130,11 @@ void imki_threshold(const imk_laboratory *laboratory, char *states, const imk_ex
 {
     imki_trial trials[SCAN];
     double input = result->full_scale, good = result->full_scale, bad = 0.0;
-    trials[0] = imki_trial_of(laboratory, 0.0);
-    for (int i = 1; i < SCAN; i++, input /= sqrt(10.0))
+    for (int i = 0; i < SCAN; i++, input /= sqrt(10.0))
         trials[i] = imki_trial_of(laboratory, input);
     imki_trials_run(laboratory, SCAN, trials, states, executor);
-    for (int i = 1; i < SCAN && bad <= 0.0; i++) {
-        const int answer = responds(&trials[0].reading, &trials[i].reading);
+    for (int i = 0; i < SCAN && bad <= 0.0; i++) {
+        const int answer = responds(result, &trials[i].reading);
         if (answer < 0)
             break;
         if (answer == 0)
@@ -108,7 +145,7 @@ void imki_threshold(const imk_laboratory *laboratory, char *states, const imk_ex
     for (int i = 0; bad > 0.0 && i < BISECTIONS; i++) {
         imki_trial middle = imki_trial_of(laboratory, sqrt(good * bad));
         imki_trials_run(laboratory, 1, &middle, states, NULL);
-        if (responds(&trials[0].reading, &middle.reading) == 1)
+        if (responds(result, &middle.reading) == 1)
             good = middle.input;
         else
             bad = middle.input;

@@ -1,7 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The kinds of instruments there are, and what can be said of any design from its table. */
+#include "imukit/fibre_optic.h"
+#include "imukit/free_gyro.h"
+#include "imukit/mems_accelerometer.h"
 #include "imukit/pendulous_servo.h"
+#include "imukit/rate_gyro.h"
+#include "imukit/rate_integrating_gyro.h"
 #include "imukit/ring_laser.h"
+#include "imukit/shell_gyro.h"
+#include "imukit/suspended_rotor.h"
+#include "imukit/tuned_gyro.h"
+#include "imukit/tuning_fork.h"
+#include "imukit/vibrating_beam.h"
 #include "physics/physics_internal.h"
 
 #include <math.h>
@@ -10,8 +20,19 @@
 enum { SETTINGS_COOKIE = 0x494D4B21 };
 
 /* In the order of the lecture: spinning mass, optical, vibratory, accelerometers. */
-static const imk_instrument *const instruments[] = {&imk_ring_laser_instrument,
-                                                    &imk_pendulous_servo_instrument, NULL};
+static const imk_instrument *const instruments[] = {&imk_free_gyro_instrument,
+                                                    &imk_rate_gyro_instrument,
+                                                    &imk_rate_integrating_gyro_instrument,
+                                                    &imk_tuned_gyro_instrument,
+                                                    &imk_suspended_rotor_instrument,
+                                                    &imk_fibre_optic_instrument,
+                                                    &imk_ring_laser_instrument,
+                                                    &imk_tuning_fork_instrument,
+                                                    &imk_shell_gyro_instrument,
+                                                    &imk_mems_accelerometer_instrument,
+                                                    &imk_pendulous_servo_instrument,
+                                                    &imk_vibrating_beam_instrument,
+                                                    NULL};
 enum { INSTRUMENTS = sizeof instruments / sizeof instruments[0] - 1 };
 
 imk_exposure imk_exposure_default(void)

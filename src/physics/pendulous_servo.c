@@ -52,7 +52,6 @@ imk_pendulous_servo imk_pendulous_servo_default(void)
                                  .torquer_quadratic = -0.004,
                                  .largest_current = 60.0 * 1.3e-3,
                                  .readout_noise = 1.5e-6 * 1.3e-3,
-                                 .readout_step = 0.1e-6 * 1.3e-3,
                                  .pickoff_noise = 1e-10,
                                  .misalignment_y = 0.0005,
                                  .misalignment_z = 0.0005,
@@ -184,6 +183,32 @@ double imk_pendulous_servo_noise(const imk_pendulous_servo *d)
     const double readout = d->readout_noise * d->torquer_constant;
     return sqrt(share * share * (brownian + pickoff * pickoff) + readout * readout) /
            d->pendulosity;
+}
+
+/* The loop without its output: (phi, phi', z), or (phi, phi') where there is no integral action,
+ * under its noise. A step of many time constants gives the stationary covariance. */
+double imk_pendulous_servo_quantization(const imk_pendulous_servo *d)
+{
+    const double j = d->inertia, k = stiffness(d), b = d->damping;
+    const int n = d->integral > 0.0 ? 3 : 2;
+    const double a[9] = {0.0, 1.0, 0.0, -k / j, -b / j, -d->integral / j, 1.0, 0.0, 0.0};
+    const double pickoff[3] = {0.0, -d->proportional / j, 1.0};
+    const double density = d->pickoff_noise * d->pickoff_noise;
+    double system[9], w[9], covariance[9];
+    if (b <= 0.0)
+        return 0.0; /* nothing holds the noise */
+    for (int r = 0; r < n; r++)
+        for (int c = 0; c < n; c++) {
+            system[r * n + c] = a[r * 3 + c];
+            w[r * n + c] = density * pickoff[r] * pickoff[c];
+        }
+    w[OMEGA * n + OMEGA] += 2.0 * IMKI_BOLTZMANN * d->temperature * b / (j * j);
+    const double slowest = 2.0 * j / b + b / k + (d->integral > 0.0 ? k / d->integral : 0.0);
+    imki_step_covariance(n, system, w, 40.0 * slowest, covariance);
+    const double variance = j * j * covariance[OMEGA * n + OMEGA] +
+                            2.0 * j * b * covariance[PHI * n + OMEGA] +
+                            b * b * covariance[PHI * n + PHI];
+    return sqrt(variance) / d->pendulosity;
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -432,11 +457,14 @@ void imk_pendulous_servo_reduce(const imk_pendulous_servo *d, imk_model *model)
     triad->misalignment.value[0][2] = d->misalignment_z;
     triad->lever_arm.value[0][2] = d->inertia / p;
     triad->noise.white.value[0] = imk_pendulous_servo_noise(d);
+    if (d->readout_step > 0.0)
+        triad->resolution.value[0] = d->readout_step / scale;
+    else
+        triad->noise.quantization.value[0] = imk_pendulous_servo_quantization(d);
     triad->noise.bias_instability.value[0] = gain * d->hinge_torque_instability / p;
     triad->bandwidth.value[0] = imk_pendulous_servo_bandwidth(d);
     triad->damping.value[0] = d->damping / (2.0 * sqrt(d->inertia * stiffness(d)));
     triad->range.value[0] = d->largest_current / scale;
-    triad->resolution.value[0] = d->readout_step / scale;
     if (d->integral <= 0.0)
         deflected(d, triad);
 }

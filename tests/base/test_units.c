@@ -164,6 +164,85 @@ static void compound_units_follow_from_their_parts(void **state)
     CHECK_RELATIVE(imk_unit_of("deg h^-1").scale, imk_unit_of("deg/h").scale, 0.0);
 }
 
+/* The units of designs: SI prefixes as the SI brochure defines them, dB of a power as ln(10)/10
+ * (0.230258509299404568… by multiprecision), products by the definitions of N, J, W, V, ohm, F. */
+static void units_of_designs_follow_from_kilogram_and_ampere(void **state)
+{
+    (void)state;
+    static const spelling spellings[] = {
+        {"kg", "kg", 1.0, false},
+        {"gram", "kg", 1e-3, false},
+        {"milligram", "kg", 1e-6, false},
+        {"microgram", "kg", 1e-9, false},
+        {"N", "kg*m/s^2", 1.0, false},
+        {"mN", "kg*m/s^2", 1e-3, false},
+        {"uN", "kg m/s^2", 1e-6, false},
+        {"nN", "kg*m/s^2", 1e-9, false},
+        {"pN", "kg*m/s^2", 1e-12, false},
+        {"N m", "kg*m^2/s^2", 1.0, false},
+        {"Nm", "J", 1.0, false},
+        {"mN m", "N*m", 1e-3, false},
+        {"N·m/rad", "kg*m^2/s^2/rad", 1.0, false},
+        {"kg m^2", "kg*m^2", 1.0, false},
+        {"gram*cm^2", "kg*m^2", 1e-7, false},
+        {"N m s", "kg*m^2/s", 1.0, false},
+        {"GPa", "N/m^2", 1e9, false},
+        {"W", "J/s", 1.0, false},
+        {"uW", "V*A", 1e-6, false},
+        {"µW", "W", 1e-6, false},
+        {"nW", "W", 1e-9, false},
+        {"mV", "W/A", 1e-3, false},
+        {"uV", "V", 1e-6, false},
+        {"kV", "V", 1e3, false},
+        {"V/m", "N/A/s", 1.0, false},
+        {"nV/sqrt(Hz)", "V*s^0.5", 1e-9, true},
+        {"mA", "A", 1e-3, false},
+        {"uA", "A", 1e-6, false},
+        {"nA", "A", 1e-9, false},
+        {"pA/√Hz", "A*s^0.5", 1e-12, true},
+        {"ohm", "V/A", 1.0, false},
+        {"\u03a9", "V/A", 1.0, false},
+        {"k\u2126", "V/A", 1e3, false},
+        {"pF", "A*s/V", 1e-12, false},
+        {"fF", "F", 1e-15, false},
+        {"uF", "F", 1e-6, false},
+        {"A/W", "1/V", 1.0, false},
+        {"pm", "m", 1e-12, false},
+        {"THz", "1/s", 1e12, false},
+        {"GHz", "Hz", 1e9, false},
+        {"dB/km", "1/m", 0.230258509299404568e-3, false},
+        {"rev/s", "rad/s", 360.0 * DEG, false},
+        {"rpm", "rad/s", 6.0 * DEG, false},
+        {"1/Hz", "s", 1.0, false},
+        {"ppm/K", "1/K", 1e-6, false},
+        {"1/K", "1/K", 1.0, false},
+        {"urad/sqrt(Hz)", "rad*s^0.5", 1e-6, true},
+        {"N/sqrt(Hz)", "kg*m/s^1.5", 1.0, true},
+        {"N m/A", "V*s", 1.0, false},
+    };
+    check_spellings(spellings, COUNT(spellings));
+    /* kilogram and ampere in the order of the SI text */
+    const imk_unit odd = imk_unit_readable(imk_unit_of("V*rad/K").dimension, 1.0);
+    assert_string_equal(odd.text, "rad*kg*m^2/A/K/s^3");
+    CHECK_CLOSE(odd.scale, 1.0, 0.0);
+    char si[48];
+    assert_int_equal(imk_dimension_si(imk_unit_of("mW").dimension, si, sizeof si), 10);
+    assert_string_equal(si, "kg*m^2/s^3");
+    assert_int_equal(imk_dimension_si(imk_unit_of("mW").dimension, si, 10), 0);
+    assert_int_equal(imk_dimension_si(imk_unit_of("%").dimension, si, sizeof si), 1);
+    /* the longest there is needs more than a unit's text can hold; nothing is overrun */
+    const imk_unit longest = imk_unit_of("(count*rad*kg*m*A*K*s)^29.5");
+    const imk_unit scaled = imk_unit_of("(count*rad*kg*m*A*K*s)^29.5*ppm");
+    const double value = (double)NAN;
+    char text[160];
+    assert_int_equal(longest.dimension.half[IMK_AMPERE], 59);
+    assert_true(imk_quantity_format(&value, NULL, 1, &scaled, text, sizeof text) > 0);
+    assert_string_equal(text, "nan count^29.5*rad^29.5*kg^29.5*m^29.5*A^29.5*K^29.5*s^29.5");
+    const imk_unit of_longest = imk_unit_readable(longest.dimension, 1.0);
+    assert_true(imk_dimension_equal(of_longest.dimension, longest.dimension));
+    CHECK_CLOSE(of_longest.scale, 1.0, 0.0);
+}
+
 static void celsius_is_shifted_only_by_itself(void **state)
 {
     (void)state;
@@ -320,6 +399,10 @@ static void bad_quantities_are_refused_with_a_sentence(void **state)
          "an angular rate like deg/h, deg/s or rad/s"},
         {"3 m^2/s", "rad/s", 1, IMK_ERROR_DIMENSION, "\"3 m^2/s\" is in m^2/s",
          "an angular rate like deg/h, deg/s or rad/s"},
+        {"5 mg", "kg", 1, IMK_ERROR_DIMENSION, "\"5 mg\" is a specific force or acceleration",
+         "a mass like kg, gram, milligram or microgram"},
+        {"3 g cm^2", "kg*m^2", 1, IMK_ERROR_DIMENSION, "\"3 g cm^2\" is in m^3/s^2",
+         "a moment of inertia like gram*cm^2 or kg*m^2"},
         {"0.1", "rad/s", 3, IMK_ERROR_UNIT_MISSING, "\"0.1\" has no unit",
          "a unit such as deg/h, deg/s or rad/s"},
         {"0 0 1", "rad/s", 3, IMK_ERROR_UNIT_MISSING, "\"0 0 1\" has no unit",
@@ -408,7 +491,49 @@ static const char *const usual_units[] = {"rad",
                                           "count/(deg/s)",
                                           "count/g",
                                           "degC",
-                                          "K"};
+                                          "K",
+                                          "kg",
+                                          "gram",
+                                          "microgram",
+                                          "kg*m^2",
+                                          "N*m*s",
+                                          "N",
+                                          "uN",
+                                          "N*m",
+                                          "N*m/rad",
+                                          "N/m",
+                                          "N*s/m",
+                                          "N/sqrt(Hz)",
+                                          "N*m/sqrt(Hz)",
+                                          "N*m*s/rad",
+                                          "GPa",
+                                          "W",
+                                          "uW",
+                                          "mA",
+                                          "A",
+                                          "mV",
+                                          "V",
+                                          "nV/sqrt(Hz)",
+                                          "pA/sqrt(Hz)",
+                                          "V/m",
+                                          "ohm",
+                                          "pF",
+                                          "A/W",
+                                          "N*m/A",
+                                          "N/A",
+                                          "dB/km",
+                                          "um^2",
+                                          "kg/m^3",
+                                          "kg*m",
+                                          "nm/N",
+                                          "urad/sqrt(Hz)",
+                                          "1/sqrt(Hz)",
+                                          "m/sqrt(Hz)",
+                                          "V/rad",
+                                          "F/m",
+                                          "Hz/K",
+                                          "Hz/g",
+                                          "nN*m/K"};
 
 static uint64_t next_bits(uint64_t *state)
 {
@@ -542,6 +667,13 @@ static void readable_units_suit_the_grades(void **state)
         {5, "mm", "mm"},
         {0.3, "deg/h/sqrt(h)", "deg/h/sqrt(h)"},
         {0.1, "deg/h/g", "deg/h/g"},
+        {3e-9, "kg", "microgram"},
+        {0.05, "kg", "gram"},
+        {40, "uW", "uW"},
+        {0.01, "W", "mW"},
+        {2e-7, "N*m", "nN*m"},
+        {5, "V", "V"},
+        {200, "fF", "fF"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
         const imk_unit unit = imk_unit_of(cases[i].unit);
@@ -583,6 +715,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(simple_units_have_their_defined_size),
         cmocka_unit_test(compound_units_follow_from_their_parts),
+        cmocka_unit_test(units_of_designs_follow_from_kilogram_and_ampere),
         cmocka_unit_test(celsius_is_shifted_only_by_itself),
         cmocka_unit_test(angle_and_frequency_are_not_mixed),
         cmocka_unit_test(unknown_units_are_refused_with_the_nearest),

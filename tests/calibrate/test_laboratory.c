@@ -198,7 +198,6 @@ static void an_accelerometer_is_tumbled(void **state)
     imk_laboratory_result *result = experiment(&laboratory);
     const imk_triad *t = &result->model.accel;
     CHECK_CLOSE(t->scale_factor.fixed.value[0], design.scale, 1e-13);
-    CHECK_CLOSE(t->cross_axis.value[0][0], 0.0, 1e-13);
     CHECK_CLOSE(t->cross_axis.value[0][1], design.linear[1], 1e-13);
     CHECK_CLOSE(t->cross_axis.value[0][2], design.linear[2], 1e-13);
     /* pendulous axis z, output axis y: fz fx, fx fy, fy fz */
@@ -209,7 +208,7 @@ static void an_accelerometer_is_tumbled(void **state)
     free(result);
 }
 
-/* A dead band of 0.02 in a full scale of 5: readings below are 0, above they are the input. */
+/* A dead band of 0.02 in a full scale of 4: readings below are 0, above they are the input. */
 static void a_dead_band_is_found(void **state)
 {
     (void)state;

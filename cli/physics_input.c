@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What an instrument is exposed to, from the options. The exposure is held over a sample, so a sine
+ * a sin(2 pi f t) is given as its mean over the sample from t to t + h:
+ *
+ *     a (cos(2 pi f t) - cos(2 pi f (t + h)))/(2 pi f h)
+ *
+ * with the cosines of elementary.h, so that a log has the same bytes on every machine. */
+#include "physics_parts.h"
+
+#include "imukit/elementary.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* One number is along x, three are x y z. */
+static int read_vector(const char *name, const char *text, const char *unit, double *values)
+{
+    imk_error error;
+    double read[3], sigmas[3];
+    size_t count;
+    const imk_dimension due = imk_unit_of(unit).dimension;
+    const imk_status status =
+        imk_quantity_parse(text, text + strlen(text), due, 3, read, sigmas, &count, NULL, &error);
+    if (status == IMK_ERROR_UNIT_MISSING)
+        return command_misused("--%s %s: the unit is missing; write --%s \"%s %s\"", name, text,
+                               name, text, unit);
+    if (status != IMK_OK || count == 2 || sigmas[0] != 0)
+        return command_misused("--%s %s: %s; expected one number about x, or three, and a unit "
+                               "such as %s",
+                               name, text,
+                               status == IMK_OK ? (count == 2 ? "there are two numbers"
+                                                              : "an input has no uncertainty")
+                               : error.found[0] ? error.found
+                                                : imk_status_text(status),
+                               imk_dimension_examples(due));
+    for (size_t k = 0; k < count; k++)
+        values[k] = read[k];
+    return -1;
+}
+
+static int check(const physics_options *o, const physics_input *input)
+{
+    const bool moves = o->rate || o->acceleration;
+    if (input->is_sine && !moves)
+        return command_misused("--sine is the frequency of the rate or acceleration given: add "
+                               "--rate or --acceleration");
+    if (input->is_sine && !(o->sine > 0))
+        return command_misused("--sine: expected a frequency above 0");
+    if (input->is_sine && !(o->sine <= 0.25 * o->output_rate))
+        return command_misused("--sine %g Hz: the input is held over a sample of %g s, at least "
+                               "four of which make a cycle; add --output-rate %gHz or more",
+                               o->sine, 1 / o->output_rate, 4 * o->sine);
+    if (!(o->temperature > 0))
+        return command_misused("--temperature: expected more than absolute zero");
+    return -1;
+}
+
+int physics_input_make(const physics_options *o, physics_input *input)
+{
+    *input = (physics_input){.exposure = imk_exposure_default(),
+                             .is_sine = !isnan(o->sine),
+                             .frequency = o->sine,
+                             .temperature_rate = o->temperature_rate};
+    input->exposure.temperature = o->temperature;
+    input->exposure.temperature_rate = o->temperature_rate;
+    int code = check(o, input);
+    if (code < 0 && o->rate)
+        code = read_vector("rate", o->rate, "deg/s", input->exposure.angular_rate);
+    if (code < 0 && o->acceleration)
+        code =
+            read_vector("acceleration", o->acceleration, "m/s^2", input->exposure.specific_force);
+    return code;
+}
+
+imk_exposure physics_input_at(const physics_input *input, double rate, uint64_t index)
+{
+    imk_exposure e = input->exposure;
+    const double time = (double)index / rate;
+    e.temperature += input->temperature_rate * (time + 0.5 / rate);
+    if (!input->is_sine)
+        return e;
+    /* whole cycles are taken off, so that the phase is good after any time */
+    const double cycles = fmod(time * input->frequency, 1.0), step = input->frequency / rate;
+    const double begin = 2 * pi * cycles, angle = 2 * pi * step;
+    const double mean = (imk_cos(begin) - imk_cos(begin + angle)) / angle;
+    const double slope = (imk_sin(begin + angle) - imk_sin(begin)) * rate;
+    for (int k = 0; k < 3; k++) {
+        e.angular_acceleration[k] = slope * e.angular_rate[k];
+        e.angular_rate[k] *= mean;
+        e.specific_force[k] *= mean;
+    }
+    return e;
+}

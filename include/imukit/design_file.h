@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file design_file.h
+ *  Design files: the parameters of an instrument of instrument.h as YAML 1.1 (or JSON), every
+ *  number with its unit. Format: docs/design-file.md.
+ *
+ *      imukit: 1
+ *      instrument: ring_laser
+ *      dither: {frequency: 400 Hz}      # what is not given keeps its default
+ *
+ *  The keys are those of the instrument's table (imk_design_field), nested by the dots of their
+ *  paths. */
+#ifndef IMUKIT_DESIGN_FILE_H
+#define IMUKIT_DESIGN_FILE_H
+
+#include "imukit/instrument.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { IMK_DESIGN_NAME_SIZE = 96 };
+
+/** A design as it was read. */
+typedef struct imk_design_file {
+    const imk_instrument *instrument;
+    void *design; /**< instrument->design_size bytes from malloc(); imk_design_file_free() */
+    char name[IMK_DESIGN_NAME_SIZE]; /**< as the file says; "" without */
+    char description[256];           /**< likewise */
+} imk_design_file;
+
+/** Read a design file ("-": standard input) and validate the design.
+ *  @param file  untouched on error; free with imk_design_file_free()
+ *  @return IMK_ERROR_OPEN, _READ, _EMPTY, _FORMAT, _SYNTAX, _VERSION, _KEY_UNKNOWN and
+ *          _NAME_UNKNOWN ("did you mean" in error.expected), _KEY_DUPLICATE, _KEY_MISSING,
+ *          _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _NOT_FINITE, _RANGE, _CONFLICT,
+ *          _UNSUPPORTED, with line and column; _MEMORY */
+IMK_API imk_status imk_design_read(const char *path, imk_design_file *file, imk_error *error);
+
+/** The same from memory. */
+IMK_API imk_status imk_design_parse(const char *text, size_t size, imk_design_file *file,
+                                    imk_error *error);
+
+/** The same for a kind of instrument that the caller knows, which need not be in the list of
+ *  instrument.h: a file that says another is refused with IMK_ERROR_CONFLICT. */
+IMK_API imk_status imk_design_parse_as(const imk_instrument *instrument, const char *text,
+                                       size_t size, imk_design_file *file, imk_error *error);
+
+/** The design of a file, or the default design of the instrument of this name, whichever `name` is
+ *  (a file first). */
+IMK_API imk_status imk_design_open(const char *name, imk_design_file *file, imk_error *error);
+
+/** Free the design; a file of zeros is allowed. */
+IMK_API void imk_design_file_free(imk_design_file *file);
+
+/** Write a design file: every parameter with its unit and what it is, as imk_design_print().
+ *  @param path  see imk_output_file_open()
+ *  @return errors of imk_design_print(); IMK_ERROR_OPEN, _WRITE */
+IMK_API imk_status imk_design_write(const char *path, const imk_design_file *file,
+                                    imk_error *error);
+
+/** The same into memory obtained from malloc(), which the caller frees. What is read from the text
+ *  has the same bits in every field.
+ *  @return errors of the instrument's validate; IMK_ERROR_MEMORY */
+IMK_API imk_status imk_design_print(const imk_design_file *file, char **text, size_t *size,
+                                    imk_error *error);
+
+/** Put the numbers of an error that a validate or init filled in SI into the unit of the field it
+ *  names, for the sentence: `"30 kHz" is outside its valid range (limit 10 kHz)`. Fields that are
+ *  not of the table, and values that do not stand in the design, are left as they are.
+ *  @param design  what was refused */
+IMK_API void imk_design_error_in_units(const imk_instrument *instrument, const void *design,
+                                       imk_error *error);
+
+/** A field of the table as text with its unit ("400 Hz", "closed", "yes"), at most `digits`
+ *  significant digits, or 0 for as many as give the same bits.
+ *  @return length, 0 when `size` is too small */
+IMK_API size_t imk_design_field_text(const imk_design_field *field, const void *design, int digits,
+                                     char *text, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file suspended_rotor.h
+ *  The electrostatically suspended gyro (ESG): a ball that spins in a vacuum, held by electric
+ *  fields between three pairs of electrodes, and read off by a pattern or by its mass unbalance.
+ *  Nothing touches it, so it keeps its axis in inertial space while the case turns any way round.
+ *
+ *  The electrodes are on the case axes. The spin axis s points along case z at the start, or
+ *  `start_tilt` from there towards the direction at `start_azimuth` from x. The readings are the
+ *  direction cosines of s in case axes; what the case turned about is found from their change
+ *  between two samples,
+ *
+ *      rate = -(s0 x s1)/|s0 x s1| angle(s0, s1)/dt,
+ *
+ *  of which output 0 is the x and output 1 the y component. One ball does not see a turn about its
+ *  own spin axis: the rate read is w - s (s.w). Along z both components are whole; a ball whose
+ *  axis has come to lie along x sees nothing about x.
+ *
+ *  Notation: m mass, H = C spin the angular momentum, A and C the inertias across and about the
+ *  axis of figure, f specific force; index k runs over the case axes.
+ *
+ *  The equations, their derivation and what is left out: docs/physics/suspended_rotor.md. */
+#ifndef IMUKIT_SUSPENDED_ROTOR_H
+#define IMUKIT_SUSPENDED_ROTOR_H
+
+#include "imukit/instrument.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A design. Start from imk_suspended_rotor_default(), then change fields. Triples are along the
+ *  case axes. */
+typedef struct imk_suspended_rotor {
+    uint32_t cookie;
+    double spin_rate;          /**< [rad/s], > 0 */
+    double diameter;           /**< of the ball [m], > 0 */
+    double hollow;             /**< diameter of the hollow inside, 0: solid [m] */
+    double density;            /**< [kg/m^3], > 0 */
+    double inertia_difference; /**< (C - A)/A > 0: so that the ball spins about a stable axis [1] */
+    double unbalance;          /**< centre of mass from the centre, along the spin [m] */
+    double oblateness; /**< height of the second harmonic of the spinning shape, of P2 (negative:
+                            flattened at the poles) [m] */
+    double pear;       /**< height of the third, of P3 [m] */
+    double limit;      /**< specific force the suspension can carry along each axis [m/s^2], > 0 */
+    double preload_error[3];     /**< relative errors of the preloads of the three pairs [1] */
+    double torque[3];            /**< constant error torque [N m] */
+    double torque_temperature;   /**< change of each component, from 293.15 K [N m/K] */
+    double torque_repeatability; /**< 1 sigma per run of each component [N m] */
+    double torque_instability;   /**< flicker B of each component [N m] */
+    double torque_noise;         /**< white, two-sided density, each component [N m/sqrt(Hz)] */
+    double readout_resolution;   /**< step of the direction cosines, 0: none [rad] */
+    double readout_noise;        /**< 1 sigma of each direction cosine [rad] */
+    double start_tilt, start_azimuth; /**< of the spin axis in the case [rad] */
+    double
+        start_wobble;   /**< angle between axis of figure and angular momentum at the start [rad] */
+    double wobble_time; /**< in which it falls by e [s], > 0 */
+} imk_suspended_rotor;
+
+/** A ball like that of the Autonetics MICRON (N57A): solid beryllium, 10 mm, 2500 revolutions a
+ *  second [LAWRENCE1998]. Beryllium has 1848 kg/m^3. The rest is chosen: a suspension for 25 g,
+ *  torques of a strategic gyro (0.002 deg/h from run to run, 0.0005 deg/h of flicker, 0.0003
+ *  deg/sqrt(h)), a centre of mass known to a nanometre (0.013 deg/h/g), shape errors of tens of
+ *  nanometres or less, 1 arcsec steps. */
+IMK_API imk_suspended_rotor imk_suspended_rotor_default(void);
+
+/** Every field in its range, and: hollow smaller than the ball, centre of mass inside it, shape
+ *  errors small against the radius. */
+IMK_API imk_status imk_suspended_rotor_validate(const imk_suspended_rotor *design,
+                                                imk_error *error);
+
+/** The error model, with the spin axis s as it is at the start. With the drift's generator G (see
+ *  imk_suspended_rotor_drift()) and I the unit matrix, the bias about x is
+ *
+ *      [(I - s s^T) grad G - s x torque]_x / H,
+ *
+ *  whose parts without, linear and quadratic in f are bias, g and g^2 sensitivity; noise, B and
+ *  repeatability are those of the torque times sqrt(1 - s_x^2)/H. Scale factor and misalignment
+ *  are those of w - s (s.w). Q = sqrt(step^2/12 + reading noise^2) sqrt(1 - s_x^2). Wobble is not
+ *  in it. */
+IMK_API void imk_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_model *model);
+
+/** pi/6 (diameter^3 - hollow^3) density [kg]. */
+IMK_API double imk_suspended_rotor_mass(const imk_suspended_rotor *design);
+/** H = C spin [N m s]. The mean of the three inertias is that of the round ball,
+ *  8 pi/15 density (R^5 - r^5); with e = (C - A)/A, C is 3 (1 + e)/(3 + e) times that. */
+IMK_API double imk_suspended_rotor_momentum(const imk_suspended_rotor *design);
+/** Free nutation: the axis of figure goes round the angular momentum at H/A [LANDAU1976, 33] [Hz].
+ */
+IMK_API double imk_suspended_rotor_wobble(const imk_suspended_rotor *design);
+
+/** Rate ds/dt [1/s] at which the spin axis drifts in inertial space, in case axes, error torques
+ *  and noise aside:
+ *
+ *      ds/dt = s x grad G/H,
+ *      G = sum over k of  -m d f_k s_k + a3 m f_k P3(s_k) + a2 T_k P2(s_k),
+ *      T_k = T0 (1 + error_k) + (m f_k)^2/(4 T0),   T0 = m limit/2
+ *
+ *  d is `unbalance`, a2 and a3 are `oblateness` and `pear`. T_k is the pull of both electrodes of a
+ *  pair together, for a field that the control drives linearly about the preload; an electrode
+ *  that meets a bump of the surface pulls it towards itself, and does the work G. Electrodes are
+ *  taken as small against the ball.
+ *  @param axis  s, of unit length */
+IMK_API void imk_suspended_rotor_drift(const imk_suspended_rotor *design, const double axis[3],
+                                       const double force[3], double drift[3]);
+
+IMK_API extern const imk_instrument imk_suspended_rotor_instrument;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,424 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit physics: what its logs, files, tables and messages have to do with one another. Figures of
+ * the default designs are left to the tests of the instruments; here stand the numbers of designs
+ * that are written in full, definitions of units, and agreements between two ways. */
+#include "run_command.h"
+
+#include "imukit/instrument.h"
+#include "imukit/log.h"
+#include "imukit/model_file.h"
+
+#include <math.h>
+
+static const double degree = 3.14159265358979323846 / 180;
+
+static imk_log load(const char *path)
+{
+    imk_log log;
+    CHECK_OK(imk_log_load(path, NULL, NULL, NULL, &log, NULL));
+    return log;
+}
+
+static double mean(const imk_log *log, size_t column)
+{
+    double sum = 0;
+    for (size_t k = 0; k < log->rows; k++)
+        sum += log->data[column][k];
+    return sum / (double)log->rows;
+}
+
+static json_t *json_of(const char *text)
+{
+    json_error_t problem;
+    json_t *document = json_loads(text, 0, &problem);
+    if (!document)
+        fail_msg("%s: %s", problem.text, text);
+    return document;
+}
+
+/* ---- the list and the designs ---------------------------------------------------------------- */
+
+/* All instruments of the library are in the list, by name and with their source. */
+static void test_list(void **state)
+{
+    (void)state;
+    assert_true(imk_instrument_count() > 0);
+    assert_int_equal(run("$I physics"), 0);
+    assert_string_equal(err, "");
+    for (size_t i = 0; i < imk_instrument_count(); i++) {
+        check_contains(out, imk_instrument_get(i)->name, "physics");
+        check_contains(out, imk_instrument_get(i)->title, "physics");
+        check_contains(out, imk_instrument_get(i)->source, "physics");
+    }
+    assert_int_equal(run("$I physics >a.txt && $I physics --list | cmp - a.txt"), 0);
+    assert_int_equal(run("$I physics --list --json"), 0);
+    json_t *document = json_of(out);
+    json_t *list = json_object_get(json_object_get(document, "result"), "instruments");
+    assert_int_equal(json_array_size(list), imk_instrument_count());
+    json_decref(document);
+    sweep();
+}
+
+/* The shown design is a design file that says the same; each instrument can be shown, described,
+ * run, reduced and reported from it. */
+static void test_every_instrument(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < imk_instrument_count(); i++) {
+        char line[512];
+        const char *name = imk_instrument_get(i)->name;
+        snprintf(line, sizeof line,
+                 "$I physics %s --show >a.yaml && $I physics a.yaml --show | cmp - a.yaml && "
+                 "$I physics %s --show -o b.yaml && cmp a.yaml b.yaml",
+                 name, name);
+        if (run(line) != 0)
+            fail_msg("%s: %s", name, err);
+        snprintf(line, sizeof line,
+                 "$I physics %s --duration 20ms >a.csv && $I physics a.yaml --duration 20ms -o "
+                 "b.csv && cmp a.csv b.csv",
+                 name);
+        if (run(line) != 0 || strstr(err, "error"))
+            fail_msg("%s: %s", name, err);
+        snprintf(line, sizeof line, "$I physics %s", name);
+        assert_int_equal(run(line), 0);
+        check_contains(out, imk_instrument_get(i)->fields[0].path, line);
+        snprintf(line, sizeof line, "$I physics %s --reduce -o m.yaml", name);
+        if (run(line) != 0)
+            fail_msg("%s: %s", name, err);
+        imk_model *model = malloc(sizeof *model);
+        assert_non_null(model);
+        CHECK_OK(imk_model_read("m.yaml", model, NULL, NULL));
+        const imk_triad *triad = imk_instrument_get(i)->sensor == 0 ? &model->gyro : &model->accel;
+        assert_int_equal(triad->axis_count, 3);
+        free(model);
+    }
+    sweep();
+}
+
+/* ---- runs ------------------------------------------------------------------------------------ */
+
+/* Row k ends at (k + 1)/rate; a noiseless ring laser that turns at 10 deg/s reads it within the
+ * scale of its counts: a quarter of some arc seconds at 100 Hz, 10 s of them. */
+static void test_log(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I physics ring_laser --rate '10 deg/s' --duration 10s --no-noise -o "
+                         "a.csv && $I physics ring_laser --rate '36000 deg/h' -d 10s --no-noise "
+                         ">b.csv && cmp a.csv b.csv"),
+                     0);
+    assert_string_equal(err, "");
+    imk_log log = load("a.csv");
+    assert_int_equal(log.rows, 1000);
+    assert_string_equal(log.column[0].name, "time");
+    assert_string_equal(log.column[1].name, "gyro_x");
+    assert_string_equal(log.column[1].unit.text, "deg/s");
+    CHECK_CLOSE(log.data[0][0], 0.01, 0.0);
+    CHECK_CLOSE(log.data[0][999], 10.0, 0.0);
+    CHECK_CLOSE(mean(&log, 1), 10 * degree, 3.0 / 3600 * degree / 10);
+    imk_log_free(&log);
+    assert_int_equal(run("$I physics pendulous_servo --acceleration '1 g' --duration 1s -o a.csv"),
+                     0);
+    log = load("a.csv");
+    assert_string_equal(log.column[1].name, "accel_x");
+    assert_string_equal(log.column[1].unit.text, "m/s^2");
+    CHECK_RELATIVE(mean(&log, 1), 9.80665, 0.02);
+    imk_log_free(&log);
+    sweep();
+}
+
+/* A sine starts at 0 and has whole cycles: its mean is 0, its root mean square a/sqrt(2), less
+ * sinc(f/rate) for the mean over a sample. */
+static void test_sine(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I physics ring_laser --rate '20 deg/s' --sine 2Hz --duration 2s "
+                         "--output-rate 200Hz --no-noise -o a.csv"),
+                     0);
+    imk_log log = load("a.csv");
+    double square = 0;
+    assert_int_equal(log.rows, 400);
+    for (size_t k = 0; k < log.rows; k++)
+        square += log.data[1][k] * log.data[1][k] / 400;
+    const double x = 3.14159265358979323846 * 2 / 200, sinc = sin(x) / x;
+    CHECK_CLOSE(mean(&log, 1), 0.0, degree / 3600);             /* a count, 1.1 arcsec, in 2 s */
+    CHECK_RELATIVE(sqrt(2 * square), 20 * degree * sinc, 1e-4); /* counts */
+    assert_true(log.data[1][10] > 0 && log.data[1][90] < 0);
+    imk_log_free(&log);
+    sweep();
+}
+
+static void test_same_bytes(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I physics ring_laser -d 1s -o a.csv; $I physics ring_laser -d 1s --seed "
+                         "1 --run 0 | cmp - a.csv"),
+                     0);
+    assert_int_equal(run("$I physics ring_laser -d 1s --seed 2 | cmp -s - a.csv"), 1);
+    assert_int_equal(run("$I physics ring_laser -d 1s --run 1 | cmp -s - a.csv"), 1);
+    assert_int_equal(run("IMUKIT_ISA=scalar $I physics ring_laser -d 1s | cmp - a.csv"), 0);
+    sweep();
+}
+
+static void test_temperature_and_signals(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I physics ring_laser --temperature 30degC --temperature-rate "
+                         "6degC/min -d 100ms -o a.csv --signals s.csv"),
+                     0);
+    imk_log log = load("a.csv"), inside = load("s.csv");
+    const int at = imk_log_find(&log, IMK_QUANTITY_TEMPERATURE, -1);
+    assert_true(at > 0);
+    CHECK_CLOSE(log.data[at][0], 303.15 + 0.1 * 0.005, 1e-9); /* the middle of the sample */
+    assert_int_equal(inside.rows, 10);
+    assert_int_equal(inside.column_count, 1 + imk_instrument_find("ring_laser")->signal_count);
+    assert_string_equal(inside.column[1].name, imk_instrument_find("ring_laser")->signals[0].name);
+    imk_log_free(&log);
+    imk_log_free(&inside);
+    /* at the same rate the signals cost no other run, at another they do not change the log */
+    assert_int_equal(run("$I physics ring_laser --temperature 30degC --temperature-rate "
+                         "6degC/min -d 100ms -o b.csv --signals s.csv --signal-rate 10kHz && cmp "
+                         "a.csv b.csv"),
+                     0);
+    inside = load("s.csv");
+    assert_int_equal(inside.rows, 1000);
+    imk_log_free(&inside);
+    sweep();
+}
+
+static void test_levels_and_warnings(void **state)
+{
+    (void)state;
+    put("d.yaml", "imukit: 1\ninstrument: ring_laser\nname: lab\nreadout: {range: 100 deg/s}\n");
+    check_message("$I physics d.yaml --rate '150 deg/s' -d 100ms -o a.csv >t.txt", 0,
+                  "imukit physics: warning: the input of 150 deg/s is beyond the range of 100 "
+                  "deg/s\n");
+    assert_int_equal(run("$I physics d.yaml --rate '150 deg/s' -d 100ms --level slow --json"), 0);
+    json_t *document = json_of(out);
+    json_t *warning = json_array_get(json_object_get(document, "warnings"), 0);
+    assert_string_equal(json_string_value(json_object_get(warning, "code")), "range");
+    assert_string_equal(
+        json_string_value(json_object_get(json_object_get(document, "inputs"), "level")), "slow");
+    json_t *output =
+        json_array_get(json_object_get(json_object_get(document, "result"), "outputs"), 0);
+    const double end =
+        json_number_value(json_object_get(json_object_get(output, "at_the_end"), "value"));
+    CHECK_CLOSE(end, 100 * degree, 1e-3 * degree);
+    json_decref(document);
+    assert_int_equal(run("$I physics d.yaml -d 100ms -o a.csv"), 0);
+    check_contains(out, "lab: 10 samples at 100 Hz, 0.1 s, full dynamics, internal step", "run");
+    sweep();
+}
+
+/* ---- the error model ------------------------------------------------------------------------- */
+
+static void test_reduce(void **state)
+{
+    (void)state;
+    put("d.yaml", "imukit: 1\ninstrument: ring_laser\nname: lab\nnull_shift: {fixed: 0.5 deg/h, "
+                  "repeatability: 0.25 deg/h}\nreadout: {range: 100 deg/s}\n");
+    assert_int_equal(run("$I physics d.yaml --reduce -o m.yaml --single-axis"), 0);
+    check_contains(out, "Error model by closed forms, one axis\n", "--reduce");
+    check_contains(out, "bias.fixed", "--reduce");
+    imk_model *model = malloc(sizeof *model);
+    assert_non_null(model);
+    CHECK_OK(imk_model_read("m.yaml", model, NULL, NULL));
+    assert_string_equal(model->name, "lab");
+    assert_int_equal(model->gyro.axis_count, 1);
+    assert_false(model->accel.present);
+    CHECK_RELATIVE(model->gyro.bias.fixed.value[0], 0.5 / 3600 * degree, 1e-12);
+    CHECK_RELATIVE(model->gyro.bias.repeatability.value[0], 0.25 / 3600 * degree, 1e-12);
+    CHECK_RELATIVE(model->gyro.range.value[0], 100 * degree, 1e-12);
+    free(model);
+    /* it is a model like any other */
+    assert_int_equal(run("$I physics d.yaml --reduce -o m.yaml >t.txt && $I grade m.yaml >t.txt && "
+                         "$I simulate m.yaml --rate 100Hz --duration 1s -o l.csv"),
+                     0);
+    imk_log log = load("l.csv");
+    assert_int_equal(log.column_count, 4);
+    imk_log_free(&log);
+    assert_int_equal(run("$I physics d.yaml --reduce --json"), 0);
+    json_t *document = json_of(out);
+    json_t *bias = json_object_get(json_object_get(json_object_get(document, "result"), "reduced"),
+                                   "bias.fixed");
+    CHECK_RELATIVE(json_number_value(json_object_get(bias, "value")), 0.5 / 3600 * degree, 1e-12);
+    assert_string_equal(json_string_value(json_object_get(bias, "unit")), "rad/s");
+    json_decref(document);
+    assert_int_equal(run("$I physics d.yaml --reduce -o - --single-axis"), 0);
+    assert_int_equal(strncmp(out, "imukit: 1\nname: lab\ngyro:\n", 26), 0);
+    sweep();
+}
+
+/* Closed forms and experiments side by side; both as figures of the JSON. */
+static void test_sweep(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I physics pendulous_servo --sweep --no-noise --level slow --json "
+                         "--threads 1 -o m.yaml"),
+                     0);
+    json_t *document = json_of(out);
+    json_t *figures = json_object_get(
+        json_object_get(json_object_get(document, "result"), "experiment"), "figures");
+    json_t *bias = json_object_get(figures, "bias.fixed");
+    const double computed =
+        json_number_value(json_object_get(json_object_get(bias, "closed_form"), "value"));
+    const double found =
+        json_number_value(json_object_get(json_object_get(bias, "experiment"), "value"));
+    CHECK_CLOSE(found, computed, 0.01 * 9.80665); /* the design's bias is some mg */
+    json_decref(document);
+    imk_model *model = malloc(sizeof *model);
+    assert_non_null(model);
+    CHECK_OK(imk_model_read("m.yaml", model, NULL, NULL));
+    CHECK_CLOSE(model->accel.bias.fixed.value[0], found, 1e-12);
+    free(model);
+    assert_int_equal(run("$I physics pendulous_servo --sweep --reduce --no-noise --level slow"), 0);
+    check_contains(out, "Error model by closed forms, one axis\n", "--sweep");
+    check_contains(out, "\nClosed forms against experiments\nparameter", "--sweep");
+    sweep();
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+static void test_pictures(void **state)
+{
+    (void)state;
+    if (!imk_plot_available()) {
+        print_message("gnuplot is not installed: no pictures\n");
+        return;
+    }
+    assert_int_equal(run("$I physics ring_laser --rate '1 deg/s' -d 100ms --plot a.svg && grep -q "
+                         "'<svg' a.svg"),
+                     0);
+    assert_int_equal(run("$I physics ring_laser --rate '1 deg/s' --view 1 --plot b.svg && grep -q "
+                         "'<svg' b.svg"),
+                     0);
+    assert_int_equal(run("$I physics ring_laser --rate '1 deg/s' -d 100ms --report r.html && grep "
+                         "-q 'Inside the instrument' r.html && grep -q 'Reduced error model' "
+                         "r.html && grep -q 'Outputs against time' r.html"),
+                     0);
+    sweep();
+}
+
+/* ---- refusals -------------------------------------------------------------------------------- */
+
+#define E "imukit physics: error: "
+
+/* Each line says exactly this and leaves nothing behind. */
+static void test_refusals(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line;
+        int code;
+        const char *message;
+    } cases[] = {
+        {"ring_lasr", 1,
+         E "instrument: \"ring_lasr\" is not a known name; did you mean \"ring_laser\"?\n"},
+        {"no.yaml", 1, E "no.yaml: the file cannot be opened: No such file or directory\n"},
+        {"--reduce", 2,
+         E "an operand is missing: imukit physics [INSTRUMENT|DESIGN.yaml]; imukit physics lists "
+           "the instruments\n" TRY("physics")},
+        {"--list ring_laser", 2, E "--list takes no instrument\n" TRY("physics")},
+        {"ring_laser --show --reduce", 2,
+         E "--show prints the design and nothing else\n" TRY("physics")},
+        {"ring_laser -o a.csv", 2,
+         E "-o: there is no run to write; add --duration TIME\n" TRY("physics")},
+        {"ring_laser --rate '1 deg/s'", 2,
+         E "--rate: how long? add --duration TIME\n" TRY("physics")},
+        {"ring_laser --rate 10 -d 1s -o a.csv", 2,
+         E "--rate 10: the unit is missing; write --rate \"10 deg/s\"\n" TRY("physics")},
+        {"ring_laser --rate '1 2 deg/s' -d 1s -o a.csv", 2,
+         E "--rate 1 2 deg/s: there are two numbers; expected one number about x, or three, and a "
+           "unit such as deg/h, deg/s or rad/s\n" TRY("physics")},
+        {"ring_laser --acceleration '1 deg/s' -d 1s -o a.csv", 2,
+         E "--acceleration 1 deg/s: \"1 deg/s\" is an angular rate; expected one number about x, "
+           "or three, and a unit such as mg, ug, g or m/s^2\n" TRY("physics")},
+        {"ring_laser --sine 5Hz -d 1s", 2,
+         E "--sine is the frequency of the rate or acceleration given: add --rate or "
+           "--acceleration\n" TRY("physics")},
+        {"ring_laser --rate '1 deg/s' --sine 50Hz -d 1s", 2,
+         E "--sine 50 Hz: the input is held over a sample of 0.01 s, at least four of which make a "
+           "cycle; add --output-rate 200Hz or more\n" TRY("physics")},
+        {"ring_laser -d 0s -o a.csv", 2, E "--duration: expected a time above 0\n" TRY("physics")},
+        {"ring_laser -d 1ms -o a.csv", 2,
+         E "--duration 0.001 s: shorter than a sample of 0.01 s\n" TRY("physics")},
+        {"ring_laser -d 1s --reduce", 2,
+         E "--duration runs the instrument and --reduce does not: leave one out\n" TRY("physics")},
+        {"ring_laser --view 1", 2,
+         E "--view is drawn by --plot FILE, without --duration\n" TRY("physics")},
+        {"ring_laser -d 1s --plot a.pdf", 2,
+         E
+         "--plot a.pdf: expected a name ending in .svg or .png, or the word term\n" TRY("physics")},
+        {"ring_laser -d 1s -o a.csv --signals a.csv", 2,
+         E "the log and the signals cannot both go to a.csv\n" TRY("physics")},
+        {"ring_laser -d 1s -o - --json", 2,
+         E "a log and --json cannot both go to standard output: name a file\n" TRY("physics")},
+        {"ring_laser -d 1s --temperature '-1 K'", 2,
+         E "--temperature: expected more than absolute zero\n" TRY("physics")},
+        {"ring_laser -d 1s --level fast", 2,
+         E "--level fast: expected one of full|slow\n" TRY("physics")},
+        {"ring_laser -d 1s --output-rat 5Hz", 2,
+         E "there is no option --output-rat; did you mean --output-rate?\n" TRY("physics")},
+        {"ring_laser -d 1s -o no/a.csv", 1,
+         E "no/a.csv: the file cannot be opened: No such file or directory\n"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char line[400];
+        snprintf(line, sizeof line, "$I physics %s", cases[i].line);
+        check_message(line, cases[i].code, cases[i].message);
+        assert_string_equal(out, "");
+        assert_int_equal(sweep(), 0);
+    }
+    /* a step that would give wrong results, with the instrument's reason */
+    assert_int_equal(run("$I physics ring_laser -d 1s --step 1s -o a.csv"), 1);
+    check_contains(err, E "--step: \"1 s\" is outside its valid range (limit ", "--step");
+    assert_int_equal(sweep(), 0);
+}
+
+static void test_bad_designs(void **state)
+{
+    (void)state;
+    static const char *const texts[][2] = {
+        {"imukit: 1\ninstrument: ring_laser\ndither: {frequenzy: 1 Hz}\n",
+         E "d.yaml:3:10: dither.frequenzy: \"frequenzy\" is not a known key; did you mean "
+           "\"frequency\"?\n"},
+        {"imukit: 1\ninstrument: ring_laser\ndither: {frequency: 1 m}\n",
+         E "d.yaml:3:21: dither.frequency: \"1 m\" is a length; expected a frequency like Hz or "
+           "kHz\n"},
+        {"imukit: 1\ninstrument: ring-lazer\n",
+         E "d.yaml:2:13: instrument: \"ring-lazer\" is not a known name; did you mean "
+           "\"ring_laser\"?\n"},
+        {"imukit: 1\ngyro: {}\n", E "d.yaml:1:1: \"instrument\" is missing; write instrument: "
+                                    "NAME, as imukit physics lists them\n"},
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        put("d.yaml", texts[i][0]);
+        check_message("$I physics d.yaml --reduce -o m.yaml", 1, texts[i][1]);
+        assert_int_equal(sweep(), 1); /* the design itself */
+    }
+    put("d.yaml", "imukit: 1\ninstrument: ring_laser\ncavity: {perimeter: -1 m}\n");
+    assert_int_equal(run("$I physics d.yaml -d 1s -o a.csv"), 1);
+    check_contains(err,
+                   E "d.yaml:3:21: cavity.perimeter: \"-1 m\" is outside its valid range; expected "
+                     "at least",
+                   "range");
+    assert_int_equal(sweep(), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_list),
+        cmocka_unit_test(test_every_instrument),
+        cmocka_unit_test(test_log),
+        cmocka_unit_test(test_sine),
+        cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_temperature_and_signals),
+        cmocka_unit_test(test_levels_and_warnings),
+        cmocka_unit_test(test_reduce),
+        cmocka_unit_test(test_sweep),
+        cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_bad_designs),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
