@@ -26,8 +26,8 @@ PUBLIC = {
     "simulate": "simulate",
     "identify": "allan identify",
     "physics": "fibre_optic free_gyro instrument mems_accelerometer pendulous_servo rate_gyro "
-               "rate_integrating_gyro ring_laser shell_gyro suspended_rotor tuned_gyro "
-               "tuning_fork vibrating_beam",
+               "rate_integrating_gyro ring_laser shell_gyro spinning_mass suspended_rotor "
+               "tuned_gyro tuning_fork vibrating_beam",
     "compensate": "compensate",
     "calibrate": "laboratory",
     "navigate": "navigate",

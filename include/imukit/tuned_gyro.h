@@ -86,14 +86,15 @@ IMK_API imk_status imk_tuned_gyro_validate(const imk_tuned_gyro *design, imk_err
 /** The speed of the textbooks, sqrt((kx + ky)/(Ag + Bg - Cg)) [rad/s]. */
 IMK_API double imk_tuned_gyro_first_speed(const imk_tuned_gyro *design);
 /** The speed at which the residual spring is 0 [rad/s]: off the first by about
- *  J/(16 (2A - C)) of it, because the gimbal also drives the rotor at 2N. */
+ *  J/(8 (2A - C)) of it, because the gimbal also drives the rotor at 2N. */
 IMK_API double imk_tuned_gyro_tuned_speed(const imk_tuned_gyro *design);
 /** Speed as it is [rad/s]. */
 IMK_API double imk_tuned_gyro_speed(const imk_tuned_gyro *design);
 /** Angular momentum at a speed, the steady torque per rate of the case, nearly
  *  N (C + (Ag - Bg + Cg)/2) [N m s]. */
 IMK_API double imk_tuned_gyro_momentum(const imk_tuned_gyro *design, double speed);
-/** Residual spring, the steady torque per tilt of the rotor, nearly (kx + ky - J N^2)/2 [N m/rad]. */
+/** Residual spring, the steady torque per tilt of the rotor, nearly (kx + ky - J N^2)/2 [N m/rad].
+ */
 IMK_API double imk_tuned_gyro_residual_spring(const imk_tuned_gyro *design);
 /** Time in which a tilted free rotor comes back to the shaft, H/(N d) [s]; infinite without d. */
 IMK_API double imk_tuned_gyro_time_constant(const imk_tuned_gyro *design);
@@ -101,9 +102,9 @@ IMK_API double imk_tuned_gyro_time_constant(const imk_tuned_gyro *design);
 IMK_API double imk_tuned_gyro_figure_of_merit(const imk_tuned_gyro *design);
 /** Nutation H/(A + Ag/2), nearly [rad/s]. */
 IMK_API double imk_tuned_gyro_nutation(const imk_tuned_gyro *design);
-/** Drift per amplitude of an angular vibration of the case at twice the spin frequency, in the worst
- *  phase: nearly J N/(8 H), an eighth of the inverse figure of merit. The loop must be slow against
- *  2N. */
+/** Drift per amplitude of an angular vibration of the case at twice the spin frequency, in the
+ * worst phase: nearly J N/(8 H), an eighth of the inverse figure of merit. The loop must be slow
+ * against 2N. */
 IMK_API double imk_tuned_gyro_vibration_drift(const imk_tuned_gyro *design);
 
 /** Error model of the x axis by closed forms, with the tilt th = -pickoff offset that the loop

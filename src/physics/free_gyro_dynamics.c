@@ -25,11 +25,12 @@
  *     kick    the rest                        a, b stay
  *
  * Drift is quadratic in the momentum it uses and the other two leave b alone, so that they compose
- * as in a Runge-Kutta-Nystrom method: seven times kick and swing with six drifts between, of the
- * lengths of [BLANES2002], are a step of order 4. It is symplectic and its own inverse in time:
- * nothing damps or feeds the nutation [HAIRER2006, V.3]; its frequency is too low by 2.5e-6 at 10
- * steps a cycle. In a steady precession the kicks balance within every stage, so its rate is
- * exact at any step. Friction and white torque are impulses between the steps. */
+ * as in a Runge-Kutta-Nystrom method: seven times (half a kick, swing, half a kick) with six drifts
+ * between, of the lengths of [BLANES2002], are a step. It is symplectic and its own inverse in
+ * time: nothing damps or feeds the nutation [HAIRER2006, V.3]. At 10 steps a cycle the nutation's
+ * frequency is too low by 2.5e-6, of order 4; kicks and swings split the case's turning to order 2,
+ * 4e-7 of it at 4 rad/s. In a steady precession the kicks balance within every stage, so its rate
+ * is exact at any step. Friction and white torque are impulses between the steps. */
 #include "imukit/elementary.h"
 #include "physics/free_gyro_internal.h"
 
@@ -44,7 +45,7 @@
 #define A1 0.245298957184271
 #define A2 0.604872665711080
 #define A3 (0.5 - (A1 + A2))
-enum { STAGES = 7, MIDDLE = STAGES / 2 };
+enum { STAGES = 7 };
 static const double stage_length[STAGES] = {B1, B2, B3, B4, B3, B2, B1};
 static const double drift_length[STAGES - 1] = {A1, A2, A3, A3, A2, A1};
 static const double stage_time[STAGES] = {0.0, A1, A1 + A2, 0.5, 0.5 + A3, 0.5 + A3 + A2, 1.0};
@@ -175,8 +176,7 @@ static inline void swing(imki_gimbals *g, const imki_free_gyro_parts *parts, con
     g->p_inner += slope * (w[1] * g->co + w[2] * g->so);
 }
 
-/* A composition step from the case rate `begin`, which grows by `growth` over a step. Before the
- * middle stages kick first, behind it they swing first: the step is the same backwards. */
+/* A composition step from the case rate `begin`, which grows by `growth` over a step. */
 static inline void composition(imki_gimbals *g, const imki_free_gyro_parts *parts,
                                const imki_free_gyro_drive *drive, const double begin[3],
                                const double growth[3], double h)
@@ -186,11 +186,9 @@ static inline void composition(imki_gimbals *g, const imki_free_gyro_parts *part
         double w[3];
         for (int k = 0; k < 3; k++)
             w[k] = begin[k] + stage_time[i] * growth[k];
-        if (i <= MIDDLE)
-            kick(g, parts, drive, w, i < MIDDLE ? time : 0.5 * time);
+        kick(g, parts, drive, w, 0.5 * time);
         swing(g, parts, w, time);
-        if (i >= MIDDLE)
-            kick(g, parts, drive, w, i > MIDDLE ? time : 0.5 * time);
+        kick(g, parts, drive, w, 0.5 * time);
         if (i + 1 == STAGES)
             break;
         const double moved = h * drift_length[i], middle = 0.5 * drift_length[i];

@@ -74,20 +74,32 @@ static directions directions_of(double outer, double inner)
     return (directions){.x = {c, s * so, -s * co}, .y = {0.0, co, so}, .z = {s, -c * so, c * co}};
 }
 
-static void reduce_force_terms(const imk_free_gyro *design, const directions *axes, double per_h,
-                               imk_triad *gyro)
+/* Add factor (a.f)(b.f) to a row of products of f. */
+static void add_product(double factor, const double a[3], const double b[3], double square[6])
 {
-    const double unbalance = design->mass * per_h;
-    const double elastic =
-        design->mass * design->mass * per_h * (design->compliance[2] - design->compliance[0]);
-    double *row = gyro->g_sensitivity.value[0], *square = gyro->g2_sensitivity.value[0];
     for (int k = 0; k < 3; k++) {
         const int next = (k + 1) % 3;
-        row[k] =
-            unbalance * (design->unbalance[0] * axes->z[k] - design->unbalance[2] * axes->x[k]);
-        square[k] = elastic * axes->x[k] * axes->z[k];
-        square[3 + k] = elastic * (axes->x[k] * axes->z[next] + axes->x[next] * axes->z[k]);
+        square[k] += factor * a[k] * b[k];
+        square[3 + k] += factor * (a[k] * b[next] + a[next] * b[k]);
     }
+}
+
+/* Torque M = m f x d + m^2 (C f) x f about the inner axis, M_y, less what friction passes on of
+ * that about the outer one, M_x c + M_z s. */
+static void reduce_force_terms(const imki_free_gyro_parts *parts, const directions *axes,
+                               double per_h, double friction, imk_triad *gyro)
+{
+    const double *d = parts->moment, *e = parts->elastic;
+    const double s = axes->z[0], c = axes->x[0], passed = -friction * per_h;
+    double *row = gyro->g_sensitivity.value[0], *square = gyro->g2_sensitivity.value[0];
+    for (int k = 0; k < 3; k++) {
+        const double mx = d[2] * axes->y[k] - d[1] * axes->z[k];
+        const double mz = d[1] * axes->x[k] - d[0] * axes->y[k];
+        row[k] = per_h * (d[0] * axes->z[k] - d[2] * axes->x[k]) + passed * (mx * c + mz * s);
+    }
+    add_product(per_h * e[1], axes->z, axes->x, square);
+    add_product(passed * c * e[0], axes->y, axes->z, square);
+    add_product(passed * s * e[2], axes->x, axes->y, square);
 }
 
 void imk_free_gyro_reduce(const imk_free_gyro *design, imk_model *model)
@@ -113,7 +125,7 @@ void imk_free_gyro_reduce(const imk_free_gyro *design, imk_model *model)
     gyro->misalignment.value[0][2] = -tangent * imk_cos(design->start_outer);
     for (int k = 0; k < 3; k++)
         gyro->cross_axis.value[0][k] = friction * axes.y[k];
-    reduce_force_terms(design, &axes, per_h, gyro);
+    reduce_force_terms(&parts, &axes, per_h, friction, gyro);
     gyro->noise.density = IMK_DENSITY_TWO_SIDED;
     gyro->noise.white.value[0] = per_h * design->torque_noise;
     gyro->noise.bias_instability.value[0] = per_h * design->torque_instability;

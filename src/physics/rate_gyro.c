@@ -20,7 +20,7 @@ imk_rate_gyro imk_rate_gyro_default(void)
         .stiffness = 0.08,
         .stiffness_temperature = 2e-4,
         .damping = 5.94e-4,
-        .stop = 0.05,
+        .stop = IMKI_PI / 60.0, /* 3 deg */
         .balance = {0.03, 3e-8, 5e-8, 2e-8, 3e-8},
         .torque = {2e-7, 5e-9, 3.5e-7, 3.5e-8, 5.8e-9},
         .pickoff_noise = 1e-8,

@@ -20,7 +20,7 @@ imk_rate_integrating_gyro imk_rate_integrating_gyro_default(void)
         .input_inertia = 6.2e-5,
         .spin_inertia = 7e-5,
         .damping = 0.04,
-        .stop = 0.02,
+        .stop = IMKI_PI / 180.0, /* 1 deg */
         .balance = {0.3, 2e-9, 3e-9, 2e-9, 2.5e-9},
         .torque = {1e-9, 2e-12, 2.1547e-10, 5.3867e-11, 1.1636e-9},
         .pickoff_noise = 1e-10,
@@ -29,8 +29,8 @@ imk_rate_integrating_gyro imk_rate_integrating_gyro_default(void)
         .torquer_temperature = 1e-5,
         .pulse_frequency = 6400.0,
         .pulse_lead = 1.6e-3,
-        .loop_frequency = 10.0,
-        .loop_damping = 1.0,
+        .loop_frequency = 4.0,
+        .loop_damping = 2.5, /* a peak of 4 % */
     };
 }
 
@@ -243,7 +243,9 @@ const imk_instrument imk_rate_integrating_gyro_instrument = {
     .name = "rate_integrating_gyro",
     .title = "floated rate-integrating gyro",
     .technology = "",
-    .source = "drift as of the gyros in HARRIS1974; dimensions chosen, see rate_integrating_gyro.h",
+    .source =
+        "drift of the floated gyros in R. A. Harris, Navigation 21 (1974); dimensions chosen, see "
+        "rate_integrating_gyro.h",
     .sensor = IMK_GYRO,
     .design_size = sizeof(imk_rate_integrating_gyro),
     .state_size = sizeof(imki_rate_integrating_gyro_state),

@@ -106,7 +106,7 @@ static const imk_signal signals[SIGNALS] = {
 static const imk_view views[] = {
     {.title = "Dither and beat",
      .caption = "The beat follows the dither, up to a hundred thousand fringes a second, and turns "
-                "round with it twice a cycle. The amplitude is another one after each turn.",
+                "round with it twice a cycle. The amplitude changes in the middle of each swing.",
      .x = -1,
      .curve_count = 1,
      .y = {BEAT},

@@ -33,8 +33,8 @@ imk_tuned_gyro imk_tuned_gyro_default(void)
         .torquer_limit = 0.0177,
         .torquer_temperature = 2e-5,
         .captured = true,
-        .loop_frequency = 10.0,
-        .loop_damping = 1.0,
+        .loop_frequency = 4.0,
+        .loop_damping = 2.5, /* a peak of 4 % */
         .loop_filter = 120.0,
     };
     /* Equal flexures with P D = Q^2 (see ellipse_at() below): P (P + b) = (J N^2)^2. */

@@ -4,6 +4,7 @@
  *
  * Statistical tests have a fixed seed and limits of five standard deviations (false alarms 6e-7).
  */
+#define _POSIX_C_SOURCE 200809L /* setenv */
 #include "instrument_run.h"
 
 #include "imukit/earth.h"
@@ -122,21 +123,20 @@ static void runge_kutta(const imk_free_gyro *d, const imk_exposure *x, double ti
 /* All inertias different, torques, friction, force and a case that turns and speeds up. The steps
  * (120 a cycle) have an error of 1e-9 of the nutation here, friction 1e-9 rad; Runge-Kutta at 4000
  * a cycle 1e-11. */
-static void same_motion_as_newton_euler(void **unused)
+static void compare_with_newton_euler(double friction, double tolerance)
 {
-    (void)unused;
     imk_free_gyro d = bare(imk_free_gyro_default());
     const double unbalance[3] = {2e-5, -1e-5, 3e-5}, compliance[3] = {1e-6, 2e-6, 4e-6};
     memcpy(d.unbalance, unbalance, sizeof unbalance);
     memcpy(d.compliance, compliance, sizeof compliance);
     d.torque_inner = 1e-3;
     d.torque_outer = -2e-3;
-    d.viscous_friction = 1e-4;
+    d.viscous_friction = friction;
     d.start_outer = 0.4;
     d.start_inner = -0.6;
     d.start_nutation = 0.02;
     imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, 50.0, false);
-    settings.step = 1.0 / 40000.0;
+    settings.step = 1.0 / 160000.0; /* friction's impulses: of order 1 in the step */
     imk_exposure x = imk_exposure_default();
     const double rate[3] = {2.0, -3.0, 1.0}, growth[3] = {20.0, 30.0, -50.0};
     const double force[3] = {30.0, -20.0, 50.0};
@@ -164,10 +164,17 @@ static void same_motion_as_newton_euler(void **unused)
     gyro->step(state, &x, outputs);
     for (int i = 0; i < 24000; i++)
         runge_kutta(&d, &x, -0.01 + i * 0.02 / 24000.0, 0.02 / 24000.0, y);
-    CHECK_CLOSE(signal_of(state, OUTER), y[0], 2e-8);
-    CHECK_CLOSE(signal_of(state, INNER), y[1], 2e-8);
+    CHECK_CLOSE(signal_of(state, OUTER), y[0], tolerance);
+    CHECK_CLOSE(signal_of(state, INNER), y[1], tolerance);
     assert_true(fabs(y[0] - 0.4) > 0.02); /* it did move */
     free(state);
+}
+
+static void same_motion_as_newton_euler(void **unused)
+{
+    (void)unused;
+    compare_with_newton_euler(0.0, 2e-9);
+    compare_with_newton_euler(1e-4, 1e-7);
 }
 
 /* ---- check values ---------------------------------------------------------------------------- */
@@ -243,7 +250,6 @@ static void earth_rate(void **unused)
     (void)unused;
     imk_free_gyro d = checked();
     imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, 1.0, false);
-    settings.step = 1.0 / (6.1 * 269.021);
     imk_exposure x = imk_exposure_default();
     const double earth = 7.292115e-5, half = sqrt(0.5), duration = 300.0;
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX];
@@ -309,7 +315,7 @@ static void unbalance_and_compliance(void **unused)
     d.unbalance[0] = 0.0;
     d.compliance[2] = 1e-9;
     const double at_45 = imk_free_gyro_anisoelasticity(&d) * 0.5 * gravity * gravity;
-    CHECK_CLOSE(at_45 / degree_per_hour, 9.9e-4, 1e-6);
+    CHECK_CLOSE(at_45 / degree_per_hour, 9.9e-4, 5e-6);
     x.specific_force[0] = x.specific_force[2] = gravity * sqrt(0.5);
     for (int level = 0; level < 2; level++) {
         const imk_physics_settings settings = settings_of((imk_level)level, 1.0, false);
@@ -466,15 +472,16 @@ static imk_free_gyro slow_wheel(void)
 }
 
 /* White torques of equal density and viscous friction of equal size about both axes: both kinetic
- * energies are S/4D on the average (S^2 two-sided density, fluctuation and dissipation). The decay
- * takes 20 ms, samples are 10 ms apart: about 4000 independent ones of each, 2.2 % (1 sigma). */
+ * energies are S/4D on the average (S^2 two-sided density, fluctuation and dissipation). Energies
+ * are forgotten in 16 ms, samples are 20 ms apart: some 5000 independent ones, 2 % (1 sigma). */
 static void equipartition(void **unused)
 {
     (void)unused;
     imk_free_gyro d = bare(slow_wheel());
-    d.viscous_friction = 3e-3;
+    d.viscous_friction = 1.5e-3;
+    d.stop = 60.0 * degree;
     d.torque_noise = 1e-6;
-    const imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, 100.0, true);
+    const imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, 50.0, true);
     imk_exposure x = imk_exposure_default();
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], outer = 0.0, inner = 0.0;
     void *state = started(gyro, &d, &settings);
@@ -493,39 +500,48 @@ static void equipartition(void **unused)
     free(state);
 }
 
-/* Variance of the readings of either level against N^2/dt: 4000 samples, 2.2 %, 5 sigma. */
+/* Variance of the readings of either level against N^2/dt: 4000 samples, 2.2 %, 5 sigma. The full
+ * level has the nutation's own noise on top, 2 sigma_angle^2/dt^2. */
 static void angle_random_walk(void **unused)
 {
     (void)unused;
     imk_free_gyro d = bare(slow_wheel());
-    d.viscous_friction = 1e-3;
+    d.viscous_friction = 1.5e-3;
+    d.stop = 60.0 * degree;
     d.torque_noise = 1e-6;
     imk_model *model = malloc(sizeof *model);
     gyro->reduce(&d, model);
-    const double n = model->gyro.noise.white.value[0];
+    const double n = model->gyro.noise.white.value[0], dt = 0.25;
+    const double j = d.outer_inertia[0] + d.inner_inertia[0] + d.rotor_transverse;
+    const double nutation = 2.0 * pi * imk_free_gyro_nutation(&d, 0.0);
+    const double swing =
+        d.torque_noise / (nutation * sqrt(2.0 * d.viscous_friction * j)); /* sigma of the angle */
     const imk_exposure x = imk_exposure_default();
     for (int level = 0; level < 2; level++) {
-        const imk_physics_settings settings = settings_of((imk_level)level, 10.0, true);
+        const imk_physics_settings settings = settings_of((imk_level)level, 1.0 / dt, true);
         void *state = started(gyro, &d, &settings);
         static double out[4000];
         double square = 0.0;
         run(gyro, state, &x, 4000, 0, out);
         for (int i = 0; i < 4000; i++)
             square += out[i] * out[i] / 4000.0;
-        /* the full level has the nutation's noise on top, 2 sigma_angle^2/dt^2: 1 % here */
-        CHECK_RELATIVE(square * 0.1, n * n, 0.13);
+        const double expected = n * n / dt + (level == 0 ? 2.0 * swing * swing / (dt * dt) : 0.0);
+        CHECK_RELATIVE(square, expected, 0.12);
         free(state);
     }
     free(model);
 }
 
+/* Coarse pick-offs, so that the nutation (0.5 % of Q^2) does not show; the record of 1000 s is long
+ * enough for all three terms. */
 static void chain(void **unused)
 {
     (void)unused;
     imk_free_gyro d = slow_wheel();
-    d.torque_noise = 3e-6;
-    d.torque_instability = 2e-6;
-    d.viscous_friction = 5e-4;
+    d.torque_instability = 5e-8;
+    d.viscous_friction = 5e-5;
+    d.pickoff_resolution = 60.0 * degree / 3600.0;
+    d.pickoff_noise = 0.5 * d.pickoff_resolution; /* keeps the steps' errors white */
     const imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, 10.0, true);
     const imk_exposure x = imk_exposure_default();
     check_chain(gyro, &d, &settings, &x, 10, 10000);
@@ -552,7 +568,8 @@ static void stop_holds(void **unused)
 {
     (void)unused;
     imk_free_gyro d = imk_free_gyro_default();
-    d.viscous_friction = 1e-3;
+    d.viscous_friction = 1e-4;
+    d.stop = 60.0 * degree;
     const imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, 1000.0, false);
     imk_exposure x = imk_exposure_default();
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], most = 0.0, touched = 0.0, least = 0.0;

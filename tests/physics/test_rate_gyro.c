@@ -284,7 +284,7 @@ static void test_stops(void **state)
     const imk_rate_gyro d = imk_rate_gyro_default();
     const imk_exposure e = turning(-20.0, 0, 0);
     for (int level = IMK_LEVEL_FULL; level <= IMK_LEVEL_SLOW; level++)
-        CHECK_RELATIVE(reading(&d, level, &e), -80.0 * 0.05, 1e-12);
+        CHECK_RELATIVE(reading(&d, level, &e), -80.0 * d.stop, 1e-12);
 }
 
 /* ---- noise ----------------------------------------------------------------------------------- */

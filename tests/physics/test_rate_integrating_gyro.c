@@ -35,11 +35,11 @@ static design_of balanced(imk_rebalance rebalance)
     return d;
 }
 
-/* Settled reading: the loop's double pole at 63 1/s has died to e^-120 after 2 s. */
+/* Settled reading: the loop's slow pole at 5 1/s has died to e^-50 after 10 s. */
 static double reading(const design_of *d, imk_level level, const imk_exposure *exposure)
 {
     const imk_physics_settings settings = quiet(100.0, level);
-    return mean_of(gyro, d, &settings, exposure, 200, 1, 0);
+    return mean_of(gyro, d, &settings, exposure, 1000, 1, 0);
 }
 
 /* ---- open float ------------------------------------------------------------------------------ */
@@ -146,14 +146,14 @@ static void test_responses(void **state)
     imk_rate_integrating_gyro_reduce(&d, model);
     const double f = model->gyro.bandwidth.value[0], pi = 3.14159265358979324;
     imk_physics_settings settings = quiet(50.0 * f, IMK_LEVEL_FULL);
-    CHECK_RELATIVE(sine_gain(gyro, &d, &settings, 1e-3, f, 1000, 4, NULL), sqrt(0.5), 2e-3);
+    CHECK_RELATIVE(sine_gain(gyro, &d, &settings, 1e-3, f, 5000, 4, NULL), sqrt(0.5), 2e-3);
     double k1, k2;
     imk_rate_integrating_gyro_loop(&d, &k1, &k2);
-    CHECK_RELATIVE(k2, 4.0 * pi * pi * 100.0 * 0.04, 1e-14);
+    CHECK_RELATIVE(k2, 4.0 * pi * pi * 16.0 * 0.04, 1e-14);
     const double w = 2.0 * pi * 10.0, re = k2 - d.damping * w * w,
                  im = (k1 - d.output_inertia * w * w) * w;
     settings.rate = 500.0;
-    CHECK_RELATIVE(sine_gain(gyro, &d, &settings, 1e-3, 10.0, 1000, 4, NULL),
+    CHECK_RELATIVE(sine_gain(gyro, &d, &settings, 1e-3, 10.0, 2500, 4, NULL),
                    sqrt((k2 * k2 + k1 * k1 * w * w) / (re * re + im * im)), 2e-3);
     design_of open = balanced(IMK_REBALANCE_OPEN);
     imk_rate_integrating_gyro_reduce(&open, model);
@@ -175,15 +175,15 @@ static void test_saturation(void **state)
         const imk_physics_settings settings = quiet(100.0, IMK_LEVEL_FULL);
         CHECK_RELATIVE(range, 0.0215 / 0.04, 1e-15);
         imk_exposure e = turning(0.8, 0, 0);
-        double samples[400];
+        double samples[1000];
         void *s = started(gyro, &d, &settings);
-        run(gyro, s, &e, 400, 0, samples);
-        CHECK_RELATIVE(samples[399], range, 1e-12);
+        run(gyro, s, &e, 1000, 0, samples);
+        CHECK_RELATIVE(samples[999], range, 1e-12);
         /* and comes back: no integral has wound up beyond the limit */
         e.angular_rate[0] = 0.1;
-        run(gyro, s, &e, 400, 0, samples);
+        run(gyro, s, &e, 1000, 0, samples);
         double sum = 0.0;
-        for (int i = 300; i < 400; i++)
+        for (int i = 900; i < 1000; i++)
             sum += samples[i] / 100.0;
         CHECK_CLOSE(sum, 0.1, 2.0 * imk_rate_integrating_gyro_pulse(&d));
         free(s);
@@ -245,7 +245,7 @@ static void test_hunting_without_lead(void **state)
 
 /* ---- noise ----------------------------------------------------------------------------------- */
 
-/* At 2 Hz, far below the 30 Hz of the loop. */
+/* At 2 Hz, far below the bandwidth of the loop. */
 static void test_chain_analog(void **state)
 {
     (void)state;
@@ -330,7 +330,7 @@ static void test_refusals(void **state)
     d.output_inertia = 1.0;
     refused(d, IMK_ERROR_CONFLICT, "float.output_inertia");
     d = good;
-    d.loop_frequency = 250.0; /* 2 z w < w^2 I/C from w = 2/1.6 ms, 199 Hz */
+    d.loop_frequency = 600.0; /* 2 z w < w^2 I/C from w = 5/1.6 ms, 497 Hz */
     refused(d, IMK_ERROR_CONFLICT, "loop.frequency");
     imk_error error = {0};
     imk_physics_settings settings = quiet(100.0, IMK_LEVEL_FULL);

@@ -421,6 +421,57 @@ static void quantum_noise(void **state)
     }
 }
 
+/* Mean velocity of psi' = F - B sin psi + noise of the diffusion D [STRATONOVICH1967], with the
+ * potential U = -F x - B cos x:
+ *     2 pi D (1 - e^(-2 pi F/D))/integral_0^2pi dx integral_x^(x+2pi) dy e^((U(y) - U(x))/D)
+ * by the rectangle rule, which is exact to rounding for the outer, periodic integral; the inner one
+ * by the trapezium rule is good to 1e-4. */
+static double washboard(double f, double b, double d)
+{
+    enum { POINTS = 400 };
+    const double h = 2.0 * pi / POINTS;
+    double sum = 0.0;
+    for (int i = 0; i < POINTS; i++)
+        for (int j = 0; j <= POINTS; j++) {
+            const double x = h * i, y = x + h * j;
+            const double rise = -f * (y - x) - b * (cos(y) - cos(x));
+            sum += h * h * exp(rise / d) * (j == 0 || j == POINTS ? 0.5 : 1.0);
+        }
+    return 2.0 * pi * d * -expm1(-2.0 * pi * f / d) / sum;
+}
+
+/* Noise carries the phase through lock-in: where 2 W_L/(K N^2) = 1, the limit at which `reduce`
+ * states a dead band, the slope at zero is 1/I_0(1)^2 = 0.624. Without dither, with so little light
+ * that the noise is large; 8 s, by the counts. */
+static void noise_outweighs_the_dead_band(void **state)
+{
+    (void)state;
+    imk_ring_laser d = undithered();
+    d.cavity.power = 1e-8;
+    const double k = phase_per_radian(&d), n = imk_ring_laser_quantum_noise(&d);
+    d.lock_in.rate = 0.5 * k * n * n;
+    const double b = k * d.lock_in.rate, diffusion = 0.5 * k * k * n * n;
+    CHECK_CLOSE(washboard(0.01 * b, b, diffusion) / (0.01 * b), 0.624, 1e-3);
+
+    const double rate = 0.5 * d.lock_in.rate, duration = 8.0;
+    imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, true);
+    const imk_exposure exposure = turning(rate);
+    const double mean = mean_of(laser, &d, &settings, &exposure, 10, 800, 0);
+    const double expected = washboard(0.5 * b, b, diffusion) / k;
+    CHECK_CLOSE(mean, expected, 5.0 * n / sqrt(duration));
+    assert_true(fabs(rate - expected) > 10.0 * n / sqrt(duration)); /* it is not just the input */
+
+    imk_model *model = malloc(sizeof *model);
+    assert_non_null(model);
+    d.lock_in.rate *= 0.99;
+    laser->reduce(&d, model);
+    CHECK_CLOSE(model->gyro.dead_band.value[0], 0.0, 0.0);
+    d.lock_in.rate *= 1.02;
+    laser->reduce(&d, model);
+    CHECK_RELATIVE(model->gyro.dead_band.value[0], d.lock_in.rate, 1e-15);
+    free(model);
+}
+
 /* ---- readout --------------------------------------------------------------------------------- */
 
 /* No count is ever lost: the angle read is the angle turned, to a count at each end, at any rate
@@ -749,6 +800,7 @@ int main(void)
         cmocka_unit_test(kicks_under_a_pure_sine),
         cmocka_unit_test(random_dither_removes_the_dead_band),
         cmocka_unit_test(quantum_noise),
+        cmocka_unit_test(noise_outweighs_the_dead_band),
         cmocka_unit_test(counts_are_conserved),
         cmocka_unit_test(pickoff_error),
         cmocka_unit_test(bandwidth),

@@ -651,6 +651,9 @@ static void test_refused_designs(void **unused)
     design.sense.loop = IMK_TUNING_FORK_CLOSED;
     design.sense.bandwidth = 701.0;
     check_refused(&design, IMK_ERROR_RANGE, "sense.bandwidth");
+    design.sense.bandwidth = 300.0;
+    design.sense.split = -1101.0;
+    check_refused(&design, IMK_ERROR_CONFLICT, "sense.split");
 #undef REFUSED
     design = good;
     design.sense.split = -1000.0; /* below the drive: allowed */
