@@ -28,7 +28,7 @@ grep -rnE '\b(TODO|FIXME|XXX|HACK)\b' include src cli tests bench fuzz examples 
 
 # Every [KEY] cited is in docs/references.md, and there is nothing that nobody cites.
 key='[A-Z][A-Z-]+[0-9]{2,4}(\.[0-9]+)?[a-z]?'
-sources="include src cli tests bench fuzz examples tools docs/theory"
+sources="include src cli tests bench fuzz examples tools docs/theory docs/physics"
 cited=$(grep -rhoE "\[$key(, [^]]*)?\]" $sources 2>/dev/null | grep -oE "\b$key\b" | sort -u)
 listed=$(grep -oE "^\| $key " docs/references.md | tr -d '| ' | sort -u)
 for name in $(comm -23 <(echo "$cited") <(echo "$listed")); do

@@ -108,6 +108,9 @@ typedef struct imk_view {
     double duration;            /**< [s] */
     double rate;                /**< samples per second of the picture [Hz] */
     double settle;              /**< run this long before [s] */
+    double input; /**< rate [rad/s] or specific force [m/s^2] along x to draw it under, when none
+                     is asked for */
+    bool points;  /**< separate points: the signals jump, and a line would only hide them */
 } imk_view;
 
 /* ---- the interface --------------------------------------------------------------------------- */

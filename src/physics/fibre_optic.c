@@ -253,41 +253,43 @@ static const imk_signal signals[IMKI_FIBRE_OPTIC_SIGNALS] = {
 };
 
 static const imk_view views[] = {
-    {"Light on the fringe",
-     "Power on the detector against the phase between the two waves, from switching on: the "
-     "modulation throws the reading from one side of the fringe to the other, and the loop moves "
-     "both sides until they are equally bright.",
-     IMKI_FIBRE_OPTIC_DIFFERENCE,
-     1,
-     {IMKI_FIBRE_OPTIC_POWER},
-     600e-6,
-     1e6,
-     0.0},
-    {"The ramp and its resets",
-     "The phase of the digital ramp: its slope cancels the rotation, and it falls back by 2 pi.",
-     -1,
-     1,
-     {IMKI_FIBRE_OPTIC_RAMP},
-     400e-6,
-     1e6,
-     2e-3},
-    {"The loop locks",
-     "From switching on: the rate of the coil and the rate that the feedback stands for.",
-     -1,
-     2,
-     {IMKI_FIBRE_OPTIC_INPUT, IMKI_FIBRE_OPTIC_FEEDBACK},
-     1e-3,
-     400e3,
-     0.0},
-    {"What the detector sees",
-     "Power on the detector, transit by transit: square waves while the loop is not locked, noise "
-     "when it is.",
-     -1,
-     1,
-     {IMKI_FIBRE_OPTIC_POWER},
-     400e-6,
-     1e6,
-     0.0},
+    {.title = "Light on the fringe",
+     .caption =
+         "Power on the detector against the phase between the two waves, from switching on: the "
+         "modulation throws the reading from one side of the fringe to the other, and the loop "
+         "moves "
+         "both sides until they are equally bright.",
+     .x = IMKI_FIBRE_OPTIC_DIFFERENCE,
+     .curve_count = 1,
+     .y = {IMKI_FIBRE_OPTIC_POWER},
+     .duration = 600e-6,
+     .rate = 1e6},
+    {.title = "The ramp and its resets",
+     .caption = "The phase of the digital ramp: its slope cancels the rotation, and it falls back "
+                "by 2 pi.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {IMKI_FIBRE_OPTIC_RAMP},
+     .duration = 400e-6,
+     .rate = 1e6,
+     .settle = 2e-3},
+    {.title = "The loop locks",
+     .caption =
+         "From switching on: the rate of the coil and the rate that the feedback stands for.",
+     .x = -1,
+     .curve_count = 2,
+     .y = {IMKI_FIBRE_OPTIC_INPUT, IMKI_FIBRE_OPTIC_FEEDBACK},
+     .duration = 1e-3,
+     .rate = 400e3},
+    {.title = "What the detector sees",
+     .caption = "Power on the detector, transit by transit: square waves while the loop is not "
+                "locked, noise "
+                "when it is.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {IMKI_FIBRE_OPTIC_POWER},
+     .duration = 400e-6,
+     .rate = 1e6},
 };
 
 #define LENGTH(array) (sizeof(array) / sizeof((array)[0]))

@@ -208,19 +208,25 @@ static inline void relative_rates(const imki_gimbals *g, const imki_free_gyro_pa
     *inner = g->p_inner * parts->per_b - q;
 }
 
-static inline void impulses(imki_free_gyro_state *state, imki_gimbals *g, const double w[3])
+/* Friction's impulse for `time`: half a step's at the ends of a sample, whole ones between. */
+static inline void rub(imki_gimbals *g, const imki_free_gyro_parts *parts, const double w[3],
+                       double time)
 {
-    if (state->parts.slope > 0.0) {
-        double outer, inner;
-        relative_rates(g, &state->parts, w, &outer, &inner);
-        g->p_outer += state->step * imki_free_gyro_friction(&state->parts, outer);
-        g->p_inner += state->step * imki_free_gyro_friction(&state->parts, inner);
-    }
-    if (state->torque_sigma > 0.0) {
-        const double impulse = state->step * state->torque_sigma;
-        g->p_outer += impulse * imki_draw(&state->white[0]);
-        g->p_inner += impulse * imki_draw(&state->white[1]);
-    }
+    double outer, inner;
+    if (!(parts->slope > 0.0))
+        return;
+    relative_rates(g, parts, w, &outer, &inner);
+    g->p_outer += time * imki_free_gyro_friction(parts, outer);
+    g->p_inner += time * imki_free_gyro_friction(parts, inner);
+}
+
+static inline void push(imki_free_gyro_state *state, imki_gimbals *g)
+{
+    if (!(state->torque_sigma > 0.0))
+        return;
+    const double impulse = state->step * state->torque_sigma;
+    g->p_outer += impulse * imki_draw(&state->white[0]);
+    g->p_inner += impulse * imki_draw(&state->white[1]);
 }
 
 /* A plastic stop: the inner gimbal ends there, and its rate relative to the outer one with it. */
@@ -241,7 +247,7 @@ static inline void meet_stop(imki_free_gyro_state *state, imki_gimbals *g, const
 void imki_free_gyro_full(imki_free_gyro_state *state, const imki_free_gyro_drive *drive)
 {
     imki_gimbals g = state->gimbals;
-    double growth[3], begin[3], end[3];
+    double growth[3], begin[3], end[3] = {0.0, 0.0, 0.0};
     for (int k = 0; k < 3; k++)
         growth[k] = drive->acceleration[k] * state->step;
     state->on_stop = false;
@@ -253,10 +259,12 @@ void imki_free_gyro_full(imki_free_gyro_state *state, const imki_free_gyro_drive
             begin[k] = drive->rate[k] + from_middle * growth[k];
             end[k] = begin[k] + growth[k];
         }
-        impulses(state, &g, begin);
+        rub(&g, &state->parts, begin, i == 0 ? 0.5 * state->step : state->step);
+        push(state, &g);
         composition(&g, &state->parts, drive, begin, growth, state->step);
         meet_stop(state, &g, end);
     }
+    rub(&g, &state->parts, end, 0.5 * state->step);
     state->gimbals = g;
     force_torque(&state->parts, &g, drive->force, &state->last_torque[0], &state->last_torque[1]);
     state->last_torque[0] += drive->outer;

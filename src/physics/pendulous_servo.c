@@ -489,23 +489,22 @@ static const imk_signal signals[] = {
     {"current", "A", "mA", "current of the torquer"},
 };
 static const imk_view views[] = {
-    {"The pendulum is pulled back",
-     "Deflection of the pendulum behind the beginning of the input: "
-     "the loop answers within a millisecond, and the integral brings the angle back to zero.",
-     -1,
-     1,
-     {0},
-     0.02,
-     50000.0,
-     0.0},
-    {"The torquer takes over",
-     "Control torque: it ends where it balances the input.",
-     -1,
-     1,
-     {1},
-     0.02,
-     50000.0,
-     0.0},
+    {.title = "The pendulum is pulled back",
+     .caption =
+         "Deflection of the pendulum behind the beginning of the input: "
+         "the loop answers within a millisecond, and the integral brings the angle back to zero.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {0},
+     .duration = 0.02,
+     .rate = 50000.0},
+    {.title = "The torquer takes over",
+     .caption = "Control torque: it ends where it balances the input.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {1},
+     .duration = 0.02,
+     .rate = 50000.0},
 };
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

@@ -174,23 +174,23 @@ static const imk_signal signals[IMKI_RATE_GYRO_SIGNALS] = {
     {"spring_torque", "N*m", "uNm", "torque of the torsion bar"}};
 
 static const imk_view views[] = {
-    {"Gimbal angle after the rate begins",
-     "The gimbal swings to the angle at which the torsion bar balances the gyroscopic torque; the "
-     "damper decides how often it overshoots.",
-     -1,
-     1,
-     {0},
-     0.2,
-     2000.0,
-     0.0},
-    {"Phase portrait of the gimbal",
-     "Rate against angle: a spiral into the balance, an ellipse without a damper.",
-     0,
-     1,
-     {1},
-     0.2,
-     4000.0,
-     0.0}};
+    {.title = "Gimbal angle after the rate begins",
+     .caption = "The gimbal swings to the angle at which the torsion bar balances the gyroscopic "
+                "torque; the "
+                "damper decides how often it overshoots.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {0},
+     .duration = 0.2,
+     .rate = 2000.0},
+    {.title = "Phase portrait of the gimbal",
+     .caption = "Rate against angle: a spiral into the balance, an ellipse without a damper.",
+     .x = 0,
+     .curve_count = 1,
+     .y = {1},
+     .duration = 0.2,
+     .rate = 4000.0},
+};
 
 static void set_default(void *design)
 {

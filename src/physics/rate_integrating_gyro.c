@@ -206,23 +206,24 @@ static const imk_signal signals[IMKI_RATE_INTEGRATING_GYRO_SIGNALS] = {
     {"stored_angle", "rad", "arcsec", "case angle that the float holds, (C th + I th')/H"}};
 
 static const imk_view views[] = {
-    {"Float angle after the rate begins",
-     "The float starts to turn with the rate of the case, and the loop brings it back while its "
-     "integral takes over the torque.",
-     -1,
-     1,
-     {0},
-     0.2,
-     2000.0,
-     0.0},
-    {"Torquer and float",
-     "The torque that the loop asks for: smooth in the analog loop, pulses in the others.",
-     -1,
-     1,
-     {3},
-     0.1,
-     6400.0,
-     0.0}};
+    {.title = "Float angle after the rate begins",
+     .caption = "The float starts to turn with the rate of the case, and the loop brings it back "
+                "while its "
+                "integral takes over the torque.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {0},
+     .duration = 0.2,
+     .rate = 2000.0},
+    {.title = "Torquer and float",
+     .caption =
+         "The torque that the loop asks for: smooth in the analog loop, pulses in the others.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {3},
+     .duration = 0.1,
+     .rate = 6400.0},
+};
 
 static void set_default(void *design)
 {

@@ -13,7 +13,8 @@ enum { COOKIE = 0x494D4B3C };
 typedef imk_vibrating_beam design_type;
 
 /* First root of cos(x) cosh(x) = 1, and what an axial force does to the square of the frequency of
- * that mode: integral of phi'^2 / (x^4 integral of phi^2) = 12.302619/500.563902 [TIMOSHENKO1974]. */
+ * that mode: integral of phi'^2 / (x^4 integral of phi^2) = 12.302619/500.563902 [TIMOSHENKO1974].
+ */
 static const double clamped_root = 4.730040744862704;
 static const double clamped_force = 0.0245775186348646;
 
@@ -295,31 +296,31 @@ static const imk_signal signals[] = {
     {"amplitude_2", "m", "um", "of the second beam"},
 };
 static const imk_view views[] = {
-    {"Two beams drift apart",
-     "Both beams vibrate with their own frequency; the force pulls one up and the other down.",
-     -1,
-     2,
-     {0, 1},
-     4e-4,
-     2e6,
-     0.01},
-    {"The force on the beams",
-     "The suspension rings before the beams see a steady force.",
-     -1,
-     1,
-     {2},
-     0.004,
-     1e5,
-     0.0},
-    {"The beat of the beams",
-     "One displacement against the other: the figure turns with the "
-     "difference of the frequencies.",
-     0,
-     1,
-     {1},
-     3e-4,
-     2e6,
-     0.01},
+    {.title = "Two beams drift apart",
+     .caption =
+         "Both beams vibrate with their own frequency; the force pulls one up and the other down.",
+     .x = -1,
+     .curve_count = 2,
+     .y = {0, 1},
+     .duration = 4e-4,
+     .rate = 2e6,
+     .settle = 0.01},
+    {.title = "The force on the beams",
+     .caption = "The suspension rings before the beams see a steady force.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {2},
+     .duration = 0.004,
+     .rate = 1e5},
+    {.title = "The beat of the beams",
+     .caption = "One displacement against the other: the figure turns with the "
+                "difference of the frequencies.",
+     .x = 0,
+     .curve_count = 1,
+     .y = {1},
+     .duration = 3e-4,
+     .rate = 2e6,
+     .settle = 0.01},
 };
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

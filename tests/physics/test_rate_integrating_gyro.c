@@ -336,7 +336,7 @@ static void test_refusals(void **state)
     imk_physics_settings settings = quiet(100.0, IMK_LEVEL_FULL);
     d = good;
     void *s = started(gyro, &d, &settings);
-    settings.step = 0.0101;
+    settings.step = 0.026; /* a cycle of the loop has 10 of 25 ms */
     settings.rate = 10.0;
     CHECK_STATUS(gyro->init(&d, &settings, s, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
