@@ -64,6 +64,29 @@ IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, 
 IMK_API imk_status imk_figure_svg(const imk_figure *figure, char **svg, size_t *size,
                                   imk_error *error);
 
+/** A point that walks along its path as time passes, again and again: an SVG that moves by itself
+ *  (SMIL), without script, in any browser and as an image of a page. Readers who have asked their
+ *  system for less motion see the path alone; so does what cannot move, such as print. */
+typedef struct imk_animation {
+    const char *title, *x_label, *y_label; /**< drawn as they are: no markup */
+    size_t count;                          /**< >= 2 */
+    const double *x, *y;                   /**< at equal intervals of time; all finite */
+    bool points;                           /**< separate points: the path jumps */
+    double duration;                       /**< of a round on the screen [s], 1 … 3600 */
+    const char *clock;                     /**< what a round stands for, "600 us"; "": nothing */
+} imk_animation;
+
+/** The animation as SVG text obtained from malloc(). Paths beyond 4000 points are thinned.
+ *  @return IMK_ERROR_EMPTY for less than two points or a path that stays where it is,
+ *          IMK_ERROR_NOT_FINITE, IMK_ERROR_RANGE (error.field "duration"), IMK_ERROR_MEMORY */
+IMK_API imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t *size,
+                                     imk_error *error);
+
+/** Write it to a file whose name ends in .svg.
+ *  @return as imk_animation_svg(); IMK_ERROR_FORMAT (another ending), _OPEN, _WRITE */
+IMK_API imk_status imk_animation_write(const imk_animation *animation, const char *path,
+                                       imk_error *error);
+
 /** A self-contained HTML page being built: styles and drawings are inside, nothing is fetched,
  * every text is escaped. Functions accept the NULL of a failed imk_page_create(), which
  * imk_page_write() then reports. */
@@ -81,6 +104,9 @@ IMK_API void imk_page_verdict(imk_page *page, int level, const char *text);
 IMK_API void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *const *cells);
 /** A figure, drawn into the page; without gnuplot a note that says what to install. */
 IMK_API void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption);
+/** An animation, drawn into the page. */
+IMK_API void imk_page_animation(imk_page *page, const imk_animation *animation,
+                                const char *caption);
 /** Preformatted text, such as a model file. */
 IMK_API void imk_page_code(imk_page *page, const char *text);
 /** Write the page and free it; NULL path only frees. */

@@ -33,6 +33,7 @@ imk_free_gyro imk_free_gyro_default(void)
         .torque_noise = 3e-7,
         .pickoff_resolution = 20.0 * DEGREE / 3600.0,
         .pickoff_noise = 5.0 * DEGREE / 3600.0,
+        .start_nutation = 15.0 * DEGREE / 3600.0,
     };
 }
 
@@ -99,7 +100,7 @@ static const imk_design_field fields[] = {
     NUMBER("start.outer", start_outer, "deg", -1e3, 1e3, false, "outer angle at the start"),
     NUMBER("start.inner", start_inner, "deg", -89.0 * DEGREE, 89.0 * DEGREE, false,
            "inner angle at the start"),
-    NUMBER("start.nutation", start_nutation, "deg", 0.0, 89.0 * DEGREE, false,
+    NUMBER("start.nutation", start_nutation, "arcsec", 0.0, 89.0 * DEGREE, false,
            "amplitude of the nutation at the start, of the inner angle"),
 };
 
@@ -224,7 +225,7 @@ static imk_status validate(const void *design, imk_error *error)
  * friction in a step, which its impulses follow to second order. */
 #define STEPS_PER_CYCLE 10.0
 #define FEWEST_STEPS_PER_CYCLE 6.0
-#define FRICTION_PER_STEP 0.02
+#define FRICTION_PER_STEP 0.05
 #define MOST_FRICTION_PER_STEP 0.2
 /* The slow level's error grows with the turn of the case within a step: 10 ms for a vehicle. */
 #define SLOW_STEP 0.01

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A self-contained HTML page: styles and drawings inside, nothing fetched, every text escaped. */
 #define _POSIX_C_SOURCE 200809L
+#include "markup_internal.h"
+
 #include "imukit/report.h"
 
 #include <stdio.h>
@@ -42,36 +44,12 @@ static const char style[] =
     "@media print{body,main{background:#fff}main{max-width:none;padding:0}"
     "figure,table,pre{break-inside:avoid}}\n";
 
-static void escape(FILE *out, const char *text)
-{
-    for (const char *c = text ? text : ""; *c; c++) {
-        switch (*c) {
-        case '&':
-            fputs("&amp;", out);
-            break;
-        case '<':
-            fputs("&lt;", out);
-            break;
-        case '>':
-            fputs("&gt;", out);
-            break;
-        case '"':
-            fputs("&quot;", out);
-            break;
-        default:
-            /* Control characters have no place in HTML. */
-            if ((unsigned char)*c >= 0x20 || *c == '\n' || *c == '\t')
-                fputc(*c, out);
-        }
-    }
-}
-
 static void element(imk_page *page, const char *open, const char *text, const char *close)
 {
     if (!page)
         return;
     fputs(open, page->stream);
-    escape(page->stream, text);
+    imki_markup_escape(page->stream, text);
     fputs(close, page->stream);
 }
 
@@ -179,6 +157,23 @@ void imk_page_figure(imk_page *page, const imk_figure *figure, const char *capti
     if (imk_figure_svg(figure, &svg, &size, &error) != IMK_OK) {
         element(page, "<p class=\"verdict note\">Figure left out: ", error.found, "; ");
         element(page, "", error.expected, ".</p>\n");
+        return;
+    }
+    fputs("<figure>\n", page->stream);
+    put_svg(page, svg);
+    element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
+    free(svg);
+}
+
+void imk_page_animation(imk_page *page, const imk_animation *animation, const char *caption)
+{
+    char *svg = NULL;
+    size_t size;
+    imk_error error;
+    if (!page)
+        return;
+    if (imk_animation_svg(animation, &svg, &size, &error) != IMK_OK) {
+        element(page, "<p class=\"verdict note\">Animation left out: ", error.found, ".</p>\n");
         return;
     }
     fputs("<figure>\n", page->stream);

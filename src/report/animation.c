@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A path with a point that walks along it, as an SVG that moves by itself (SMIL).
+ *
+ * The drawing is in whole tenths of a pixel, so that no decimal point, and no locale, is in it. The
+ * walker follows the path by the length s(t) that has been walked (keyPoints); its trail is a dash
+ * of the same path, whose offset is w - s(t). Where the path jumps, dots hop instead. */
+#define _POSIX_C_SOURCE 200809L
+#include "markup_internal.h"
+
+#include "imukit/report.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    WIDTH = 7200,
+    HEIGHT = 5200,
+    LEFT = 950,
+    RIGHT = 250,
+    TOP = 500,
+    BOTTOM = 850,
+    POINTS_MAX = 4000, /* of a path */
+    KEYS = 240,        /* moments at which the walker's place is told */
+    HOPS_MAX = 600,
+    GHOSTS = 5, /* dots that follow a hopping one */
+    TRAIL_MAX = 6000
+};
+
+static const char blue[] = "#0072b2", orange[] = "#d55e00"; /* of the palette of figures */
+
+typedef struct axis {
+    double low, high; /* of the data, with some air */
+    int begin, end;   /* on the drawing */
+} axis;
+
+typedef struct drawing {
+    const imk_animation *animation;
+    axis x, y;
+    size_t count;   /* points of the path */
+    size_t *sample; /* of the animation, that each stands for */
+    int *px, *py;   /* tenths of a pixel */
+    double *walked; /* length up to each */
+} drawing;
+
+static axis axis_make(const double *values, size_t count, int begin, int end)
+{
+    axis a = {values[0], values[0], begin, end};
+    for (size_t i = 1; i < count; i++) {
+        a.low = fmin(a.low, values[i]);
+        a.high = fmax(a.high, values[i]);
+    }
+    const double air = a.high > a.low ? 0.05 * (a.high - a.low) : fmax(0.1 * fabs(a.high), 0.1);
+    a.low -= air;
+    a.high += air;
+    return a;
+}
+
+static int place(const axis *a, double value)
+{
+    return (int)lround(a->begin + (value - a->low) / (a->high - a->low) * (a->end - a->begin));
+}
+
+/* Distance of ticks, 1, 2 or 5 times a power of ten: four to ten of them. */
+static double tick_distance(const axis *a)
+{
+    const double rough = (a->high - a->low) / 5, power = pow(10, floor(log10(rough)));
+    const double digit = rough / power;
+    return power * (digit < 2 ? 1 : digit < 5 ? 2 : 5);
+}
+
+/* "0.3", without what rounding adds to a multiple of the distance. */
+static void put_number(FILE *out, double value, double distance)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.6g", fabs(value) < 1e-6 * distance ? 0.0 : value);
+    for (char *c = text; *c; c++)
+        fputc(*c == ',' ? '.' : *c, out);
+}
+
+static void put_axes(FILE *out, const drawing *d)
+{
+    const double dx = tick_distance(&d->x), dy = tick_distance(&d->y);
+    for (double t = ceil(d->x.low / dx) * dx; t <= d->x.high; t += dx) {
+        const int at = place(&d->x, t);
+        fprintf(out, "<path class=\"grid\" d=\"M%d %dV%d\"/><text x=\"%d\" y=\"%d\">", at, TOP,
+                HEIGHT - BOTTOM, at, HEIGHT - BOTTOM + 190);
+        put_number(out, t, dx);
+        fputs("</text>\n", out);
+    }
+    for (double t = ceil(d->y.low / dy) * dy; t <= d->y.high; t += dy) {
+        const int at = place(&d->y, t);
+        fprintf(out,
+                "<path class=\"grid\" d=\"M%d %dH%d\"/>"
+                "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">",
+                LEFT, at, WIDTH - RIGHT, LEFT - 70, at + 40);
+        put_number(out, t, dy);
+        fputs("</text>\n", out);
+    }
+    fprintf(out, "<path fill=\"none\" stroke=\"#666\" stroke-width=\"10\" d=\"M%d %dV%dH%d\"/>\n",
+            LEFT, TOP, HEIGHT - BOTTOM, WIDTH - RIGHT);
+}
+
+static void put_text(FILE *out, int x, int y, const char *attributes, const char *text)
+{
+    fprintf(out, "<text x=\"%d\" y=\"%d\"%s>", x, y, attributes);
+    imki_markup_escape(out, text);
+    fputs("</text>\n", out);
+}
+
+static void put_head(FILE *out, const drawing *d)
+{
+    const int middle = (LEFT + WIDTH - RIGHT) / 2, height = (TOP + HEIGHT - BOTTOM) / 2;
+    char turned[60];
+    fprintf(out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\""
+            " width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"",
+            WIDTH / 10, HEIGHT / 10, WIDTH, HEIGHT);
+    imki_markup_escape(out, d->animation->title);
+    fprintf(out,
+            "\" font-family=\"DejaVu Sans,Verdana,sans-serif\" font-size=\"120\" fill=\"#333\" "
+            "text-anchor=\"middle\">\n"
+            "<style>.grid{stroke:#d4d4d4;stroke-width:8}"
+            "@media (prefers-reduced-motion:reduce){.moving{display:none}}"
+            "@media print{.moving{display:none}}</style>\n"
+            "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
+            WIDTH, HEIGHT);
+    put_axes(out, d);
+    put_text(out, middle, 300, "", d->animation->title);
+    put_text(out, middle, HEIGHT - BOTTOM + 430, "", d->animation->x_label);
+    snprintf(turned, sizeof turned, " transform=\"rotate(-90 250 %d)\"", height);
+    put_text(out, 250, height, turned, d->animation->y_label);
+}
+
+/* A bar that grows while a round passes. */
+static void put_clock(FILE *out, const drawing *d, int milliseconds)
+{
+    const int y = HEIGHT - 130, length = WIDTH - RIGHT - LEFT;
+    if (!d->animation->clock || !d->animation->clock[0])
+        return;
+    fputs("<g class=\"moving\">\n", out);
+    fprintf(out, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"30\" fill=\"#e6e9eb\"/>\n", LEFT, y,
+            length);
+    fprintf(out,
+            "<rect x=\"%d\" y=\"%d\" width=\"0\" height=\"30\" fill=\"%s\"><animate "
+            "attributeName=\"width\" values=\"0;%d\" dur=\"%dms\" repeatCount=\"indefinite\"/>"
+            "</rect>\n",
+            LEFT, y, orange, length, milliseconds);
+    put_text(out, WIDTH - RIGHT, y - 60, " text-anchor=\"end\" font-size=\"105\"",
+             d->animation->clock);
+    fputs("</g>\n", out);
+}
+
+/* ---- a path that is walked ------------------------------------------------------------------- */
+
+/* A part of one in millionths. */
+static void put_part(FILE *out, double part)
+{
+    const long millionths = lround(part * 1e6);
+    if (millionths >= 1000000)
+        fputc('1', out);
+    else
+        fprintf(out, "0.%06ld", millionths);
+}
+
+/* Length walked at a moment, 0 … 1 of the round. */
+static double walked_at(const drawing *d, double moment)
+{
+    const double sample = moment * (double)(d->animation->count - 1);
+    size_t low = 0, high = d->count - 1;
+    while (high - low > 1) {
+        const size_t middle = (low + high) / 2;
+        if ((double)d->sample[middle] <= sample)
+            low = middle;
+        else
+            high = middle;
+    }
+    const double from = (double)d->sample[low], to = (double)d->sample[high];
+    const double part = to > from ? fmin(fmax((sample - from) / (to - from), 0), 1) : 0;
+    return d->walked[low] + part * (d->walked[high] - d->walked[low]);
+}
+
+static void put_walk(FILE *out, const drawing *d, int milliseconds)
+{
+    const double length = d->walked[d->count - 1], trail = fmin(length / 8, TRAIL_MAX);
+    fprintf(out,
+            "<path id=\"track\" fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.4\" "
+            "stroke-width=\"12\" stroke-linejoin=\"round\" d=\"M%d %d",
+            blue, d->px[0], d->py[0]);
+    for (size_t i = 1; i < d->count; i++)
+        fprintf(out, "l%d %d", d->px[i] - d->px[i - 1], d->py[i] - d->py[i - 1]);
+    fputs("\"/>\n<g class=\"moving\">\n", out);
+    fprintf(out,
+            "<use href=\"#track\" xlink:href=\"#track\" style=\"stroke:%s;stroke-opacity:1;"
+            "stroke-width:24\" stroke-dasharray=\"%ld %ld\" stroke-dashoffset=\"%ld\">"
+            "<animate attributeName=\"stroke-dashoffset\" dur=\"%dms\" "
+            "repeatCount=\"indefinite\" values=\"",
+            orange, lround(trail), lround(length + trail + 10), lround(trail), milliseconds);
+    for (int k = 0; k <= KEYS; k++)
+        fprintf(out, "%s%ld", k > 0 ? ";" : "", lround(trail - walked_at(d, (double)k / KEYS)));
+    fprintf(out,
+            "\"/></use>\n<circle r=\"60\" fill=\"%s\"><animateMotion dur=\"%dms\" "
+            "repeatCount=\"indefinite\" calcMode=\"linear\" keyTimes=\"",
+            orange, milliseconds);
+    for (int k = 0; k <= KEYS; k++) {
+        fputs(k > 0 ? ";" : "", out);
+        put_part(out, (double)k / KEYS);
+    }
+    fputs("\" keyPoints=\"", out);
+    for (int k = 0; k <= KEYS; k++) {
+        fputs(k > 0 ? ";" : "", out);
+        put_part(out, walked_at(d, (double)k / KEYS) / length);
+    }
+    fputs("\"><mpath href=\"#track\" xlink:href=\"#track\"/></animateMotion></circle>\n</g>\n",
+          out);
+}
+
+/* ---- a path that jumps ----------------------------------------------------------------------- */
+
+static void put_hops(FILE *out, const drawing *d, const char *attribute, const int *places,
+                     int milliseconds, int delay)
+{
+    const size_t stride = d->count / HOPS_MAX + 1;
+    fprintf(out,
+            "<animate attributeName=\"%s\" calcMode=\"discrete\" dur=\"%dms\" begin=\"%dms\" "
+            "repeatCount=\"indefinite\" values=\"",
+            attribute, milliseconds, delay);
+    for (size_t i = 0; i < d->count; i += stride)
+        fprintf(out, "%s%d", i > 0 ? ";" : "", places[i]);
+    fputs("\" keyTimes=\"", out);
+    for (size_t i = 0; i < d->count; i += stride) {
+        fputs(i > 0 ? ";" : "", out);
+        put_part(out, (double)d->sample[i] / (double)d->animation->count);
+    }
+    fputs("\"/>", out);
+}
+
+static void put_jumps(FILE *out, const drawing *d, int milliseconds)
+{
+    const size_t hops = d->count < HOPS_MAX ? d->count : HOPS_MAX;
+    const int hop = milliseconds / (int)hops;
+    fprintf(out,
+            "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.45\" stroke-width=\"50\" "
+            "stroke-linecap=\"round\" d=\"",
+            blue);
+    for (size_t i = 0; i < d->count; i++)
+        fprintf(out, "M%d %dh0", d->px[i], d->py[i]);
+    fputs("\"/>\n<g class=\"moving\">\n", out);
+    for (int ghost = GHOSTS; ghost >= 0; ghost--) {
+        fprintf(out, "<circle cx=\"%d\" cy=\"%d\" r=\"%d\" fill=\"%s\" fill-opacity=\"0.%d\">",
+                d->px[0], d->py[0], ghost > 0 ? 55 : 75, orange, ghost > 0 ? 6 - ghost : 95);
+        put_hops(out, d, "cx", d->px, milliseconds, ghost * hop);
+        put_hops(out, d, "cy", d->py, milliseconds, ghost * hop);
+        fputs("</circle>\n", out);
+    }
+    fputs("</g>\n", out);
+}
+
+/* ---- all of it ------------------------------------------------------------------------------- */
+
+static imk_status check(const imk_animation *animation, imk_error *error)
+{
+    if (!animation || animation->count < 2)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "animation", "less than two points",
+                             "points to draw");
+    if (!(animation->duration >= 1 && animation->duration <= 3600))
+        return imk_error_set(error, IMK_ERROR_RANGE, "duration", NULL, "1 to 3600 seconds");
+    for (size_t i = 0; i < animation->count; i++)
+        if (!isfinite(animation->x[i]) || !isfinite(animation->y[i]))
+            return imk_error_set(error, IMK_ERROR_NOT_FINITE, "animation", "a point is not finite",
+                                 "finite numbers");
+    return IMK_OK;
+}
+
+/* The points of the path in tenths of a pixel, those that fall on the one before left out. */
+static bool drawing_make(drawing *d, const imk_animation *animation)
+{
+    const size_t stride = (animation->count + POINTS_MAX - 1) / POINTS_MAX;
+    const size_t room = animation->count / stride + 1;
+    *d = (drawing){.animation = animation,
+                   .x = axis_make(animation->x, animation->count, LEFT, WIDTH - RIGHT),
+                   .y = axis_make(animation->y, animation->count, HEIGHT - BOTTOM, TOP),
+                   .sample = malloc(room * sizeof *d->sample),
+                   .px = malloc(room * sizeof *d->px),
+                   .py = malloc(room * sizeof *d->py),
+                   .walked = malloc(room * sizeof *d->walked)};
+    if (!d->sample || !d->px || !d->py || !d->walked)
+        return false;
+    for (size_t i = 0; i < animation->count; i += stride) {
+        const int x = place(&d->x, animation->x[i]), y = place(&d->y, animation->y[i]);
+        const size_t n = d->count;
+        if (n > 0 && x == d->px[n - 1] && y == d->py[n - 1])
+            continue;
+        d->sample[n] = i;
+        d->px[n] = x;
+        d->py[n] = y;
+        d->walked[n] = n > 0 ? d->walked[n - 1] + hypot(x - d->px[n - 1], y - d->py[n - 1]) : 0;
+        d->count++;
+    }
+    return true;
+}
+
+static void drawing_free(drawing *d)
+{
+    free(d->sample);
+    free(d->px);
+    free(d->py);
+    free(d->walked);
+}
+
+imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t *size,
+                             imk_error *error)
+{
+    drawing d;
+    char *text = NULL;
+    size_t length = 0;
+    imk_status status = check(animation, error);
+    if (status != IMK_OK)
+        return status;
+    FILE *out = drawing_make(&d, animation) ? open_memstream(&text, &length) : NULL;
+    if (out && d.count < 2)
+        status = imk_error_set(error, IMK_ERROR_EMPTY, "animation", "nothing moves",
+                               "points at different places");
+    if (out && status == IMK_OK) {
+        const int milliseconds = (int)lround(1000 * animation->duration);
+        put_head(out, &d);
+        if (animation->points)
+            put_jumps(out, &d, milliseconds);
+        else
+            put_walk(out, &d, milliseconds);
+        put_clock(out, &d, milliseconds);
+        fputs("</svg>\n", out);
+    }
+    if (!out || fclose(out) != 0)
+        status = imk_error_set(error, IMK_ERROR_MEMORY, "animation", NULL, NULL);
+    drawing_free(&d);
+    if (status != IMK_OK) {
+        free(text);
+        return status;
+    }
+    *svg = text;
+    *size = length;
+    return IMK_OK;
+}
+
+imk_status imk_animation_write(const imk_animation *animation, const char *path, imk_error *error)
+{
+    const size_t length = strlen(path);
+    char *svg;
+    size_t size;
+    imk_output_file *file;
+    if (length < 5 || strcmp(path + length - 4, ".svg") != 0)
+        return imk_error_set(error, IMK_ERROR_FORMAT, "animation", path, "a name ending in .svg");
+    imk_status status = imk_animation_svg(animation, &svg, &size, error);
+    if (status != IMK_OK)
+        return status;
+    status = imk_output_file_open(path, &file, error);
+    if (status == IMK_OK) {
+        imk_output_file_write(file, svg, size);
+        status = imk_output_file_commit(file, error);
+    }
+    free(svg);
+    return status;
+}

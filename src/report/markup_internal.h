@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Text of the caller inside HTML and SVG. */
+#ifndef IMUKIT_REPORT_MARKUP_INTERNAL_H
+#define IMUKIT_REPORT_MARKUP_INTERNAL_H
+
+#include <stdio.h>
+
+/* Written so that nothing in it is markup; control characters, which neither language allows, are
+ * left out. NULL is "". */
+void imki_markup_escape(FILE *out, const char *text);
+
+#endif
