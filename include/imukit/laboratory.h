@@ -64,7 +64,7 @@ typedef struct imk_laboratory_point {
 } imk_laboratory_point;
 
 /** One frequency: the response to a continuous sine, of which the instrument was shown the means
- *  over samples, at least 32 to a cycle. */
+ *  over samples, at least 64 to a cycle. */
 typedef struct imk_laboratory_response {
     double frequency; /**< [Hz] */
     double gain;      /**< [1] */
