@@ -35,8 +35,6 @@ void free_gyro_problem(const imk_free_gyro *design, free_gyro_equations *with, o
 {
     *with = (free_gyro_equations){.h = imk_free_gyro_momentum(design),
                                   .ao = design->outer_inertia[0],
-                                  .bo = design->outer_inertia[1],
-                                  .co = design->outer_inertia[2],
                                   .a = design->inner_inertia[0] + design->rotor_transverse,
                                   .b = design->inner_inertia[1] + design->rotor_transverse,
                                   .c = design->inner_inertia[2]};
@@ -121,7 +119,7 @@ static void oscillator_problem(const double start[4], oscillator_equations *with
                       .readings = 2,
                       .start = {start[0], start[1], start[2], start[3]},
                       .size = {with->size_x, w * with->size_x, with->size_y, w * with->size_y},
-                      .reference_step = pi / w,
+                      .reference_step = 0.25 * pi / w,
                       .slope = oscillator_slope,
                       .read = oscillator_read,
                       .with = with};

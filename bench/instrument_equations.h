@@ -15,7 +15,7 @@
 /** Free gyro, the case at rest, no torque: outer and inner angle, rates of both in inertial space.
  *  Readings: the angles. */
 typedef struct free_gyro_equations {
-    double h, ao, bo, co, a, b, c;
+    double h, ao, a, b, c;
 } free_gyro_equations;
 void free_gyro_problem(const imk_free_gyro *design, free_gyro_equations *with,
                        ode_problem *problem);

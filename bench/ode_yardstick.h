@@ -32,9 +32,10 @@ bool ode_has_cvode(void);
 /** Solve by CVODE: Adams' formulas with functional iteration, or backward differentiation with
  *  Newton's method and a dense Jacobian by differences.
  *  @param readings  pieces x problem->readings, or NULL
- *  @param calls     of slope
+ *  @param most      calls of slope it may take
+ *  @param calls     that it took
  *  @return false when it gave up */
-bool ode_cvode(const ode_problem *problem, ode_method method, double relative_tolerance,
+bool ode_cvode(const ode_problem *problem, ode_method method, double relative_tolerance, long most,
                double *readings, long *calls);
 
 /** Solve by Gragg's method extrapolated to order 16 (Hairer, Norsett, Wanner, Solving Ordinary

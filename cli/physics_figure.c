@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* More points than this are not seen. */
-enum { VIEW_POINTS = 20000 };
+enum { VIEW_POINTS = 5000 };
 
 void physics_figure_free(physics_figure *figure)
 {
@@ -23,7 +23,7 @@ void physics_figure_free(physics_figure *figure)
 
 static void finish(physics_figure *f, const char *title, size_t panels)
 {
-    f->figure = (imk_figure){title, panels, panels < 3 ? 1 : 2, f->panel};
+    f->figure = (imk_figure){title, panels, panels < 2 ? 1 : 2, f->panel};
     if (panels == 1) /* drawn over two or more */
         f->figure.title = "";
 }
@@ -42,6 +42,21 @@ static void label(char *text, size_t size, const char *name, const char *unit)
 
 /* ---- a run ----------------------------------------------------------------------------------- */
 
+/* Output 0 against the input: a curve of response, with its dead band, when the sine is slow, an
+ * ellipse when the instrument lags behind. */
+static void response_of_run(const physics_run *run, const char *unit, physics_figure *f, size_t at)
+{
+    const double *values = f->curve[0][0].y, *input = f->curve[0][1].y;
+    f->curve[at][0] =
+        (imk_curve){"output", IMK_CURVE_POINTS, 0, run->points, input, values, NULL, NULL};
+    f->curve[at][1] =
+        (imk_curve){"input", IMK_CURVE_DASHES, 1, run->points, input, input, NULL, NULL};
+    label(f->label[at][0], sizeof f->label[at][0], "input", unit);
+    label(f->label[at][1], sizeof f->label[at][1], "output", unit);
+    f->panel[at] = (imk_panel){
+        "Output against input", f->label[at][0], f->label[at][1], false, false, 2, f->curve[at]};
+}
+
 bool physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *f)
 {
     const imk_instrument *instrument = p->file.instrument;
@@ -59,24 +74,45 @@ bool physics_figure_of_run(const physics *p, const physics_run *run, physics_fig
             values[k] = (run->curve[i][k] - unit.offset) / unit.scale;
             input[k] = run->input[k] / unit.scale;
         }
-        size_t curves = 0;
-        if (i == 0)
-            f->curve[i][curves++] = (imk_curve){
-                "input", IMK_CURVE_DASHES, 1, run->points, run->time, input, NULL, NULL};
-        f->curve[i][curves++] = (imk_curve){
+        f->curve[i][0] = (imk_curve){
             i == 0 ? "output" : "", IMK_CURVE_LINE, 0, run->points, run->time, values, NULL, NULL};
+        f->curve[i][1] =
+            (imk_curve){"input", IMK_CURVE_DASHES, 1, run->points, run->time, input, NULL, NULL};
         label(f->label[i][0], sizeof f->label[i][0], signal->name, "1");
         snprintf(f->label[i][0] + strlen(f->label[i][0]),
                  sizeof f->label[i][0] - strlen(f->label[i][0]), ": %s", signal->help);
         label(f->label[i][1], sizeof f->label[i][1], signal->name, unit.text);
-        f->panel[i] = (imk_panel){f->label[i][0], "time [s]", f->label[i][1], false,
-                                  false,          curves,     f->curve[i]};
+        f->panel[i] = (imk_panel){f->label[i][0], "time [s]",     f->label[i][1], false,
+                                  false,          i == 0 ? 2 : 1, f->curve[i]};
     }
-    finish(f, p->file.name[0] ? p->file.name : instrument->title, outputs);
+    if (p->input.is_sine)
+        response_of_run(run, physics_output_unit(p, run, 0).text, f, outputs);
+    finish(f, p->file.name[0] ? p->file.name : instrument->title, outputs + p->input.is_sine);
     return true;
 }
 
 /* ---- views ----------------------------------------------------------------------------------- */
+
+/* The view's own input, unless another was asked for. */
+static physics_input input_of(const physics *p, const imk_view *view)
+{
+    physics_input input = p->input;
+    if (!p->options->rate && !p->options->acceleration) {
+        const bool gyro = p->file.instrument->sensor == IMK_GYRO;
+        (gyro ? input.exposure.angular_rate : input.exposure.specific_force)[0] = view->input;
+    }
+    return input;
+}
+
+imk_view physics_view_as_asked(const physics *p, size_t index)
+{
+    imk_view view = p->file.instrument->views[index];
+    if (!isnan(p->options->view_duration))
+        view.duration = p->options->view_duration;
+    if (p->options->view && !isnan(p->options->view_rate))
+        view.rate = p->options->view_rate;
+    return view;
+}
 
 /* Run the instrument as the view says; rows of x, y … in display units into `data`. */
 static int record(const physics *p, const imk_view *view, size_t points, uint64_t stride,
@@ -86,17 +122,18 @@ static int record(const physics *p, const imk_view *view, size_t points, uint64_
     imk_physics_settings settings = p->settings;
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], inside[IMK_INSTRUMENT_SIGNALS_MAX];
     void *state;
+    const physics_input input = input_of(p, view);
     settings.rate = view->rate;
     int code = physics_start(p, &settings, &state);
     if (code >= 0)
         return code;
     const uint64_t settle = (uint64_t)floor(view->settle * view->rate + 0.5);
     for (uint64_t k = 0; k < settle; k++) {
-        const imk_exposure e = physics_input_at(&p->input, view->rate, k);
+        const imk_exposure e = physics_input_at(&input, view->rate, k);
         instrument->step(state, &e, outputs);
     }
     for (uint64_t k = 0; k < points * stride; k++) {
-        const imk_exposure e = physics_input_at(&p->input, view->rate, settle + k);
+        const imk_exposure e = physics_input_at(&input, view->rate, settle + k);
         instrument->step(state, &e, outputs);
         if ((k + 1) % stride != 0)
             continue;
@@ -124,6 +161,32 @@ static const char *scale_time(const imk_view *view, size_t points, double *time)
     return unit.scale == 1 ? "s" : unit.scale > 1e-4 ? "ms" : "us";
 }
 
+/* "tilt x, tilt y", as far as there is room. */
+static void join_names(const imk_instrument *instrument, const imk_view *view, char *text,
+                       size_t size)
+{
+    size_t length = 0;
+    for (int c = 0; c < view->curve_count && length < size; c++)
+        length += (size_t)snprintf(text + length, size - length, "%s%s", c > 0 ? ", " : "",
+                                   instrument->signals[view->y[c]].name);
+    if (length > 48)
+        text[0] = '\0'; /* the key says it */
+}
+
+static void label_panel(const imk_instrument *instrument, const imk_view *view, const char *x_unit,
+                        physics_figure *f, size_t at)
+{
+    char names[200];
+    join_names(instrument, view, names, sizeof names);
+    label(f->label[at][0], sizeof f->label[at][0],
+          view->x < 0 ? "time" : instrument->signals[view->x].name, x_unit);
+    label(f->label[at][1], sizeof f->label[at][1], names, instrument->signals[view->y[0]].unit);
+    for (int c = 0; view->curve_count > 1 && c < view->curve_count; c++) {
+        label(f->name[at][c], sizeof f->name[at][c], instrument->signals[view->y[c]].name, "1");
+        f->curve[at][c].label = f->name[at][c];
+    }
+}
+
 static int make_panel(const physics *p, const imk_view *view, physics_figure *f, size_t at)
 {
     const imk_instrument *instrument = p->file.instrument;
@@ -138,22 +201,40 @@ static int make_panel(const physics *p, const imk_view *view, physics_figure *f,
     int code = record(p, view, points, stride, data);
     if (code >= 0)
         return code;
-    for (int c = 0; c < view->curve_count; c++) {
-        const imk_signal *signal = &instrument->signals[view->y[c]];
-        f->curve[at][c] = (imk_curve){
-            view->curve_count > 1 ? signal->name : "", IMK_CURVE_LINE, c,   points, data,
-            data + (size_t)(c + 1) * points,           NULL,           NULL};
-    }
-    const imk_signal *first = &instrument->signals[view->y[0]];
+    for (int c = 0; c < view->curve_count; c++)
+        f->curve[at][c] = (imk_curve){"",   view->points ? IMK_CURVE_POINTS : IMK_CURVE_LINE,
+                                      c,    points,
+                                      data, data + (size_t)(c + 1) * points,
+                                      NULL, NULL};
     const char *x_unit =
         view->x < 0 ? scale_time(view, points, data) : instrument->signals[view->x].unit;
-    label(f->label[at][0], sizeof f->label[at][0],
-          view->x < 0 ? "time" : instrument->signals[view->x].name, x_unit);
-    label(f->label[at][1], sizeof f->label[at][1], view->curve_count > 1 ? "" : first->name,
-          first->unit);
+    label_panel(instrument, view, x_unit, f, at);
     f->panel[at] = (imk_panel){view->title, f->label[at][0],           f->label[at][1], false,
                                false,       (size_t)view->curve_count, f->curve[at]};
     return -1;
+}
+
+static bool is_constant(size_t count, const double *values)
+{
+    for (size_t i = 1; i < count; i++)
+        if (values[i] != values[0])
+            return false;
+    return true;
+}
+
+/* What the view shows is not in this design, such as the bits of an open loop: the first curve is
+ * 0, or no curve moves, or a curve against a signal has no width. */
+bool physics_view_is_empty(const imk_view *view, const imk_panel *panel)
+{
+    const imk_curve *first = &panel->curves[0];
+    if (view->x >= 0 && is_constant(first->count, first->x))
+        return true;
+    if (first->y[0] == 0 && is_constant(first->count, first->y))
+        return true;
+    for (size_t c = 0; c < panel->curve_count; c++)
+        if (!is_constant(panel->curves[c].count, panel->curves[c].y))
+            return false;
+    return true;
 }
 
 int physics_figure_of_view(const physics *p, size_t index, physics_figure *f)
@@ -163,13 +244,30 @@ int physics_figure_of_view(const physics *p, size_t index, physics_figure *f)
     const size_t all =
         instrument->view_count < PHYSICS_PANELS_MAX ? instrument->view_count : PHYSICS_PANELS_MAX;
     const size_t count = index == SIZE_MAX ? all : 1;
+    size_t kept = 0;
     int code = -1;
     memset(f, 0, sizeof *f);
-    for (size_t i = 0; i < count && code < 0; i++)
-        code = make_panel(p, &instrument->views[first + i], f, i);
+    for (size_t i = 0; i < count && code < 0; i++) {
+        const imk_view view = physics_view_as_asked(p, first + i);
+        if (!(view.duration * view.rate >= 2 && view.duration * view.rate <= 1e9))
+            code = command_misused("--duration: %g s at %g points per second are %s", view.duration,
+                                   view.rate,
+                                   view.duration * view.rate >= 2 ? "too many" : "no picture");
+        else
+            code = make_panel(p, &view, f, kept);
+        if (code >= 0 || count == 1 || !physics_view_is_empty(&view, &f->panel[kept])) {
+            kept++;
+        } else {
+            free(f->memory[kept]);
+            f->memory[kept] = NULL;
+        }
+    }
+    if (code < 0 && kept == 0)
+        code = command_failed("nothing moves in the views of this design; add --%s",
+                              instrument->sensor == IMK_GYRO ? "rate" : "acceleration");
     if (code >= 0)
         physics_figure_free(f);
-    finish(f, instrument->title, count);
+    finish(f, instrument->title, kept);
     return code;
 }
 

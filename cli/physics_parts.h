@@ -9,15 +9,17 @@
 
 #include "imukit/distort.h"
 #include "imukit/laboratory.h"
+#include "imukit/report.h"
 
 typedef struct physics_options {
     bool list, show, reduce, sweep, single_axis, no_noise, json;
     const char *rate, *acceleration; /* texts: one number or three */
     double sine;                     /* [Hz]; NaN: none */
     double temperature, temperature_rate, duration, output_rate, step, signal_rate;
+    double view_duration, view_rate; /* of --view; NaN: the view's own */
     int level;
     uint64_t seed, run, threads;
-    const char *output, *signals, *plot, *report, *view;
+    const char *output, *signals, *plot, *report, *view, *animate;
 } physics_options;
 
 /* What the instrument is exposed to, against time. */
@@ -69,6 +71,9 @@ void physics_run_free(physics_run *run);
 imk_unit physics_output_unit(const physics *p, const physics_run *run, size_t output);
 uint64_t physics_samples(const physics_options *o, double rate);
 
+/* physics_warnings.c: what can be known of a run that went wrong quietly. */
+void physics_warn_of_run(const physics *p, const physics_run *run);
+
 /* physics_design.c: the list of instruments, one design. */
 int physics_list(const physics_options *o);
 int physics_show(const physics *p);
@@ -100,19 +105,31 @@ typedef struct physics_figure {
     imk_panel panel[PHYSICS_PANELS_MAX];
     imk_curve curve[PHYSICS_PANELS_MAX][IMK_VIEW_CURVES_MAX];
     char label[PHYSICS_PANELS_MAX][2][128];
+    char name[PHYSICS_PANELS_MAX][IMK_VIEW_CURVES_MAX][56];
     double *memory[PHYSICS_PANELS_MAX];
 } physics_figure;
 
-/* The outputs of a run against time. */
+/* The outputs of a run against time, and against the input when that is a sine. */
 bool physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *figure);
+/* A view, with the duration and rate that were asked for. */
+imk_view physics_view_as_asked(const physics *p, size_t index);
 /* One view of the instrument, or all of them (index SIZE_MAX). @return -1 or the exit code */
 int physics_figure_of_view(const physics *p, size_t index, physics_figure *figure);
 bool physics_figure_of_laboratory(const physics *p, const physics_laboratory *laboratory,
                                   physics_figure *figure);
+/* True when there is nothing of the view to see in this design. */
+bool physics_view_is_empty(const imk_view *view, const imk_panel *panel);
 void physics_figure_free(physics_figure *figure);
 int physics_draw(const imk_figure *figure, const char *path);
 /* The view that --view names. @return -1 or the exit code */
 int physics_find_view(const physics *p, size_t *index);
+
+/* physics_animation.c: views whose axes are both signals, in motion. */
+bool physics_view_can_move(const imk_view *view);
+/* The animation of a figure of one such view; clock is room for a text. */
+imk_animation physics_animation_of_view(const imk_view *view, const physics_figure *figure,
+                                        char *clock, size_t size);
+int physics_animate(const physics *p, const char *path);
 
 /* physics_report.c */
 int physics_report(const physics *p, const physics_run *run, const physics_laboratory *laboratory,

@@ -21,7 +21,20 @@ static void put_run(imk_page *page, const physics *p, const physics_run *run)
     free(figure);
 }
 
-/* A view that cannot be drawn (the reason is on standard error) is left out. */
+static void put_view(imk_page *page, const imk_view *view, const physics_figure *figure)
+{
+    char clock[80];
+    if (physics_view_can_move(view)) {
+        const imk_animation animation =
+            physics_animation_of_view(view, figure, clock, sizeof clock);
+        imk_page_animation(page, &animation, view->caption);
+    } else {
+        imk_page_figure(page, &figure->figure, view->caption);
+    }
+}
+
+/* A view that cannot be drawn (the reason is on standard error) is left out, and so is one of what
+ * this design has not. */
 static void put_views(imk_page *page, const physics *p)
 {
     const imk_instrument *instrument = p->file.instrument;
@@ -29,11 +42,13 @@ static void put_views(imk_page *page, const physics *p)
     if (figure && instrument->view_count > 0)
         imk_page_heading(page, "Inside the instrument");
     for (size_t i = 0; figure && i < instrument->view_count; i++) {
+        const imk_view *view = &instrument->views[i];
         if (physics_figure_of_view(p, i, figure) >= 0) {
-            command_warn("view", "the view \"%s\" is left out", instrument->views[i].title);
+            command_warn("view", "the view \"%s\" is left out", view->title);
             continue;
         }
-        imk_page_figure(page, &figure->figure, instrument->views[i].caption);
+        if (!physics_view_is_empty(view, &figure->panel[0]))
+            put_view(page, view, figure);
         physics_figure_free(figure);
     }
     free(figure);

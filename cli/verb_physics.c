@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static const option task_option_table[] = {
     {"list", 0, OPTION_FLAG, NULL, NULL, NULL, "the instruments there are; also without INSTRUMENT",
@@ -41,9 +42,11 @@ static const option input_option_table[] = {
 };
 
 static const option run_option_table[] = {
-    {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL, "run so long and write the log",
+    {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
+     "run so long and write the log; with --view: draw the view for so long",
      offsetof(physics_options, duration)},
-    {"output-rate", 0, OPTION_QUANTITY, "RATE", "Hz", NULL, "samples per second; default 100Hz",
+    {"output-rate", 0, OPTION_QUANTITY, "RATE", "Hz", NULL,
+     "samples per second; default 100Hz. With --view: points per second of the view",
      offsetof(physics_options, output_rate)},
     {"level", 0, OPTION_CHOICE, "LEVEL", NULL, "full|slow",
      "the dynamics of all parts (the default), or a map or envelope without the fast part",
@@ -76,12 +79,15 @@ static const option output_option_table[] = {
      "rows per second of --signals; default: the output rate. Another rate is a run of its own",
      offsetof(physics_options, signal_rate)},
     {"plot", 0, OPTION_FILE, "FILE.svg|FILE.png|term", NULL, NULL,
-     "draw the outputs of the run against time, or what --sweep found; without either, the views "
-     "of "
-     "the instrument",
+     "draw the outputs of the run against time (with --sine also against the input), or what "
+     "--sweep found; without either, the views of the instrument",
      offsetof(physics_options, plot)},
     {"view", 0, OPTION_TEXT, "VIEW", NULL, NULL,
      "the view to --plot: its number, or how its title begins", offsetof(physics_options, view)},
+    {"animate", 0, OPTION_FILE, "FILE.svg", NULL, NULL,
+     "draw a view of one signal against another as a picture that moves: that of --view, else the "
+     "first",
+     offsetof(physics_options, animate)},
     {"report", 0, OPTION_FILE, "FILE.html", NULL, NULL,
      "write one self-contained page: outputs, views, design, error model",
      offsetof(physics_options, report)},
@@ -114,7 +120,7 @@ const verb physics_verb = {
         "the design is printed.\n\nEach row of a log is the mean over the sample that ends at its "
         "time; the input is held over a sample. x is the input axis; what y and z are stands in "
         "the documentation of each instrument. The views are drawn under the input of --rate and "
-        "--acceleration, at rest without.",
+        "--acceleration, else each under an input that shows something.",
     .groups = {GROUP("What to do", task_option_table), GROUP("Input", input_option_table),
                GROUP("Running", run_option_table), GROUP("Output", output_option_table)},
     .run = run};
@@ -126,23 +132,38 @@ static int check_tasks(const physics_options *o, const char *operand)
     const bool runs = !isnan(o->duration), models = o->reduce || o->sweep;
     if (o->list && operand)
         return command_misused("--list takes no instrument");
-    if (!operand && !o->list && (models || o->show || runs || o->plot || o->report))
+    if (!operand && !o->list && (models || o->show || runs || o->plot || o->report || o->animate))
         return command_misused("an operand is missing: imukit physics %s; imukit physics lists the "
                                "instruments",
                                physics_verb.operands);
-    if (o->show && (models || runs || o->plot || o->report || o->json))
+    if (o->show && (models || runs || o->plot || o->report || o->animate || o->json))
         return command_misused("--show prints the design and nothing else");
     if (models && runs)
         return command_misused("--duration runs the instrument and --%s does not: leave one out",
                                o->reduce ? "reduce" : "sweep");
+    if (o->view && (o->output || o->signals))
+        return command_misused("%s: a view is drawn, not written; leave --view out to write a run",
+                               o->output ? "-o" : "--signals");
     if (!runs && !o->show && !models && (o->output || o->signals))
         return command_misused("%s: there is no run to write; add --duration TIME",
                                o->output ? "-o" : "--signals");
-    if (!runs && !models && !o->plot && !o->report && (o->rate || o->acceleration))
+    if (!runs && !models && !o->plot && !o->report && !o->animate && (o->rate || o->acceleration))
         return command_misused("--%s: how long? add --duration TIME",
                                o->rate ? "rate" : "acceleration");
-    if (o->view && (!o->plot || runs || models))
-        return command_misused("--view is drawn by --plot FILE, without --duration");
+    if (o->animate && (runs || models))
+        return command_misused("--animate draws a view of the instrument: leave --%s out",
+                               runs        ? "duration"
+                               : o->reduce ? "reduce"
+                                           : "sweep");
+    if (o->view && ((!o->plot && !o->animate) || models))
+        return command_misused("--view is drawn by --plot FILE or --animate FILE%s%s: add one",
+                               models ? ", without --" : "",
+                               !models     ? ""
+                               : o->reduce ? "reduce"
+                                           : "sweep");
+    if (o->single_axis && !(models && o->output))
+        return command_misused("--single-axis is about the model that --reduce -o MODEL.yaml "
+                               "writes");
     if (models && o->signals)
         return command_misused("--signals needs a run: add --duration TIME, and leave --%s out",
                                o->reduce ? "reduce" : "sweep");
@@ -152,6 +173,8 @@ static int check_tasks(const physics_options *o, const char *operand)
 static int check_numbers(const physics_options *o)
 {
     if (!isnan(o->duration) && !(o->duration > 0))
+        return command_misused("--duration: expected a time above 0");
+    if (!isnan(o->view_duration) && !(o->view_duration > 0))
         return command_misused("--duration: expected a time above 0");
     if (!(o->output_rate > 0))
         return command_misused("--output-rate: expected a rate above 0");
@@ -168,6 +191,9 @@ static int check_numbers(const physics_options *o)
     if (o->json && ((o->output && strcmp(o->output, "-") == 0) ||
                     (o->signals && strcmp(o->signals, "-") == 0)))
         return command_misused("a log and --json cannot both go to standard output: name a file");
+    const size_t length = o->animate ? strlen(o->animate) : 0;
+    if (o->animate && (length < 5 || strcmp(o->animate + length - 4, ".svg") != 0))
+        return command_misused("--animate %s: expected a name ending in .svg", o->animate);
     return command_check_plot(o->plot);
 }
 
@@ -176,50 +202,6 @@ static int check_numbers(const physics_options *o)
 static const char *level_name(const physics *p)
 {
     return p->settings.level == IMK_LEVEL_FULL ? "full dynamics" : "slow map";
-}
-
-/* A rate or force as a person reads it: "0.5 deg/h". */
-static const char *readable(const physics *p, double value, char *text, size_t size)
-{
-    const bool gyro = p->file.instrument->sensor == IMK_GYRO;
-    const imk_unit unit = imk_unit_readable(imk_unit_of(gyro ? "rad/s" : "m/s^2").dimension, value);
-    snprintf(text, size, "%.5g %s", value / unit.scale, unit.text);
-    return text;
-}
-
-/* Did the output go where the input is? A tenth of it, the biases of the run and the scatter are
- * allowed for. */
-static bool is_followed(const physics *p, const imk_triad *t, const physics_run *r, double input)
-{
-    const double allowed = 0.1 * fabs(input) + fabs(t->bias.fixed.value[0]) +
-                           5 * t->bias.repeatability.value[0] +
-                           5 * t->noise.bias_instability.value[0] + 5 * r->deviation[0];
-    return p->input.is_sine || fabs(r->last[0] - input) <= allowed;
-}
-
-/* What can be known of a run that went wrong quietly. */
-static void warn_of_run(const physics *p, const physics_run *r)
-{
-    const bool gyro = p->file.instrument->sensor == IMK_GYRO;
-    const imk_triad *t = gyro ? &p->model->gyro : &p->model->accel;
-    const double range = t->range.value[0], band = t->dead_band.value[0];
-    const double input =
-        (gyro ? p->input.exposure.angular_rate : p->input.exposure.specific_force)[0];
-    char a[64], b[64];
-    (void)readable(p, input, a, sizeof a);
-    if (range > 0 && fabs(input) >= range)
-        command_warn("range", "the input of %s is beyond the range of %s", a,
-                     readable(p, range, b, sizeof b));
-    else if (range > 0 && fabs(r->last[0]) >= 0.999 * range)
-        command_warn("saturated", "the output ends saturated, at %s; the input is %s",
-                     readable(p, r->last[0], b, sizeof b), a);
-    else if (band > 0 && input != 0 && fabs(input) <= band)
-        command_warn("dead_band",
-                     "the input of %s is within the dead band of %s: the output does not follow it",
-                     a, readable(p, band, b, sizeof b));
-    else if (!is_followed(p, t, r, input))
-        command_warn("not_followed", "the output ends at %s, the input is %s",
-                     readable(p, r->last[0], b, sizeof b), a);
 }
 
 static double internal_step(const physics *p)
@@ -333,7 +315,7 @@ static int do_run(const physics *p)
     physics_run r;
     int code = physics_run_make(p, &r);
     if (code < 0)
-        warn_of_run(p, &r);
+        physics_warn_of_run(p, &r);
     if (code < 0)
         code = show(p, &r, NULL);
     if (code < 0 && o->json)
@@ -391,8 +373,12 @@ static int do_task(const physics *p)
         return do_model(p);
     if (!isnan(o->duration))
         return do_run(p);
-    if (o->plot || o->report) {
-        const int code = show(p, NULL, NULL);
+    if (o->plot || o->report || o->animate) {
+        int code = show(p, NULL, NULL);
+        if (code < 0 && o->animate)
+            code = physics_animate(p, o->animate);
+        if (code < 0 && o->json)
+            code = physics_overview(p);
         return code < 0 ? EXIT_DONE : code;
     }
     return physics_overview(p);
@@ -400,14 +386,28 @@ static int do_task(const physics *p)
 
 /* ---- the verb -------------------------------------------------------------------------------- */
 
+/* The instrument that the table of grades calls so: "fog" is the fibre-optic gyro. */
+static const imk_instrument *of_technology(const char *name)
+{
+    for (size_t i = 0; i < imk_instrument_count(); i++)
+        if (strcasecmp(imk_instrument_get(i)->technology, name) == 0)
+            return imk_instrument_get(i);
+    return NULL;
+}
+
 static int open_design(physics *p)
 {
     imk_error error = {.status = IMK_OK};
     const imk_status status = imk_design_open(p->source, &p->file, &error);
     if (status == IMK_OK)
         return -1;
-    return command_error(&error,
-                         status == IMK_ERROR_NAME_UNKNOWN && error.line == 0 ? NULL : p->source);
+    if (status == IMK_ERROR_NAME_UNKNOWN && error.line == 0) {
+        const imk_instrument *alike = of_technology(p->source);
+        if (alike)
+            snprintf(error.expected, sizeof error.expected, "did you mean \"%s\"?", alike->name);
+        return command_error(&error, NULL);
+    }
+    return command_error(&error, p->source);
 }
 
 static int start(const physics_options *o, const char *operand)
@@ -440,13 +440,21 @@ static int run(int count, char **words)
     physics_options o = {.sine = missing,
                          .temperature = 293.15,
                          .duration = missing,
-                         .output_rate = 100,
+                         .view_duration = missing,
+                         .output_rate = missing,
                          .signal_rate = missing,
                          .seed = 1};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&physics_verb, count, words, &o, operands);
     if (code >= 0)
         return code;
+    o.view_rate = o.output_rate;
+    if (isnan(o.output_rate))
+        o.output_rate = 100;
+    if (o.view) {
+        o.view_duration = o.duration;
+        o.duration = missing;
+    }
     if (isnan(o.signal_rate))
         o.signal_rate = o.output_rate;
     code = check_tasks(&o, operands[0]);

@@ -20,6 +20,24 @@ foreach(source ${bench_sources})
   add_dependencies(benchmarks ${name})
 endforeach()
 
+# The yardstick of the instruments is CVODE of SUNDIALS, where it is installed. The equations it is
+# given are compiled to run as fast as they can on this machine.
+if(TARGET bench_physics)
+  find_path(IMUKIT_SUNDIALS_INCLUDE cvode/cvode.h)
+  find_library(IMUKIT_SUNDIALS_CVODE sundials_cvode)
+  find_library(IMUKIT_SUNDIALS_NVECTOR sundials_nvecserial)
+  mark_as_advanced(IMUKIT_SUNDIALS_INCLUDE IMUKIT_SUNDIALS_CVODE IMUKIT_SUNDIALS_NVECTOR)
+  target_sources(bench_physics PRIVATE bench/ode_yardstick.c bench/instrument_equations.c)
+  set_source_files_properties(bench/ode_yardstick.c bench/instrument_equations.c PROPERTIES
+    COMPILE_OPTIONS "-O3;-march=native;-ffp-contract=fast")
+  if(IMUKIT_SUNDIALS_INCLUDE AND IMUKIT_SUNDIALS_CVODE AND IMUKIT_SUNDIALS_NVECTOR)
+    target_compile_definitions(bench_physics PRIVATE BENCH_SUNDIALS)
+    target_include_directories(bench_physics SYSTEM PRIVATE ${IMUKIT_SUNDIALS_INCLUDE})
+    target_link_libraries(bench_physics PRIVATE
+      ${IMUKIT_SUNDIALS_CVODE} ${IMUKIT_SUNDIALS_NVECTOR})
+  endif()
+endif()
+
 file(GLOB yardstick_sources CONFIGURE_DEPENDS bench/*.cpp)
 find_program(IMUKIT_CXX NAMES c++ g++ clang++)
 if(yardstick_sources AND IMUKIT_CXX)

@@ -43,9 +43,10 @@ if tools/writable_data.sh objdump "$build/libimukit.a"; then
     complain "libimukit holds writable data (above)"
 fi
 
-declared() { # functions with IMK_API in the headers given
+declared() { # functions and constants with IMK_API in the headers given
     cat "$@" | gcc -std=c17 -Iinclude -fpreprocessed -E -P - 2>/dev/null | tr '\n' ' ' |
-        grep -oE 'IMK_API [^;{]*' | grep -oE 'imk_[a-z0-9_]+ *\(' | tr -d ' (' | sort -u
+        grep -oE 'IMK_API [^;{]*;' | grep -oE 'imk_[a-z0-9_]+ *\(|extern const [a-z_]+ imk_[a-z0-9_]+;' |
+        sed 's/.* //; s/[(;]//' | tr -d ' (' | sort -u
 }
 exported=$(nm -D --defined-only "$build/libimukit.so" "$build/libimukit-io.so" |
     awk 'NF == 3 { print $3 }' | sort -u)

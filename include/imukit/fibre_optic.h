@@ -118,7 +118,8 @@ IMK_API imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_e
  *      dead band        crosstalk/K (beyond it the reading is sqrt(W^2 - W_x^2))
  *      quantization     2 pi tau/(K 2^bits sqrt 12)
  *
- *  Open loop: all times the gain of the harmonic, K3 = -gain K^2/6, no bandwidth, no dead band. */
+ *  Open loop: all times the gain of the harmonic, K3 = -gain K^2/6, K2 = -gain K phase/2, no
+ *  bandwidth, no dead band. */
 IMK_API void imk_fibre_optic_reduce(const imk_fibre_optic *design, imk_model *model);
 
 /* ---- closed forms: of the nominal design, errors and temperature aside --------------------------

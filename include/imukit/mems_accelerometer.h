@@ -112,7 +112,8 @@ IMK_API imk_mems_accelerometer imk_mems_accelerometer_sigma_delta(void);
 
 /** Check a design: fields in their ranges, and
  *   - the plates do not pull in without an input; the springs' rest is off the stops;
- *   - a closed loop has two plates; its force, or the travel of an open loop, covers `range`;
+ *   - a closed loop has two plates; its force, or the travel of an open loop, covers `range`, and
+ *     the bias with six times its repeatability;
  *   - the analog loop is stable by Routh's criterion, at rest and at full scale;
  *   - the limit cycle of the sigma-delta loop exists, is no longer than 16 clocks and within half
  *     the stops.
@@ -181,7 +182,10 @@ IMK_API imk_mems_gains imk_mems_accelerometer_gains(const imk_mems_accelerometer
  *  clocks of each force in turn, the one of all possible cycles that withstands the largest
  *  disturbance. A constant input moves all positions alike, by input/stiffness; as long as that
  *  changes no sign at a clock the bits stay as they are, and the input is not seen:
- *  dead_zone = stiffness * the smallest |compensated position| at a clock. */
+ *  dead_zone = stiffness * the smallest |compensated position| at a clock. Other cycles than this
+ *  one may hold the loop when it is thrown at an input; noise frees it unless six standard
+ *  deviations of the compensated position are less than that margin, and only then does reduce
+ *  state the dead zone. */
 typedef struct imk_mems_limit_cycle {
     int half_period;  /**< [clocks]; 0: no symmetric cycle up to 32 clocks each */
     double amplitude; /**< largest |z| at a clock [m] */

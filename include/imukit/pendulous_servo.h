@@ -58,7 +58,9 @@ typedef struct imk_pendulous_servo {
 IMK_API imk_pendulous_servo imk_pendulous_servo_default(void);
 
 /** See imk_instrument. Besides single fields: the loop must be stable (K_i/(K_p + K_h) below b/J,
- *  by Routh's criterion), IMK_ERROR_CONFLICT with the field controller.integral. */
+ *  by Routh's criterion, field controller.integral); the torquer holds the hinge's torque, its
+ *  torque grows with the current, and its constant keeps its sign in every run: IMK_ERROR_CONFLICT.
+ */
 IMK_API imk_status imk_pendulous_servo_validate(const imk_pendulous_servo *design,
                                                 imk_error *error);
 
@@ -90,7 +92,9 @@ IMK_API double imk_pendulous_servo_noise(const imk_pendulous_servo *design);
 IMK_API double imk_pendulous_servo_quantization(const imk_pendulous_servo *design);
 
 /** See imk_instrument. Stated: fixed bias and what it does, scale factor, K2 of the torquer, the
- *  lever arm J/P, noise, bandwidth, range, resolution; K_ip where there is no integral action. */
+ *  lever arm J/P, noise, bandwidth, range, resolution; where there is no integral action the share
+ *  K_p/K of all that acts on the pendulum, K_ip, and the hinge torque's part of the misalignment.
+ */
 IMK_API void imk_pendulous_servo_reduce(const imk_pendulous_servo *design, imk_model *model);
 
 /** Output 1 is the current [A]; signals: angle, torque, current. */

@@ -118,9 +118,11 @@ typedef struct imk_shell_gyro {
  *  repeatability of 200 deg/h. */
 IMK_API imk_shell_gyro imk_shell_gyro_default(void);
 
-/** Fields by the table, and together: damping positive in every direction (D < 2/tau); n = 2 for a
- *  hemisphere; the loops slower than a tenth of their update rate, and updates at least four times
- *  in tau; a rebalance force above that at rest (IMK_ERROR_CONFLICT). */
+/** Fields by the table, and together: damping positive in every direction and run (D and six times
+ *  what is drawn of it < 2/tau); n = 2 for a hemisphere; a pattern ten times as large as thermal
+ *  motion and pickoff noise, unless it is free; the loops slower than a tenth of their update rate,
+ * and updates at least four times in tau; a rebalance force above that at rest
+ * (IMK_ERROR_CONFLICT). */
 IMK_API imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *error);
 
 /** The error model. Noise and biases are those at 20 degC and at pattern.angle: as the pattern of a

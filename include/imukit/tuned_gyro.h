@@ -64,7 +64,7 @@ typedef struct imk_tuned_gyro {
     double pickoff_noise;       /**< two-sided density [rad/sqrt(Hz)] */
     double pickoff_offset_x;    /**< reading at no tilt about x [rad] */
     double pickoff_offset_y;    /**< about y [rad] */
-    double pickoff_range;       /**< largest reading [rad] */
+    double pickoff_range;       /**< largest reading [rad]; the stops are twice as far */
     double torquer_limit;       /**< largest torque [N m] */
     double torquer_error;       /**< the torque per current is larger than known by that [1] */
     double torquer_temperature; /**< of it [1/K] */

@@ -63,8 +63,9 @@ typedef struct imk_vibrating_beam {
 IMK_API imk_vibrating_beam imk_vibrating_beam_default(void);
 
 /** See imk_instrument. Besides single fields: at the end of the range no beam may come near
- *  buckling, kappa m range < 0.9 f_0^2 (IMK_ERROR_CONFLICT, field proof_mass.range); sampling and
- *  clock must leave cycles to count. */
+ *  buckling, kappa m range < 0.9 f_0^2 (IMK_ERROR_CONFLICT, field proof_mass.range); a
+ *  beam is slender (thickness at most a fifth of the length), its amplitude ten times its thermal
+ *  motion, and the clock, if there is one, ticks four times in a cycle. */
 IMK_API imk_status imk_vibrating_beam_validate(const imk_vibrating_beam *design, imk_error *error);
 
 /** f_0 = (4.73004^2/(2 pi)) sqrt(E I/(rho A L^4)) of beam 0 or 1 [Hz] [TIMOSHENKO1974]. */

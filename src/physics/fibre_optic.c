@@ -41,8 +41,9 @@ imk_fibre_optic imk_fibre_optic_default(void)
         .ramp_bits = 12,
         .responsivity = 0.9,
         .load_resistance = 1e5,
-        .converter_range = 4 * MICRO,
-        .converter_bits = 12,
+        .converter_range = 32 * MICRO, /* the whole fringe: with less, it does not lock when it is
+                                          switched on at a high rate */
+        .converter_bits = 15,
         .loop_gain = 0.1,
         .range = 80 * DEGREE, /* a fringe is 83.2 deg/s */
         .output_bits = 10,
@@ -256,14 +257,15 @@ static const imk_view views[] = {
     {.title = "Light on the fringe",
      .caption =
          "Power on the detector against the phase between the two waves, from switching on: the "
-         "modulation throws the reading from one side of the fringe to the other, and the loop "
-         "moves "
-         "both sides until they are equally bright.",
+         "modulation throws it from one side of the fringe to the other, and the loop moves both "
+         "until they are equally bright. Resets of the ramp lead to the next fringes.",
      .x = IMKI_FIBRE_OPTIC_DIFFERENCE,
      .curve_count = 1,
      .y = {IMKI_FIBRE_OPTIC_POWER},
      .duration = 600e-6,
-     .rate = 1e6},
+     .rate = 1e6,
+     .input = 25.0 * IMKI_PI / 180.0,
+     .points = true},
     {.title = "The ramp and its resets",
      .caption = "The phase of the digital ramp: its slope cancels the rotation, and it falls back "
                 "by 2 pi.",
@@ -272,15 +274,17 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_RAMP},
      .duration = 400e-6,
      .rate = 1e6,
-     .settle = 2e-3},
+     .settle = 2e-3,
+     .input = 10.0 * IMKI_PI / 180.0},
     {.title = "The loop locks",
      .caption =
          "From switching on: the rate of the coil and the rate that the feedback stands for.",
      .x = -1,
      .curve_count = 2,
-     .y = {IMKI_FIBRE_OPTIC_INPUT, IMKI_FIBRE_OPTIC_FEEDBACK},
+     .y = {IMKI_FIBRE_OPTIC_FEEDBACK, IMKI_FIBRE_OPTIC_INPUT},
      .duration = 1e-3,
-     .rate = 400e3},
+     .rate = 400e3,
+     .input = 10.0 * IMKI_PI / 180.0},
     {.title = "What the detector sees",
      .caption = "Power on the detector, transit by transit: square waves while the loop is not "
                 "locked, noise "
@@ -289,7 +293,8 @@ static const imk_view views[] = {
      .curve_count = 1,
      .y = {IMKI_FIBRE_OPTIC_POWER},
      .duration = 400e-6,
-     .rate = 1e6},
+     .rate = 1e6,
+     .input = 10.0 * IMKI_PI / 180.0},
 };
 
 #define LENGTH(array) (sizeof(array) / sizeof((array)[0]))

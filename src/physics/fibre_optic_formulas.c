@@ -192,7 +192,7 @@ static void linear(imk_temperature_polynomial *polynomial, double coefficient)
     polynomial->order = coefficient == 0.0 ? 0 : 1;
     polynomial->coefficient[0].value[0] = coefficient;
     polynomial->reference = IMKI_FIBRE_OPTIC_REFERENCE;
-    polynomial->minimum = 233.15;
+    polynomial->minimum = -40.0 + 273.15;
     polynomial->maximum = 358.15;
 }
 
@@ -216,8 +216,12 @@ void imk_fibre_optic_reduce(const imk_fibre_optic *design, imk_model *model)
         reading * ratio * ratio * design->wavelength_repeatability;
     linear(&triad->scale_factor.temperature,
            reading * ratio * (design->coil_expansion - design->wavelength_temperature * ratio));
-    if (open) /* sin x = x - x^3/6 */
-        triad->nonlinearity.k3.value[0] = -reading * ratio * ratio * ratio * scale * scale / 6.0;
+    if (open) { /* sin x = x - x^3/6, with the nonreciprocal phase in x */
+        const double phase = design->phase_fixed, slope = reading * ratio;
+        triad->nonlinearity.k3.value[0] = -slope * ratio * ratio * scale * scale / 6.0;
+        triad->nonlinearity.k2.value[0] = -0.5 * slope * ratio * scale * phase;
+        triad->scale_factor.fixed.value[0] -= 0.5 * slope * phase * phase;
+    }
 
     triad->noise.white.value[0] = reading * imk_fibre_optic_angle_random_walk(design);
     triad->noise.bias_instability.value[0] = design->phase_instability * per_phase;

@@ -36,7 +36,7 @@
 
 #include <math.h>
 
-/* SRKN6b of [BLANES2002, table 3]: stage i is kick and swing for stage_length[i], at the time
+/* SRKN6b of [BLANES2002]: stage i is kick and swing for stage_length[i], at the time
  * stage_time[i], and a drift for drift_length[i]. Lengths and times in steps; palindromes. */
 #define B1 0.0829844064174052
 #define B2 0.396309801498368
@@ -220,11 +220,10 @@ static inline void rub(imki_gimbals *g, const imki_free_gyro_parts *parts, const
     g->p_inner += time * imki_free_gyro_friction(parts, inner);
 }
 
-static inline void push(imki_free_gyro_state *state, imki_gimbals *g)
+static inline void push(imki_free_gyro_state *state, imki_gimbals *g, double impulse)
 {
-    if (!(state->torque_sigma > 0.0))
+    if (!(impulse > 0.0))
         return;
-    const double impulse = state->step * state->torque_sigma;
     g->p_outer += impulse * imki_draw(&state->white[0]);
     g->p_inner += impulse * imki_draw(&state->white[1]);
 }
@@ -244,27 +243,43 @@ static inline void meet_stop(imki_free_gyro_state *state, imki_gimbals *g, const
     state->on_stop = true;
 }
 
+/* Steps are short against the nutation; where the case turns further than this in one [rad], they
+ * are divided. */
+static const double largest_turn = 0.1;
+
+static size_t division(const imki_free_gyro_state *state, const imki_free_gyro_drive *drive)
+{
+    double fastest = 0.0;
+    for (int k = 0; k < 3; k++)
+        fastest += fabs(drive->rate[k]) + 0.5 * state->sample * fabs(drive->acceleration[k]);
+    const double turn = fastest * state->step;
+    return turn > largest_turn ? (size_t)ceil(turn / largest_turn) : 1;
+}
+
 void imki_free_gyro_full(imki_free_gyro_state *state, const imki_free_gyro_drive *drive)
 {
     imki_gimbals g = state->gimbals;
     double growth[3], begin[3], end[3] = {0.0, 0.0, 0.0};
+    const size_t parts = division(state, drive), steps = state->steps * parts;
+    const double step = state->step / (double)parts;
+    const double impulse = state->step * state->torque_sigma / sqrt((double)parts);
     for (int k = 0; k < 3; k++)
-        growth[k] = drive->acceleration[k] * state->step;
+        growth[k] = drive->acceleration[k] * step;
     state->on_stop = false;
-    for (size_t i = 0; i < state->steps; i++) {
-        const double from_middle = (double)i - 0.5 * (double)state->steps;
+    for (size_t i = 0; i < steps; i++) {
+        const double from_middle = (double)i - 0.5 * (double)steps;
         if (i % STEPS_BETWEEN_SINES == 0)
             imki_free_gyro_trigonometry(&g);
         for (int k = 0; k < 3; k++) {
             begin[k] = drive->rate[k] + from_middle * growth[k];
             end[k] = begin[k] + growth[k];
         }
-        rub(&g, &state->parts, begin, i == 0 ? 0.5 * state->step : state->step);
-        push(state, &g);
-        composition(&g, &state->parts, drive, begin, growth, state->step);
+        rub(&g, &state->parts, begin, i == 0 ? 0.5 * step : step);
+        push(state, &g, impulse);
+        composition(&g, &state->parts, drive, begin, growth, step);
         meet_stop(state, &g, end);
     }
-    rub(&g, &state->parts, end, 0.5 * state->step);
+    rub(&g, &state->parts, end, 0.5 * step);
     state->gimbals = g;
     force_torque(&state->parts, &g, drive->force, &state->last_torque[0], &state->last_torque[1]);
     state->last_torque[0] += drive->outer;

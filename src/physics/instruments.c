@@ -221,6 +221,22 @@ imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrume
     return triad;
 }
 
+double imki_reduction_offset(imk_triad *triad, double u, double per_kelvin)
+{
+    double *const s = &triad->scale_factor.fixed.value[0];
+    double *const k2 = &triad->nonlinearity.k2.value[0];
+    double *const bias_slope = &triad->bias.temperature.coefficient[0].value[0];
+    double *const scale_slope = &triad->scale_factor.temperature.coefficient[0].value[0];
+    const double k3 = triad->nonlinearity.k3.value[0];
+    const double slope = 1.0 + *s + u * (2.0 * *k2 + 3.0 * u * k3);
+    triad->bias.fixed.value[0] += u * (1.0 + *s + u * (*k2 + u * k3));
+    *bias_slope += slope * per_kelvin + *scale_slope * u;
+    *scale_slope += 2.0 * (*k2 + 3.0 * u * k3) * per_kelvin;
+    *s = slope - 1.0;
+    *k2 += 3.0 * u * k3;
+    return slope;
+}
+
 /* Component k of axis 0 becomes component (k + axis) mod 3 of axis `axis`. */
 static void turn_rows(imk_rows *rows)
 {

@@ -41,10 +41,10 @@ imk_mems_accelerometer imk_mems_accelerometer_default(void)
                                     .lead = 4.0,
                                     .output_bandwidth = 200.0,
                                     .range = 5e6 * MICRO_G,
-                                    .gain_repeatability = 120e-6,
+                                    .gain_repeatability = 120.0 * 1e-6,
                                     .bias_repeatability = 600.0 * MICRO_G,
                                     .bias_instability = 7.5 / 0.664 * MICRO_G,
-                                    .bias_temperature = 100.0 * MICRO_G};
+                                    .bias_temperature = 0.1 * (IMK_STANDARD_GRAVITY * 1e-3)};
 }
 
 imk_mems_accelerometer imk_mems_accelerometer_analog(void)
@@ -113,7 +113,7 @@ static const imk_design_field fields[] = {
     NUMBER("electrodes.stop", stop, "1", 1e-3, 0.99, "place of the stops, part of the gap"),
     NUMBER("electrodes.restitution", restitution, "1", 0.0, 1.0, "of an impact on a stop"),
     NUMBER("electrodes.voltage", voltage, "V", 0.0, 1e4, "voltage of the sensing carrier, rms"),
-    NUMBER("electrodes.voltage_rate", voltage_rate, "V/s", -1e6, 1e6,
+    NUMBER("electrodes.voltage_rate", voltage_rate, "V/s", 0.0, 1e6,
            "growth of the voltage, to watch pull-in"),
     NUMBER("electrodes.voltage_temperature", voltage_temperature, "ppm/K", -1e-2, 1e-2,
            "change of all voltages with temperature"),
@@ -163,7 +163,8 @@ static const imk_view views[] = {
      .curve_count = 1,
      .y = {DISPLACEMENT},
      .duration = 3e-3,
-     .rate = 100e3},
+     .rate = 100e3,
+     .input = IMK_STANDARD_GRAVITY},
     {.title = "Bits of the loop",
      .caption = "The force of a sigma-delta loop, clock by clock: its mean is the reading.",
      .x = -1,
@@ -177,7 +178,7 @@ static const imk_view views[] = {
                 "that swings in it: an input too small to change a sign is not seen.",
      .x = -1,
      .curve_count = 2,
-     .y = {DISPLACEMENT, COMPENSATED},
+     .y = {COMPENSATED, DISPLACEMENT},
      .duration = 5e-4,
      .rate = 100e3,
      .settle = 0.02},
@@ -223,6 +224,11 @@ static imk_status check_force(const imk_mems_accelerometer *d, imk_error *error)
                                   d->loop == IMK_MEMS_OPEN
                                       ? "a range within the travel of the mass"
                                       : "a range that the force of the loop can balance");
+    const double bias = fabs(d->bias) + 6.0 * d->bias_repeatability;
+    if (!(bias < limit))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "bias.fixed", bias, limit,
+                                  "a bias, and six times its repeatability, within what the mass "
+                                  "or the loop can bear");
     return IMK_OK;
 }
 

@@ -23,22 +23,30 @@ typedef imki_mems_state mems_state;
 
 /* ---- the linear part ------------------------------------------------------------------------- */
 
+/* Two rows at a time: what every vector unit has. The sums stay in registers over all columns. */
+typedef double row_pair __attribute__((vector_size(16)));
+enum { PAIRS = N / 2 };
+
+static inline row_pair pair_of(const double *row)
+{
+    return (row_pair){row[0], row[1]};
+}
+
 static void advance(mems_state *m, double force, double signal)
 {
-    double next[N];
-    for (int i = 0; i < N; i++)
-        next[i] = m->gamma[IMKI_FORCE][i] * force + m->gamma[IMKI_SIGNAL][i] * signal;
-    for (int j = 0; j < m->n; j++) {
-        const double s = m->s[j];
-        for (int i = 0; i < N; i++)
-            next[i] += m->phi[j][i] * s;
-    }
+    row_pair next[PAIRS];
+    for (int p = 0; p < PAIRS; p++)
+        next[p] = pair_of(m->gamma[IMKI_FORCE] + 2 * p) * force +
+                  pair_of(m->gamma[IMKI_SIGNAL] + 2 * p) * signal;
+    for (int j = 0; j < m->n; j++)
+        for (int p = 0; p < PAIRS; p++)
+            next[p] += pair_of(m->phi[j] + 2 * p) * m->s[j];
     for (int j = 0; j < m->noise_columns; j++) {
         const double draw = imki_draw(&m->linear);
-        for (int i = 0; i < N; i++)
-            next[i] += m->root[j][i] * draw;
+        for (int p = 0; p < PAIRS; p++)
+            next[p] += pair_of(m->root[j] + 2 * p) * draw;
     }
-    memcpy(m->s, next, sizeof next);
+    memcpy(m->s, next, sizeof m->s);
 }
 
 static void discretise(mems_state *m, double h, bool noise)
@@ -200,6 +208,8 @@ static double run_full(mems_state *m, double force)
             if (m->design.voltage_rate != 0.0) {
                 m->time += m->h;
                 m->voltage = m->design.voltage + m->design.voltage_rate * m->time;
+                if (m->voltage > m->highest_voltage)
+                    m->voltage = m->highest_voltage;
             }
             meet_stops(m);
             /* the half kicks of two steps in one */
@@ -214,9 +224,12 @@ static double run_slow(mems_state *m, double force)
     const imki_mems_static *e = &m->errors;
     const bool clocked = m->design.loop == IMK_MEMS_SIGMA_DELTA;
     const double more = (e->bias_temperature - m->design.bias_temperature) * m->temperature;
-    const double scale = 1.0 + e->scale_temperature * m->temperature + (clocked ? e->scale : 0.0);
-    force = clipped(force, m->limit); /* the series mean nothing beyond */
-    const double seen = more + force * (scale + force * (e->k2 + force * e->k3));
+    /* what the loop leaves of a force: of the linear system already; without its bits, by hand */
+    const double shown = clocked ? 1.0 : 1.0 + e->scale;
+    const double scale =
+        1.0 + e->scale_temperature / shown * m->temperature + (clocked ? e->scale : 0.0);
+    force = clipped(force + more, m->limit); /* the series mean nothing beyond */
+    const double seen = force * (scale + force * (e->k2 + force * e->k3) / shown);
     m->s[IMKI_INTEGRAL] = 0.0;
     advance(m, clocked ? 0.0 : -seen, clocked ? seen + e->bias : 0.0);
     return clipped(m->s[IMKI_INTEGRAL] / m->sample, m->limit);
@@ -304,6 +317,7 @@ static void set_constants(mems_state *m)
     m->pickoff_bends = d->plates == IMK_MEMS_SINGLE || d->pickoff != IMK_MEMS_RATIO;
     m->pickoff_deviation = d->pickoff_noise * sqrt(0.5 * d->clock);
     m->voltage = d->voltage;
+    m->highest_voltage = 10.0 * imk_mems_accelerometer_pull_in(d); /* far beyond is no experiment */
     m->control_voltage = m->point.control;
     m->bit = 1.0;
     m->limit = imk_mems_accelerometer_limit(d);

@@ -109,7 +109,7 @@ typedef struct imki_mems_state {
     double output_gain, pull_constant, spring_constant, damping_constant; /* and how much */
     /* what changes */
     double temperature; /* above the design's [K] */
-    double voltage, time;
+    double voltage, highest_voltage, time;
     double bit, compensated, before, sum;
     double control_voltage, feedback;
     double signal_time; /* of the sample so far [s] */

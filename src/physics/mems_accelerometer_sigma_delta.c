@@ -95,10 +95,13 @@ imk_mems_limit_cycle imk_mems_accelerometer_limit_cycle(const imk_mems_accelerom
 
 bool imki_mems_locked(const imk_mems_accelerometer *d)
 {
-    const double noise = (1.0 + d->lead) * d->pickoff_noise * sqrt(0.5 * d->clock);
+    /* of y + lead (y - y before); at 6 sigma one clock in 1e9 takes another bit, which frees the
+     * loop for long */
+    const double lead = d->lead, own = sqrt((1.0 + lead) * (1.0 + lead) + lead * lead);
+    const double noise = own * d->pickoff_noise * sqrt(0.5 * d->clock);
     const double margin =
         imk_mems_accelerometer_limit_cycle(d).dead_zone / imki_mems_operating_point(d).a1;
-    return !(d->integral > 0.0) && 4.0 * noise < margin;
+    return !(d->integral > 0.0) && 6.0 * noise < margin;
 }
 
 /* ---- with noise ------------------------------------------------------------------------------ */

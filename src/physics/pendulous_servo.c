@@ -47,8 +47,8 @@ imk_pendulous_servo imk_pendulous_servo_default(void)
                                  .integral = 300.0 * stiffness,
                                  .torquer_constant = torquer,
                                  .torquer_error = 0.0,
-                                 .torquer_temperature = 120e-6,
-                                 .torquer_repeatability = 80e-6,
+                                 .torquer_temperature = 120.0 * 1e-6,
+                                 .torquer_repeatability = 80.0 * 1e-6,
                                  .torquer_quadratic = -0.004,
                                  .largest_current = 60.0 * 1.3e-3,
                                  .readout_noise = 1.5e-6 * 1.3e-3,
@@ -65,7 +65,7 @@ imk_pendulous_servo imk_pendulous_servo_default(void)
     }
 
 static const imk_design_field fields[] = {
-    NUMBER("pendulum.pendulosity", pendulosity, "kg m", 0.0, 1.0, true,
+    NUMBER("pendulum.pendulosity", pendulosity, "kg m", 1e-12, 1.0, false,
            "mass times its distance from the hinge"),
     NUMBER("pendulum.inertia", inertia, "kg m^2", 0.0, 1.0, true,
            "moment of inertia about the hinge"),
@@ -177,7 +177,8 @@ double imk_pendulous_servo_rectification(const imk_pendulous_servo *d, double fr
 
 double imk_pendulous_servo_noise(const imk_pendulous_servo *d)
 {
-    const double share = d->integral > 0.0 ? 1.0 : d->proportional / stiffness(d);
+    const double held = d->integral > 0.0 ? 1.0 : d->proportional / stiffness(d);
+    const double share = held / (1.0 + d->torquer_error);
     const double brownian = 2.0 * IMKI_BOLTZMANN * d->temperature * d->damping;
     const double pickoff = d->hinge_stiffness * d->pickoff_noise;
     const double readout = d->readout_noise * d->torquer_constant;
@@ -208,7 +209,7 @@ double imk_pendulous_servo_quantization(const imk_pendulous_servo *d)
     const double variance = j * j * covariance[OMEGA * n + OMEGA] +
                             2.0 * j * b * covariance[PHI * n + OMEGA] +
                             b * b * covariance[PHI * n + PHI];
-    return sqrt(variance) / d->pendulosity;
+    return sqrt(variance) / (d->pendulosity * (1.0 + d->torquer_error));
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -222,6 +223,23 @@ static imk_status validate(const void *design, imk_error *error)
     const imk_status status = imk_design_check(&imk_pendulous_servo_instrument, d, error);
     if (status != IMK_OK)
         return status;
+    const double weakest = 1.0 + d->torquer_error - 6.0 * d->torquer_repeatability;
+    if (!(weakest > 0.0))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "torquer.repeatability",
+                                  d->torquer_repeatability, (1.0 + d->torquer_error) / 6.0,
+                                  "so little that the torquer pulls in every run: less than a "
+                                  "sixth of its constant");
+    const double bend = fabs(d->torquer_quadratic) * d->largest_current;
+    if (!(bend < 0.25))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "torquer.quadratic", bend, 0.25,
+                                  "less than a quarter over the largest current: the torque grows "
+                                  "with it");
+    const double largest = d->torquer_constant * (1.0 + d->torquer_error) * d->largest_current;
+    const double error_torque = fabs(d->hinge_torque) + 6.0 * d->hinge_torque_repeatability;
+    if (!(error_torque < largest))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "hinge.torque", error_torque, largest,
+                                  "a hinge torque (and six times its repeatability) below the "
+                                  "largest torque of the torquer");
     /* Routh: J s^3 + b s^2 + K s + K_i has its roots on the left when b K > J K_i. */
     const double limit = d->damping * stiffness(d) / d->inertia;
     if (d->integral > 0.0 && !(d->integral < limit))
@@ -420,14 +438,15 @@ static void observe(const void *state, double *signals)
 
 /* ---- reduction ------------------------------------------------------------------------------- */
 
-/* Without integral action the pendulum stays deflected by P f/K, and the torque of the angle is
- * P^2 f_x f_z/K - P^3 f_x^3/(2 K^2). */
-static void deflected(const design_type *d, imk_triad *triad)
+/* Without integral action the pendulum stays deflected by (P f + M)/K, M the hinge's torque, and
+ * the torque of the angle is P f_z (P f_x + M)/K - P f_x (P f_x)^2/(2 K^2). `seen`: reading per
+ * specific force. */
+static void deflected(const design_type *d, double seen, imk_triad *triad)
 {
-    const double k = stiffness(d), share = d->proportional / k, angle = d->pendulosity / k;
-    triad->scale_factor.fixed.value[0] = share * (1.0 + triad->scale_factor.fixed.value[0]) - 1.0;
-    triad->nonlinearity.cross_products.value[0][0] = share * angle;
-    triad->nonlinearity.k3.value[0] = -0.5 * share * angle * angle;
+    const double k = stiffness(d), angle = d->pendulosity / k;
+    triad->nonlinearity.cross_products.value[0][0] = seen * angle;
+    triad->cross_axis.value[0][2] = seen * d->hinge_torque / k;
+    triad->nonlinearity.k3.value[0] -= 0.5 * seen * angle * angle;
 }
 
 void imk_pendulous_servo_reduce(const imk_pendulous_servo *d, imk_model *model)
@@ -435,38 +454,35 @@ void imk_pendulous_servo_reduce(const imk_pendulous_servo *d, imk_model *model)
     imk_triad *triad = imki_reduction_begin(model, &imk_pendulous_servo_instrument);
     const double p = d->pendulosity, scale = imk_pendulous_servo_scale(d);
     const double gain = 1.0 / (1.0 + d->torquer_error);
-    triad->bias.fixed.value[0] = gain * d->hinge_torque / p;
-    triad->bias.repeatability.value[0] = gain * d->hinge_torque_repeatability / p;
-    triad->bias.temperature.order = 1;
-    triad->bias.temperature.coefficient[0].value[0] =
-        gain * (d->hinge_torque_temperature - gain * d->torquer_temperature * d->hinge_torque) / p;
-    triad->scale_factor.fixed.value[0] = gain - 1.0;
-    triad->scale_factor.repeatability.value[0] = d->torquer_repeatability;
-    triad->scale_factor.temperature.order = 1;
-    triad->scale_factor.temperature.coefficient[0].value[0] = -gain * gain * d->torquer_temperature;
-    triad->bias.temperature.reference = triad->scale_factor.temperature.reference = d->temperature;
-    triad->bias.temperature.minimum = triad->scale_factor.temperature.minimum =
-        d->temperature - 60.0;
-    triad->bias.temperature.maximum = triad->scale_factor.temperature.maximum =
-        d->temperature + 60.0;
+    const double seen = gain * (d->integral > 0.0 ? 1.0 : d->proportional / stiffness(d));
+    triad->bias.temperature.order = triad->scale_factor.temperature.order = 1;
+    triad->scale_factor.fixed.value[0] = seen - 1.0;
+    triad->scale_factor.repeatability.value[0] = seen * gain * d->torquer_repeatability;
+    triad->scale_factor.temperature.coefficient[0].value[0] = -seen * gain * d->torquer_temperature;
+    imki_temperature_range(&triad->bias.temperature, d->temperature);
+    imki_temperature_range(&triad->scale_factor.temperature, d->temperature);
     /* i (1 + a i) = M/K_t:  i = M/K_t - a (M/K_t)^2 … */
-    triad->nonlinearity.k2.value[0] = -d->torquer_quadratic * gain * gain * scale;
+    triad->nonlinearity.k2.value[0] = -d->torquer_quadratic * seen * seen * scale;
     triad->nonlinearity.k3.value[0] =
-        2.0 * d->torquer_quadratic * d->torquer_quadratic * gain * gain * gain * scale * scale;
-    triad->misalignment.value[0][1] = d->misalignment_y;
-    triad->misalignment.value[0][2] = d->misalignment_z;
+        2.0 * d->torquer_quadratic * d->torquer_quadratic * seen * seen * seen * scale * scale;
+    if (d->integral <= 0.0)
+        deflected(d, seen, triad);
+    const double shows =
+        imki_reduction_offset(triad, d->hinge_torque / p, d->hinge_torque_temperature / p);
+    triad->bias.repeatability.value[0] = shows * d->hinge_torque_repeatability / p;
+    triad->noise.bias_instability.value[0] = shows * d->hinge_torque_instability / p;
+    triad->misalignment.value[0][1] = seen * d->misalignment_y;
+    triad->misalignment.value[0][2] = seen * d->misalignment_z;
     triad->lever_arm.value[0][2] = d->inertia / p;
     triad->noise.white.value[0] = imk_pendulous_servo_noise(d);
     if (d->readout_step > 0.0)
         triad->resolution.value[0] = d->readout_step / scale;
     else
         triad->noise.quantization.value[0] = imk_pendulous_servo_quantization(d);
-    triad->noise.bias_instability.value[0] = gain * d->hinge_torque_instability / p;
     triad->bandwidth.value[0] = imk_pendulous_servo_bandwidth(d);
-    triad->damping.value[0] = d->damping / (2.0 * sqrt(d->inertia * stiffness(d)));
+    triad->damping.value[0] =
+        imki_model_damping(d->damping / (2.0 * sqrt(d->inertia * stiffness(d))));
     triad->range.value[0] = d->largest_current / scale;
-    if (d->integral <= 0.0)
-        deflected(d, triad);
 }
 
 static void set_default(void *design)
@@ -485,7 +501,7 @@ static const imk_signal outputs[] = {
 };
 static const imk_signal signals[] = {
     {"angle", "rad", "urad", "deflection of the pendulum"},
-    {"torque", "N m", "N m", "control torque"},
+    {"torque", "N m", "uN m", "control torque"},
     {"current", "A", "mA", "current of the torquer"},
 };
 static const imk_view views[] = {
@@ -497,14 +513,16 @@ static const imk_view views[] = {
      .curve_count = 1,
      .y = {0},
      .duration = 0.02,
-     .rate = 50000.0},
+     .rate = 50000.0,
+     .input = IMK_STANDARD_GRAVITY},
     {.title = "The torquer takes over",
      .caption = "Control torque: it ends where it balances the input.",
      .x = -1,
      .curve_count = 1,
      .y = {1},
      .duration = 0.02,
-     .rate = 50000.0},
+     .rate = 50000.0,
+     .input = IMK_STANDARD_GRAVITY},
 };
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

@@ -81,8 +81,29 @@ imk_status imki_divide_sample(const imk_physics_settings *settings, double longe
 imk_status imki_design_refuse(imk_error *error, imk_status status, const char *field, double value,
                               double limit, const char *expected);
 
+/* Reference and valid range of a polynomial: 60 K to both sides, above absolute zero. */
+static inline void imki_temperature_range(imk_temperature_polynomial *polynomial, double reference)
+{
+    polynomial->reference = reference;
+    polynomial->minimum = reference > 60.0 ? reference - 60.0 : 0.0;
+    polynomial->maximum = reference + 60.0;
+}
+
+/* A damping as a model can have it: beyond 50 the slower of the two roots is all that is left, a
+ * first-order filter (0); below 0.05 the nearest. */
+static inline double imki_model_damping(double damping)
+{
+    return damping > 50.0 ? 0.0 : damping < 0.05 ? 0.05 : damping;
+}
+
 /* A model of one axis of this kind of sensor along x, nothing else in it, which says where it comes
  * from. @return the triad to fill */
 imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrument);
+
+/* An error u that acts like an input, such as a force on the mass, with its slope per kelvin: what
+ * the triad states of scale factor, K2, K3 and their temperature slopes, about no input, becomes
+ * that of F(x + u), F(x) = (1 + s) x + K2 x^2 + K3 x^3.
+ * @return F'(u), by which small errors of that kind show in the reading */
+double imki_reduction_offset(imk_triad *triad, double u, double per_kelvin);
 
 #endif

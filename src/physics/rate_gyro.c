@@ -146,10 +146,11 @@ void imk_rate_gyro_reduce(const imk_rate_gyro *d, imk_model *model)
     const double gain = (1.0 + d->momentum_error) / (1.0 + d->stiffness_error);
     imki_reduce_torques(&d->torque, &gimbal, per_torque, triad);
     triad->scale_factor.fixed.value[0] = gain - 1.0;
-    imki_reduce_temperature(-gain * d->stiffness_temperature, &triad->scale_factor.temperature);
+    imki_reduce_scale_temperature(-d->stiffness_temperature, triad);
     /* With th0 = M/k the angle is th0 + s w (1 - (th0 + s w)^2/2) + D w^2 (th0 + s w)/k,
      * D = Iz - Ix. */
     const double s = imk_rate_gyro_sensitivity(d), th0 = d->torque.fixed / stiffness;
+    triad->cross_axis.value[0][2] = -gain * th0; /* the input axis turns away with the gimbal */
     triad->nonlinearity.k3.value[0] = gain * imk_rate_gyro_cubic(d);
     triad->nonlinearity.k2.value[0] =
         reading * th0 * (gimbal.inertia_difference / stiffness - s * s);
@@ -182,14 +183,16 @@ static const imk_view views[] = {
      .curve_count = 1,
      .y = {0},
      .duration = 0.2,
-     .rate = 2000.0},
+     .rate = 2000.0,
+     .input = 10.0 * IMKI_PI / 180.0},
     {.title = "Phase portrait of the gimbal",
      .caption = "Rate against angle: a spiral into the balance, an ellipse without a damper.",
      .x = 0,
      .curve_count = 1,
      .y = {1},
      .duration = 0.2,
-     .rate = 4000.0},
+     .rate = 4000.0,
+     .input = 10.0 * IMKI_PI / 180.0},
 };
 
 static void set_default(void *design)

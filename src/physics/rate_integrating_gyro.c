@@ -35,8 +35,8 @@ imk_rate_integrating_gyro imk_rate_integrating_gyro_default(void)
 }
 
 static const imk_design_field fields[] = {
-    {"wheel.momentum", IMK_DESIGN_NUMBER, offsetof(design_of, momentum), "kg*m^2/s", 0.0, 1e3, true,
-     NULL, "angular momentum of the wheel"},
+    {"wheel.momentum", IMK_DESIGN_NUMBER, offsetof(design_of, momentum), "kg*m^2/s", 1e-8, 1e3,
+     false, NULL, "angular momentum of the wheel"},
     {"wheel.momentum_error", IMK_DESIGN_NUMBER, offsetof(design_of, momentum_error), "ppm", -0.5,
      0.5, false, NULL, "relative error of the wheel's speed"},
     {"float.output_inertia", IMK_DESIGN_NUMBER, offsetof(design_of, output_inertia), "kg*m^2", 0.0,
@@ -175,8 +175,7 @@ void imk_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *d, imk_mo
     imki_reduce_torques(&d->torque, &gimbal, gain / d->momentum, triad);
     triad->scale_factor.fixed.value[0] = scale - 1.0;
     if (!open) /* 1/(1 + e + a dT): -a/(1 + e) relative */
-        imki_reduce_temperature(-scale * gain * d->torquer_temperature,
-                                &triad->scale_factor.temperature);
+        imki_reduce_scale_temperature(-gain * d->torquer_temperature, triad);
     triad->noise.white.value[0] = imk_rate_integrating_gyro_random_walk(d);
     if (open) {
         step = d->pickoff_resolution * d->damping / d->momentum;
@@ -202,7 +201,7 @@ static const imk_signal signals[IMKI_RATE_INTEGRATING_GYRO_SIGNALS] = {
     {"float_angle", "rad", "arcsec", "angle of the float against the case"},
     {"float_rate", "rad/s", "deg/s", "rate of the float against the case"},
     {"error_torque", "N*m", "uNm", "slow error torque on the float"},
-    {"torquer_torque", "N*m", "uNm", "torque that the torquer is told to give"},
+    {"torquer_torque", "N*m", "mNm", "torque that the torquer is told to give"},
     {"stored_angle", "rad", "arcsec", "case angle that the float holds, (C th + I th')/H"}};
 
 static const imk_view views[] = {
@@ -214,7 +213,8 @@ static const imk_view views[] = {
      .curve_count = 1,
      .y = {0},
      .duration = 0.2,
-     .rate = 2000.0},
+     .rate = 3200.0,
+     .input = 10.0 * IMKI_PI / 180.0},
     {.title = "Torquer and float",
      .caption =
          "The torque that the loop asks for: smooth in the analog loop, pulses in the others.",
@@ -222,7 +222,8 @@ static const imk_view views[] = {
      .curve_count = 1,
      .y = {3},
      .duration = 0.1,
-     .rate = 6400.0},
+     .rate = 6400.0,
+     .input = 10.0 * IMKI_PI / 180.0},
 };
 
 static void set_default(void *design)

@@ -21,10 +21,10 @@ imk_ring_laser imk_ring_laser_default(void)
         .dither = {.frequency = 517.0, .rate = 150.0 * DEGREE, .randomness = 0.02},
         .null_shift = {.repeatability = 0.003 * DEGREE_PER_HOUR,
                        .instability = 0.0035 / floor_per_b * DEGREE_PER_HOUR},
-        .scale_factor = {.repeatability = 5e-6},
+        .scale_factor = {.repeatability = 5.0 * 1e-6},
         .path_length = {.expansion = 2e-8, .stroke = 2e-6},
         .readout = {.decoding = IMK_RING_LASER_QUARTERS, .range = 900.0 * DEGREE},
-        .temperature = {.reference = 293.15, .minimum = 219.15, .maximum = 344.15}};
+        .temperature = {.reference = 293.15, .minimum = -54.0 + 273.15, .maximum = 344.15}};
 }
 
 /* ---- tables ---------------------------------------------------------------------------------- */
@@ -126,8 +126,9 @@ static const imk_view views[] = {
      .x = -1,
      .curve_count = 1,
      .y = {PULL},
-     .duration = 1e-3,
-     .rate = 1e6},
+     .duration = 0.25e-3,
+     .rate = 4e6,
+     .settle = 0.36e-3},
     {.title = "Phase of the beat without the dither",
      .caption =
          "Random dither: a walk along the straight line of the input. Without dither, just "

@@ -33,8 +33,8 @@ static const imk_design_field fields[] = {
     CHOICE("resonator.shape", resonator.shape, "ring|hemisphere|other", "decides the angular gain"),
     COUNT("resonator.mode_number", resonator.mode_number, 2, 8,
           "n: nodal diameters of the vibration"),
-    ABOVE("resonator.angular_gain", resonator.angular_gain, "1", 0.0, 1.0,
-          "of shape other: angle of the pattern per angle of the case"),
+    NUMBER("resonator.angular_gain", resonator.angular_gain, "1", 0.01, 1.0,
+           "of shape other: angle of the pattern per angle of the case"),
     NUMBER("resonator.angular_gain_error", resonator.angular_gain_error, "ppm", -0.5, 0.5,
            "relative error of the angular gain the electronics assume"),
     ABOVE("resonator.mass", resonator.mass, "kg", 0.0, 10.0, "modal mass"),
@@ -110,7 +110,7 @@ imk_shell_gyro imk_shell_gyro_default(void)
                        .damping_instability = 3.9e-5,
                        .frequency_split = 0.5,
                        .stiffness_angle = 20.0 * degree},
-        .pattern = {.amplitude = 5e-6},
+        .pattern = {.amplitude = 5.0 * 1e-6},
         .pickoff = {.noise = 9e-12,
                     .gain_error = 500e-6,
                     .gain_mismatch = 1e-3,
@@ -161,6 +161,14 @@ static imk_status check_loops(const imk_shell_gyro *design, imk_error *error)
     return IMK_OK;
 }
 
+static double smallest_pattern(const imk_shell_gyro *design)
+{
+    const double omega = 2.0 * IMKI_PI * design->resonator.frequency;
+    const double thermal = IMKI_BOLTZMANN * IMKI_SHELL_REFERENCE / design->resonator.mass;
+    const double measured = imki_shell_angle_noise(design) * design->pattern.amplitude;
+    return 10.0 * (sqrt(thermal) / omega + measured);
+}
+
 imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *error)
 {
     if (design->cookie != IMKI_SHELL_COOKIE)
@@ -173,6 +181,12 @@ imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *erro
     if (design->resonator.shape == IMK_SHELL_HEMISPHERE && design->resonator.mode_number != 2)
         return refuse(error, "resonator.mode_number", design->resonator.mode_number, 2.0,
                       "2 for a hemisphere; of another shape state the angular gain");
+    const double drawn =
+        6.0 * (design->anisotropy.damping_repeatability + design->anisotropy.damping_instability);
+    if (!(drawn < damping))
+        return refuse(error, "anisotropy.damping_repeatability", drawn, damping,
+                      "with the instability less than a sixth of 2/tau: damping is positive in "
+                      "every run");
     if (!(design->anisotropy.damping_difference < damping))
         return refuse(error, "anisotropy.damping_difference", design->anisotropy.damping_difference,
                       damping,
@@ -181,6 +195,11 @@ imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *erro
         return refuse(error, "anisotropy.frequency_split", design->anisotropy.frequency_split,
                       0.01 * design->resonator.frequency,
                       "at most a hundredth of the frequency: else these are two resonators");
+    const double hidden = design->mode == IMK_SHELL_FREE ? 0.0 : smallest_pattern(design);
+    if (!(design->pattern.amplitude >= hidden))
+        return refuse(error, "pattern.amplitude", design->pattern.amplitude, hidden,
+                      "at least ten times the thermal motion and the pickoff's noise: else the "
+                      "loops see no pattern");
     return check_loops(design, error);
 }
 
@@ -253,7 +272,8 @@ static const imk_view views[] = {
      .curve_count = 1,
      .y = {MODAL_ANGLE},
      .duration = 2.0,
-     .rate = 100.0},
+     .rate = 100.0,
+     .input = 10.0 * IMKI_PI / 180.0},
     {.title = "Forces of the loops",
      .caption = "What keeps the amplitude, holds the pattern and cancels the "
                 "quadrature: the second of them is the reading of a force-to-rebalance gyro.",
@@ -261,7 +281,8 @@ static const imk_view views[] = {
      .curve_count = 3,
      .y = {DRIVE_FORCE, REBALANCE_FORCE, QUADRATURE_FORCE},
      .duration = 0.5,
-     .rate = 1000.0},
+     .rate = 1000.0,
+     .input = 50.0 * IMKI_PI / 180.0},
     {.title = "Quadrature",
      .caption = "The short axis of the ellipse, which the quadrature loop keeps near zero.",
      .x = -1,

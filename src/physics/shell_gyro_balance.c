@@ -96,19 +96,20 @@ double imk_shell_gyro_drive_force(const imk_shell_gyro *design)
 imki_shell_resonator imki_shell_resonator_at(const imk_shell_gyro *design, double temperature)
 {
     const double warmer = temperature - IMKI_SHELL_REFERENCE;
-    const double damping = 1.0 + design->resonator.damping_temperature * warmer;
+    /* lines in the temperature, not followed to where damping or stiffness would vanish */
+    const double damping = fmax(1.0 + design->resonator.damping_temperature * warmer, 0.1);
+    const double tuning = fmax(1.0 + design->resonator.frequency_temperature * warmer, 0.1);
     const double d = design->anisotropy.damping_difference * damping;
     const double split = 2.0 * IMKI_PI * design->anisotropy.frequency_split;
     return (imki_shell_resonator){
-        .omega = 2.0 * IMKI_PI * design->resonator.frequency *
-                 (1.0 + design->resonator.frequency_temperature * warmer),
+        .omega = 2.0 * IMKI_PI * design->resonator.frequency * tuning,
         .decay = damping / imk_shell_gyro_decay_time(design),
         .damping_cosine = d * imk_cos(2.0 * design->anisotropy.damping_angle),
         .damping_sine = d * imk_sin(2.0 * design->anisotropy.damping_angle),
         .stiffness_cosine = split * imk_cos(2.0 * design->anisotropy.stiffness_angle),
         .stiffness_sine = split * imk_sin(2.0 * design->anisotropy.stiffness_angle),
-        .forcer_gain =
-            (1.0 + design->forcer.gain_error) * (1.0 + design->forcer.gain_temperature * warmer)};
+        .forcer_gain = (1.0 + design->forcer.gain_error) *
+                       fmax(1.0 + design->forcer.gain_temperature * warmer, 0.1)};
 }
 
 static imki_shell_axes transducers(double gain, double mismatch, double misalignment)
@@ -238,13 +239,16 @@ imki_shell_balance imki_shell_balance_at(const imk_shell_gyro *design, double te
     const imki_shell_pair fu = imki_shell_apply(f, pointing);
     const imki_shell_pair fv = imki_shell_apply(f, across(pointing));
     const double omega = 2.0 * IMKI_PI * design->resonator.frequency;
-    const double scale = size * r.omega / omega;
+    /* along u: velocity, and with it the forces of rotation and damping, goes with this one */
+    const double frequency = r.omega + 0.5 * reflect(r.stiffness_cosine, r.stiffness_sine, u, u);
+    const double scale = size * frequency / omega;
     const double drift = -imk_shell_gyro_modal_gain(design) * rate -
                          0.5 * reflect(r.damping_cosine, r.damping_sine, u, v);
     const mechanics m = {
         .along = scale * (r.decay + 0.5 * reflect(r.damping_cosine, r.damping_sine, u, u)),
         .held = -scale * drift,
-        .quadrature = scale * 0.5 * reflect(r.stiffness_cosine, r.stiffness_sine, u, v),
+        .quadrature = size * r.omega / omega * 0.5 *
+                      reflect(r.stiffness_cosine, r.stiffness_sine, u, v), /* m w dw a */
         .uu = dot(u, fu),
         .uv = dot(u, fv),
         .vu = dot(v, fu),
@@ -256,7 +260,7 @@ imki_shell_balance imki_shell_balance_at(const imk_shell_gyro *design, double te
     const bool parametric = design->forcer.drive == IMK_SHELL_PARAMETRIC;
     balance.amplitude = size * design->pattern.amplitude;
     balance.actual = angle + imk_atan2(pointing.x * u.y - pointing.y * u.x, dot(pointing, u));
-    balance.frequency = r.omega + 0.5 * reflect(r.stiffness_cosine, r.stiffness_sine, u, u);
+    balance.frequency = frequency;
     if (design->mode == IMK_SHELL_REBALANCE)
         rebalance_commands(&m, parametric, &balance);
     else

@@ -72,6 +72,22 @@ static double command(double *integral, double gain, double error, double decay,
     return imki_shell_clamp(*integral + gain * error, limit);
 }
 
+/* What electronics do when a pattern turns away faster than it can be held: the phase detector and
+ * the oscillator reach their ends, and the drive is cut while the vibration is twice as large as it
+ * should be. */
+static const double largest_phase_error = 0.5; /* [rad] */
+static const double pulling_range = 0.1;       /* of the frequency */
+static const double largest_quadrature =
+    0.02; /* command, of the frequency; 1 % of split need 0.5 % */
+
+static double clamped_phase_error(imki_shell_pair c, imki_shell_pair s)
+{
+    const double limit = largest_phase_error * fabs(c.x);
+    return fabs(s.x) < limit ? -s.x / c.x
+           : s.x * c.x < 0.0 ? largest_phase_error
+                             : -largest_phase_error;
+}
+
 /* The loops, given the amplitudes along and across the pattern. */
 static void close_loops(imki_shell_state *state, imki_shell_pair c, imki_shell_pair s)
 {
@@ -80,13 +96,18 @@ static void close_loops(imki_shell_state *state, imki_shell_pair c, imki_shell_p
     const double update = state->cycle.step * (double)state->cycle.block;
     const double decay = state->decay;
     const double amplitude = design->pattern.amplitude;
-    loops->phase_error = -s.x / c.x;
+    const double size = c.x * c.x + c.y * c.y + s.x * s.x + s.y * s.y;
+    loops->phase_error = clamped_phase_error(c, s);
     loops->frequency += loops->gain_phase_integral * update * loops->phase_error;
+    loops->frequency = state->omega + imki_shell_clamp(loops->frequency - state->omega,
+                                                       pulling_range * state->omega);
     loops->reference = loops->frequency + loops->gain_phase * loops->phase_error;
     loops->command[0] = command(&loops->drive, loops->gain_support, (amplitude - c.x) / amplitude,
                                 decay, update, (double)INFINITY);
+    if (size > 4.0 * amplitude * amplitude)
+        loops->command[0] = loops->drive = 0.0;
     loops->command[2] = command(&loops->quadrature, loops->gain_support, -s.y / amplitude, decay,
-                                update, (double)INFINITY);
+                                update, largest_quadrature * state->omega);
     if (design->mode == IMK_SHELL_REBALANCE) {
         loops->command[1] = command(&loops->rebalance, loops->gain_rebalance, -c.y / amplitude,
                                     decay, update, state->limit);

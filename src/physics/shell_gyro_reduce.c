@@ -37,7 +37,7 @@ static void temperature_polynomial(imk_temperature_polynomial *polynomial, const
     const double first = (at[2] - at[0]) / (2.0 * span);
     const double second = (at[2] - 2.0 * at[1] + at[0]) / (2.0 * span * span);
     polynomial->reference = IMKI_SHELL_REFERENCE;
-    polynomial->minimum = 233.15; /* -40 degC */
+    polynomial->minimum = -40.0 + 273.15;
     polynomial->maximum = 378.15; /* 105 degC */
     polynomial->coefficient[0].value[0] = first;
     /* rounding of the difference is no term */

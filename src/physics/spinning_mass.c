@@ -47,6 +47,15 @@ void imki_reduce_temperature(double per_kelvin, imk_temperature_polynomial *poly
     polynomial->maximum = 373.15;
 }
 
+void imki_reduce_scale_temperature(double relative, imk_triad *triad)
+{
+    const double of_bias = triad->bias.temperature.coefficient[0].value[0];
+    imki_reduce_temperature((1.0 + triad->scale_factor.fixed.value[0]) * relative,
+                            &triad->scale_factor.temperature);
+    imki_reduce_temperature(of_bias + triad->bias.fixed.value[0] * relative,
+                            &triad->bias.temperature);
+}
+
 void imki_reduce_torques(const imk_error_torque *torque, const imki_gimbal *gimbal,
                          double per_torque, imk_triad *triad)
 {

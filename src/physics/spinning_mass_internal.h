@@ -55,6 +55,10 @@ void imki_reduce_torques(const imk_error_torque *torque, const imki_gimbal *gimb
 /* Put one number per kelvin into a temperature polynomial valid over 213 … 373 K. */
 void imki_reduce_temperature(double per_kelvin, imk_temperature_polynomial *polynomial);
 
+/* The reading of everything changes by this part per kelvin: of the scale factor, and of the fixed
+ * bias besides what its torque changes by. After both, and the bias's own slope, have been set. */
+void imki_reduce_scale_temperature(double relative, imk_triad *triad);
+
 /* The low-pass filter of model.h that stands for a response: same -3 dB frequency, and a damping
  * that gives the same peak (first order's absence of one: 0.7071).
  *  @param power  |G|^2 at the frequency w [rad/s], G(0) = 1

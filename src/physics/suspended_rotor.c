@@ -34,7 +34,7 @@ typedef struct suspended_rotor_state {
     double torque[3], torque_temperature, torque_sigma;
     double resolution, reading_noise;
     double reading[3];
-    double drift; /* magnitude of ds/dt at the last step, noise included */
+    double drift; /* magnitude of ds/dt by unbalance and shape, at the last step */
     imki_wander error[3];
     imki_draws white[3], readout[3];
 } suspended_rotor_state;
@@ -43,13 +43,13 @@ imk_suspended_rotor imk_suspended_rotor_default(void)
 {
     return (imk_suspended_rotor){
         .cookie = COOKIE,
-        .spin_rate = 2500.0 * 2.0 * IMKI_PI,
+        .spin_rate = 150000.0 * (IMKI_PI / 30.0),
         .diameter = 0.01,
         .density = 1848.0,
         .inertia_difference = 0.02,
         .unbalance = 1e-9,
         .oblateness = -20e-9,
-        .pear = 0.2e-9,
+        .pear = 0.3e-9,
         .limit = 25.0 * STANDARD_GRAVITY,
         .preload_error = {1e-3, -1e-3, 0.0},
         .torque_temperature = 2e-14,
@@ -96,7 +96,7 @@ static const imk_design_field fields[] = {
     NUMBER("torque.x", torque[0], "N*m", -1.0, 1.0, false, "constant error torque about case x"),
     NUMBER("torque.y", torque[1], "N*m", -1.0, 1.0, false, "the same about y"),
     NUMBER("torque.z", torque[2], "N*m", -1.0, 1.0, false, "the same about z"),
-    NUMBER("torque.temperature", torque_temperature, "nN*m/K", -1.0, 1.0, false,
+    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1.0, 1.0, false,
            "change of each component with temperature, from 20 degC"),
     NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1.0, false,
            "1 sigma per run of each component of the error torque"),
@@ -130,27 +130,29 @@ static const imk_signal signals[] = {
     [AXIS_X] = {"axis_x", "1", "1", "direction cosine of the angular momentum along x"},
     [AXIS_Y] = {"axis_y", "1", "1", "the same along y"},
     [AXIS_Z] = {"axis_z", "1", "1", "the same along z"},
-    [DRIFT] = {"drift", "rad/s", "deg/h", "rate at which the torques turn the axis, noise aside"},
+    [DRIFT] = {"drift", "rad/s", "deg/h", "rate at which the axis drifts by unbalance and shape"},
     [WOBBLE] = {"wobble", "rad", "arcsec", "angle of the axis of figure from it"},
     [FALLEN] = {"fallen", "1", "1", "1 when the force was too much and the ball has touched"},
 };
 
 static const imk_view views[] = {
     {.title = "The axis stays, the case turns",
-     .caption = "Direction cosines of the spin axis in the case",
+     .caption = "Direction cosines of the spin axis in the case, which turns once",
      .x = -1,
      .curve_count = 3,
-     .y = {AXIS_X, AXIS_Y, AXIS_Z},
-     .duration = 100.0,
-     .rate = 10.0},
-    {.title = "Drift depends on the direction of force and field",
-     .caption = "Rate of drift by unbalance and shape while the case turns about the ball: run it "
-                "with a specific force",
+     .y = {AXIS_Y, AXIS_Z, AXIS_X},
+     .duration = 36.0,
+     .rate = 20.0,
+     .input = 10.0 * DEGREE},
+    {.title = "Drift by the shape of the ball",
+     .caption = "Preloads that are not equal turn an oblate ball: not where its axis is along or "
+                "across their field, most in between",
      .x = AXIS_Y,
      .curve_count = 1,
      .y = {DRIFT},
-     .duration = 100.0,
-     .rate = 10.0},
+     .duration = 36.0,
+     .rate = 20.0,
+     .input = 10.0 * DEGREE},
 };
 
 /* ---- validation and start -------------------------------------------------------------------- */
@@ -379,7 +381,7 @@ static void advance(suspended_rotor_state *state, const imk_exposure *exposure,
     straighten(state);
 }
 
-static void find_drift(suspended_rotor_state *state, const double force[3], const double torque[3])
+static void find_drift(suspended_rotor_state *state, const double force[3])
 {
     static const double whole[3] = {1.0, 1.0, 1.0};
     const double *s = state->axis;
@@ -387,8 +389,7 @@ static void find_drift(suspended_rotor_state *state, const double force[3], cons
     imki_suspended_gradient(&state->ball, whole, s, force, g);
     for (int k = 0; k < 3; k++) {
         const int l = (k + 1) % 3, m = (k + 2) % 3;
-        const double along = s[0] * torque[0] + s[1] * torque[1] + s[2] * torque[2];
-        const double across = s[l] * g[m] - s[m] * g[l] + torque[k] - along * s[k];
+        const double across = s[l] * g[m] - s[m] * g[l];
         square += across * across;
     }
     state->drift = sqrt(square) * state->ball.per_h;
@@ -431,7 +432,7 @@ static void step(void *memory, const imk_exposure *exposure, double *out)
         return;
     }
     advance(state, exposure, torque);
-    find_drift(state, exposure->specific_force, torque);
+    find_drift(state, exposure->specific_force);
     read_axis(state, reading);
     rate_of(state->reading, reading, state->sample, rate);
     out[0] = rate[0];

@@ -48,12 +48,12 @@ imk_tuned_gyro imk_tuned_gyro_default(void)
 #define AT(member) offsetof(imk_tuned_gyro, member)
 
 static const imk_design_field fields[] = {
-    {"wheel.spin_frequency", IMK_DESIGN_NUMBER, AT(spin_frequency), "Hz", 0.0, 1e4, true, NULL,
+    {"wheel.spin_frequency", IMK_DESIGN_NUMBER, AT(spin_frequency), "Hz", 0.1, 1e4, false, NULL,
      "turns of the shaft per second"},
     {"wheel.speed_error", IMK_DESIGN_NUMBER, AT(speed_error), "ppm", -0.5, 0.5, false, NULL,
      "relative error of the speed"},
-    {"rotor.axial_inertia", IMK_DESIGN_NUMBER, AT(axial_inertia), "kg*m^2", 0.0, 10.0, true, NULL,
-     "inertia of the rotor about its axis"},
+    {"rotor.axial_inertia", IMK_DESIGN_NUMBER, AT(axial_inertia), "kg*m^2", 1e-12, 10.0, false,
+     NULL, "inertia of the rotor about its axis"},
     {"rotor.transverse_inertia", IMK_DESIGN_NUMBER, AT(transverse_inertia), "kg*m^2", 0.0, 10.0,
      true, NULL, "inertia of the rotor across its axis"},
     {"gimbal.inertia_x", IMK_DESIGN_NUMBER, AT(gimbal_inertia_x), "kg*m^2", 0.0, 10.0, true, NULL,
@@ -284,8 +284,7 @@ void imk_tuned_gyro_reduce(const imk_tuned_gyro *d, imk_model *model)
                                    speed * d->hinge_damping * d->pickoff_offset_x) *
                                   per_torque;
     triad->misalignment.value[0][2] = scale * d->pickoff_offset_y;
-    imki_reduce_temperature(-scale * torquer * d->torquer_temperature,
-                            &triad->scale_factor.temperature);
+    imki_reduce_scale_temperature(-torquer * d->torquer_temperature, triad);
     triad->range.value[0] = d->torquer_limit / nominal;
     imki_reduce_response(loop_power, d, 2.0 * IMKI_PI * d->loop_frequency, triad);
 }
@@ -311,21 +310,24 @@ static const imk_view views[] = {
      .curve_count = 2,
      .y = {0, 1},
      .duration = 0.1,
-     .rate = 6400.0},
+     .rate = 6400.0,
+     .input = 10.0 * IMKI_PI / 180.0},
     {.title = "Path of the rotor",
      .caption = "Tilt about y against tilt about x: nutation on the way back.",
      .x = 0,
      .curve_count = 1,
      .y = {1},
      .duration = 0.1,
-     .rate = 12800.0},
+     .rate = 12800.0,
+     .input = 10.0 * IMKI_PI / 180.0},
     {.title = "What the flexures see",
      .caption = "Angles of the two pairs of flexures, in axes that turn with the shaft.",
      .x = -1,
      .curve_count = 2,
      .y = {2, 3},
      .duration = 0.05,
-     .rate = 12800.0},
+     .rate = 12800.0,
+     .input = 10.0 * IMKI_PI / 180.0},
 };
 
 static void set_default(void *design)

@@ -49,6 +49,7 @@ static void start_constants(gyro *s, const imk_tuned_gyro *d, const imk_physics_
     s->anisoelastic = d->mass * d->mass * (d->axial_compliance - d->radial_compliance);
     s->residual_spring = imk_tuned_gyro_residual_spring(d);
     s->drag = speed * d->hinge_damping;
+    s->speed = speed;
     s->fixed_torque = d->torque.fixed;
     s->torque_temperature = d->torque.temperature;
     s->torque_noise = density / sqrt(s->step);
@@ -152,6 +153,24 @@ static void into_shaft(const gyro *s, double x, double y, double v[2])
     v[1] = y * s->cosine - x * s->sine;
 }
 
+/* The stops, twice as far as the pickoffs see: a rotor that is there stays behind no further and
+ * rests in the case, which in the axes of the shaft is a vector that turns backwards. */
+static void meet_stops(gyro *s)
+{
+    const double size = sqrt(s->tilt[0] * s->tilt[0] + s->tilt[1] * s->tilt[1]);
+    const double stop = 2.0 * s->pickoff_range;
+    double v[2];
+    if (size <= stop)
+        return;
+    for (int axis = 0; axis < 2; axis++)
+        s->tilt[axis] *= stop / size;
+    into_shaft(s, s->tilt[0], s->tilt[1], v);
+    s->x[0] = v[0];
+    s->x[1] = s->speed * v[1];
+    s->x[2] = v[1];
+    s->x[3] = -s->speed * v[0];
+}
+
 static void advance(gyro *s, const imk_exposure *e, const double error[2], double gain)
 {
     const double *w = e->angular_rate, *a = e->angular_acceleration;
@@ -177,6 +196,7 @@ static void advance(gyro *s, const imk_exposure *e, const double error[2], doubl
     s->cosine = c * grown;
     s->sine = n * grown;
     find_tilt(s);
+    meet_stops(s);
 }
 
 static void run_captured(gyro *s, const imk_exposure *e, const double error[2], double *outputs)
@@ -224,7 +244,7 @@ static void run_slow(gyro *s, const imk_exposure *e, const double error[2], doub
     for (int axis = 0; axis < 2; axis++) {
         rate[axis] += s->torque_noise * imki_draw(&s->torque_draws[axis]) / h;
         if (!s->captured)
-            s->tilt[axis] -= rate[axis] / s->rate;
+            s->tilt[axis] = clip(s->tilt[axis] - rate[axis] / s->rate, 2.0 * s->pickoff_range);
         s->command[axis] = clip(rate[axis] * h / gain, s->limit);
         outputs[axis] = s->captured ? s->command[axis] : rate[axis];
     }

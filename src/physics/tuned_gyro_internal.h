@@ -42,7 +42,7 @@ typedef struct imki_tuned_gyro_state {
     double tilt[2], last_tilt[2];       /* about x and y [rad] */
     double offset[2], pickoff_range;
     double axial_moment, quadrature_moment, anisoelastic;
-    double residual_spring, drag; /* K and D [N m/rad] */
+    double residual_spring, drag, speed; /* K and D [N m/rad] */
     double fixed_torque, torque_temperature, error_torque[2];
     double torque_noise, pickoff_noise; /* 1 sigma of a step */
     double torquer_error, torquer_temperature;

@@ -19,7 +19,7 @@ imk_tuning_fork imk_tuning_fork_default(void)
         .angular_gain = 1.0,
         .drive = {.frequency = 14e3,
                   .q = 45.0,
-                  .amplitude = 5e-6,
+                  .amplitude = 5.0 * 1e-6,
                   .amplitude_repeatability = 1e-3,
                   .loop_bandwidth = 100.0,
                   .force_limit = 8e-6,
@@ -30,14 +30,17 @@ imk_tuning_fork imk_tuning_fork_default(void)
                   .loop = IMK_TUNING_FORK_OPEN,
                   .bandwidth = 100.0,
                   /* with the Brownian motion 0.05 deg/s/sqrt(Hz), one-sided */
-                  .pickoff_noise = 0.4617e-12},
+                  .pickoff_noise = 0.4617 * 1e-12},
         .quadrature = 20.0 * DEGREE,
         .damping_coupling = 0.5 * DEGREE,
         /* of 20 deg/s: 100 deg/h from run to run, and a floor of 50 deg/h = 0.664 B */
         .phase = {.error = 5e-3, .repeatability = 1.39e-3, .instability = 1.046e-3},
         /* 0.2 deg/s/g */
         .tines = {.asymmetry = 4.14e-3, .common_frequency = 12e3, .gap = 2e-6},
-        .temperature = {.frequency = -30e-6, .q = -1.5e-3, .amplitude = 100e-6, .phase = 30e-6},
+        .temperature = {.frequency = -30.0 * 1e-6,
+                        .q = -1.5e-3,
+                        .amplitude = 100.0 * 1e-6,
+                        .phase = 30e-6},
         .output = {.bandwidth = 40.0, .range = 150.0 * DEGREE}};
 }
 
@@ -67,14 +70,14 @@ static void set_default(void *design)
 static const imk_design_field fields[] = {
     CHOICE("arrangement", arrangement, "in-plane|out-of-plane",
            "whether the sense motion stays in the plane of the chip"),
-    ABOVE("mass", mass, "microgram", 0.0, 1.0, "vibrating mass, above 0"),
-    ABOVE("angular_gain", angular_gain, "1", 0.0, 1.0,
-          "part of the mass that the Coriolis force couples, above 0, at most 1"),
+    NUMBER("mass", mass, "microgram", 1e-15, 1.0, "vibrating mass, above 0"),
+    NUMBER("angular_gain", angular_gain, "1", 0.01, 1.0,
+           "part of the mass that the Coriolis force couples, above 0, at most 1"),
     NUMBER("drive.frequency", drive.frequency, "kHz", 100.0, 1e7,
            "eigenfrequency of the drive mode"),
     ABOVE("drive.q", drive.q, "1", 0.5, 1e13,
           "quality factor of the drive mode, above 1/2: an oscillator is meant"),
-    ABOVE("drive.amplitude", drive.amplitude, "um", 0.0, 1e-2, "drive amplitude, above 0"),
+    NUMBER("drive.amplitude", drive.amplitude, "um", 1e-10, 1e-2, "drive amplitude, above 0"),
     NUMBER("drive.amplitude_error", drive.amplitude_error, "ppm", -0.5, 0.5,
            "relative error of the amplitude held"),
     NUMBER("drive.amplitude_repeatability", drive.amplitude_repeatability, "ppm", 0.0, 0.5,
@@ -108,9 +111,9 @@ static const imk_design_field fields[] = {
            "its flicker noise B within a run"),
     NUMBER("tines.asymmetry", tines.asymmetry, "ppm", -0.5, 0.5,
            "relative difference of the masses of the two tines"),
-    ABOVE("tines.common_frequency", tines.common_frequency, "kHz", 0.0, 1e7,
-          "frequency of both tines swinging together along the sense axis, above 0"),
-    ABOVE("tines.gap", tines.gap, "um", 0.0, 1e-2, "gap of the drive comb, above 0"),
+    NUMBER("tines.common_frequency", tines.common_frequency, "kHz", 1.0, 1e7,
+           "frequency of both tines swinging together along the sense axis, above 0"),
+    NUMBER("tines.gap", tines.gap, "um", 1e-8, 1e-2, "gap of the drive comb, above 0"),
     NUMBER("temperature.frequency", temperature.frequency, "ppm/K", -1e-2, 1e-2,
            "change of both eigenfrequencies"),
     NUMBER("temperature.split", temperature.split, "Hz/K", -1e5, 1e5,
@@ -149,11 +152,11 @@ static imk_status check_temperature(const imk_tuning_fork *design, double temper
                                   "a split that leaves the sense mode a frequency above 0");
     if (!(p.drive_damping > 0.0 && p.sense_damping > 0.0 && q > 0.5))
         return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.q", design->temperature.q,
-                                  0.0, "quality factors above 1/2 from 233.15 to 398.15 K");
+                                  0.0, "quality factors above 1/2 from -40 to 125 degC");
     if (!(p.amplitude > 0.0))
         return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.amplitude",
                                   design->temperature.amplitude, 0.0,
-                                  "an amplitude above 0 from 233.15 to 398.15 K");
+                                  "an amplitude above 0 from -40 to 125 degC");
     /* 5 %: what is left for control */
     if (!(force * 1.05 <= design->drive.force_limit))
         return imki_design_refuse(error, IMK_ERROR_CONFLICT, "drive.force_limit",
@@ -272,7 +275,8 @@ static const imk_view views[] = {
      .y = {SENSE},
      .duration = 286e-6,
      .rate = 560e3,
-     .settle = 0.05},
+     .settle = 0.05,
+     .input = 100.0 * IMKI_PI / 180.0},
     {.title = "Start of the drive",
      .caption = "From rest: the amplitude control is a loop of first order, of 100 Hz.",
      .x = -1,
@@ -293,7 +297,8 @@ static const imk_view views[] = {
      .curve_count = 2,
      .y = {RATE, QUADRATURE},
      .duration = 60e-3,
-     .rate = 3.5e3},
+     .rate = 3.5e3,
+     .input = 50.0 * IMKI_PI / 180.0},
 };
 
 const imk_instrument imk_tuning_fork_instrument = {

@@ -9,7 +9,7 @@
 
 /* Temperatures [K]: of the design's values, and the ends of the straight lines. */
 #define IMKI_FORK_REFERENCE 293.15
-#define IMKI_FORK_COLDEST 233.15
+#define IMKI_FORK_COLDEST (-40.0 + 273.15)
 #define IMKI_FORK_HOTTEST 398.15
 
 /* Complex number; C's own would call the compiler's library for every product. */

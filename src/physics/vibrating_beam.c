@@ -34,7 +34,7 @@ imk_vibrating_beam imk_vibrating_beam_default(void)
                             .quality = 10000.0,
                             .amplitude = 1e-6,
                             .frequency_mismatch = 0.02,
-                            .frequency_temperature = -20e-6,
+                            .frequency_temperature = -20.0 * 1e-6,
                             .temperature_mismatch = 0.4e-6,
                             .suspension_frequency = 1500.0,
                             .suspension_damping = 0.4,
@@ -63,11 +63,11 @@ static const imk_design_field fields[] = {
      false, "pair|single", "one beam, or two of which one is pushed and one pulled"},
     {"readout", IMK_DESIGN_CHOICE, offsetof(imk_vibrating_beam, readout), "1", 0.0, 0.0, false,
      "squares|frequencies", "difference of squares, which is linear, or of frequencies"},
-    NUMBER("beam.length", length, "mm", 0.0, 1.0, true, "between the clamps"),
-    NUMBER("beam.width", width, "um", 0.0, 0.1, true, "across the bending"),
-    NUMBER("beam.thickness", thickness, "um", 0.0, 0.1, true, "along the bending"),
-    NUMBER("beam.modulus", modulus, "Pa", 0.0, 2e12, true, "Young's modulus"),
-    NUMBER("beam.density", density, "kg/m^3", 0.0, 3e4, true, "of the material"),
+    NUMBER("beam.length", length, "mm", 1e-6, 1.0, false, "between the clamps"),
+    NUMBER("beam.width", width, "um", 1e-8, 0.1, false, "across the bending"),
+    NUMBER("beam.thickness", thickness, "um", 1e-8, 0.1, false, "along the bending"),
+    NUMBER("beam.modulus", modulus, "GPa", 1e6, 2e12, false, "Young's modulus"),
+    NUMBER("beam.density", density, "kg/m^3", 1.0, 3e4, false, "of the material"),
     NUMBER("beam.quality", quality, "1", 0.5, 1e9, true,
            "quality factor: an oscillator has Q above 1/2"),
     NUMBER("beam.amplitude", amplitude, "um", 0.0, 1e-3, true, "of its middle, peak"),
@@ -77,9 +77,9 @@ static const imk_design_field fields[] = {
            "relative change of the squared frequency"),
     NUMBER("beam.temperature_mismatch", temperature_mismatch, "ppm/K", -0.01, 0.01, false,
            "second beam less the first"),
-    NUMBER("proof_mass.mass", proof_mass, "kg", 0.0, 1.0, true, "mass that a beam carries"),
+    NUMBER("proof_mass.mass", proof_mass, "kg", 1e-12, 1.0, false, "mass that a beam carries"),
     NUMBER("proof_mass.error", proof_mass_error, "ppm", -0.5, 0.5, false, "relative error of it"),
-    NUMBER("proof_mass.frequency", suspension_frequency, "Hz", 0.0, 1e6, true,
+    NUMBER("proof_mass.frequency", suspension_frequency, "Hz", 1e-3, 1e6, false,
            "of proof mass, flexure and beams"),
     NUMBER("proof_mass.damping", suspension_damping, "1", 0.0, 10.0, true, "ratio to critical"),
     NUMBER("proof_mass.range", range, "g", 0.0, 1e6, true, "stops of the proof mass"),
@@ -89,7 +89,7 @@ static const imk_design_field fields[] = {
            "1 sigma from run to run"),
     NUMBER("mount.force_instability", mount_force_instability, "N", 0.0, 100.0, false,
            "flicker B within a run"),
-    NUMBER("clock", clock, "Hz", 0.0, 1e12, false, "times the cycles; 0: without rounding"),
+    NUMBER("clock", clock, "MHz", 0.0, 1e12, false, "times the cycles; 0: without rounding"),
     NUMBER("temperature", temperature, "degC", 1.0, 1000.0, false, "where errors are stated"),
 };
 
@@ -188,18 +188,42 @@ double imk_vibrating_beam_quantization(const imk_vibrating_beam *d)
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
+/* What the equations suppose: a slender beam, a clock that tells two crossings apart, and an
+ * amplitude that thermal motion, sqrt(kT/m)/w, does not hide. */
+static imk_status check_beam(const design_type *d, imk_error *error)
+{
+    const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
+    const double highest = 1.4 * (f1 > f2 ? f1 : f2); /* at the limit of the load */
+    if (!(d->thickness <= 0.2 * d->length))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "beam.thickness", d->thickness,
+                                  0.2 * d->length,
+                                  "at most a fifth of the length: a beam is slender");
+    if (d->clock > 0.0 && !(d->clock >= 4.0 * highest))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "clock", d->clock, 4.0 * highest,
+                                  "0, or at least four ticks to a cycle of the beams");
+    const double thermal = sqrt(IMKI_BOLTZMANN * d->temperature / imki_beam_mass(d)) /
+                           (2.0 * IMKI_PI * (f1 < f2 ? f1 : f2));
+    if (!(d->amplitude >= 10.0 * thermal))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "beam.amplitude", d->amplitude,
+                                  10.0 * thermal, "at least ten times the thermal motion");
+    return IMK_OK;
+}
+
 imk_status imk_vibrating_beam_validate(const imk_vibrating_beam *d, imk_error *error)
 {
     if (d->cookie != COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "vibrating_beam", NULL,
                              "a design made by imk_vibrating_beam_default()");
-    const imk_status status = imk_design_check(&imk_vibrating_beam_instrument, d, error);
+    imk_status status = imk_design_check(&imk_vibrating_beam_instrument, d, error);
+    if (status == IMK_OK)
+        status = check_beam(d, error);
     if (status != IMK_OK)
         return status;
     const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
     const double least = f1 < f2 ? f1 : f2;
     const double load = d->proof_mass * (1.0 + fabs(d->proof_mass_error)) * d->range +
-                        fabs(d->mount_force) + 6.0 * d->mount_force_repeatability;
+                        fabs(d->mount_force) +
+                        6.0 * (d->mount_force_repeatability + d->mount_force_instability);
     const double limit = 0.9 * least * least / imk_vibrating_beam_stiffening(d);
     if (!(load < limit))
         return imki_design_refuse(error, IMK_ERROR_CONFLICT, "proof_mass.range", load, limit,
@@ -209,42 +233,76 @@ imk_status imk_vibrating_beam_validate(const imk_vibrating_beam *d, imk_error *e
 
 /* ---- reduction ------------------------------------------------------------------------------- */
 
+/* The difference of squares is linear in the force, with and without a mount that stresses it. */
+static double reduce_squares(const design_type *d, imk_triad *t)
+{
+    const double f01 = imk_vibrating_beam_frequency(d, 0), f02 = imk_vibrating_beam_frequency(d, 1);
+    const double squares = imk_vibrating_beam_stiffening(d) * d->proof_mass;
+    const double c1 = d->frequency_temperature, c2 = c1 + d->temperature_mismatch;
+    const double one = f01 * f01 * c1, two = f02 * f02 * c2;
+    t->bias.fixed.value[0] = d->mount_force / d->proof_mass;
+    t->scale_factor.fixed.value[0] = d->proof_mass_error;
+    t->bias.temperature.coefficient[0].value[0] =
+        d->arrangement == IMK_BEAM_PAIR ? 0.5 * (one - two) / squares : one / squares;
+    return 1.0 / d->proof_mass;
+}
+
+/* f^2 = r^2 + 2 r^2 u, r the frequency under the mount's force:
+ *
+ *     f = r (1 + u - u^2/2 + u^3/2 …),   u = +-(k m a)/(2 r^2),   dr = f0^2 c dT/(2 r)
+ *
+ * and the slope r u falls with 1/r. */
+static double reduce_frequencies(const design_type *d, imk_triad *t)
+{
+    const double stiffening = imk_vibrating_beam_stiffening(d);
+    const double mass = d->proof_mass * (1.0 + d->proof_mass_error);
+    const int beams = d->arrangement == IMK_BEAM_PAIR ? 2 : 1;
+    double nominal = 0.0, slope = 0.0;
+    for (int i = 0; i < beams; i++) {
+        const double sign = i == 0 ? 1.0 : -1.0, f0 = imk_vibrating_beam_frequency(d, i);
+        const double r = sqrt(f0 * f0 + sign * stiffening * d->mount_force);
+        const double u = 0.5 * stiffening * mass / (r * r); /* per acceleration */
+        const double c = d->frequency_temperature + (i == 1 ? d->temperature_mismatch : 0.0);
+        const double growth = 0.5 * f0 * f0 * c / r; /* dr/dT */
+        nominal += 0.5 * stiffening * d->proof_mass / f0;
+        slope += r * u;
+        t->bias.fixed.value[0] += sign * (r - f0);
+        t->bias.temperature.coefficient[0].value[0] += sign * growth;
+        t->scale_factor.temperature.coefficient[0].value[0] -= u * growth;
+        t->nonlinearity.k2.value[0] -= 0.5 * sign * r * u * u;
+        t->nonlinearity.k3.value[0] += 0.5 * r * u * u * u;
+    }
+    t->scale_factor.fixed.value[0] = slope / nominal - 1.0;
+    double *const terms[] = {&t->bias.fixed.value[0], &t->bias.temperature.coefficient[0].value[0],
+                             &t->scale_factor.temperature.coefficient[0].value[0],
+                             &t->nonlinearity.k2.value[0], &t->nonlinearity.k3.value[0]};
+    for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++)
+        *terms[i] /= nominal;
+    return slope / (nominal * mass);
+}
+
 void imk_vibrating_beam_reduce(const imk_vibrating_beam *d, imk_model *model)
 {
     imk_triad *t = imki_reduction_begin(model, &imk_vibrating_beam_instrument);
-    const double m = d->proof_mass, f01 = imk_vibrating_beam_frequency(d, 0);
-    const double f02 = imk_vibrating_beam_frequency(d, 1), slope = imk_vibrating_beam_slope(d);
-    const double squares = 2.0 * f01 * slope, zeta = d->suspension_damping;
-    const bool pair = d->arrangement == IMK_BEAM_PAIR, linear = d->readout == IMK_BEAM_SQUARES;
-    const double c1 = d->frequency_temperature, c2 = c1 + d->temperature_mismatch;
-    t->bias.fixed.value[0] = d->mount_force / m;
-    t->bias.repeatability.value[0] = d->mount_force_repeatability / m;
-    t->noise.bias_instability.value[0] = d->mount_force_instability / m;
-    t->scale_factor.fixed.value[0] = d->proof_mass_error;
-    t->bias.temperature.order = 1;
-    t->bias.temperature.reference = d->temperature;
-    t->bias.temperature.minimum = d->temperature - 60.0;
-    t->bias.temperature.maximum = d->temperature + 60.0;
-    if (linear)
-        t->bias.temperature.coefficient[0].value[0] =
-            pair ? (f01 * f01 * c1 - f02 * f02 * c2) / (2.0 * squares) : f01 * f01 * c1 / squares;
+    const double zeta = d->suspension_damping;
+    double shows; /* reading per force on the beams [1/kg] */
+    if (d->readout == IMK_BEAM_SQUARES)
+        shows = reduce_squares(d, t);
     else
-        t->bias.temperature.coefficient[0].value[0] =
-            pair ? 0.5 * (f01 * c1 - f02 * c2) / (0.5 * squares / f01 + 0.5 * squares / f02)
-                 : 0.5 * f01 * c1 / slope;
-    if (!linear) {
-        /* f = f0 sqrt(1 + 2 u) = f0 (1 + u - u^2/2 + u^3/2 …), u = +-squares a/(2 f0^2) */
-        const double u1 = 0.5 * squares / (f01 * f01), u2 = 0.5 * squares / (f02 * f02);
-        const double s = pair ? f01 * u1 + f02 * u2 : f01 * u1;
-        t->nonlinearity.k2.value[0] = -0.5 * (f01 * u1 * u1 - (pair ? f02 * u2 * u2 : 0.0)) / s;
-        t->nonlinearity.k3.value[0] =
-            0.5 * (f01 * u1 * u1 * u1 + (pair ? f02 * u2 * u2 * u2 : 0.0)) / s;
+        shows = reduce_frequencies(d, t);
+    t->bias.repeatability.value[0] = shows * d->mount_force_repeatability;
+    t->noise.bias_instability.value[0] = shows * d->mount_force_instability;
+    t->bias.temperature.order = 1;
+    imki_temperature_range(&t->bias.temperature, d->temperature);
+    if (t->scale_factor.temperature.coefficient[0].value[0] != 0.0) {
+        t->scale_factor.temperature.order = 1;
+        imki_temperature_range(&t->scale_factor.temperature, d->temperature);
     }
     t->noise.white.value[0] = imk_vibrating_beam_noise(d);
     t->noise.quantization.value[0] = imk_vibrating_beam_quantization(d);
     const double a = 1.0 - 2.0 * zeta * zeta;
     t->bandwidth.value[0] = d->suspension_frequency * sqrt(a + sqrt(a * a + 1.0));
-    t->damping.value[0] = zeta;
+    t->damping.value[0] = imki_model_damping(zeta);
     t->range.value[0] = d->range;
 }
 
@@ -302,16 +360,18 @@ static const imk_view views[] = {
      .x = -1,
      .curve_count = 2,
      .y = {0, 1},
-     .duration = 4e-4,
-     .rate = 2e6,
-     .settle = 0.01},
+     .duration = 2e-4,
+     .rate = 4e6,
+     .settle = 0.01,
+     .input = 10.0 * IMK_STANDARD_GRAVITY},
     {.title = "The force on the beams",
      .caption = "The suspension rings before the beams see a steady force.",
      .x = -1,
      .curve_count = 1,
      .y = {2},
      .duration = 0.004,
-     .rate = 1e5},
+     .rate = 1e5,
+     .input = 10.0 * IMK_STANDARD_GRAVITY},
     {.title = "The beat of the beams",
      .caption = "One displacement against the other: the figure turns with the "
                 "difference of the frequencies.",
@@ -320,7 +380,8 @@ static const imk_view views[] = {
      .y = {1},
      .duration = 3e-4,
      .rate = 2e6,
-     .settle = 0.01},
+     .settle = 0.01,
+     .input = 10.0 * IMK_STANDARD_GRAVITY},
 };
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

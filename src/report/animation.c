@@ -21,7 +21,7 @@ enum {
     TOP = 500,
     BOTTOM = 850,
     POINTS_MAX = 4000, /* of a path */
-    KEYS = 240,        /* moments at which the walker's place is told */
+    KEYS = 400,        /* moments at which the walker's place is told */
     HOPS_MAX = 600,
     GHOSTS = 5, /* dots that follow a hopping one */
     TRAIL_MAX = 6000
@@ -38,7 +38,8 @@ typedef struct drawing {
     const imk_animation *animation;
     axis x, y;
     size_t count;   /* points of the path */
-    size_t *sample; /* of the animation, that each stands for */
+    size_t *sample; /* of the animation, with which each is reached */
+    size_t *last;   /* and left: some stay */
     int *px, *py;   /* tenths of a pixel */
     double *walked; /* length up to each */
 } drawing;
@@ -175,7 +176,7 @@ static double walked_at(const drawing *d, double moment)
         else
             high = middle;
     }
-    const double from = (double)d->sample[low], to = (double)d->sample[high];
+    const double from = (double)d->last[low], to = (double)d->sample[high];
     const double part = to > from ? fmin(fmax((sample - from) / (to - from), 0), 1) : 0;
     return d->walked[low] + part * (d->walked[high] - d->walked[low]);
 }
@@ -183,23 +184,25 @@ static double walked_at(const drawing *d, double moment)
 static void put_walk(FILE *out, const drawing *d, int milliseconds)
 {
     const double length = d->walked[d->count - 1], trail = fmin(length / 8, TRAIL_MAX);
-    fprintf(out,
-            "<path id=\"track\" fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.4\" "
-            "stroke-width=\"12\" stroke-linejoin=\"round\" d=\"M%d %d",
-            blue, d->px[0], d->py[0]);
+    fprintf(out, "<defs><path id=\"track\" fill=\"none\" stroke-linejoin=\"round\" d=\"M%d %d",
+            d->px[0], d->py[0]);
     for (size_t i = 1; i < d->count; i++)
         fprintf(out, "l%d %d", d->px[i] - d->px[i - 1], d->py[i] - d->py[i - 1]);
-    fputs("\"/>\n<g class=\"moving\">\n", out);
     fprintf(out,
-            "<use href=\"#track\" xlink:href=\"#track\" style=\"stroke:%s;stroke-opacity:1;"
-            "stroke-width:24\" stroke-dasharray=\"%ld %ld\" stroke-dashoffset=\"%ld\">"
+            "\"/></defs>\n<use href=\"#track\" xlink:href=\"#track\" stroke=\"%s\" "
+            "stroke-opacity=\"0.5\" stroke-width=\"12\"/>\n<g class=\"moving\">\n",
+            blue);
+    fprintf(out,
+            "<use href=\"#track\" xlink:href=\"#track\" stroke=\"%s\" "
+            "stroke-width=\"24\" stroke-dasharray=\"%ld %ld\" stroke-dashoffset=\"%ld\">"
             "<animate attributeName=\"stroke-dashoffset\" dur=\"%dms\" "
             "repeatCount=\"indefinite\" values=\"",
             orange, lround(trail), lround(length + trail + 10), lround(trail), milliseconds);
     for (int k = 0; k <= KEYS; k++)
         fprintf(out, "%s%ld", k > 0 ? ";" : "", lround(trail - walked_at(d, (double)k / KEYS)));
     fprintf(out,
-            "\"/></use>\n<circle r=\"60\" fill=\"%s\"><animateMotion dur=\"%dms\" "
+            "\"/></use>\n<circle r=\"60\" fill=\"%s\" fill-opacity=\"0\">"
+            "<set attributeName=\"fill-opacity\" to=\"1\"/><animateMotion dur=\"%dms\" "
             "repeatCount=\"indefinite\" calcMode=\"linear\" keyTimes=\"",
             orange, milliseconds);
     for (int k = 0; k <= KEYS; k++) {
@@ -281,17 +284,20 @@ static bool drawing_make(drawing *d, const imk_animation *animation)
                    .x = axis_make(animation->x, animation->count, LEFT, WIDTH - RIGHT),
                    .y = axis_make(animation->y, animation->count, HEIGHT - BOTTOM, TOP),
                    .sample = malloc(room * sizeof *d->sample),
+                   .last = malloc(room * sizeof *d->last),
                    .px = malloc(room * sizeof *d->px),
                    .py = malloc(room * sizeof *d->py),
                    .walked = malloc(room * sizeof *d->walked)};
-    if (!d->sample || !d->px || !d->py || !d->walked)
+    if (!d->sample || !d->last || !d->px || !d->py || !d->walked)
         return false;
     for (size_t i = 0; i < animation->count; i += stride) {
         const int x = place(&d->x, animation->x[i]), y = place(&d->y, animation->y[i]);
         const size_t n = d->count;
-        if (n > 0 && x == d->px[n - 1] && y == d->py[n - 1])
+        if (n > 0 && x == d->px[n - 1] && y == d->py[n - 1]) {
+            d->last[n - 1] = i;
             continue;
-        d->sample[n] = i;
+        }
+        d->sample[n] = d->last[n] = i;
         d->px[n] = x;
         d->py[n] = y;
         d->walked[n] = n > 0 ? d->walked[n - 1] + hypot(x - d->px[n - 1], y - d->py[n - 1]) : 0;
@@ -303,6 +309,7 @@ static bool drawing_make(drawing *d, const imk_animation *animation)
 static void drawing_free(drawing *d)
 {
     free(d->sample);
+    free(d->last);
     free(d->px);
     free(d->py);
     free(d->walked);

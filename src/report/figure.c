@@ -107,12 +107,17 @@ static void number(FILE *out, double value)
     fputs(isfinite(value) ? text : "NaN", out);
 }
 
+/* A logarithmic axis spans at least a factor of two: a flat response is drawn flat. */
+static const double least_decades = 0.3;
+
 /* Some air around the data: a tenth of the span, on a logarithmic axis in decades. */
 static void range(FILE *out, const char *axis, span s, bool logarithmic)
 {
     double low = logarithmic ? log10(s.low) : s.low;
     double high = logarithmic ? log10(s.high) : s.high;
     double air = high > low ? 0.07 * (high - low) : fmax(0.1 * fabs(high), logarithmic ? 0.3 : 0.1);
+    if (logarithmic)
+        air = fmax(air, 0.5 * (least_decades - (high - low)));
     low -= air;
     high += air;
     fprintf(out, "set %srange [", axis);

@@ -31,7 +31,8 @@ static void a_resonator_is_its_closed_form(void **state)
             double phi[4], expected[4];
             imki_exponential(2, a, h, phi);
             closed_form(w, q, h, expected);
-            /* the Taylor series begins at w h/2^k < 1/4 with some 1e-16, which k squarings double */
+            /* the Taylor series begins at w h/2^k < 1/4 with some 1e-16, which k squarings double
+             */
             for (int i = 0; i < 4; i++)
                 CHECK_CLOSE(phi[i], expected[i], units[i] * (4e-15 + 2e-15 * w * h));
         }

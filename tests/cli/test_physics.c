@@ -278,6 +278,47 @@ static void test_sweep(void **state)
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
+/* An animation is drawn without gnuplot; it says how long a round is: of the view, or as asked. */
+static void test_animation(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        run("$I physics fibre_optic --animate a.svg && grep -q 'a round: 600 us' a.svg "
+            "&& grep -q '<animate' a.svg"),
+        0);
+    assert_int_equal(
+        run("$I physics tuned_gyro --view path --duration 20ms --animate b.svg && grep "
+            "-q 'a round: 20 ms' b.svg && grep -q '<animateMotion' b.svg"),
+        0);
+    /* the view's own input, when none is asked for, is an input like any other */
+    assert_int_equal(run("$I physics fibre_optic --rate '25 deg/s' --animate b.svg && cmp a.svg "
+                         "b.svg"),
+                     0);
+    assert_int_equal(run("$I physics fibre_optic --rate '0 deg/s' --animate c.svg && cmp -s a.svg "
+                         "c.svg"),
+                     1);
+    sweep();
+}
+
+/* Designs to look at, which the documentation draws. */
+static void test_examples(void **state)
+{
+    (void)state;
+    static const char *const names[] = {
+        "binary_floated_gyro", "hemispherical", "open_fibre_optic",
+        "periodic_ring_laser", "pull_in",       "sigma_delta_accelerometer",
+        "slow_ring",           "split_ring",    "still_ring_laser"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        char line[1024];
+        snprintf(line, sizeof line,
+                 "$I physics " SOURCE_DIRECTORY "/examples/instruments/%s.yaml -d 100ms -o a.csv",
+                 names[i]);
+        if (run(line) != 0)
+            fail_msg("%s: %s", names[i], err);
+    }
+    sweep();
+}
+
 static void test_pictures(void **state)
 {
     (void)state;
@@ -294,6 +335,13 @@ static void test_pictures(void **state)
     assert_int_equal(run("$I physics ring_laser --rate '1 deg/s' -d 100ms --report r.html && grep "
                          "-q 'Inside the instrument' r.html && grep -q 'Reduced error model' "
                          "r.html && grep -q 'Outputs against time' r.html"),
+                     0);
+    /* what a design has not is left out: the bits of an open loop; a sine has its response */
+    assert_int_equal(run("$I physics mems_accelerometer --report r.html && ! grep -q 'Bits of the "
+                         "loop' r.html && grep -q 'Response to a step' r.html"),
+                     0);
+    assert_int_equal(run("$I physics pendulous_servo --acceleration '1 g' --sine 5Hz -d 1s --plot "
+                         "a.svg && grep -q 'Output against input' a.svg"),
                      0);
     sweep();
 }
@@ -313,6 +361,19 @@ static void test_refusals(void **state)
     } cases[] = {
         {"ring_lasr", 1,
          E "instrument: \"ring_lasr\" is not a known name; did you mean \"ring_laser\"?\n"},
+        {"fog", 1, E "instrument: \"fog\" is not a known name; did you mean \"fibre_optic\"?\n"},
+        {"ring_laser --single-axis", 2,
+         E "--single-axis is about the model that --reduce -o MODEL.yaml writes\n" TRY("physics")},
+        {"ring_laser --animate a.svg", 2,
+         E "--animate: no view of the ring laser gyro shows one signal against another\n" TRY(
+             "physics")},
+        {"fibre_optic --animate a.png", 2,
+         E "--animate a.png: expected a name ending in .svg\n" TRY("physics")},
+        {"fibre_optic --view 2 --animate a.svg", 2,
+         E "--animate: the view \"The ramp and its resets\" is drawn against time; a view of one "
+           "signal against another can move\n" TRY("physics")},
+        {"fibre_optic --view 1 --plot a.svg --duration 1us", 2,
+         E "--duration: 1e-06 s at 1e+06 points per second are no picture\n" TRY("physics")},
         {"no.yaml", 1, E "no.yaml: the file cannot be opened: No such file or directory\n"},
         {"--reduce", 2,
          E "an operand is missing: imukit physics [INSTRUMENT|DESIGN.yaml]; imukit physics lists "
@@ -344,7 +405,7 @@ static void test_refusals(void **state)
         {"ring_laser -d 1s --reduce", 2,
          E "--duration runs the instrument and --reduce does not: leave one out\n" TRY("physics")},
         {"ring_laser --view 1", 2,
-         E "--view is drawn by --plot FILE, without --duration\n" TRY("physics")},
+         E "--view is drawn by --plot FILE or --animate FILE: add one\n" TRY("physics")},
         {"ring_laser -d 1s --plot a.pdf", 2,
          E
          "--plot a.pdf: expected a name ending in .svg or .png, or the word term\n" TRY("physics")},
@@ -416,6 +477,8 @@ int main(void)
         cmocka_unit_test(test_levels_and_warnings),
         cmocka_unit_test(test_reduce),
         cmocka_unit_test(test_sweep),
+        cmocka_unit_test(test_animation),
+        cmocka_unit_test(test_examples),
         cmocka_unit_test(test_pictures),
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_bad_designs),

@@ -98,6 +98,12 @@ static void test_chain(void **unused)
     check_chain(shell, &design, &settings, &exposure, 20, 20000);
     design = hemispherical();
     check_chain(shell, &design, &settings, &exposure, 20, 20000);
+    /* Brownian motion alone, whose interval is then +-5.5 %; the loop is fast against a sample */
+    design = light(IMK_SHELL_REBALANCE);
+    design.pickoff.noise = 0.0;
+    design.anisotropy.damping_repeatability = design.anisotropy.damping_instability = 0.0;
+    settings.rate = 0.2;
+    check_chain(shell, &design, &settings, &exposure, 20, 4000);
 }
 
 /* A run's constant: a normal of the stated deviation from run to run. 60 runs: chi-square. */

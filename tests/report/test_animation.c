@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Animations: that the walker is where the path is, at the time it should be; that nothing but
+ * whole numbers and escaped text is inside; that readers can ask for stillness. */
+#define _POSIX_C_SOURCE 200809L
+#include "check.h"
+
+#include "imukit/report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { POINTS = 5 };
+
+/* Along a straight line, at rest for half of the time: 0, 0, 0, 1/2, 1 of the way. */
+static const double x[POINTS] = {0, 0, 0, 5, 10}, y[POINTS] = {-2, -2, -2, 0, 2};
+
+static imk_animation line(void)
+{
+    return (imk_animation){.title = "a < b",
+                           .x_label = "x [m]",
+                           .y_label = "y [m]",
+                           .count = POINTS,
+                           .x = x,
+                           .y = y,
+                           .duration = 8,
+                           .clock = "a round: 4 s"};
+}
+
+static char *drawn(const imk_animation *animation)
+{
+    char *svg = NULL;
+    size_t size = 0;
+    imk_error error;
+    CHECK_OK(imk_animation_svg(animation, &svg, &size, &error));
+    assert_int_equal(strlen(svg), size);
+    return svg;
+}
+
+/* Number i of a list that an attribute holds. */
+static double element(const char *svg, const char *attribute, int i)
+{
+    const char *at = strstr(svg, attribute);
+    assert_non_null(at);
+    at += strlen(attribute);
+    for (; i > 0; i--) {
+        at = strchr(at, ';');
+        assert_non_null(at);
+        at++;
+    }
+    return strtod(at, NULL);
+}
+
+/* The lists have 401 moments: 200 is the middle of the round, where the walker sets out, 300 half
+ * of the way; places are in millionths. */
+static void test_walker_keeps_time(void **state)
+{
+    (void)state;
+    const imk_animation animation = line();
+    char *svg = drawn(&animation);
+    CHECK_CLOSE(element(svg, "keyTimes=\"", 300), 0.75, 1e-6);
+    CHECK_CLOSE(element(svg, "keyPoints=\"", 0), 0.0, 0.0);
+    CHECK_CLOSE(element(svg, "keyPoints=\"", 200), 0.0, 1e-6);
+    CHECK_CLOSE(element(svg, "keyPoints=\"", 300), 0.5,
+                1e-4); /* the path is in tenths of a pixel */
+    CHECK_CLOSE(element(svg, "keyPoints=\"", 400), 1.0, 0.0);
+    assert_non_null(strstr(svg, "dur=\"8000ms\""));
+    /* points that fall on one another are drawn once */
+    const char *track = strstr(svg, "id=\"track\"");
+    assert_non_null(track);
+    int steps = 0;
+    for (const char *c = strstr(track, " d=\"") + 4; *c != '"'; c++)
+        steps += *c == 'l';
+    assert_int_equal(steps, 2);
+    free(svg);
+}
+
+/* A path that jumps: the places of its three different points, and when they are taken. */
+static void test_hops(void **state)
+{
+    (void)state;
+    imk_animation animation = line();
+    animation.points = true;
+    char *svg = drawn(&animation);
+    const double first = element(svg,
+                                 "attributeName=\"cx\" calcMode=\"discrete\" dur=\"8000ms\" "
+                                 "begin=\"13330ms\" repeatCount=\"indefinite\" values=\"",
+                                 0);
+    const double last = element(svg, "begin=\"0ms\" repeatCount=\"indefinite\" values=\"", 2);
+    assert_true(last > first);
+    CHECK_CLOSE(element(svg, "keyTimes=\"", 0), 0.0, 0.0);
+    CHECK_CLOSE(element(svg, "keyTimes=\"", 1), 0.6, 1e-6);
+    CHECK_CLOSE(element(svg, "keyTimes=\"", 2), 0.8, 1e-6);
+    assert_null(strstr(svg, "animateMotion"));
+    free(svg);
+}
+
+static void test_text_and_stillness(void **state)
+{
+    (void)state;
+    const imk_animation animation = line();
+    char *svg = drawn(&animation);
+    assert_non_null(strstr(svg, ">a &lt; b</text>"));
+    assert_non_null(strstr(svg, "aria-label=\"a &lt; b\""));
+    assert_non_null(strstr(svg, "@media (prefers-reduced-motion:reduce){.moving{display:none}}"));
+    assert_non_null(strstr(svg, ">a round: 4 s</text>"));
+    assert_null(strstr(svg, "<script"));
+    assert_null(strstr(svg, "nan"));
+    free(svg);
+}
+
+/* A long path is thinned: its file stays small. */
+static void test_long_path(void **state)
+{
+    (void)state;
+    enum { LONG = 100000 };
+    double *long_x = malloc(LONG * sizeof *long_x), *long_y = malloc(LONG * sizeof *long_y);
+    assert_true(long_x && long_y);
+    for (int i = 0; i < LONG; i++) {
+        long_x[i] = cos(0.01 * i);
+        long_y[i] = sin(0.0131 * i);
+    }
+    imk_animation animation = line();
+    animation.count = LONG;
+    animation.x = long_x;
+    animation.y = long_y;
+    for (int points = 0; points <= 1; points++) {
+        animation.points = points;
+        char *svg = drawn(&animation);
+        assert_in_range(strlen(svg), 20000, 150000);
+        free(svg);
+    }
+    free(long_x);
+    free(long_y);
+}
+
+static void test_refusals(void **state)
+{
+    (void)state;
+    const double still[POINTS] = {1, 1, 1, 1, 1}, broken[POINTS] = {0, 1, (double)NAN, 1, 0};
+    char *svg = NULL;
+    size_t size;
+    imk_error error;
+    imk_animation animation = line();
+    animation.count = 1;
+    CHECK_STATUS(imk_animation_svg(&animation, &svg, &size, &error), IMK_ERROR_EMPTY);
+    animation = line();
+    animation.x = animation.y = still;
+    CHECK_STATUS(imk_animation_svg(&animation, &svg, &size, &error), IMK_ERROR_EMPTY);
+    animation.x = broken;
+    CHECK_STATUS(imk_animation_svg(&animation, &svg, &size, &error), IMK_ERROR_NOT_FINITE);
+    animation = line();
+    animation.duration = (double)NAN;
+    CHECK_STATUS(imk_animation_svg(&animation, &svg, &size, &error), IMK_ERROR_RANGE);
+    assert_string_equal(error.field, "duration");
+    animation = line();
+    CHECK_STATUS(imk_animation_write(&animation, "/tmp/a.png", &error), IMK_ERROR_FORMAT);
+    CHECK_STATUS(imk_animation_write(&animation, "/nonexistent/a.svg", &error), IMK_ERROR_OPEN);
+    assert_null(svg);
+}
+
+/* In a page every drawing has identifiers of its own. */
+static void test_page(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/imukit-page-XXXXXX";
+    const int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    close(descriptor);
+    const imk_animation animation = line();
+    imk_error error;
+    imk_page *page = imk_page_create("t", "s");
+    imk_page_animation(page, &animation, "first > one");
+    imk_page_animation(page, &animation, "second");
+    imk_page_animation(NULL, &animation, "no page");
+    CHECK_OK(imk_page_write(page, path, &error));
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    char *text = calloc(1, 1 << 20);
+    assert_non_null(text);
+    assert_true(fread(text, 1, (1 << 20) - 1, file) > 0);
+    fclose(file);
+    unlink(path);
+    assert_non_null(strstr(text, "id=\"f1-track\""));
+    assert_non_null(strstr(text, "href=\"#f2-track\""));
+    assert_non_null(strstr(text, "<figcaption>first &gt; one</figcaption>"));
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_walker_keeps_time),  cmocka_unit_test(test_hops),
+        cmocka_unit_test(test_text_and_stillness), cmocka_unit_test(test_long_path),
+        cmocka_unit_test(test_refusals),           cmocka_unit_test(test_page),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
