@@ -144,7 +144,7 @@ static void measure(void *context, size_t item)
     imki_trial *trial = &b->trials[item];
     imk_physics_settings physics = laboratory->physics;
     void *state = b->states + item * imki_state_size(laboratory);
-    size_t per_cycle = 0;
+    size_t per_cycle = 1;
     physics.occasion = (uint8_t)(item + 1);
     if (trial->frequency > 0.0) {
         per_cycle = samples_per_cycle(laboratory, trial->frequency);
