@@ -133,6 +133,14 @@ int command_model(const char *name, imk_model *model, imk_document **document)
     imk_status status = imk_model_open(name, model, document, &error);
     if (status == IMK_OK)
         return -1;
+    if (status == IMK_ERROR_KEY_UNKNOWN && strcmp(error.found, "instrument") == 0)
+        return command_failed("%s is the design of an instrument, not a model; its error model:\n"
+                              "  imukit physics %s --reduce -o MODEL.yaml",
+                              name, name);
+    if (status == IMK_ERROR_NAME_UNKNOWN && imk_instrument_find(name))
+        return command_failed("%s is an instrument, not a model; the error model of its default "
+                              "design:\n  imukit physics %s --reduce -o MODEL.yaml",
+                              name, name);
     return command_error(&error, status == IMK_ERROR_NAME_UNKNOWN ? NULL : name);
 }
 

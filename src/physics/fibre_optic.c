@@ -297,8 +297,6 @@ static const imk_view views[] = {
      .input = 10.0 * IMKI_PI / 180.0},
 };
 
-#define LENGTH(array) (sizeof(array) / sizeof((array)[0]))
-
 const imk_instrument imk_fibre_optic_instrument = {
     .name = "fibre_optic",
     .title = "fibre-optic gyro",
@@ -308,14 +306,7 @@ const imk_instrument imk_fibre_optic_instrument = {
     .sensor = IMK_GYRO,
     .design_size = sizeof(imk_fibre_optic),
     .state_size = sizeof(imki_fibre_optic_state),
-    .field_count = LENGTH(fields),
-    .fields = fields,
-    .output_count = LENGTH(outputs),
-    .outputs = outputs,
-    .signal_count = IMKI_FIBRE_OPTIC_SIGNALS,
-    .signals = signals,
-    .view_count = LENGTH(views),
-    .views = views,
+    IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
     .init = imki_fibre_optic_init,

@@ -391,8 +391,6 @@ static void reduce(const void *design, imk_model *model)
     imk_free_gyro_reduce(design, model);
 }
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 const imk_instrument imk_free_gyro_instrument = {
     .name = "free_gyro",
     .title = "free gyro",
@@ -402,14 +400,7 @@ const imk_instrument imk_free_gyro_instrument = {
     .sensor = IMK_GYRO,
     .design_size = sizeof(imk_free_gyro),
     .state_size = sizeof(imki_free_gyro_state),
-    .field_count = COUNT(fields),
-    .fields = fields,
-    .output_count = COUNT(outputs),
-    .outputs = outputs,
-    .signal_count = COUNT(signals),
-    .signals = signals,
-    .view_count = COUNT(views),
-    .views = views,
+    IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
     .init = init,

@@ -313,8 +313,6 @@ static void reduce(const void *design, imk_model *model)
     imk_mems_accelerometer_reduce(design, model);
 }
 
-#define COUNT(array) (sizeof(array) / sizeof((array)[0]))
-
 const imk_instrument imk_mems_accelerometer_instrument = {
     .name = "mems_accelerometer",
     .title = "MEMS accelerometer",
@@ -323,14 +321,7 @@ const imk_instrument imk_mems_accelerometer_instrument = {
     .sensor = IMK_ACCEL,
     .design_size = sizeof(imk_mems_accelerometer),
     .state_size = sizeof(imki_mems_state),
-    .field_count = COUNT(fields),
-    .fields = fields,
-    .output_count = COUNT(outputs),
-    .outputs = outputs,
-    .signal_count = COUNT(signals),
-    .signals = signals,
-    .view_count = COUNT(views),
-    .views = views,
+    IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
     .init = imki_mems_init,

@@ -66,6 +66,14 @@ static inline double imki_wander_next(imki_wander *wander)
     return wander->constant + wander->buffer[wander->position++];
 }
 
+#define IMKI_LENGTH(array) (sizeof(array) / sizeof((array)[0]))
+
+/* The tables of an instrument's description, under the names they have in every file. */
+#define IMKI_TABLES                                                                                \
+    .field_count = IMKI_LENGTH(fields), .fields = fields, .output_count = IMKI_LENGTH(outputs),    \
+    .outputs = outputs, .signal_count = IMKI_LENGTH(signals), .signals = signals,                  \
+    .view_count = IMKI_LENGTH(views), .views = views
+
 /* Settings as they must be: cookie, a finite rate > 0, a known level, a step >= 0. */
 imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *error);
 

@@ -292,8 +292,6 @@ static const imk_view views[] = {
      .rate = 1000.0},
 };
 
-#define LENGTH(array) (sizeof(array) / sizeof((array)[0]))
-
 const imk_instrument imk_shell_gyro_instrument = {
     .name = "shell_gyro",
     .title = "vibrating shell gyro",
@@ -303,14 +301,7 @@ const imk_instrument imk_shell_gyro_instrument = {
     .sensor = IMK_GYRO,
     .design_size = sizeof(imk_shell_gyro),
     .state_size = sizeof(imki_shell_state),
-    .field_count = LENGTH(fields),
-    .fields = fields,
-    .output_count = LENGTH(outputs),
-    .outputs = outputs,
-    .signal_count = SIGNALS,
-    .signals = signals,
-    .view_count = LENGTH(views),
-    .views = views,
+    IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
     .init = imki_shell_init,

@@ -456,8 +456,6 @@ static void reduce(const void *design, imk_model *model)
     imk_suspended_rotor_reduce(design, model);
 }
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 const imk_instrument imk_suspended_rotor_instrument = {
     .name = "suspended_rotor",
     .title = "electrostatically suspended gyro",
@@ -467,14 +465,7 @@ const imk_instrument imk_suspended_rotor_instrument = {
     .sensor = IMK_GYRO,
     .design_size = sizeof(imk_suspended_rotor),
     .state_size = sizeof(suspended_rotor_state),
-    .field_count = COUNT(fields),
-    .fields = fields,
-    .output_count = COUNT(outputs),
-    .outputs = outputs,
-    .signal_count = COUNT(signals),
-    .signals = signals,
-    .view_count = COUNT(views),
-    .views = views,
+    IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
     .init = init,

@@ -384,8 +384,6 @@ static const imk_view views[] = {
      .input = 10.0 * IMK_STANDARD_GRAVITY},
 };
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 const imk_instrument imk_vibrating_beam_instrument = {
     .name = "vibrating_beam",
     .title = "vibrating beam accelerometer",
@@ -394,14 +392,7 @@ const imk_instrument imk_vibrating_beam_instrument = {
     .sensor = IMK_ACCEL,
     .design_size = sizeof(design_type),
     .state_size = sizeof(imki_beams),
-    .field_count = COUNT(fields),
-    .fields = fields,
-    .output_count = COUNT(outputs),
-    .outputs = outputs,
-    .signal_count = COUNT(signals),
-    .signals = signals,
-    .view_count = COUNT(views),
-    .views = views,
+    IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
     .init = imki_beams_start,

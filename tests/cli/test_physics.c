@@ -465,6 +465,20 @@ static void test_bad_designs(void **state)
     assert_int_equal(sweep(), 1);
 }
 
+/* A verb that wants a model says how to make one of a design. */
+static void test_design_for_a_model(void **state)
+{
+    (void)state;
+    put("d.yaml", "imukit: 1\ninstrument: ring_laser\n");
+    check_message("$I grade d.yaml", 1,
+                  "imukit grade: error: d.yaml is the design of an instrument, not a model; its "
+                  "error model:\n  imukit physics d.yaml --reduce -o MODEL.yaml\n");
+    check_message("$I grade ring_laser", 1,
+                  "imukit grade: error: ring_laser is an instrument, not a model; the error model "
+                  "of its default design:\n  imukit physics ring_laser --reduce -o MODEL.yaml\n");
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -482,6 +496,7 @@ int main(void)
         cmocka_unit_test(test_pictures),
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_bad_designs),
+        cmocka_unit_test(test_design_for_a_model),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
