@@ -286,6 +286,11 @@ static void static_record(const imk_laboratory *laboratory, char *state, double 
     imk_identification_store(&result->noise, &result->model, instrument->sensor == IMK_ACCEL, 0);
     if (bandwidth.value[0] > 0.0)
         triad->bandwidth = bandwidth;
+    /* The roundings at the two ends of a record look like white noise of 2 Q/sqrt(T), see
+     * docs/theory/identification.md: what is not above that is not known. */
+    imk_axes *white = &triad->noise.white;
+    const double ends = 2.0 * triad->noise.quantization.value[0] / sqrt(laboratory->record);
+    white->sigma[0] = sqrt(white->sigma[0] * white->sigma[0] + ends * ends);
 }
 
 /* A model of one axis with no errors, and what reduce says of the axes. */
