@@ -72,12 +72,12 @@ static void prepare_free_gyro(trial *t)
     d.coulomb_friction = d.torque_temperature = d.torque_repeatability = d.torque_instability = 0.0;
     d.pickoff_resolution = d.pickoff_noise = d.start_nutation = 0.0;
     d.viscous_friction = 1.5e-4;
-    d.torque_noise = imk_thermal_torque(d.viscous_friction); /* this gyro's own is as stated */
+    d.torque_noise = imk_thermal_torque(d.viscous_friction); /* not implied by the friction here */
     const double h = imk_free_gyro_momentum(&d), nutation = imk_free_gyro_nutation(&d, 0.0);
     const double j = d.outer_inertia[0] + d.inner_inertia[0] + d.rotor_transverse;
     const double b = d.inner_inertia[1] + d.rotor_transverse;
     t->scale[0] = h * h / (2.0 * j * boltzmann * room);
-    t->relaxation = 1.0 / (0.5 * d.viscous_friction * (1.0 / j + 1.0 / b) * 2.0);
+    t->relaxation = 1.0 / (d.viscous_friction * (1.0 / j + 1.0 / b));
     t->rate = 1.0 / (2.0 * t->relaxation);
     t->step = 1.0 / (20.0 * nutation);
     t->design.free_gyro = d;
@@ -123,6 +123,7 @@ static void prepare_fork(trial *t)
     d.drive.amplitude = 1e-10;
     d.drive.force_angle = d.tines.asymmetry = 0.0;
     d.drive.amplitude_repeatability = d.drive.pickoff_noise = d.sense.pickoff_noise = 0.0;
+    memset(&d.temperature, 0, sizeof d.temperature);
     d.quadrature = d.damping_coupling = 0.0;
     d.phase.error = d.phase.repeatability = d.phase.instability = 0.0;
     d.output.bandwidth = d.output.range = 0.0;
