@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# A log has the same bytes whatever made it: gcc or clang, -O0 or -O3, every kernel this machine
+# A log, and the readings of the instruments, are the same bits whatever made them: gcc or clang, -O0 or -O3, every kernel this machine
 # has, 1, 2 or 7 threads, a C library told that the processor has neither FMA nor AVX2 (its own exp,
 # log, sin and pow then give other bits), and AArch64, by emulation.
 set -eu
@@ -65,18 +65,35 @@ else
     echo "the C library knows no $tunable, or this processor has neither: not checked"
 fi
 
-# The core alone on another processor, with its NEON kernel and with the portable one.
-core="tests/identity/simulate_hash.c $(find src/base src/model src/noise src/motion src/simulate \
-    -name '*.c')"
+# The core alone, without the command: a log, and the readings of the instruments, as hashes. By both
+# compilers at both levels, and on another processor with its NEON kernel and the portable one.
+programs="simulate_hash physics_hash"
 flags="-std=c17 -O2 -ffp-contract=off -Iinclude -Isrc"
-gcc $flags tests/identity/simulate_hash.c "$out/gcc-O3/libimukit.a" -lm -o "$out/hash_host"
-aarch64-linux-gnu-gcc $flags -static $core -lm -o "$out/hash_aarch64"
-here=$("$out/hash_host")
-for isa in neon scalar; do
-    variants=$((variants + 1))
-    there=$(IMUKIT_ISA=$isa qemu-aarch64 "$out/hash_aarch64")
-    [ "$here" = "$there" ] ||
-        { echo "AArch64, $isa kernel: $there, on this machine $here"; status=1; }
+core=$(find src/base src/model src/noise src/motion src/simulate src/physics -name '*.c')
+objects=$out/aarch64
+rm -rf "$objects"
+mkdir -p "$objects"
+printf '%s\n' $core | xargs -P "$(nproc)" -I{} sh -c \
+    'aarch64-linux-gnu-gcc '"$flags"' -c "$1" -o "$2/$(basename "$1" .c).o"' _ {} "$objects"
+for program in $programs; do
+    for build in gcc-O3 gcc-O0 clang-O0 clang-O3; do
+        gcc $flags tests/identity/$program.c "$out/$build/libimukit.a" -lm -o "$out/$program-$build"
+    done
+    aarch64-linux-gnu-gcc $flags -static tests/identity/$program.c "$objects"/*.o -lm \
+        -o "$out/$program-aarch64"
+    here=$("$out/$program-gcc-O3")
+    for build in gcc-O0 clang-O0 clang-O3; do
+        [ "$here" = "$("$out/$program-$build")" ] ||
+            { echo "$program, $build: other bits than gcc -O3"; status=1; }
+    done
+    [ "$here" = "$(IMUKIT_ISA=scalar "$out/$program-gcc-O3")" ] ||
+        { echo "$program, scalar kernel: other bits than the fastest"; status=1; }
+    for isa in neon scalar; do
+        there=$(IMUKIT_ISA=$isa qemu-aarch64 "$out/$program-aarch64")
+        [ "$here" = "$there" ] ||
+            { echo "$program, AArch64, $isa kernel: $there, on this machine $here"; status=1; }
+    done
 done
-[ $status = 0 ] && echo "$variants ways, one log"
+variants=$((variants + 2)) # AArch64
+[ $status = 0 ] && echo "$variants ways, one log; instruments alike"
 exit $status
