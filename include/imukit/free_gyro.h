@@ -118,6 +118,7 @@ IMK_API void imk_free_gyro_unbalance(const imk_free_gyro *design, double sensiti
 /** Bias at zero angles per fx fz [rad/s/(m/s^2)^2] by unequal compliance:  m^2 (Cz - Cx)/H. */
 IMK_API double imk_free_gyro_anisoelasticity(const imk_free_gyro *design);
 
+/** The instrument; outputs and signals are in its tables. */
 IMK_API extern const imk_instrument imk_free_gyro_instrument;
 
 #ifdef __cplusplus

@@ -176,6 +176,7 @@ typedef struct imk_mems_gains {
     double derivative;   /**< [1/s] */
     double integral;     /**< [1/s^3] */
 } imk_mems_gains;
+/** The gains of a valid design with an analog loop. */
 IMK_API imk_mems_gains imk_mems_accelerometer_gains(const imk_mems_accelerometer *design);
 
 /** The limit cycle of a sigma-delta loop without noise, input and integral term: `half_period`
@@ -191,6 +192,7 @@ typedef struct imk_mems_limit_cycle {
     double amplitude; /**< largest |z| at a clock [m] */
     double dead_zone; /**< half width [m/s^2] */
 } imk_mems_limit_cycle;
+/** The limit cycle of a valid design with a sigma-delta loop. */
 IMK_API imk_mems_limit_cycle
 imk_mems_accelerometer_limit_cycle(const imk_mems_accelerometer *design);
 
@@ -204,6 +206,7 @@ typedef struct imk_mems_quantizer {
     double quantization; /**< two-sided density of the shaped quantization noise at low frequency,
                             as specific force [m/s^2/sqrt(Hz)] */
 } imk_mems_quantizer;
+/** The quantizer of a valid design with a sigma-delta loop. */
 IMK_API imk_mems_quantizer imk_mems_accelerometer_quantizer(const imk_mems_accelerometer *design);
 
 /** The instrument. The full level treats the linear part exactly (mass, softening at rest,

@@ -103,6 +103,7 @@ IMK_API double imk_suspended_rotor_wobble(const imk_suspended_rotor *design);
 IMK_API void imk_suspended_rotor_drift(const imk_suspended_rotor *design, const double axis[3],
                                        const double force[3], double drift[3]);
 
+/** The instrument; outputs and signals are in its tables. */
 IMK_API extern const imk_instrument imk_suspended_rotor_instrument;
 
 #ifdef __cplusplus
