@@ -7,6 +7,7 @@
 #   make bench   speed against yardsticks: build/bench.csv
 #   make experiments  build the long statistical experiments: build/experiments/*
 #   make fuzz    feed the parsers with random input for a while
+#   make mpi     build/imukit-mpi too: campaigns on many machines (Open MPI)
 #   make install [PREFIX=/usr/local] [DESTDIR=]
 #   make deps    only install the Debian packages that are missing
 #   make clean
@@ -24,7 +25,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check bench experiments fuzz install deps clean help
+.PHONY: all demo test check bench experiments fuzz mpi install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -60,6 +61,11 @@ experiments:
 fuzz:
 	@tools/install_dependencies.sh build fuzz
 	@$(alone) tools/run_fuzz
+
+mpi:
+	@tools/install_dependencies.sh build mpi
+	@$(configure) -D IMUKIT_MPI=ON $(quiet)
+	@$(compile) --target imukit-mpi
 
 install: all
 	@cmake --install $(BUILD) --prefix $(PREFIX)

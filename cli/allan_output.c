@@ -178,8 +178,9 @@ static void add_panel(allan_figure *f, const allan_result *result, channel_kind 
     if (*used == first)
         return;
     snprintf(f->label[panel], sizeof f->label[panel], "Allan deviation [%s]", unit.text);
-    f->panel[panel] = (imk_panel){titles[kind], "averaging time [s]", f->label[panel], true,
-                                  true,         *used - first,        f->curve + first};
+    f->panel[panel] = (imk_panel){titles[kind], "averaging time [s]", f->label[panel],  true,
+                                  true,         *used - first,        f->curve + first, 0,
+                                  NULL,         IMK_KEY_UPPER};
     f->figure.panel_count++;
 }
 

@@ -155,6 +155,14 @@ int command_check_plot(const char *plot)
                            plot);
 }
 
+void command_note(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    speak("", "", format, arguments);
+    va_end(arguments);
+}
+
 void command_warn(const char *code, const char *format, ...)
 {
     va_list arguments;

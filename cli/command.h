@@ -13,7 +13,7 @@
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
 extern const verb simulate_verb, allan_verb, identify_verb, compensate_verb, devices_verb,
-    grade_verb, convert_verb, physics_verb;
+    grade_verb, convert_verb, physics_verb, navigate_verb, merge_verb, drift_verb;
 
 /* The verbs in the order of the help. */
 const verb *const *command_verbs(size_t *count);
@@ -37,6 +37,9 @@ int command_model(const char *name, imk_model *model, imk_document **document);
 int command_log_error(const imk_error *error, const char *path);
 /* Refuse a --plot that cannot be drawn before the work is done. @return -1 or the exit code */
 int command_check_plot(const char *plot);
+
+/* "imukit drift: <sentence>" on standard error, without a label: what a person may want to know. */
+void command_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* A warning goes to standard error and into the JSON. */
 typedef struct command_warning {

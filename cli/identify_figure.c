@@ -136,9 +136,16 @@ bool identify_figure_make(const identification *i, identify_figure *figure)
         }
         snprintf(figure->label[c], sizeof figure->label[c], "Allan deviation [%s]", unit.text);
         size_t curves = make_curves(figure->curve[c], &data, i, c);
-        figure->panel[c] =
-            (imk_panel){column->name, "averaging time [s]", figure->label[c], true, true,
-                        curves,       figure->curve[c]};
+        figure->panel[c] = (imk_panel){column->name,
+                                       "averaging time [s]",
+                                       figure->label[c],
+                                       true,
+                                       true,
+                                       curves,
+                                       figure->curve[c],
+                                       0,
+                                       NULL,
+                                       IMK_KEY_UPPER};
     }
     figure->figure = (imk_figure){i->path, count, count < 3 ? count : 3, figure->panel};
     return true;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The command imukit: finds the verb and hands it the rest of the line. */
 #define _POSIX_C_SOURCE 200809L
+#include "campaign_run.h"
 #include "command.h"
 
 #include "imukit/output_file.h"
@@ -8,9 +9,9 @@
 #include <signal.h>
 #include <string.h>
 
-static const verb *const verbs[] = {&identify_verb, &simulate_verb, &compensate_verb,
-                                    &allan_verb,    &devices_verb,  &grade_verb,
-                                    &convert_verb,  &physics_verb};
+static const verb *const verbs[] = {&identify_verb, &simulate_verb, &compensate_verb, &allan_verb,
+                                    &devices_verb,  &grade_verb,    &convert_verb,    &physics_verb,
+                                    &drift_verb,    &navigate_verb, &merge_verb};
 enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
 
 const verb *const *command_verbs(size_t *count)
@@ -124,9 +125,9 @@ static void catch_signals(void)
             sigaction(ending_signals[i], &action, NULL);
 }
 
-int main(int argc, char **argv)
+/* The command after its name. */
+static int obey(int argc, char **argv)
 {
-    catch_signals();
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         command_welcome(stdout);
         return command_finish(EXIT_DONE);
@@ -145,4 +146,11 @@ int main(int argc, char **argv)
     command_begin(v->name);
     command_line_keep(argc, argv);
     return command_finish(v->run(argc - 2, argv + 2));
+}
+
+int main(int argc, char **argv)
+{
+    catch_signals();
+    campaign_begin(&argc, &argv);
+    return campaign_end(obey(argc, argv));
 }

@@ -40,7 +40,8 @@ typedef struct example {
     const char *command, *meaning;
 } example;
 
-enum { OPERANDS_MAX = 2, GROUPS_MAX = 4 };
+/* OPERANDS_MAX is room for the operands of most verbs; one that takes more makes its own. */
+enum { OPERANDS_MAX = 8, GROUPS_MAX = 4 };
 
 /* One verb of the command. */
 typedef struct verb {
@@ -56,7 +57,7 @@ typedef struct verb {
 
 /* Read the words after the verb.
  * @param settings  the verb's settings with their defaults
- * @param operands  OPERANDS_MAX texts, NULL where not given
+ * @param operands  room for v->operands_maximum texts; NULL where not given
  * @return -1 to go on; otherwise the exit code (help was printed, or the usage is wrong and a
  *         message was) */
 int options_parse(const verb *v, int argument_count, char **arguments, void *settings,

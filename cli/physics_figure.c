@@ -53,8 +53,16 @@ static void response_of_run(const physics_run *run, const char *unit, physics_fi
         (imk_curve){"input", IMK_CURVE_DASHES, 1, run->points, input, input, NULL, NULL};
     label(f->label[at][0], sizeof f->label[at][0], "input", unit);
     label(f->label[at][1], sizeof f->label[at][1], "output", unit);
-    f->panel[at] = (imk_panel){
-        "Output against input", f->label[at][0], f->label[at][1], false, false, 2, f->curve[at]};
+    f->panel[at] = (imk_panel){"Output against input",
+                               f->label[at][0],
+                               f->label[at][1],
+                               false,
+                               false,
+                               2,
+                               f->curve[at],
+                               0,
+                               NULL,
+                               IMK_KEY_UPPER};
 }
 
 bool physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *f)
@@ -83,7 +91,8 @@ bool physics_figure_of_run(const physics *p, const physics_run *run, physics_fig
                  sizeof f->label[i][0] - strlen(f->label[i][0]), ": %s", signal->help);
         label(f->label[i][1], sizeof f->label[i][1], signal->name, unit.text);
         f->panel[i] = (imk_panel){f->label[i][0], "time [s]",     f->label[i][1], false,
-                                  false,          i == 0 ? 2 : 1, f->curve[i]};
+                                  false,          i == 0 ? 2 : 1, f->curve[i],    0,
+                                  NULL,           IMK_KEY_UPPER};
     }
     if (p->input.is_sine)
         response_of_run(run, physics_output_unit(p, run, 0).text, f, outputs);
@@ -209,8 +218,16 @@ static int make_panel(const physics *p, const imk_view *view, physics_figure *f,
     const char *x_unit =
         view->x < 0 ? scale_time(view, points, data) : instrument->signals[view->x].unit;
     label_panel(instrument, view, x_unit, f, at);
-    f->panel[at] = (imk_panel){view->title, f->label[at][0],           f->label[at][1], false,
-                               false,       (size_t)view->curve_count, f->curve[at]};
+    f->panel[at] = (imk_panel){view->title,
+                               f->label[at][0],
+                               f->label[at][1],
+                               false,
+                               false,
+                               (size_t)view->curve_count,
+                               f->curve[at],
+                               0,
+                               NULL,
+                               IMK_KEY_UPPER};
     return -1;
 }
 
@@ -339,7 +356,10 @@ static bool table_panel(const physics_laboratory *l, bool gyro, physics_figure *
                               false,
                               false,
                               1,
-                              f->curve[0]};
+                              f->curve[0],
+                              0,
+                              NULL,
+                              IMK_KEY_UPPER};
     return true;
 }
 
@@ -356,8 +376,9 @@ static bool response_panel(const physics_laboratory *l, physics_figure *f, size_
         data[count + i] = r->response[i].gain;
     }
     f->curve[at][0] = (imk_curve){"", IMK_CURVE_POINTS, 0, count, data, data + count, NULL, NULL};
-    f->panel[at] =
-        (imk_panel){"Frequency response", "frequency [Hz]", "gain", true, true, 1, f->curve[at]};
+    f->panel[at] = (imk_panel){
+        "Frequency response", "frequency [Hz]", "gain", true, true, 1, f->curve[at], 0, NULL,
+        IMK_KEY_UPPER};
     return true;
 }
 

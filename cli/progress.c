@@ -58,8 +58,12 @@ void progress_update(void *context, uint64_t done, uint64_t total)
     write_rate(rate * p->scale, p->unit);
     if (total > done && rate > 0) {
         double left = (double)(total - done) / rate;
-        fprintf(stderr, left < 90 ? "  %.0f s left" : "  %.0f min left",
-                left < 90 ? left : left / 60);
+        if (left < 90)
+            fprintf(stderr, "  %.0f s left", left);
+        else if (left < 90 * 60)
+            fprintf(stderr, "  %.0f min left", left / 60);
+        else
+            fprintf(stderr, "  %.1f h left", left / 3600);
     }
     fflush(stderr);
 }

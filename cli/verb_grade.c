@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit grade: the class of a model by its biases, and why. */
-#include "json_output.h"
-#include "text_table.h"
+/* imukit grade: the class of a model, by its biases and by the errors of position that all its
+ * terms make, and where it stands among others. */
+#include "grade_parts.h"
 
-#include "imukit/model_file.h"
-
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct grade_options {
-    bool json;
-} grade_options;
-
 static const option grade_option_table[] = {
+    {"plot", 0, OPTION_FILE, "FILE.svg|FILE.png|term", NULL, NULL,
+     "draw the maps: stability of bias against that of scale factor, of gyros and of "
+     "accelerometers, and cost against performance",
+     offsetof(grade_options, plot)},
+    {"map", 0, OPTION_CHOICE, "WHICH", NULL, "all|gyro|accel|cost",
+     "the one to draw; default: all, with --plot term gyro", offsetof(grade_options, map)},
+    {"report", 0, OPTION_FILE, "FILE.html", NULL, NULL, "write one self-contained page",
+     offsetof(grade_options, report)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(grade_options, json)},
 };
 
@@ -21,127 +22,82 @@ static int run(int count, char **words);
 
 const verb grade_verb = {
     .name = "grade",
-    .summary = "class of a model among the five, and on which term it falls short",
-    .operands = "MODEL",
+    .summary = "class of a model by its biases and by computed performance, and what limits it",
+    .operands = "MODEL...",
     .operands_minimum = 1,
-    .operands_maximum = 1,
+    .operands_maximum = GRADE_MODELS_MAX,
     .examples = {{"imukit grade model.yaml", "the class of an identified model"},
-                 {"imukit grade HG1700", "the class of a device of the catalogue"}},
+                 {"imukit grade model.yaml HG1700 navigation --report grade.html",
+                  "beside a device of the catalogue and a class, with maps"}},
     .description =
-        "Compared is the bias that stays after calibration: the root sum of squares of "
-        "repeatability, instability and the uncertainty of the fixed bias, on the worst axis. The "
-        "class of the unit is the worse of its gyro and its accelerometer class.",
-    .groups = {{"Options", 1, grade_option_table, 0}},
+        "By the table, what counts is the bias that stays after calibration: the root sum of "
+        "squares of repeatability, instability and the uncertainty of the fixed bias, on the worst "
+        "axis. The class of the unit is the worse of its gyro and its accelerometer class.\n\nBy "
+        "performance, what counts is the error of position that all terms of the model make, as "
+        "imukit drift computes it: at rest at 45 deg N, with a perfect attitude at the start, and "
+        "with one that the unit finds itself. What a class claims stands beside what is computed.",
+    .groups = {{"Options", sizeof grade_option_table / sizeof grade_option_table[0],
+                grade_option_table, 0}},
     .run = run};
 
-static const char *grade_name(imk_grade grade)
+static int open_models(const char **operands, grade_result *r)
 {
-    const imk_grade_row *row = imk_grade_table(grade);
-    return row ? row->name : "below every class";
-}
-
-static void describe_bias(const char *sensor, double bias, imk_grade grade, const char *unit_text)
-{
-    double scale = imk_unit_of(unit_text).scale;
-    if (isnan(bias)) {
-        printf("%s: the model states neither repeatability nor instability of the bias\n", sensor);
-        return;
+    int code = -1;
+    for (size_t m = 0; m < GRADE_MODELS_MAX && operands[m] && code < 0; m++) {
+        grade_case *one = &r->cases[m];
+        one->operand = operands[m];
+        one->model = malloc(sizeof *one->model);
+        r->count = m + 1;
+        if (!one->model)
+            return command_failed("memory is exhausted");
+        code = command_model(operands[m], one->model, NULL);
+        if (code < 0)
+            code = grade_analyse(one);
+        if (code < 0 && !one->table.limiting[0] && !one->has_position)
+            code = command_failed("%s states no bias repeatability, no bias instability and no "
+                                  "uncertainty of the fixed bias: there is nothing to grade",
+                                  operands[m]);
     }
-    const imk_grade_row *row = imk_grade_table(grade);
-    bool gyro = strcmp(sensor, "Gyro") == 0;
-    printf("%s: %s; remaining bias %.3g %s", sensor, grade_name(grade), bias / scale, unit_text);
-    if (row)
-        printf(", the class allows %.6g",
-               (gyro ? row->gyro_bias_limit : row->accel_bias_limit) / scale);
-    if (grade > IMK_GRADE_STRATEGIC) {
-        const imk_grade_row *better =
-            imk_grade_table((imk_grade)((grade == IMK_GRADE_NONE ? IMK_GRADE_NONE : grade) - 1));
-        double limit = (gyro ? better->gyro_bias_limit : better->accel_bias_limit) / scale;
-        printf("; the next better class, %s, needs %.6g", better->name, limit);
-    }
-    putchar('\n');
+    return code;
 }
 
-static void print_table(imk_grade overall)
+/* A terminal has room for one map. */
+static int show(const grade_result *r, grade_options *o)
 {
-    text_table table = text_table_make(7);
-    static const char *const headers[] = {"",          "class",      "position",          "gyro",
-                                          "gyros are", "accel [ug]", "accelerometers are"};
-    text_table_row(&table);
-    for (size_t c = 0; c < 7; c++)
-        text_table_set(&table, c, "%s", headers[c]);
-    text_table_set(&table, 3, "gyro [deg/h]");
-    for (int g = 0; g < IMK_GRADE_NONE; g++) {
-        const imk_grade_row *row = imk_grade_table((imk_grade)g);
-        text_table_row(&table);
-        text_table_set(&table, 0, "%s", (int)overall == g ? "->" : "");
-        text_table_set(&table, 1, "%s", row->name);
-        text_table_set(&table, 2, "%s", row->position_performance);
-        text_table_set(&table, 3, "%.4g", row->gyro_bias_limit / imk_unit_of("deg/h").scale);
-        text_table_set(&table, 4, "%s", row->gyro_technology);
-        text_table_set(&table, 5, "%.6g", row->accel_bias_limit / imk_unit_of("ug").scale);
-        text_table_set(&table, 6, "%s", row->accel_technology);
-    }
-    text_table_print(&table, stdout);
-    text_table_free(&table);
-}
-
-static int print_json(const char *name, const imk_grade_result *result)
-{
-    bool known = result->limiting && result->limiting[0];
-    const imk_grade_row *row = imk_grade_table(result->overall);
-    json_t *found = json_pack(
-        "{s:o, s:o, s:o, s:o, s:o, s:s, s:o}", "overall",
-        known ? json_string(grade_name(result->overall)) : json_null(), "gyro",
-        isnan(result->gyro_bias) ? json_null() : json_string(grade_name(result->gyro)), "accel",
-        isnan(result->accel_bias) ? json_null() : json_string(grade_name(result->accel)),
-        "gyro_bias", json_quantity(result->gyro_bias, "rad/s"), "accel_bias",
-        json_quantity(result->accel_bias, "m/s^2"), "limiting", result->limiting,
-        "position_performance",
-        known && row ? json_string(row->position_performance) : json_null());
-    return json_print("grade", json_pack("{s:s}", "model", name), found, EXIT_DONE);
-}
-
-static void print_text(const imk_model *model, const char *name, const imk_grade_result *result)
-{
-    const char *bold = command_color(stdout, COLOR_BOLD),
-               *reset = command_color(stdout, COLOR_RESET);
-    printf("%s: %s%s%s\n", model->name[0] ? model->name : name, bold, grade_name(result->overall),
-           reset);
-    if (model->gyro.present)
-        describe_bias("Gyro", result->gyro_bias, result->gyro, "deg/h");
-    if (model->accel.present)
-        describe_bias("Accelerometer", result->accel_bias, result->accel, "ug");
-    printf("The class is decided by the %s.\n\n", result->limiting);
-    print_table(result->overall);
-    printf("\nThe position performance is the table's claim for the class, not computed from this "
-           "model.\n");
+    int code = -1;
+    if (o->report)
+        code = grade_report(r, o->report);
+    if (code < 0 && o->json)
+        code = grade_print_json(r);
+    else if (code < 0)
+        grade_print(r);
+    if (o->plot && o->map == 0 && strcmp(o->plot, "term") == 0)
+        o->map = 1 + GRADE_MAP_GYRO;
+    if (code < 0 && o->plot)
+        code = grade_draw(r, o->plot);
+    return code;
 }
 
 static int run(int count, char **words)
 {
     grade_options o = {0};
-    const char *operands[OPERANDS_MAX];
+    const char *operands[GRADE_MODELS_MAX + 1] = {NULL};
     int code = options_parse(&grade_verb, count, words, &o, operands);
+    if (code < 0)
+        code = command_check_plot(o.plot);
+    if (code < 0 && o.map > 0 && !o.plot)
+        code = command_misused("--map is of a drawing: add --plot FILE.svg");
     if (code >= 0)
         return code;
-    imk_model *model = malloc(sizeof *model);
-    if (!model)
+    grade_result *r = calloc(1, sizeof *r);
+    if (!r)
         return command_failed("memory is exhausted");
-    code = command_model(operands[0], model, NULL);
-    if (code < 0) {
-        imk_grade_result result = imk_grade_model(model);
-        if (!result.limiting[0])
-            code = command_failed("%s states no bias repeatability, no bias instability and no "
-                                  "uncertainty of the fixed bias: there is nothing to grade",
-                                  operands[0]);
-        else if (o.json)
-            code = print_json(operands[0], &result);
-        else
-            print_text(model, operands[0], &result);
-        if (code < 0)
-            code = EXIT_DONE;
-    }
-    free(model);
-    return code;
+    r->options = &o;
+    code = open_models(operands, r);
+    if (code < 0)
+        code = show(r, &o);
+    for (size_t m = 0; m < r->count; m++)
+        free(r->cases[m].model);
+    free(r);
+    return code < 0 ? EXIT_DONE : code;
 }

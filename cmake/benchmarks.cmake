@@ -38,6 +38,26 @@ if(TARGET bench_physics)
   endif()
 endif()
 
+# The yardstick of the mechanisation, compiled likewise; the drive is that of the tests.
+if(TARGET bench_navigate)
+  target_sources(bench_navigate PRIVATE bench/textbook_ned.c)
+  target_include_directories(bench_navigate PRIVATE tests)
+  set_source_files_properties(bench/textbook_ned.c PROPERTIES
+    COMPILE_OPTIONS "-O3;-march=native;-ffp-contract=fast")
+endif()
+
+# Shards and ranks are processes of the command.
+if(TARGET bench_drift)
+  target_include_directories(bench_drift PRIVATE tests)
+  target_compile_definitions(bench_drift PRIVATE
+    IMUKIT_COMMAND="${PROJECT_BINARY_DIR}/imukit")
+  foreach(command imukit-command imukit-mpi)
+    if(TARGET ${command})
+      add_dependencies(bench_drift ${command})
+    endif()
+  endforeach()
+endif()
+
 file(GLOB yardstick_sources CONFIGURE_DEPENDS bench/*.cpp)
 find_program(IMUKIT_CXX NAMES c++ g++ clang++)
 if(yardstick_sources AND IMUKIT_CXX)

@@ -13,7 +13,12 @@ file(GLOB io_sources CONFIGURE_DEPENDS src/io/*.c src/report/*.c)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   set_source_files_properties(src/base/normals_avx2.c src/motion/trajectory_avx2.c PROPERTIES
                               COMPILE_OPTIONS "-mavx2")
-  set_source_files_properties(src/base/normals_avx512.c src/motion/trajectory_avx512.c PROPERTIES
+  set_source_files_properties(src/navigate/strapdown_block_fma.c PROPERTIES COMPILE_OPTIONS
+                              "-mfma")
+  set_source_files_properties(src/navigate/strapdown_block_avx2.c PROPERTIES COMPILE_OPTIONS
+                              "-mavx2;-mfma")
+  set_source_files_properties(src/base/normals_avx512.c src/motion/trajectory_avx512.c
+                              src/navigate/strapdown_block_avx512.c PROPERTIES
                               COMPILE_OPTIONS "-mavx512f;-mavx512dq")
 endif()
 
@@ -72,11 +77,13 @@ if(IMUKIT_IO)
   pkg_check_modules(yaml REQUIRED IMPORTED_TARGET yaml-0.1)
   pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
   pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
+  # Its serial form, where that has a name of its own.
+  pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)
   find_package(ZLIB REQUIRED)
   find_package(Threads REQUIRED)
   imukit_library(imukit-io SOURCES ${io_sources} OURS imukit
-                 PRIVATE PkgConfig::yaml PkgConfig::zstd PkgConfig::expat ZLIB::ZLIB
-                         Threads::Threads)
+                 PRIVATE PkgConfig::yaml PkgConfig::zstd PkgConfig::expat PkgConfig::hdf5
+                         ZLIB::ZLIB Threads::Threads)
 endif()
 
 # The names users of the installed package see, valid within this tree as well.

@@ -37,3 +37,14 @@ foreach(source ${test_sources})
     target_link_libraries(${name} PRIVATE PkgConfig::jansson)
   endif()
 endforeach()
+
+# Results files are made and read there as others would.
+if(TARGET test_campaign_file)
+  target_link_libraries(test_campaign_file PRIVATE PkgConfig::hdf5)
+endif()
+
+# MPI itself is not clean under the sanitizers.
+if(TARGET imukit-mpi AND TARGET test_mpi AND NOT IMUKIT_SANITIZE)
+  add_dependencies(test_mpi imukit-mpi)
+  target_compile_definitions(test_mpi PRIVATE IMUKIT_MPI_COMMAND="$<TARGET_FILE:imukit-mpi>")
+endif()

@@ -11,5 +11,5 @@ export IMUKIT_TEST_DRAWS=${IMUKIT_TEST_DRAWS:-10000000}
 for isa in scalar avx2; do
     echo "IMUKIT_ISA=$isa"
     IMUKIT_ISA=$isa ctest --test-dir "$build" --output-on-failure -j "$(nproc)" --no-tests=error \
-        -L '^(base|model|noise|motion|simulate|compensate)$'
+        -L '^(base|model|noise|motion|simulate|compensate|navigate)$'
 done

@@ -30,8 +30,8 @@ PUBLIC = {
                "tuned_gyro tuning_fork vibrating_beam",
     "compensate": "compensate",
     "calibrate": "laboratory",
-    "navigate": "navigate",
-    "io": "design_file io log model_file motion_file output_file parameter_file thread_pool",
+    "navigate": "alignment drift navigate zero_velocity",
+    "io": "campaign design_file io log model_file motion_file output_file parameter_file thread_pool",
     "report": "report",
 }
 # Headers that gather others: imukit.h the core, for users only; io.h what is right of it.

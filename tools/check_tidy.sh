@@ -10,8 +10,17 @@ mkdir -p "$passed"
 check_file() {
     local file=$1 passed=build-check/tidy flags="-std=c17 -Iinclude -Isrc"
     case $file in
-        *avx2.c) flags="$flags -mavx2" ;;
+        *avx2.c) flags="$flags -mavx2 -mfma" ;;
+        *fma.c) flags="$flags -mfma" ;;
         *avx512.c) flags="$flags -mavx512f -mavx512dq" ;;
+        */campaign_hdf5*.c)
+            flags="$flags $(pkg-config --cflags hdf5-serial 2>/dev/null ||
+                pkg-config --cflags hdf5)"
+            ;;
+        *_mpi.c)
+            pkg-config --exists mpi-c || return 0
+            flags="$flags $(pkg-config --cflags mpi-c)"
+            ;;
     esac
     local key
     key=$({ clang $flags -E "$file" 2>&1; cat .clang-tidy; } | sha256sum | cut -d' ' -f1)

@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Draws the pictures of docs/physics with the command itself, into docs/images:
+# Draws the pictures of docs/physics and of docs/how-far-off.md with the command itself, into
+# docs/images:
 #
 #     tools/draw_images.sh             all
 #     tools/draw_images.sh ring_laser  those whose name contains it
@@ -102,3 +103,14 @@ draw pendulous_servo-sweep pendulous_servo --sweep
 draw vibrating_beam-two-beams-drift-apart vibrating_beam --view two
 draw vibrating_beam-the-force-on-the-beams vibrating_beam --view "the force"
 move vibrating_beam-the-beat-of-the-beams vibrating_beam --view "the beat"
+
+case drift-navigation in
+    *"$only"*) "$imukit" drift navigation --plot "$images/drift-navigation.svg" >"$images/.draw.log" ;;
+esac
+
+case grade-gyro in
+    *"$only"*)
+        "$imukit" grade navigation HG1700 tactical --map gyro --plot "$images/grade-gyro.svg" \
+            >"$images/.draw.log"
+        ;;
+esac

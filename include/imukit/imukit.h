@@ -4,6 +4,7 @@
 #ifndef IMUKIT_IMUKIT_H
 #define IMUKIT_IMUKIT_H
 
+#include "imukit/alignment.h"
 #include "imukit/allan.h"
 #include "imukit/attitude.h"
 #include "imukit/compensate.h"
@@ -11,6 +12,7 @@
 #include "imukit/decimal.h"
 #include "imukit/distort.h"
 #include "imukit/distributions.h"
+#include "imukit/drift.h"
 #include "imukit/earth.h"
 #include "imukit/elementary.h"
 #include "imukit/executor.h"
@@ -43,5 +45,6 @@
 #include "imukit/tuning_fork.h"
 #include "imukit/units.h"
 #include "imukit/vibrating_beam.h"
+#include "imukit/zero_velocity.h"
 
 #endif

@@ -4,6 +4,7 @@
 #ifndef IMUKIT_IO_H
 #define IMUKIT_IO_H
 
+#include "imukit/campaign.h"
 #include "imukit/design_file.h"
 #include "imukit/log.h"
 #include "imukit/model_file.h"

@@ -243,6 +243,9 @@ typedef struct imk_grade_row {
     const char *gyro_technology, *accel_technology;
     double gyro_bias_limit;  /**< upper end of the class [rad/s] */
     double accel_bias_limit; /**< [m/s^2] */
+    double position_limit;   /**< the claim as a number, the error after position_time [m];
+                                infinite: the claim has no upper end; NaN: there is none */
+    double position_time;    /**< [s]; NaN without a claim */
 } imk_grade_row;
 
 /** Row of a class; NULL for IMK_GRADE_NONE. */
@@ -258,6 +261,13 @@ typedef struct imk_grade_result {
 } imk_grade_result;
 /** Grade of a model; see imk_grade_result. */
 IMK_API imk_grade_result imk_grade_model(const imk_model *model);
+
+/** Class by performance: the best whose claim of position holds for these errors after an hour and
+ * after a day [m]; not finite: no longer a position. Navigation needs 1 nmi after the hour,
+ * strategic that and 1 nmi after the day; the claim of tactical, "> 10 nmi / h", has no upper end,
+ * so it is the class of whatever still has a position after an hour. Below it the table claims
+ * none: IMK_GRADE_NONE. */
+IMK_API imk_grade imk_grade_of_position(double hour, double day);
 
 #ifdef __cplusplus
 }

@@ -45,7 +45,9 @@ enum {
     IMK_TERM_REPEATABILITY = 8,
     IMK_TERM_JITTER = 9,
     IMK_TERM_DROPS = 10,
-    IMK_TERM_PHYSICS = 11
+    IMK_TERM_PHYSICS = 11,
+    IMK_TERM_RESIDUAL = 12, /**< what calibration left of the known values (drift.h) */
+    IMK_TERM_INITIAL = 13   /**< errors at the start of a navigation (drift.h) */
 };
 
 enum {

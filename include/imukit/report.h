@@ -18,7 +18,9 @@ typedef enum imk_curve_style {
     IMK_CURVE_LINE = 0,
     IMK_CURVE_POINTS,
     IMK_CURVE_DASHES,
-    IMK_CURVE_BAND /**< filled between lower and upper */
+    IMK_CURVE_BAND,  /**< filled between lower and upper */
+    IMK_CURVE_LAYER, /**< the same in a strong colour: layers that lie on one another */
+    IMK_CURVE_MARKS  /**< large points that stand out from a map */
 } imk_curve_style;
 
 /** One curve of a panel. Arrays are the caller's. Values that are not finite (or not positive on a
@@ -32,17 +34,36 @@ typedef struct imk_curve {
     const double *lower, *upper; /**< error bars or band; NULL: none */
 } imk_curve;
 
-/** One pair of axes. They span the points, error bars and bands with some air, and the lines only
- *  where there is nothing else: an asymptote may leave the frame. Texts are drawn as they are: no
- *  markup. */
+/** A tinted rectangle behind the curves, with its name in the upper left corner, or the right. */
+typedef struct imk_region {
+    const char *label;
+    int color; /**< as of a curve */
+    double x_low, x_high, y_low, y_high;
+    bool label_right;
+} imk_region;
+
+/** Where the key of a panel stands. */
+typedef enum imk_key_place {
+    IMK_KEY_UPPER = 0, /**< the upper right corner; beside the axes of a single panel */
+    IMK_KEY_LOWER,     /**< the lower right corner, which rising curves leave free */
+    IMK_KEY_BELOW      /**< below the axes */
+} imk_key_place;
+
+/** One pair of axes. They span the points, error bars, bands and regions with some air, and the
+ *  lines only where there is nothing else: an asymptote may leave the frame. Texts are drawn as
+ *  they are: no markup. */
 typedef struct imk_panel {
     const char *title, *x_label, *y_label;
     bool x_logarithmic, y_logarithmic;
     size_t curve_count;
     const imk_curve *curves;
+    size_t region_count;
+    const imk_region *regions;
+    imk_key_place key;
 } imk_panel;
 
-/** Panels on a grid, row by row. The title is drawn over two or more panels. */
+/** Panels on a grid, row by row; larger ones where regions have names to be read. The title is
+ *  drawn over two or more panels. */
 typedef struct imk_figure {
     const char *title;
     size_t panel_count, columns;

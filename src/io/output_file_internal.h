@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the log writer needs of an output file beyond output_file.h. */
+/* What the writers of logs and of results need of an output file beyond output_file.h. */
 #ifndef IMUKIT_OUTPUT_FILE_INTERNAL_H
 #define IMUKIT_OUTPUT_FILE_INTERNAL_H
 

@@ -7,15 +7,21 @@
 
 #define DEGREES_PER_HOUR (3.14159265358979323846 / 180 / 3600) /* [rad/s] */
 #define MICRO_G (9.80665e-6)                                   /* [m/s^2] */
+#define NAUTICAL_MILE 1852.0                                   /* [m] */
+#define HOUR 3600.0                                            /* [s] */
+#define NO_CLAIM ((double)NAN)
 
 static const imk_grade_row grade_rows[] = {
-    {"strategic", "1 nmi / 24 h", "ESG, RLG, FOG", "servo", 0.005 * DEGREES_PER_HOUR, 30 * MICRO_G},
+    {"strategic", "1 nmi / 24 h", "ESG, RLG, FOG", "servo", 0.005 * DEGREES_PER_HOUR, 30 * MICRO_G,
+     NAUTICAL_MILE, 24 * HOUR},
     {"navigation", "1 nmi / h", "RLG, FOG", "servo, vibrating beam", 0.01 * DEGREES_PER_HOUR,
-     50 * MICRO_G},
+     50 * MICRO_G, NAUTICAL_MILE, HOUR},
     {"tactical", "> 10 nmi / h", "RLG, FOG", "servo, vibrating beam, MEMS", 1 * DEGREES_PER_HOUR,
-     1000 * MICRO_G},
-    {"AHRS", "n/a", "MEMS, RLG, FOG, Coriolis", "MEMS", 10 * DEGREES_PER_HOUR, 1000 * MICRO_G},
-    {"control system", "n/a", "Coriolis", "MEMS", 1000 * DEGREES_PER_HOUR, 10000 * MICRO_G},
+     1000 * MICRO_G, (double)INFINITY, HOUR},
+    {"AHRS", "n/a", "MEMS, RLG, FOG, Coriolis", "MEMS", 10 * DEGREES_PER_HOUR, 1000 * MICRO_G,
+     NO_CLAIM, NO_CLAIM},
+    {"control system", "n/a", "Coriolis", "MEMS", 1000 * DEGREES_PER_HOUR, 10000 * MICRO_G,
+     NO_CLAIM, NO_CLAIM},
 };
 
 /* A figure on the limit of its class belongs to it, whatever the last bit of the conversion. */
@@ -69,4 +75,14 @@ imk_grade_result imk_grade_model(const imk_model *model)
     result.overall = gyro_decides ? result.gyro : result.accel;
     result.limiting = gyro_decides ? "gyro bias" : has_accel ? "accelerometer bias" : "";
     return result;
+}
+
+imk_grade imk_grade_of_position(double hour, double day)
+{
+    if (!isfinite(hour))
+        return IMK_GRADE_NONE;
+    if (!(hour <= grade_rows[IMK_GRADE_NAVIGATION].position_limit * rounding))
+        return IMK_GRADE_TACTICAL;
+    return day <= grade_rows[IMK_GRADE_STRATEGIC].position_limit * rounding ? IMK_GRADE_STRATEGIC
+                                                                            : IMK_GRADE_NAVIGATION;
 }

@@ -63,17 +63,21 @@ static inline slope parametric_slope(real z, real inverse)
     return (slope){(sine + sine * w) * length, inverse * length};
 }
 
-/* The vertical. With its sine and cosine s = z + ds, k p = p - dk p before they are normalised,
- * s^2 + (k p)^2 = r^2 (1 + x). */
-static inline slope vertical_at(real pp, real z)
+/* The vertical, from u and 1/r. With its sine and cosine s = z + ds, k p = p - dk p before they are
+ * normalised, s^2 + (k p)^2 = r^2 (1 + x). */
+static inline slope vertical_from(slope u, real pp, real z, real inverse)
 {
-    const real inverse = 1.0 / square_root(pp + z * z);
-    const slope u = parametric_slope(z, inverse);
     const real ds = POLAR_EXCESS * (u.s * u.s * u.s);
     const real dk = EQUATOR_EXCESS * (u.k * u.k * u.k) * pp;
     const real x = ((2.0 * z + ds) * ds - (2.0 - dk) * dk * pp) * (inverse * inverse);
     const real length = inverse + inverse * root_deficit(x);
     return (slope){(z + ds) * length, (1.0 - dk) * length};
+}
+
+static inline slope vertical_at(real pp, real z)
+{
+    const real inverse = 1.0 / square_root(pp + z * z);
+    return vertical_from(parametric_slope(z, inverse), pp, z, inverse);
 }
 
 /* Height above the ellipsoid, p cos + z sin - a sqrt(1 - e^2 sin^2): an error of the latitude
@@ -88,19 +92,24 @@ static inline real height_along(slope vertical, real pp, real z)
 
 /* Normal gravity, along the ellipsoid's normal; the magnitude as in imk_normal_gravity(), but for
  * 2e-16 of it, as one e^2 serves the height and the magnitude. */
-static inline void gravity_at(const real position[3], real gravity[3])
+static inline void gravity_along(slope vertical, real height, const real position[3],
+                                 real gravity[3])
 {
-    const real x = position[0], y = position[1], z = position[2];
-    const real pp = x * x + y * y;
-    const slope vertical = vertical_at(pp, z);
     const real s = vertical.s * vertical.s;
-    const real relative = height_along(vertical, pp, z) * (1.0 / SEMI_MAJOR_AXIS);
+    const real relative = height * (1.0 / SEMI_MAJOR_AXIS);
     const real inverse_root = 1.0 + root_deficit(-(FIRST_ECCENTRICITY_SQUARED * s));
     const real surface = EQUATOR_GRAVITY * (1.0 + GRAVITY_CONSTANT * s) * inverse_root;
     const real change = 2.0 * (1.0 + FLATTENING + ROTATION_RATIO - 2.0 * FLATTENING * s);
     const real magnitude = surface * (1.0 - change * relative + 3.0 * (relative * relative));
     const real across = magnitude * vertical.k;
-    gravity[0] = -(across * x);
-    gravity[1] = -(across * y);
+    gravity[0] = -(across * position[0]);
+    gravity[1] = -(across * position[1]);
     gravity[2] = -(magnitude * vertical.s);
+}
+
+static inline void gravity_at(const real position[3], real gravity[3])
+{
+    const real pp = position[0] * position[0] + position[1] * position[1];
+    const slope vertical = vertical_at(pp, position[2]);
+    gravity_along(vertical, height_along(vertical, pp, position[2]), position, gravity);
 }

@@ -1,21 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One step of the strapdown mechanisation in Earth-fixed axes.
  *
- * With a and u the increments of angle and velocity over dt, da and du their growth within the
- * step, w the Earth's rate, h = w dt, C and q the attitude at the start:
+ * Over the step the rate is (a0 + a1 P1 + a2 P2 + a3 P3)/dt and the force (u0 + u1 P1 + ...)/dt, P
+ * Legendre's polynomials on the step, so that a0 and u0 are the increments of angle and velocity.
+ * With w the Earth's rate, h = w dt, C and q the attitude at the start, < > a mean over s = 0 ...
+ * 1:
  *
- *     p  = a + (a x da)/12                                        body's rotation vector, coning
+ *     p  = a0 + a0 x a1/6 + a1 x a2/30 + a2 x a3/70               body's rotation vector, coning
  *     q' = q(-h) q q(p)                                           attitude
- *     c  = (a x du - da x u)/12                                   sculling
- *     F  = R(-h/2) C [mean R(s p) u + c + (p x c)/2]              force
- *     S  = C {[mean (1-s) R(s p) - mean R(s p)/2] u - (du + (p x du)/2)/12}     scrolling
+ *     c  = (a0 x u1 - a1 x u0)/6 + (a1 x u2 - a2 x u1)/30 + (a2 x u3 - a3 x u2)/70      sculling
+ *     F  = R(-h/2) C [<R(s p)> u0 + c + (p x c)/2]                force
+ *     k  = a0 x (u1/6 + u2/15) + a1 x (u3/70 - u1/30) - a2 x (u0/30 + u2/210)
+ *          - a3 x (u1/105 + u3/630)
+ *     S  = C {[<(1-s) R(s p)> - <R(s p)>/2] u0 - u1/6 - k/2}      scrolling
  *     v' - v = F - h x S - h x (h x F)/8 + g dt - h x (v' + v)
  *     r' = r + dt [(v' + v)/2 + S + h x (3 F + 2 g dt)/12]
  *
  * Attitude is exact for a constant rate; the force for a constant rate and force, but for third
- * powers of h. The terms in da and du [SAVAGE1998a, SAVAGE1998b] are made for rates and forces that
- * are parabolas in time: they belong to the middle of the step, so they are turned by half of p,
- * which leaves an error of fourth order in dt. Gravity is that half-way through the step.
+ * powers of h. The rest are the integrals of second order for these polynomials, to the end: of
+ * (angle x rate)/2 for coning, of angle x force for sculling, of (1/2 - s) times that for scrolling
+ * [SAVAGE1998a, SAVAGE1998b]. What is of third order is left out, but for the turn by half of p
+ * into the middle of the step, where c belongs: an error of fourth order in dt. Gravity is that
+ * half-way through the step.
  *
  * The terms in h: the Earth turns half-way through the step until the force acts, on the mean
  * (R(-h/2)), for longer for what acts early (h x S), and by varying amounts, h x (h x F)/24.
@@ -26,37 +32,109 @@
  * solved as it stands. */
 #include "strapdown_internal.h"
 
+#include <math.h>
+
+typedef double real;
+
+static inline real square_root(real a)
+{
+    return sqrt(a);
+}
+
+#include "motion/gravity_kernel.h"
+
 imk_strapdown imk_strapdown_start(const imk_navigation_state *state)
 {
     imk_strapdown strapdown = {.state = *state};
     strapdown.state.attitude = imk_quaternion_normalise(state->attitude);
     strapdown.height = imk_geodetic_from_ecef(state->position).height;
+    strapdown.samples = 3;
     return strapdown;
 }
 
-/* The growth of the increments within the step, dt^2 times the slope of rate and force in its
- * middle, from the parabola that has the means of this sample and the two before; a straight line
- * while only one is known. With d a divided difference of the means over the times between the
- * ends of samples,
+/* Rate and force over the step, times dt: coefficients of Legendre's polynomials of order 1 to 3.
+ * Those of order 0 are the increments. */
+typedef struct growth {
+    imk_vector3 angle[4], velocity[4];
+    int order; /* of the highest that is not zero */
+} growth;
+
+/* Weights of the divided differences of first to third order in the coefficients. The integral of
+ * the rate is known at the ends of the samples, at dt, 0, -last, ...; Newton's polynomial through
+ * these points has, with y the time from the middle of the step, l = last + dt/2 and
+ * m = l + before, the derivative
  *
- *     slope = 2 [d1 + (d1 - d1_before)/(dt + last + before) (last + dt/2)]                     */
-static inline void growth(imk_strapdown *s, double dt, imk_vector3 angle, imk_vector3 velocity,
-                          imk_vector3 *angle_growth, imk_vector3 *velocity_growth)
+ *     mean + 2 d1 y + d2 (3 y^2 + 2 l y - dt^2/4) + d3 [4 y^3 + 3 (l + m) y^2 + ...]
+ *          = mean + dt [d1 + l d2 + (l m + dt^2/20) d3] P1 + dt^2/2 [d2 + (l + m) d3] P2
+ *            + dt^3/5 d3 P3                                                              */
+typedef struct growth_weights {
+    double now, before;      /* first difference: of this increment and the one before */
+    double second, third;    /* of differences in the next higher one */
+    double p1[3], p2[2], p3; /* of the three differences */
+} growth_weights;
+
+static inline growth_weights weights_of(const imk_strapdown *s, double dt, int order)
 {
     const double last = s->last_step, two = dt + last;
-    const double now = 1.0 / (dt * two), before = 1.0 / (last * two);
-    const double bend = s->has_slope ? (last + 0.5 * dt) / (two + s->step_before) : 0.0;
-    const double square = 2.0 * dt * dt;
-    for (int i = 0; i < 3; i++) {
-        const double a = now * angle.v[i] - before * s->last_angle.v[i];
-        const double u = now * velocity.v[i] - before * s->last_velocity.v[i];
-        angle_growth->v[i] = square * (a + bend * (a - s->last_angle_slope.v[i]));
-        velocity_growth->v[i] = square * (u + bend * (u - s->last_velocity_slope.v[i]));
-        s->last_angle_slope.v[i] = a;
-        s->last_velocity_slope.v[i] = u;
+    growth_weights w = {.now = 1.0 / (dt * two), .before = 1.0 / (last * two)};
+    w.p1[0] = dt * dt;
+    if (order > 1) {
+        const double three = two + s->step_before[0], l = last + 0.5 * dt;
+        w.second = 1.0 / three;
+        w.p1[1] = dt * dt * l;
+        w.p2[0] = 0.5 * dt * dt * dt;
+        if (order > 2) {
+            const double m = l + s->step_before[0], square = dt * dt;
+            w.third = 1.0 / (three + s->step_before[1]);
+            w.p1[2] = square * (l * m + (1.0 / 20) * square);
+            w.p2[1] = w.p2[0] * (l + m);
+            w.p3 = (1.0 / 5) * square * square;
+        }
     }
-    s->step_before = last;
-    s->has_slope = true;
+    return w;
+}
+
+/* One axis: differences of this sample in place of those of the last, and the coefficients. */
+static inline void grow(const growth_weights *w, double now, double last, double *first,
+                        double *second, imk_vector3 out[4], int axis)
+{
+    const double d1 = w->now * now - w->before * last;
+    const double d2 = w->second * (d1 - *first), d3 = w->third * (d2 - *second);
+    *first = d1;
+    *second = d2;
+    out[1].v[axis] = w->p1[0] * d1 + w->p1[1] * d2 + w->p1[2] * d3;
+    out[2].v[axis] = w->p2[0] * d2 + w->p2[1] * d3;
+    out[3].v[axis] = w->p3 * d3;
+}
+
+/* How the rate and the force change within the step, from the samples before as far as they are
+ * known and wanted. */
+static inline void growth_within(imk_strapdown *s, double dt, imk_vector3 angle,
+                                 imk_vector3 velocity, growth *g)
+{
+    const int known = s->has_last ? s->differences + 1 : 0;
+    const int order = s->samples - 1 < known ? s->samples - 1 : known;
+    g->order = order;
+    g->angle[0] = angle;
+    g->velocity[0] = velocity;
+    if (order > 0) {
+        const growth_weights w = weights_of(s, dt, order);
+        for (int i = 0; i < 3; i++) {
+            grow(&w, angle.v[i], s->last_angle.v[i], &s->angle_difference[0].v[i],
+                 &s->angle_difference[1].v[i], g->angle, i);
+            grow(&w, velocity.v[i], s->last_velocity.v[i], &s->velocity_difference[0].v[i],
+                 &s->velocity_difference[1].v[i], g->velocity, i);
+        }
+    } else
+        for (int k = 1; k < 4; k++)
+            g->angle[k] = g->velocity[k] = (imk_vector3){{0.0, 0.0, 0.0}};
+    s->differences = order < 1 ? 0 : order < 2 ? order : 2;
+    s->step_before[1] = s->step_before[0];
+    s->step_before[0] = s->last_step;
+    s->last_angle = angle;
+    s->last_velocity = velocity;
+    s->last_step = dt;
+    s->has_last = true;
 }
 
 /* The v' that solves v' + h x v' = v - h x v + gain, h along the axis of the Earth: with
@@ -83,7 +161,8 @@ static inline void advance(imk_vector3 *position, imk_vector3 *low, imk_vector3 
 }
 
 /* q' = q(-h) q q(p), as q + [q (q(p) - 1)] + (q(-h) - 1) [...]: what changes is small and keeps its
- * digits, and what rounding takes from the sum is carried on. q/2 (1 - |q|^2) keeps the length. */
+ * digits, and what rounding takes from the sum is carried on. m/2 (1 - |q|^2), m being q turned by
+ * the body, keeps the length. */
 static inline void turn_attitude(imk_strapdown *s, const imki_earth_turn *earth,
                                  const imki_turn *turn, imk_vector3 p)
 {
@@ -94,21 +173,23 @@ static inline void turn_attitude(imk_strapdown *s, const imki_earth_turn *earth,
     const imk_quaternion m = {q->w + b.w, q->x + b.x, q->y + b.y, q->z + b.z};
     const double k = earth->cosine_to_one, e = earth->sine;
     const double length = 0.5 * (1.0 - (q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z));
-    add(&q->w, &low->w, b.w + (e * m.z - k * m.w) + length * q->w);
-    add(&q->x, &low->x, b.x + (e * m.y - k * m.x) + length * q->x);
-    add(&q->y, &low->y, b.y - (e * m.x + k * m.y) + length * q->y);
-    add(&q->z, &low->z, b.z - (e * m.w + k * m.z) + length * q->z);
+    add(&q->w, &low->w, b.w + (e * m.z - k * m.w) + length * m.w);
+    add(&q->x, &low->x, b.x + (e * m.y - k * m.x) + length * m.x);
+    add(&q->y, &low->y, b.y - (e * m.x + k * m.y) + length * m.y);
+    add(&q->z, &low->z, b.z - (e * m.w + k * m.z) + length * m.z);
 }
 
-/* Back to the height at the start, along the vertical, and no vertical velocity. */
-static void slave_height(imk_strapdown *s)
+/* To the height that is held, along the vertical, with the climb that is held. */
+static inline void slave_height(imk_strapdown *s)
 {
-    const imk_geodetic place = imk_geodetic_from_ecef(s->state.position);
-    const imk_matrix3 axes = imk_ned_axes(place.latitude, place.longitude);
-    const imk_vector3 down = {{axes.m[0][2], axes.m[1][2], axes.m[2][2]}};
-    const double descent = imki_dot(down, s->state.velocity);
-    s->state.velocity = imki_difference(s->state.velocity, imki_scaled(descent, down));
-    advance(&s->state.position, &s->position_low, imki_scaled(place.height - s->height, down));
+    const double x = s->state.position.v[0], y = s->state.position.v[1];
+    const double z = s->state.position.v[2], pp = x * x + y * y;
+    const slope vertical = vertical_at(pp, z);
+    const imk_vector3 up = {{vertical.k * x, vertical.k * y, vertical.s}};
+    const double climb = s->climb - imki_dot(up, s->state.velocity);
+    s->state.velocity = imki_sum(s->state.velocity, imki_scaled(climb, up));
+    const double rise = s->height - height_along(vertical, pp, z);
+    advance(&s->state.position, &s->position_low, imki_scaled(rise, up));
 }
 
 /* S + h x (3 F + 2 g dt)/12 */
@@ -126,23 +207,57 @@ typedef struct body_step {
     imk_vector3 rotation, force, scrolling;
 } body_step;
 
-static inline body_step integrate_body(imk_vector3 angle, imk_vector3 velocity,
-                                       imk_vector3 angle_growth, imk_vector3 velocity_growth)
+/* weight a + other b */
+static inline imk_vector3 blend(double weight, imk_vector3 a, double other, imk_vector3 b)
+{
+    return imki_sum(imki_scaled(weight, a), imki_scaled(other, b));
+}
+
+/* The integrals of second order of a polynomial rate and force: coning, sculling c, and the k of
+ * scrolling. */
+static inline void second_order(const growth *g, imk_vector3 *coning, imk_vector3 *sculling,
+                                imk_vector3 *scrolling)
+{
+    const imk_vector3 *a = g->angle, *u = g->velocity;
+    *coning = imki_cross(a[1], blend(1.0 / 30, a[2], -1.0 / 6, a[0]));
+    *sculling = imki_sum(imki_scaled(1.0 / 6, imki_cross(a[0], u[1])),
+                         imki_cross(a[1], blend(1.0 / 30, u[2], -1.0 / 6, u[0])));
+    *scrolling = imki_cross(a[0], blend(1.0 / 6, u[1], 1.0 / 15, u[2]));
+    if (g->order > 1) {
+        *sculling = imki_difference(*sculling, imki_scaled(1.0 / 30, imki_cross(a[2], u[1])));
+        *scrolling =
+            imki_difference(*scrolling, imki_cross(a[2], blend(1.0 / 30, u[0], 1.0 / 210, u[2])));
+    }
+    *scrolling = imki_difference(*scrolling, imki_scaled(1.0 / 30, imki_cross(a[1], u[1])));
+    if (g->order > 2) {
+        *coning = imki_sum(*coning, imki_scaled(1.0 / 70, imki_cross(a[2], a[3])));
+        *sculling = imki_sum(
+            *sculling,
+            imki_scaled(1.0 / 70, imki_difference(imki_cross(a[2], u[3]), imki_cross(a[3], u[2]))));
+        const imk_vector3 late = imki_scaled(1.0 / 70, imki_cross(a[1], u[3]));
+        *scrolling = imki_sum(
+            *scrolling,
+            imki_difference(late, imki_cross(a[3], blend(1.0 / 105, u[1], 1.0 / 630, u[3]))));
+    }
+}
+
+static inline body_step integrate_body(const growth *g)
 {
     body_step step;
-    const imk_vector3 p = imki_sum(angle, imki_scaled(1.0 / 12, imki_cross(angle, angle_growth)));
+    imk_vector3 coning = {{0}}, sculling = {{0}}, scrolling = {{0}};
+    const imk_vector3 velocity = g->velocity[0];
+    if (g->order > 0)
+        second_order(g, &coning, &sculling, &scrolling);
+    const imk_vector3 p = imki_sum(g->angle[0], coning);
     const imki_turn turn = imki_turn_from(p);
     const imk_vector3 pu = imki_cross(p, velocity), ppu = imki_cross(p, pu);
-    const imk_vector3 sculling =
-        imki_difference(imki_cross(angle, velocity_growth), imki_cross(angle_growth, velocity));
     const imk_vector3 turned_sculling = imki_cross(p, sculling);
-    const imk_vector3 turned_growth = imki_cross(p, velocity_growth);
     for (int i = 0; i < 3; i++) {
         step.force.v[i] = velocity.v[i] + turn.first * pu.v[i] + turn.second * ppu.v[i] +
-                          (1.0 / 12) * (sculling.v[i] + 0.5 * turned_sculling.v[i]);
+                          (sculling.v[i] + 0.5 * turned_sculling.v[i]);
         step.scrolling.v[i] = (turn.second - 0.5 * turn.first) * pu.v[i] +
                               (turn.third - 0.5 * turn.second) * ppu.v[i] -
-                              (1.0 / 12) * (velocity_growth.v[i] + 0.5 * turned_growth.v[i]);
+                              ((1.0 / 6) * g->velocity[1].v[i] + 0.5 * scrolling.v[i]);
     }
     step.rotation = p;
     step.turn = turn;
@@ -154,14 +269,13 @@ void imk_strapdown_step(imk_strapdown *strapdown, double dt, imk_vector3 angle,
 {
     imk_navigation_state *state = &strapdown->state;
     /* First, since everything up to its use can be computed while its square roots are. */
-    const imk_vector3 gravity = imki_gravity_midway(state, dt);
+    const imk_vector3 midway = imki_sum(state->position, imki_scaled(0.5 * dt, state->velocity));
+    imk_vector3 gravity;
+    gravity_at(midway.v, gravity.v);
 
-    imk_vector3 angle_growth = {{0}}, velocity_growth = {{0}};
-    if (strapdown->has_last && !strapdown->simple)
-        growth(strapdown, dt, angle, velocity, &angle_growth, &velocity_growth);
-    else
-        strapdown->has_slope = false;
-    const body_step body = integrate_body(angle, velocity, angle_growth, velocity_growth);
+    growth within;
+    growth_within(strapdown, dt, angle, velocity, &within);
+    const body_step body = integrate_body(&within);
 
     const imki_earth_turn earth = imki_earth_turn_from(dt);
     const imk_vector3 force =
@@ -172,17 +286,13 @@ void imk_strapdown_step(imk_strapdown *strapdown, double dt, imk_vector3 angle,
     const imk_vector3 gain = imki_sum(imki_sum(force, turning), fall);
     const imk_vector3 mean = mean_velocity(earth.angle, state->velocity, gain);
 
-    turn_attitude(strapdown, &earth, &body.turn, body.rotation);
     const imk_vector3 beside = beside_trapezium(earth.angle, scrolling, force, fall);
     advance(&state->position, &strapdown->position_low, imki_scaled(dt, imki_sum(mean, beside)));
     for (int i = 0; i < 3; i++)
         state->velocity.v[i] = 2.0 * mean.v[i] - state->velocity.v[i];
     state->time += dt;
-
-    strapdown->last_angle = angle;
-    strapdown->last_velocity = velocity;
-    strapdown->last_step = dt;
-    strapdown->has_last = true;
     if (strapdown->hold_height)
         slave_height(strapdown);
+    /* Last, since the next step's gravity does not wait for it. */
+    turn_attitude(strapdown, &earth, &body.turn, body.rotation);
 }

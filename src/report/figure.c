@@ -23,6 +23,7 @@ enum { PALETTE_SIZE = sizeof palette / sizeof palette[0] };
 static const double few_decades = 300;
 
 enum { PANEL_WIDTH = 480, PANEL_HEIGHT = 380, SINGLE_WIDTH = 860, SINGLE_HEIGHT = 560 };
+enum { LARGE_WIDTH = 800, LARGE_HEIGHT = 540 };
 
 typedef struct span {
     double low, high;
@@ -41,18 +42,30 @@ static void span_add(span *s, double value, bool logarithmic)
     s->high = value > s->high ? value : s->high;
 }
 
-static bool spans_axes(const imk_curve *curve)
+static bool is_filled(const imk_curve *curve)
 {
-    return curve->style == IMK_CURVE_POINTS || curve->style == IMK_CURVE_BAND;
+    return curve->style == IMK_CURVE_BAND || curve->style == IMK_CURVE_LAYER;
 }
 
-/* Spans of a panel's points and bands; of its lines when it has nothing else. */
+static bool spans_axes(const imk_curve *curve)
+{
+    return curve->style == IMK_CURVE_POINTS || curve->style == IMK_CURVE_MARKS || is_filled(curve);
+}
+
+/* Spans of a panel's points, bands and regions; of its lines when it has nothing else. */
 static void panel_spans(const imk_panel *panel, span *x, span *y)
 {
-    bool lines_only = true;
+    bool lines_only = panel->region_count == 0;
     for (size_t c = 0; c < panel->curve_count; c++)
         lines_only = lines_only && !spans_axes(&panel->curves[c]);
     *x = *y = (span){(double)INFINITY, -(double)INFINITY};
+    for (size_t r = 0; r < panel->region_count; r++) {
+        const imk_region *region = &panel->regions[r];
+        span_add(x, region->x_low, panel->x_logarithmic);
+        span_add(x, region->x_high, panel->x_logarithmic);
+        span_add(y, region->y_low, panel->y_logarithmic);
+        span_add(y, region->y_high, panel->y_logarithmic);
+    }
     for (size_t c = 0; c < panel->curve_count; c++) {
         const imk_curve *curve = &panel->curves[c];
         if (!lines_only && !spans_axes(curve))
@@ -61,7 +74,7 @@ static void panel_spans(const imk_panel *panel, span *x, span *y)
             if (!drawable(curve->x[i], panel->x_logarithmic))
                 continue;
             span_add(x, curve->x[i], panel->x_logarithmic);
-            if (curve->style != IMK_CURVE_BAND)
+            if (!is_filled(curve))
                 span_add(y, curve->y[i], panel->y_logarithmic);
             if (curve->lower && curve->upper) {
                 span_add(y, curve->lower[i], panel->y_logarithmic);
@@ -173,10 +186,11 @@ static void write_curve(FILE *out, const imk_curve *curve, size_t index, const i
     bool bars = curve->lower && curve->upper;
     switch (curve->style) {
     case IMK_CURVE_BAND:
+    case IMK_CURVE_LAYER:
         fprintf(out,
                 "using 1:3:4 with filledcurves fillcolor rgb '%s' fillstyle transparent solid "
-                "0.18 noborder",
-                color);
+                "%s noborder",
+                color, curve->style == IMK_CURVE_BAND ? "0.18" : "0.7");
         break;
     case IMK_CURVE_POINTS:
         /* Bars as lines of their own: gnuplot blanks a disc around a point drawn with its bar. */
@@ -190,6 +204,10 @@ static void write_curve(FILE *out, const imk_curve *curve, size_t index, const i
         }
         fprintf(out, "using 1:2 with points %slinecolor rgb '%s'",
                 text ? "" : "pointtype 7 pointsize 0.5 ", color);
+        break;
+    case IMK_CURVE_MARKS:
+        fprintf(out, "using 1:2 with points %slinecolor rgb '%s'",
+                text ? "" : "pointtype 13 pointsize 1.5 ", color);
         break;
     case IMK_CURVE_LINE:
         fprintf(out, "using 1:2 with lines linewidth 2 linecolor rgb '%s'", color);
@@ -208,8 +226,58 @@ static void write_curve(FILE *out, const imk_curve *curve, size_t index, const i
     }
 }
 
+static void corner(FILE *out, double x, double y)
+{
+    number(out, x);
+    fputc(',', out);
+    number(out, y);
+}
+
+/* Rectangles are for drawings only: made of letters they would hide the points. */
+static void write_regions(FILE *out, const imk_panel *panel, bool text)
+{
+    fputs("unset object\nunset label\n", out);
+    for (size_t r = 0; r < panel->region_count; r++) {
+        const imk_region *region = &panel->regions[r];
+        const char *color = palette[(unsigned)region->color % PALETTE_SIZE];
+        if (!text) {
+            fprintf(out, "set object %zu rectangle from ", r + 1);
+            corner(out, region->x_low, region->y_low);
+            fputs(" to ", out);
+            corner(out, region->x_high, region->y_high);
+            fprintf(out,
+                    " behind fillcolor rgb '%s' fillstyle transparent solid 0.12 border "
+                    "linecolor rgb '%s'\n",
+                    color, color);
+        }
+        fprintf(out, "set label %zu ", r + 1);
+        quote(out, region->label);
+        fputs(" at ", out);
+        corner(out, region->label_right ? region->x_high : region->x_low, region->y_high);
+        fprintf(out, " %s noenhanced", region->label_right ? "right" : "left");
+        if (!text)
+            fprintf(out, " offset character %s,-0.7 font ',10' textcolor rgb '%s'",
+                    region->label_right ? "-0.5" : "0.5", color);
+        else if (region->label_right) /* a line below the names on the left */
+            fputs(" offset character 0,-1", out);
+        fputc('\n', out);
+    }
+}
+
+/* The empty title keeps a key below off the label of the axis. */
+static void write_key(FILE *out, imk_key_place place, bool single)
+{
+    static const char *const among_panels[] = {"at graph 0.87,0.99 right top",
+                                               "at graph 0.97,0.03 right bottom",
+                                               "outside bottom center horizontal title ' '"};
+    static const char *const alone[] = {"outside right top", "inside right bottom",
+                                        "outside bottom center horizontal title ' '"};
+    fprintf(out, "set key default %s noautotitle samplen 2 spacing 1.1 textcolor rgb '#333333'%s\n",
+            single ? alone[place] : among_panels[place], single ? "" : " font ',9'");
+}
+
 static void write_panel(FILE *out, const imk_panel *panel, size_t first_index,
-                        const imki_drawing *drawing)
+                        const imki_drawing *drawing, bool single)
 {
     span x, y;
     panel_spans(panel, &x, &y);
@@ -219,15 +287,21 @@ static void write_panel(FILE *out, const imk_panel *panel, size_t first_index,
     fputs(" noenhanced\n", out);
     write_axis(out, "x", panel->x_label, x, panel->x_logarithmic, text);
     write_axis(out, "y", panel->y_label, y, panel->y_logarithmic, text);
+    write_regions(out, panel, text);
+    if (!text)
+        write_key(out, panel->key, single);
     const char *separator = "plot ";
     for (size_t c = 0; c < panel->curve_count; c++) {
         /* A band of letters would hide the points. */
-        if (text && panel->curves[c].style == IMK_CURVE_BAND && panel->curve_count > 1)
+        if (text && is_filled(&panel->curves[c]) && panel->curve_count > 1)
             continue;
         fputs(separator, out);
         write_curve(out, &panel->curves[c], first_index + c, drawing);
         separator = ", \\\n     ";
     }
+    /* A map of regions alone needs something to be plotted all the same. */
+    if (panel->curve_count == 0)
+        fputs("plot NaN notitle", out);
     fputc('\n', out);
 }
 
@@ -237,13 +311,25 @@ static size_t figure_columns(const imk_figure *figure)
     return columns < figure->panel_count ? columns : figure->panel_count;
 }
 
+static bool is_map(const imk_figure *figure)
+{
+    for (size_t p = 0; p < figure->panel_count; p++)
+        if (figure->panels[p].region_count > 0)
+            return true;
+    return false;
+}
+
 static void write_terminal(FILE *out, const imk_figure *figure, const imki_drawing *drawing)
 {
     size_t columns = figure_columns(figure);
     size_t rows = (figure->panel_count + columns - 1) / columns;
     bool single = figure->panel_count == 1;
-    size_t width = single ? SINGLE_WIDTH : columns * PANEL_WIDTH;
-    size_t height = single ? SINGLE_HEIGHT : rows * PANEL_HEIGHT + 40;
+    size_t width = columns * (is_map(figure) ? LARGE_WIDTH : PANEL_WIDTH);
+    size_t height = rows * (is_map(figure) ? LARGE_HEIGHT : PANEL_HEIGHT) + 40;
+    if (single) {
+        width = SINGLE_WIDTH;
+        height = SINGLE_HEIGHT;
+    }
     switch (drawing->terminal) {
     case IMKI_TERMINAL_SVG:
         fprintf(out,
@@ -279,9 +365,6 @@ static void write_style(FILE *out, const imk_figure *figure, const imki_drawing 
           "set grid xtics ytics mxtics mytics linecolor rgb '#d4d4d4' linewidth 0.8, "
           "linecolor rgb '#efefef' linewidth 0.5\n",
           out);
-    fprintf(out, "set key %s noautotitle samplen 2 spacing 1.1 textcolor rgb '#333333'\n",
-            figure->panel_count == 1 ? "outside right top"
-                                     : "at graph 0.87,0.99 right top font ',9'");
     if (figure->panel_count > 1)
         fputs("set xlabel offset 0,0.3\nset tics font ',10'\n", out);
 }
@@ -309,7 +392,7 @@ char *imki_figure_script(const imk_figure *figure, const imki_drawing *drawing, 
     }
     size_t index = 0;
     for (size_t p = 0; p < figure->panel_count; p++) {
-        write_panel(out, &figure->panels[p], index, drawing);
+        write_panel(out, &figure->panels[p], index, drawing, figure->panel_count == 1);
         index += figure->panels[p].curve_count;
     }
     fputs(multiplot ? "unset multiplot\nset output\n" : "set output\n", out);

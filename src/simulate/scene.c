@@ -115,7 +115,7 @@ static imk_status check_timing(const imk_model *model, const imk_simulation *sim
 }
 
 static imk_status start_motion(imki_scene *e, const imk_model *model,
-                               const imk_simulation *simulation, imk_error *error)
+                               const imk_simulation *simulation, bool checked, imk_error *error)
 {
     e->recorded = simulation->motion.recorded;
     e->trajectory = simulation->motion.trajectory;
@@ -127,7 +127,7 @@ static imk_status start_motion(imki_scene *e, const imk_model *model,
     if (e->trajectory) {
         double last;
         imk_trajectory_span(e->trajectory, &e->start, &last);
-        return imk_trajectory_validate(e->trajectory, error);
+        return checked ? IMK_OK : imk_trajectory_validate(e->trajectory, error);
     }
     const imk_simulation *s = simulation;
     const double roll_pitch_yaw[3] = {s->roll, s->pitch, s->yaw};
@@ -192,7 +192,7 @@ static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
 }
 
 imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_simulation *simulation,
-                            double *memory, imk_error *error)
+                            bool checked, double *memory, imk_error *error)
 {
     *e = (imki_scene){.random = imk_random_seeded(simulation->seed),
                       .temperature = simulation->temperature,
@@ -200,7 +200,7 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
                       .skew = model->timing.skew.value};
     e->kernel = e->random.kernel;
     e->jitter_stream = imk_stream(simulation->run, IMK_TERM_JITTER, 0, 0);
-    imk_status status = start_motion(e, model, simulation, error);
+    imk_status status = start_motion(e, model, simulation, checked, error);
     if (status == IMK_OK && e->temperature)
         status = imk_temperature_validate(e->temperature, error);
     if (status != IMK_OK)
@@ -225,6 +225,20 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
     e->stimulus[IMK_ACCEL] =
         stimulus_of(e, e->column, e->skew != 0.0 && e->motion_varies ? IMKI_LATE : 0);
     return IMK_OK;
+}
+
+bool imki_scenes_agree(const imki_scene *a, const imki_scene *b)
+{
+    /* At rest each has its own trajectory, and what follows the temperature a state. */
+    if (!a->trajectory || a->trajectory != b->trajectory || a->temperature || b->temperature)
+        return false;
+    for (int i = 0; i < 2; i++)
+        if (a->warm_up_present[i] != b->warm_up_present[i] ||
+            (a->warm_up_present[i] && a->warm_up_time[i] != b->warm_up_time[i]))
+            return false;
+    return a->start == b->start && a->interval == b->interval && a->jitter == 0.0 &&
+           b->jitter == 0.0 && a->skew == b->skew && a->substeps == b->substeps &&
+           a->needs_acceleration == b->needs_acceleration;
 }
 
 /* ---- motion ---- */

@@ -168,9 +168,9 @@ static imk_status start_channels(imk_simulator *made, unsigned char *memory, con
     return IMK_OK;
 }
 
-imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model,
-                               const imk_simulation *simulation, imk_simulator **simulator,
-                               imk_error *error)
+imk_status imki_simulator_start(void *memory, size_t size, const imk_model *model,
+                                const imk_simulation *simulation, bool checked,
+                                imk_simulator **simulator, imk_error *error)
 {
     imk_status status = imk_model_validate(model, error);
     if (status == IMK_OK)
@@ -194,7 +194,7 @@ imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model
     /* The columns of the scene come last. */
     double *columns = (double *)(void *)((unsigned char *)memory +
                                          imk_simulator_size(model, simulation) - columns_size);
-    status = imki_scene_start(&made->scene, model, simulation, columns, error);
+    status = imki_scene_start(&made->scene, model, simulation, checked, columns, error);
     if (status == IMK_OK)
         status = start_distortion(made, model, simulation, error);
     if (status == IMK_OK)
@@ -202,6 +202,13 @@ imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model
     if (status == IMK_OK)
         *simulator = made;
     return status;
+}
+
+imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model,
+                               const imk_simulation *simulation, imk_simulator **simulator,
+                               imk_error *error)
+{
+    return imki_simulator_start(memory, size, model, simulation, false, simulator, error);
 }
 
 size_t imk_simulator_channels(const imk_simulator *simulator)
@@ -228,6 +235,7 @@ bool imk_simulator_dropped(const imk_simulator *simulator, uint64_t row)
 /* Rows first … first + rows - 1 of the blocks that begin at `out`. */
 typedef struct row_work {
     imk_simulator *simulator;
+    const imki_scene *scene; /* what it sees */
     size_t first, rows;
     double *const *out;
 } row_work;
@@ -237,7 +245,7 @@ static void run_response(void *context, size_t item)
 {
     const row_work *work = context;
     imk_simulator *simulator = work->simulator;
-    imki_channel_response(&simulator->channel[item], &simulator->distortion, &simulator->scene, 0,
+    imki_channel_response(&simulator->channel[item], &simulator->distortion, work->scene, 0,
                           work->rows, work->out[item] + work->first);
 }
 
@@ -270,7 +278,8 @@ static void make_blocks(imk_simulator *simulator, size_t blocks, double *const *
     const bool varies = simulator->scene.varies;
     const size_t stretch = varies ? stretch_rows(simulator, executor) : rows;
     for (size_t first = 0; first < rows; first += stretch) {
-        row_work work = {simulator, first, rows - first < stretch ? rows - first : stretch, out};
+        row_work work = {simulator, &simulator->scene, first,
+                         rows - first < stretch ? rows - first : stretch, out};
         if (varies) {
             imki_scene_fill(&simulator->scene, simulator->next + first, work.rows, executor);
             /* All channels before any noise, which would push the motion out of the cache. */
@@ -318,4 +327,44 @@ void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *c
     make_blocks(simulator, 1, held, executor);
     simulator->left = IMK_NOISE_BLOCK;
     hand_out(simulator, channels, count - done, out);
+}
+
+/* ---- several at once ---- */
+
+/* Rows of simulators that see the same: the motion is made once, by the first. */
+static void make_together(size_t count, imk_simulator *const *simulators, size_t rows,
+                          double *const *const *columns)
+{
+    imki_scene *scene = &simulators[0]->scene;
+    const uint64_t next = simulators[0]->next;
+    const size_t stretch = stretch_rows(simulators[0], NULL);
+    for (size_t first = 0; first < rows; first += stretch) {
+        const size_t now = rows - first < stretch ? rows - first : stretch;
+        imki_scene_fill(scene, next + first, now, NULL);
+        for (int part = 0; part < 2; part++)
+            for (size_t i = 0; i < count; i++) {
+                row_work work = {simulators[i], scene, first, now, columns[i]};
+                imk_execute(NULL, simulators[i]->channels, part == 0 ? run_response : run_blocks,
+                            &work);
+            }
+    }
+    for (size_t i = 0; i < count; i++)
+        simulators[i]->next += rows;
+}
+
+void imki_simulators_next(size_t count, imk_simulator *const *simulators, size_t blocks,
+                          double *const *const *columns)
+{
+    for (size_t i = 0; i < count;) {
+        size_t same = 1;
+        const imki_scene *scene = &simulators[i]->scene;
+        while (scene->varies && i + same < count &&
+               imki_scenes_agree(scene, &simulators[i + same]->scene))
+            same++;
+        if (same > 1)
+            make_together(same, simulators + i, blocks * IMK_NOISE_BLOCK, columns + i);
+        else
+            make_blocks(simulators[i], blocks, columns[i], NULL);
+        i += same;
+    }
 }

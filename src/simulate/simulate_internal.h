@@ -54,8 +54,12 @@ typedef struct imki_scene {
 size_t imki_substeps(const imk_model *model, const imk_simulation *simulation);
 /* Doubles of memory for the columns; 0 when nothing varies. */
 size_t imki_scene_size(const imk_model *model, const imk_simulation *simulation);
+/* @param checked  the motion has been found valid before */
 imk_status imki_scene_start(imki_scene *scene, const imk_model *model,
-                            const imk_simulation *simulation, double *memory, imk_error *error);
+                            const imk_simulation *simulation, bool checked, double *memory,
+                            imk_error *error);
+/* True when two scenes that have been used alike go on alike. */
+bool imki_scenes_agree(const imki_scene *a, const imki_scene *b);
 /* Make the rows first … first + rows - 1, rows * substeps <= IMKI_STRETCH. Stretches follow one
  * another. */
 void imki_scene_fill(imki_scene *scene, uint64_t first, size_t rows, const imk_executor *executor);
@@ -116,5 +120,18 @@ void imki_channel_response(imki_channel *channel, const imk_distortion *distorti
  * @param constant  true: the deterministic part is channel->constant; false: it stands in out
  * @param out       in time order */
 void imki_channel_block(imki_channel *channel, bool constant, double *out);
+
+/* ---- simulate.c: many runs of one motion ---- */
+
+/* imk_simulator_start() on a motion that may have been `checked` before. */
+imk_status imki_simulator_start(void *memory, size_t size, const imk_model *model,
+                                const imk_simulation *simulation, bool checked,
+                                imk_simulator **simulator, imk_error *error);
+/* The next blocks of 512 samples of several simulators: as imk_simulator_next() gives them, which
+ * must have been asked for whole blocks so far. Neighbours that see the same motion and have been
+ * used by this function only share the work of making it.
+ * @param columns  [simulator][channel]: blocks * 512 doubles each */
+void imki_simulators_next(size_t count, imk_simulator *const *simulators, size_t blocks,
+                          double *const *const *columns);
 
 #endif

@@ -69,9 +69,9 @@ static void test_wrong_usage(void **state)
     check_message("$I simulate", 2,
                   "imukit simulate: error: an operand is missing: imukit simulate "
                   "MODEL\n" TRY("simulate"));
-    check_message("$I grade a b", 2,
-                  "imukit grade: error: \"b\" is one word too many: imukit grade "
-                  "MODEL\n" TRY("grade"));
+    check_message("$I grade a b c d e f g h i", 2,
+                  "imukit grade: error: \"i\" is one word too many: imukit grade "
+                  "MODEL...\n" TRY("grade"));
     check_message("$I convert a.csv", 2,
                   "imukit convert: error: an operand is missing: imukit convert IN "
                   "OUT\n" TRY("convert"));

@@ -80,6 +80,23 @@ static void silence_is_not_a_grade(void **state)
     assert_int_equal(imk_grade_model(&model).overall, IMK_GRADE_TACTICAL);
 }
 
+/* Claims as numbers: 1 nmi (1852 m) after an hour, after a day; tactical has no upper end. A figure
+ * on the limit meets it. */
+static void class_of_position(void **state)
+{
+    (void)state;
+    const double none = (double)NAN;
+    assert_int_equal(imk_grade_of_position(100, 1852), IMK_GRADE_STRATEGIC);
+    assert_int_equal(imk_grade_of_position(100, 1853), IMK_GRADE_NAVIGATION);
+    assert_int_equal(imk_grade_of_position(1852, none), IMK_GRADE_NAVIGATION);
+    assert_int_equal(imk_grade_of_position(1853, 100), IMK_GRADE_TACTICAL);
+    assert_int_equal(imk_grade_of_position(300e3, none), IMK_GRADE_TACTICAL);
+    assert_int_equal(imk_grade_of_position(none, none), IMK_GRADE_NONE);
+    assert_int_equal(imk_grade_of_position((double)INFINITY, 1), IMK_GRADE_NONE);
+    assert_true(isinf(imk_grade_table(IMK_GRADE_TACTICAL)->position_limit));
+    assert_true(isnan(imk_grade_table(IMK_GRADE_AHRS)->position_limit));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -87,6 +104,7 @@ int main(void)
         cmocka_unit_test(listed_values_belong_to_their_class),
         cmocka_unit_test(worse_sensor_decides),
         cmocka_unit_test(parts_add_as_squares),
+        cmocka_unit_test(class_of_position),
         cmocka_unit_test(silence_is_not_a_grade),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -40,6 +40,13 @@ static inline imk_vector3 exact_euler_rate(const double angle[3], const double r
                           cr * cp * rate[2] - sr * rate[1]}};
 }
 
+/* q_el */
+static inline imk_quaternion exact_axes(const exact_motion *motion)
+{
+    return imk_quaternion_from_matrix(
+        imk_ned_axes(motion->origin.latitude, motion->origin.longitude));
+}
+
 static inline imk_navigation_state exact_state(const exact_motion *motion, double time)
 {
     const exact_instant now = motion->at(time);
@@ -49,7 +56,7 @@ static inline imk_navigation_state exact_state(const exact_motion *motion, doubl
         .time = time,
         .position = imk_vector3_add(origin, imk_matrix3_apply(c_el, now.position)),
         .velocity = imk_matrix3_apply(c_el, now.velocity),
-        .attitude = imk_quaternion_multiply(imk_quaternion_from_matrix(c_el), now.attitude)};
+        .attitude = imk_quaternion_multiply(exact_axes(motion), now.attitude)};
 }
 
 /* Rate and specific force at one instant. */
@@ -91,27 +98,38 @@ static inline void exact_increments(const exact_motion *motion, double from, dou
     }
 }
 
-/* The mechanisation `seconds` along a motion at `rate` [Hz], knowing the sample before the start.
- * `spread` moves every other sampling instant by that fraction of the interval. */
-static inline imk_strapdown exact_run(const exact_motion *motion, double seconds, double rate,
-                                      double spread)
+/* The mechanisation `seconds` along a motion at `rate` [Hz], with corrections from `samples`, all
+ * of which it knows at the start. `spread` moves every other sampling instant by that fraction of
+ * the interval. */
+static inline imk_strapdown exact_run_of(const exact_motion *motion, double seconds, double rate,
+                                         double spread, int samples)
 {
     const imk_navigation_state start = exact_state(motion, 0.0);
-    const size_t count = (size_t)(seconds * rate + 0.5);
+    const int count = (int)(seconds * rate + 0.5);
     imk_strapdown strapdown = imk_strapdown_start(&start);
-    exact_increments(motion, -1.0 / rate, 0.0, &strapdown.last_angle, &strapdown.last_velocity);
-    strapdown.last_step = 1.0 / rate;
-    strapdown.has_last = true;
-    double from = 0.0;
-    for (size_t k = 1; k <= count; k++) {
-        const double shift = k % 2 == 1 && k < count ? spread : 0.0;
+    strapdown.samples = samples;
+    double from = (1 - samples) / rate;
+    for (int k = 2 - samples; k <= count; k++) {
+        const double shift = k > 0 && k % 2 == 1 && k < count ? spread : 0.0;
         const double to = ((double)k + shift) / rate;
         imk_vector3 angle, velocity;
         exact_increments(motion, from, to, &angle, &velocity);
         imk_strapdown_step(&strapdown, to - from, angle, velocity);
         from = to;
+        if (k == 0) { /* the samples are known now, and the run begins */
+            strapdown.state = imk_strapdown_start(&start).state;
+            strapdown.position_low = (imk_vector3){{0}};
+            strapdown.attitude_low = (imk_quaternion){0};
+        }
     }
     return strapdown;
+}
+
+/* That of three samples. */
+static inline imk_strapdown exact_run(const exact_motion *motion, double seconds, double rate,
+                                      double spread)
+{
+    return exact_run_of(motion, seconds, rate, spread, 3);
 }
 
 /* What a run has missed. */

@@ -204,7 +204,7 @@ static inline void groves_drift(const groves_profile *profile, size_t count, con
                                 imk_vector3 *drift)
 {
     imk_strapdown good = imk_strapdown_start(&profile->start), wrong = good;
-    good.simple = wrong.simple = true;
+    good.samples = wrong.samples = 1;
     for (size_t k = 0, next = 0; k < profile->count && next < count; k++) {
         groves_step(&good, profile, profile->rate, profile->force, k);
         groves_step(&wrong, profile, profile->wrong_rate, profile->wrong_force, k);

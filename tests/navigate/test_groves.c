@@ -69,7 +69,7 @@ static void test_increments_lead_to_the_end(void **state)
         groves_profile profile;
         load_or_skip(number, &profile);
         imk_strapdown strapdown = imk_strapdown_start(&profile.start);
-        strapdown.simple = true;
+        strapdown.samples = 1;
         for (size_t k = 0; k < profile.count; k++)
             groves_step(&strapdown, &profile, profile.rate, profile.force, k);
         const imk_quaternion off = imk_quaternion_multiply(

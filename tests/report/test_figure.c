@@ -31,7 +31,8 @@ static int set_up(void **state)
     curves[0] = (imk_curve){"gyro_x's", IMK_CURVE_POINTS, 0, POINTS, tau, deviation, lower, upper};
     curves[1] = (imk_curve){"fit", IMK_CURVE_DASHES, 1, POINTS, tau, line, NULL, NULL};
     curves[2] = (imk_curve){"", IMK_CURVE_BAND, 2, POINTS, tau, deviation, lower, upper};
-    panel = (imk_panel){"a_b `id` $x", "tau [s]", "deviation [deg/h]", true, true, 3, curves};
+    panel = (imk_panel){"a_b `id` $x", "tau [s]",    "deviation [deg/h]", true, true, 3, curves, 0,
+                        NULL,          IMK_KEY_UPPER};
     figure = (imk_figure){"title", 1, 1, &panel};
     return mkdtemp(directory) ? 0 : -1;
 }
@@ -123,6 +124,53 @@ static void test_draws_svg_and_png(void **state)
     unlink(path);
 }
 
+/* A map: regions alone span the axes, and their names are texts like any other. */
+static void test_regions(void **state)
+{
+    (void)state;
+    const imk_region regions[] = {{"fibre's", 0, 1e-3, 1e2, 0.1, 1e3, false},
+                                  {"ring laser", 1, 1e-4, 1, 1, 20, true}};
+    static const double at[] = {0.01};
+    const imk_curve mark = {
+        .label = "mine", .style = IMK_CURVE_MARKS, .count = 1, .x = at, .y = at};
+    const imk_panel map = {.title = "map",
+                           .x_label = "bias",
+                           .y_label = "scale",
+                           .x_logarithmic = true,
+                           .y_logarithmic = true,
+                           .curve_count = 1,
+                           .curves = &mark,
+                           .region_count = 2,
+                           .regions = regions};
+    const imk_panel two[] = {map, map};
+    const imk_figure drawn = {.title = "", .panel_count = 1, .columns = 1, .panels = &map};
+    const imk_figure large = {.title = "", .panel_count = 2, .columns = 2, .panels = two};
+    imki_drawing drawing = {IMKI_TERMINAL_SVG, "a.svg", "a.dat", 0, 0, false};
+    size_t size = 0;
+    char *script = imki_figure_script(&drawn, &drawing, &size);
+    assert_non_null(script);
+    assert_non_null(strstr(script, "set object 2 rectangle from 0.0001,1 to 1,20 "));
+    assert_non_null(strstr(script, "set label 1 'fibre''s' at 0.001,1000 left "));
+    assert_non_null(strstr(script, "set label 2 'ring laser' at 1,20 right "));
+    /* The mark at 0.01 is below both regions: the axis reaches down to it. */
+    assert_non_null(strstr(script, "set yrange [0.004"));
+    assert_non_null(strstr(script, "with points pointtype 13 "));
+    free(script);
+    script = imki_figure_script(&large, &drawing, &size);
+    assert_non_null(script);
+    assert_non_null(strstr(script, "svg size 1600,580 "));
+    free(script);
+    if (!imk_plot_available())
+        return;
+    char *path = path_in_directory("map.svg");
+    imk_error error;
+    CHECK_OK(imk_figure_write(&drawn, path, &error));
+    char *svg = read_text(path);
+    assert_non_null(strstr(svg, "ring laser"));
+    free(svg);
+    unlink(path);
+}
+
 static void test_refuses_what_cannot_be_drawn(void **state)
 {
     (void)state;
@@ -131,7 +179,7 @@ static void test_refuses_what_cannot_be_drawn(void **state)
     assert_non_null(strstr(error.expected, ".svg"));
     double nothing[POINTS] = {0}; /* no logarithm */
     imk_curve curve = {"", IMK_CURVE_POINTS, 0, POINTS, tau, nothing, NULL, NULL};
-    imk_panel empty = {"empty", "", "", true, true, 1, &curve};
+    imk_panel empty = {"empty", "", "", true, true, 1, &curve, 0, NULL, IMK_KEY_UPPER};
     imk_figure bad = {"", 1, 1, &empty};
     CHECK_STATUS(imk_figure_write(&bad, path_in_directory("a.svg"), &error), IMK_ERROR_EMPTY);
     assert_string_equal(error.field, "empty");
@@ -174,6 +222,7 @@ int main(void)
         cmocka_unit_test(test_script_quotes_texts),
         cmocka_unit_test(test_axes_span_points_only),
         cmocka_unit_test(test_draws_svg_and_png),
+        cmocka_unit_test(test_regions),
         cmocka_unit_test(test_refuses_what_cannot_be_drawn),
         cmocka_unit_test(test_without_gnuplot),
     };

@@ -69,7 +69,7 @@ static void test_figures_are_inline(void **state)
     }
     double x[] = {1, 2, 3}, y[] = {1, 4, 9};
     imk_curve curve = {"squares", IMK_CURVE_POINTS, 0, 3, x, y, NULL, NULL};
-    imk_panel panel = {"panel", "x", "y", false, false, 1, &curve};
+    imk_panel panel = {"panel", "x", "y", false, false, 1, &curve, 0, NULL, IMK_KEY_UPPER};
     imk_figure figure = {"", 1, 1, &panel};
     imk_page *page = imk_page_create("t", "s");
     imk_page_figure(page, &figure, "first");

@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What is navigated and when to look, from the options. */
+#include "drift_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROWS_MAX = 64, CURVE_POINTS = 96 };
+
+static const double quarter_turn = 1.57079632679489661923; /* [rad] */
+static const double minute = 60, hour = 3600, day = 86400;
+
+/* ---- motion ---- */
+
+/* The text of a script goes into the results of a campaign, for whoever repeats it. */
+static char *text_of(const char *path)
+{
+    enum { LARGEST = 1 << 20 };
+    FILE *file = fopen(path, "rb");
+    char *text = file ? malloc(LARGEST + 1) : NULL;
+    if (text)
+        text[fread(text, 1, LARGEST, file)] = '\0';
+    if (file)
+        fclose(file);
+    return text;
+}
+
+static int check_rest(const drift_options *o)
+{
+    if (o->roll != 0 || o->pitch != 0 || o->yaw != 0)
+        return command_misused("--roll, --pitch and --yaw are of a unit at rest: with --motion the "
+                               "attitude is in the motion file");
+    return -1;
+}
+
+static int open_motion(const drift_options *o, drift_scene *s)
+{
+    imk_error error;
+    int code = check_rest(o);
+    if (code >= 0)
+        return code;
+    const imk_geodetic place = {s->settings.latitude, 0.0, s->settings.height};
+    imk_status status = imk_motion_read(o->motion, NULL, isnan(o->latitude) ? NULL : &place,
+                                        o->seed, &s->motion, &error);
+    if (status != IMK_OK)
+        return command_error(&error, o->motion);
+    const imk_motion *motion = imk_motion_file_motion(s->motion);
+    if (!motion->trajectory)
+        return command_failed("%s: recorded rates and forces do not say where the unit truly was; "
+                              "give a motion script or a table of poses (position and attitude)",
+                              o->motion);
+    if (!motion->trajectory->earth)
+        return command_failed("%s: the motion is not on the Earth (`earth: no`): there is nothing "
+                              "to navigate on",
+                              o->motion);
+    const char *note = imk_motion_file_note(s->motion);
+    if (*note)
+        command_warn("motion", "%s: %s", o->motion, note);
+    s->settings.motion = motion->trajectory;
+    if (imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT)
+        s->motion_text = text_of(o->motion);
+    return -1;
+}
+
+/* ---- initial errors ---- */
+
+/* One number for all three axes, or three: north, east, down. */
+static int read_initial(const char *name, const char *text, const char *unit, double sigma[3])
+{
+    imk_error error;
+    double value[3], spread[3];
+    size_t count;
+    if (!text)
+        return -1;
+    const imk_status status =
+        imk_quantity_parse(text, text + strlen(text), imk_unit_of(unit).dimension, 3, value, spread,
+                           &count, NULL, &error);
+    bool good = status == IMK_OK && (count == 1 || count == 3);
+    for (size_t i = 0; good && i < count; i++)
+        good = value[i] >= 0 && isfinite(value[i]);
+    if (!good)
+        return command_misused("--%s \"%s\": expected one or three numbers (north, east, down) "
+                               "that are not negative, with a unit such as %s",
+                               name, text, unit);
+    for (size_t i = 0; i < 3; i++)
+        sigma[i] = value[count == 1 ? 0 : i];
+    return -1;
+}
+
+static int read_start(const drift_options *o, imk_drift_settings *s)
+{
+    if (o->aligned == 1 && o->initial_attitude)
+        return command_misused("--initial-attitude is of a given attitude, --aligned self finds "
+                               "it: one of the two");
+    if (o->aligned != 1 && !isnan(o->align_time))
+        return command_misused("--align-time is of --aligned self: add it");
+    int code = read_initial("initial-position", o->initial_position, "m", s->initial_sigma);
+    if (code < 0)
+        code = read_initial("initial-velocity", o->initial_velocity, "m/s", s->initial_sigma + 3);
+    if (code < 0)
+        code = read_initial("initial-attitude", o->initial_attitude, "deg", s->initial_sigma + 6);
+    s->alignment = o->aligned == 1 ? IMK_ALIGNED_SELF : IMK_ALIGNED_GIVEN;
+    if (!isnan(o->align_time))
+        s->alignment_time = o->align_time;
+    s->vertical = o->vertical == 1 ? IMK_VERTICAL_FREE : IMK_VERTICAL_SLAVED;
+    return code;
+}
+
+/* ---- times ---- */
+
+typedef struct times {
+    size_t count;
+    double at[ROWS_MAX];
+} times;
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Times are those of samples: the nearest, but not the start. */
+static double on_sample(double time, double rate)
+{
+    const double sample = floor(time * rate + 0.5);
+    return (sample < 1 ? 1 : sample) / rate;
+}
+
+/* In order, none twice. */
+static size_t tidy(double *time, size_t count, double rate)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        time[i] = on_sample(time[i], rate);
+    qsort(time, count, sizeof *time, compare);
+    for (size_t i = 0; i < count; i++)
+        if (kept == 0 || time[i] > time[kept - 1])
+            time[kept++] = time[i];
+    return kept;
+}
+
+/* Round times up to the duration, as many as a table is easily read with, and the duration. */
+static void usual_times(double duration, times *t)
+{
+    const double coarse[] = {10,       minute,   5 * minute, 10 * minute, 30 * minute,
+                             hour,     2 * hour, 4 * hour,   8 * hour,    12 * hour,
+                             day,      2 * day,  4 * day,    7 * day,     14 * day,
+                             30 * day, 60 * day, 120 * day,  365 * day};
+    const double fine[] = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300};
+    const bool is_short = duration <= 10 * minute;
+    const double *ladder = is_short ? fine : coarse;
+    const size_t steps = is_short ? sizeof fine / sizeof *fine : sizeof coarse / sizeof *coarse;
+    for (size_t i = 0; i < steps; i++)
+        if (ladder[i] < 0.999 * duration && ladder[i] > duration / (is_short ? 200 : 2e4))
+            t->at[t->count++] = ladder[i];
+    t->at[t->count++] = duration;
+}
+
+/* --times "1min, 10 min, 1h" */
+static int stated_times(const char *text, times *t)
+{
+    const double latest = 1e10; /* [s]: imk_drift_validate() */
+    for (const char *begin = text; *begin;) {
+        const size_t length = strcspn(begin, ",");
+        double value, sigma;
+        size_t count;
+        if (imk_quantity_parse(begin, begin + length, imk_unit_of("s").dimension, 1, &value, &sigma,
+                               &count, NULL, NULL) != IMK_OK ||
+            count != 1 || !(value > 0 && value <= latest))
+            return command_misused("--times \"%s\": \"%.*s\" is no positive time with a unit; "
+                                   "write --times \"1min, 10min, 1h\"",
+                                   text, (int)length, begin);
+        if (t->count == ROWS_MAX - 2)
+            return command_misused("--times: at most %d times", ROWS_MAX - 2);
+        t->at[t->count++] = value;
+        begin += length;
+        begin += *begin == ',';
+    }
+    return -1;
+}
+
+/* How long the motion gives something to navigate. */
+static double motion_length(const drift_scene *s)
+{
+    return s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;
+}
+
+static int choose_duration(const drift_options *o, const drift_scene *s, double *duration)
+{
+    const double length = motion_length(s);
+    *duration = o->duration;
+    if (isnan(*duration))
+        *duration = s->want.asked && !o->times ? s->want.time : isinf(length) ? day : length;
+    if (!(*duration > 0))
+        return command_misused("--duration must be positive");
+    if (*duration * s->settings.rate < 1)
+        return command_misused("--duration %g s is less than a sample at %g Hz", *duration,
+                               s->settings.rate);
+    if (s->want.asked && s->want.time > *duration * (1 + 1e-12))
+        return command_misused("--want asks for a time after the end: add --duration or leave it "
+                               "out");
+    return -1;
+}
+
+static int choose_rows(const drift_options *o, const drift_scene *s, times *t)
+{
+    double duration = 0;
+    int code = o->times ? stated_times(o->times, t) : -1;
+    if (code < 0 && !o->times)
+        code = choose_duration(o, s, &duration);
+    if (code >= 0)
+        return code;
+    if (!o->times)
+        usual_times(duration, t);
+    if (s->want.asked)
+        t->at[t->count++] = s->want.time;
+    t->count = tidy(t->at, t->count, s->settings.rate);
+    const double length = motion_length(s), last = t->at[t->count - 1];
+    if (last > length + 1.5 / s->settings.rate)
+        return command_misused("%g s: the motion ends after %g s%s", last, length,
+                               imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT
+                                   ? " (or let it end with `then: hold`)"
+                                   : "");
+    return -1;
+}
+
+/* For curves also times between: as many in every decade, and close enough for Schuler's period of
+ * 84 min. */
+static int fill_times(const drift_options *o, const times *rows, drift_scene *s)
+{
+    const bool curves = o->plot || o->report || o->output;
+    const double first = rows->at[0] < 10 ? rows->at[0] : 10, last = rows->at[rows->count - 1];
+    const double period = 84.4 * minute;
+    const size_t swings = last > period ? (size_t)(8 * last / period) : 0;
+    const size_t linear = swings > 1000 ? 1000 : swings;
+    const size_t room = rows->count + CURVE_POINTS + linear;
+    s->time = malloc(room * sizeof *s->time);
+    s->row = malloc((rows->count + 1) * sizeof *s->row);
+    if (!s->time || !s->row)
+        return command_failed("memory is exhausted");
+    memcpy(s->time, rows->at, rows->count * sizeof *s->time);
+    s->time_count = rows->count;
+    for (size_t i = 0; curves && last > first && i < CURVE_POINTS; i++)
+        s->time[s->time_count++] = first * pow(last / first, (double)i / CURVE_POINTS);
+    for (size_t i = 1; curves && i < linear; i++)
+        s->time[s->time_count++] = last * (double)i / (double)linear;
+    s->time_count = tidy(s->time, s->time_count, s->settings.rate);
+    for (size_t i = 0; i < s->time_count; i++)
+        for (size_t k = 0; k < rows->count; k++)
+            if (s->time[i] == rows->at[k])
+                s->row[s->row_count++] = i;
+    s->settings.time = s->time;
+    s->settings.time_count = s->time_count;
+    return -1;
+}
+
+int drift_scene_open(const drift_options *o, drift_scene *s)
+{
+    times rows = {0};
+    *s = (drift_scene){.settings = imk_drift_default()};
+    imk_drift_settings *settings = &s->settings;
+    if (!isnan(o->latitude))
+        settings->latitude = o->latitude;
+    settings->height = o->height;
+    settings->roll = o->roll;
+    settings->pitch = o->pitch;
+    settings->yaw = o->yaw;
+    if (!isnan(o->rate))
+        settings->rate = o->rate;
+    if (!(settings->rate > 0))
+        return command_misused("--rate must be positive");
+    if (!(fabs(settings->latitude) <= quarter_turn))
+        return command_misused("--latitude %g deg: expected -90deg to 90deg",
+                               settings->latitude * 90 / quarter_turn);
+    if (!isnan(o->duration) && o->times)
+        return command_misused("--duration and --times exclude each other");
+    int code = o->want ? drift_want_parse(o->want, &s->want) : -1;
+    if (code < 0)
+        code = read_start(o, settings);
+    if (code < 0 && o->motion)
+        code = open_motion(o, s);
+    if (code < 0)
+        code = choose_rows(o, s, &rows);
+    if (code < 0)
+        code = fill_times(o, &rows, s);
+    return code;
+}
+
+void drift_scene_free(drift_scene *s)
+{
+    imk_motion_file_free(s->motion);
+    free(s->motion_text);
+    free(s->time);
+    free(s->row);
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* --want: "CEP 1 nmi @ 1h", a figure, how large it may be, and when. */
+#include "drift_parts.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+enum { FIGURES = IMK_WISH_HEADING + 1 };
+
+static int refuse(const char *text, const char *why)
+{
+    return command_misused("--want \"%s\": %s; write --want \"CEP 1 nmi @ 1h\"", text, why);
+}
+
+/* A number with a unit of a dimension; `end` is where it stops. */
+static bool quantity(const char *begin, const char *end, const char *unit, double *value,
+                     imk_unit *found)
+{
+    double sigma;
+    size_t count;
+    return imk_quantity_parse(begin, end, imk_unit_of(unit).dimension, 1, value, &sigma, &count,
+                              found, NULL) == IMK_OK &&
+           count == 1 && *value > 0 && isfinite(*value);
+}
+
+static int find_figure(const char *text, size_t length, drift_wished *want)
+{
+    char given[32], why[160];
+    const char *names[FIGURES];
+    snprintf(given, sizeof given, "%.*s", (int)(length < 30 ? length : 30), text);
+    for (int w = 0; w < FIGURES; w++) {
+        names[w] = drift_wish_name((imk_drift_wish)w);
+        if (strcasecmp(names[w], given) == 0) {
+            want->figure = (imk_drift_wish)w;
+            return -1;
+        }
+    }
+    const char *nearest = command_nearest(given, FIGURES, names);
+    snprintf(why, sizeof why,
+             "\"%s\" is no figure%s%s%s; CEP, R95, DRMS, height, velocity, tilt and heading are",
+             given, nearest ? " (did you mean " : "", nearest ? nearest : "", nearest ? "?)" : "");
+    return refuse(text, why);
+}
+
+int drift_want_parse(const char *text, drift_wished *want)
+{
+    const char *name = text + strspn(text, " "), *at = strchr(text, '@');
+    const size_t length = strcspn(name, " <=@");
+    const char *value = name + length + strspn(name + length, " <=");
+    char why[160];
+    *want = (drift_wished){.asked = true};
+    int code = find_figure(name, length, want);
+    if (code >= 0)
+        return code;
+    if (!at)
+        return refuse(text, "the time is missing");
+    if (value >= at)
+        return refuse(text, "how large it may be is missing");
+    const char *unit = drift_wish_unit(want->figure);
+    if (!quantity(value, at, unit, &want->goal, &want->unit)) {
+        snprintf(why, sizeof why, "\"%.*s\" is no positive number with a unit of %s, such as %s",
+                 (int)(at - value < 40 ? at - value : 40), value,
+                 imk_dimension_name(imk_unit_of(unit).dimension),
+                 imk_dimension_examples(imk_unit_of(unit).dimension));
+        return refuse(text, why);
+    }
+    if (!quantity(at + 1, at + 1 + strlen(at + 1), "s", &want->time, NULL))
+        return refuse(text, "behind @ a positive time with its unit is due");
+    return -1;
+}

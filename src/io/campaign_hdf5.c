@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* libhdf5 as this library uses it: its serial form is not made for threads, and it prints every
+ * error on standard error unless told not to. What the caller told it is restored. */
+#include "io/campaign_internal.h"
+
+#include <hdf5.h>
+#include <pthread.h>
+
+void imki_hdf5_use(void (*use)(void *context), void *context)
+{
+    static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+    pthread_mutex_lock(&mutex);
+    H5E_BEGIN_TRY
+    {
+        use(context);
+    }
+    H5E_END_TRY
+    pthread_mutex_unlock(&mutex);
+}

@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The covariance analysis as a whole: its memory, and the order of the work.
+ *
+ * Steps are chosen and looked at one after another, in blocks. Then the steps of a block, the
+ * drivers over their lengths, and the sources over all of them are work items, each alone with its
+ * own results: nothing depends on who does what when. */
+#include "drift_covariance_internal.h"
+
+#include <string.h>
+
+enum { ALIGNMENT = 64 };
+
+/* ---- memory ------------------------------------------------------------------------------------
+ */
+
+typedef struct work {
+    imki_drift_plan plan;
+    imki_drift_walk walk;
+    imki_drift_step step[IMKI_DRIFT_BLOCK];
+    size_t step_count;
+    imki_driver_step (*over)[IMKI_DRIFT_SLOTS]; /* [driver] */
+    double slot_length[IMKI_DRIFT_SLOTS];       /* h; 0: free */
+    int slot_moments[IMKI_DRIFT_SLOTS], slot_age[IMKI_DRIFT_SLOTS];
+    int fresh[IMKI_DRIFT_SLOTS], fresh_count; /* slots that drivers have yet to fill */
+    imki_drift_node report;                   /* the motion where the results are taken */
+    bool reports;                             /* after this block */
+    size_t time;                              /* index of the result */
+    imk_drift_moments *contribution;
+    size_t time_count;
+} work;
+
+typedef struct layout {
+    imk_drift_analysis *analysis;
+    work *work;
+    imk_drift_source *source;
+    imk_drift_moments *contribution, *total;
+    double *time;
+    imki_drift_part *part;
+    imki_drift_element *element;
+    imki_drift_column *column;
+    imki_drift_driver *driver;
+    imki_driver_step (*over)[IMKI_DRIFT_SLOTS];
+    double (*coefficient)[IMKI_DRIFT_COLUMNS][IMKI_DRIFT_MOMENTS][9]; /* [step] */
+    size_t size;
+} layout;
+
+/* The next `size` bytes; without memory they are only counted. */
+static void *take(layout *l, unsigned char *memory, size_t size)
+{
+    void *at = memory ? memory + l->size : NULL;
+    l->size += (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    return at;
+}
+
+static layout lay_out(const imk_model *model, const imk_drift_settings *settings,
+                      unsigned char *memory)
+{
+    layout l = {.size = 0};
+    imki_drift_plan count = {.source_count = 0};
+    imki_drift_sources(&count, model, settings, (imk_geodetic){0.0, 0.0, 0.0});
+    const size_t sources = count.source_count, times = settings->time_count;
+    const size_t drivers = imki_drift_drivers_max(model);
+    l.analysis = take(&l, memory, sizeof *l.analysis);
+    l.source = take(&l, memory, sources * sizeof *l.source);
+    l.contribution = take(&l, memory, sources * times * sizeof *l.contribution);
+    l.total = take(&l, memory, times * sizeof *l.total);
+    l.time = take(&l, memory, times * sizeof *l.time);
+    l.work = take(&l, memory, sizeof *l.work);
+    l.part = take(&l, memory, sources * sizeof *l.part);
+    /* One more, so that the array is there also for a model without errors. */
+    l.element = take(&l, memory, (count.element_count + 1) * sizeof *l.element);
+    l.column = take(&l, memory, IMKI_DRIFT_COLUMNS * sizeof *l.column);
+    l.driver = take(&l, memory, drivers * sizeof *l.driver);
+    l.over = take(&l, memory, drivers * sizeof *l.over);
+    l.coefficient = take(&l, memory, IMKI_DRIFT_BLOCK * sizeof *l.coefficient);
+    return l;
+}
+
+size_t imk_drift_covariance_size(const imk_model *model, const imk_drift_settings *settings)
+{
+    return lay_out(model, settings, NULL).size;
+}
+
+/* ---- work items --------------------------------------------------------------------------------
+ */
+
+static void fill_step(void *context, size_t item)
+{
+    work *w = context;
+    imki_drift_fill_step(&w->walk, &w->plan, &w->step[item]);
+}
+
+static void fill_driver(void *context, size_t item)
+{
+    work *w = context;
+    for (int i = 0; i < w->fresh_count; i++) {
+        const int slot = w->fresh[i];
+        imki_driver_over(&w->plan.driver[item], w->slot_length[slot], w->slot_moments[slot],
+                         &w->over[item][slot]);
+    }
+}
+
+static void begin_source(void *context, size_t item)
+{
+    work *w = context;
+    imki_drift_begin(&w->plan, &w->plan.part[item], &w->step[0].node[0],
+                     w->step_count > 0 ? &w->step[0] : NULL, w->over);
+}
+
+static void move_source(void *context, size_t item)
+{
+    work *w = context;
+    for (size_t i = 0; i < w->step_count; i++)
+        imki_drift_propagate(&w->plan, &w->plan.part[item], &w->step[i], w->over);
+    if (w->reports)
+        imki_drift_moments_at(&w->plan, &w->plan.part[item], &w->report,
+                              &w->contribution[item * w->time_count + w->time]);
+}
+
+/* ---- blocks ------------------------------------------------------------------------------------
+ */
+
+/* Where drivers keep what they do over a step of this length: found again (report times computed
+ * elsewhere differ by rounding), or in place of the one not used for longest. */
+static int slot_of(work *w, double h, int moments)
+{
+    int slot = -1, oldest = 0;
+    for (int i = 0; i < IMKI_DRIFT_SLOTS; i++) {
+        const double difference = w->slot_length[i] - h;
+        if (w->slot_moments[i] == moments && difference <= 1e-12 * h && difference >= -1e-12 * h)
+            slot = i;
+        if (w->slot_age[i] > w->slot_age[oldest])
+            oldest = i;
+    }
+    if (slot < 0) {
+        slot = oldest;
+        w->slot_length[slot] = h;
+        w->slot_moments[slot] = moments;
+        w->fresh[w->fresh_count++] = slot;
+    }
+    for (int i = 0; i < IMKI_DRIFT_SLOTS; i++)
+        w->slot_age[i]++;
+    w->slot_age[slot] = 0;
+    return slot;
+}
+
+static void run_block(work *w, imk_work source_work, const imk_executor *executor)
+{
+    if (w->fresh_count > 0)
+        imk_execute(executor, w->plan.driver_count, fill_driver, w);
+    imk_execute(executor, w->plan.source_count, source_work, w);
+    w->fresh_count = 0;
+    w->step_count = 0;
+}
+
+static void begin(work *w, const imk_executor *executor)
+{
+    imki_drift_step *step = &w->step[0];
+    imki_drift_node_at(&w->walk, w->walk.motion.start, &step->node[0]);
+    if (w->walk.settings->alignment == IMK_ALIGNED_SELF) {
+        imki_drift_alignment_step(&w->walk, &w->plan, step);
+        step->slot = slot_of(w, step->h, step->moments);
+        w->step_count = 1;
+    }
+    run_block(w, begin_source, executor);
+}
+
+/* From one report to the next. */
+static void advance(work *w, double time, double goal, const imk_executor *executor)
+{
+    while (time < goal) {
+        while (time < goal && w->step_count < IMKI_DRIFT_BLOCK) {
+            imki_drift_step *step = &w->step[w->step_count++];
+            time = imki_drift_next_step(&w->walk, time, goal, step);
+            step->slot = slot_of(w, step->h, step->moments);
+        }
+        w->reports = !(time < goal);
+        if (w->reports)
+            imki_drift_node_at(&w->walk, w->walk.motion.start + (w->walk.rests ? 0.0 : goal),
+                               &w->report);
+        imk_execute(executor, w->step_count, fill_step, w);
+        run_block(w, move_source, executor);
+    }
+}
+
+/* ---- all ---------------------------------------------------------------------------------------
+ */
+
+static void start_work(work *w, const layout *l, const imk_model *model,
+                       const imk_drift_settings *settings, imki_drift_earth earth)
+{
+    memset(w, 0, sizeof *w);
+    w->plan = (imki_drift_plan){.source = l->source,
+                                .part = l->part,
+                                .element = l->element,
+                                .column = l->column,
+                                .driver = l->driver,
+                                .omitted = l->analysis->omitted};
+    w->over = l->over;
+    w->contribution = l->contribution;
+    w->time_count = settings->time_count;
+    for (int i = 0; i < IMKI_DRIFT_SLOTS; i++)
+        w->slot_length[i] = -1.0;
+    for (size_t i = 0; i < IMKI_DRIFT_BLOCK; i++)
+        w->step[i].column = l->coefficient[i];
+    w->walk.settings = settings;
+    w->walk.earth = earth;
+    w->walk.rests = settings->motion == NULL;
+    imki_drift_motion(settings, &w->walk.motion, NULL);
+    w->walk.motion.trajectory.line_count = 0;
+    imk_motion_state state;
+    imk_trajectory_state(&w->walk.motion.trajectory, w->walk.motion.start, &state);
+    imki_drift_sources(&w->plan, model, settings, state.place);
+    for (size_t i = 0; i < w->plan.column_count; i++)
+        w->walk.needs_slope = w->walk.needs_slope || l->column[i].kind == IMKI_COLUMN_JITTER;
+}
+
+/* A range that the motion leaves, or comes near to, cuts the readings. */
+static void omit_ranges(work *w, const imk_model *model)
+{
+    static const char *const names[2] = {"gyro.range", "accel.range"};
+    const imk_triad *triad[2] = {&model->gyro, &model->accel};
+    for (int sensor = 0; sensor < 2; sensor++) {
+        bool left = false;
+        for (int i = 0; i < 3; i++)
+            left = left || (triad[sensor]->range.value[i] > 0.0 &&
+                            w->walk.peak[sensor][i] > 0.95 * triad[sensor]->range.value[i]);
+        if (left)
+            imki_drift_omit(&w->plan, names[sensor]);
+    }
+}
+
+static void add_up(const layout *l, size_t sources, size_t times)
+{
+    for (size_t time = 0; time < times; time++) {
+        imk_drift_moments *total = &l->total[time];
+        memset(total, 0, sizeof *total);
+        for (size_t source = 0; source < sources; source++) {
+            const imk_drift_moments *part = &l->contribution[source * times + time];
+            for (int i = 0; i < 9; i++) {
+                total->mean[i] += part->mean[i];
+                for (int j = 0; j < 9; j++)
+                    total->covariance[i][j] += part->covariance[i][j];
+            }
+        }
+    }
+}
+
+imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *model,
+                                    const imk_drift_settings *settings, void *memory, size_t size,
+                                    const imk_executor *executor, imk_drift_analysis **analysis,
+                                    imk_error *error)
+{
+    const imk_status status = imk_drift_validate(model, settings, error);
+    if (status != IMK_OK)
+        return status;
+    if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
+    const layout l = lay_out(model, settings, memory);
+    if (size < l.size)
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
+                             "imk_drift_covariance_size() bytes");
+    memset(l.analysis, 0, sizeof *l.analysis);
+    start_work(l.work, &l, model, settings, earth);
+    begin(l.work, executor);
+    double time = 0.0;
+    for (size_t i = 0; i < settings->time_count; i++) {
+        l.work->time = i;
+        l.time[i] = settings->time[i];
+        advance(l.work, time, settings->time[i], executor);
+        time = settings->time[i];
+    }
+    omit_ranges(l.work, model);
+    const size_t sources = l.work->plan.source_count;
+    add_up(&l, sources, settings->time_count);
+    l.analysis->source_count = sources;
+    l.analysis->time_count = settings->time_count;
+    l.analysis->source = l.source;
+    l.analysis->contribution = l.contribution;
+    l.analysis->total = l.total;
+    l.analysis->time = l.time;
+    l.analysis->omitted_count = l.work->plan.omitted_count;
+    *analysis = l.analysis;
+    return IMK_OK;
+}
+
+imk_status imk_drift_covariance(const imk_model *model, const imk_drift_settings *settings,
+                                void *memory, size_t size, const imk_executor *executor,
+                                imk_drift_analysis **analysis, imk_error *error)
+{
+    return imki_drift_covariance_on((imki_drift_earth){0.0, 0.0}, model, settings, memory, size,
+                                    executor, analysis, error);
+}

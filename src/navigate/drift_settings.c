@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What is navigated and when to look: defaults and checks, for the covariance and for the runs. */
+#include "drift_settings_internal.h"
+
+#include "imukit/elementary.h"
+
+#include <math.h>
+
+enum { COOKIE = 0x494D4B51 };
+
+#define PI 3.14159265358979323846
+#define DEGREE (PI / 180.0)
+
+/* Below this the body is at rest: as fast as the Earth's rotation within 0.1 %, and a millimetre in
+ * a minute. What a compiled standstill has besides is rounding, 1e-9 of these. */
+static const double rest_rate = 1e-3 * IMK_EARTH_RATE, rest_velocity = 1e-3 / 60.0;
+
+imk_drift_settings imk_drift_default(void)
+{
+    return (imk_drift_settings){
+        .cookie = COOKIE, .latitude = 0.25 * PI, .rate = 100.0, .alignment_time = 300.0};
+}
+
+static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
+{
+    const imk_status status = isfinite(value) ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
+    imk_error_set(error, status, field, "", expected);
+    if (error)
+        error->value = value;
+    return status;
+}
+
+static imk_status check_triad(const imk_triad *triad, const char *kind, imk_error *error)
+{
+    /* Directions are unit vectors to 1e-9; along an axis they are so to the same. */
+    const double tolerance = 1e-9;
+    if (!triad->present || triad->axis_count != 3)
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, kind, "",
+                             "three gyros and three accelerometers: a navigator needs both triads");
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (!(fabs(triad->direction[i][j] - (i == j ? 1.0 : 0.0)) <= tolerance)) {
+                imk_error_set(error, IMK_ERROR_UNSUPPORTED, kind, "",
+                              "axes along body x, y, z: the navigator takes them as these");
+                if (error)
+                    error->index = i;
+                return IMK_ERROR_UNSUPPORTED;
+            }
+    return IMK_OK;
+}
+
+static imk_status check_times(const imk_drift_settings *settings, imk_error *error)
+{
+    if (settings->time_count == 0 || !settings->time)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "time", "", "at least one time to look at");
+    double before = 0.0;
+    for (size_t i = 0; i < settings->time_count; i++) {
+        const double t = settings->time[i];
+        if (!(t <= 1e8))
+            return refuse(error, "time", t, "times up to three years (1e8 s)");
+        if (!(t > before)) {
+            imk_error_set(error, IMK_ERROR_TIME_ORDER, "time", "",
+                          "times above 0, each later than the one before");
+            if (error) {
+                error->index = (int)i;
+                error->value = t;
+            }
+            return IMK_ERROR_TIME_ORDER;
+        }
+        before = t;
+    }
+    return IMK_OK;
+}
+
+static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
+{
+    if (!(s->rate >= 1e-3 && s->rate <= 1e6))
+        return refuse(error, "rate", s->rate, "a sample rate between 0.001 Hz and 1 MHz");
+    if (!(fabs(s->latitude) <= 0.5 * PI))
+        return refuse(error, "latitude", s->latitude, "a latitude within 90 deg");
+    if (!(s->height >= -1e4 && s->height <= 1e5))
+        return refuse(error, "height", s->height, "a height between -10 and 100 km");
+    const double angle[3] = {s->roll, s->pitch, s->yaw};
+    static const char *const name[3] = {"roll", "pitch", "yaw"};
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(angle[i]) <= 1e4))
+            return refuse(error, name[i], angle[i], "an angle");
+    if (s->vertical != IMK_VERTICAL_SLAVED && s->vertical != IMK_VERTICAL_FREE)
+        return refuse(error, "vertical", (double)s->vertical, "slaved or free");
+    if (s->alignment != IMK_ALIGNED_GIVEN && s->alignment != IMK_ALIGNED_SELF)
+        return refuse(error, "alignment", (double)s->alignment, "given or self");
+    if (s->alignment == IMK_ALIGNED_SELF && !(s->alignment_time >= 1.0 && s->alignment_time <= 1e7))
+        return refuse(error, "alignment_time", s->alignment_time, "1 s to 1e7 s");
+    for (int i = 0; i < IMK_DRIFT_STATES; i++)
+        if (!(s->initial_sigma[i] >= 0.0 && s->initial_sigma[i] <= 1e9)) {
+            const imk_status status =
+                refuse(error, "initial_sigma", s->initial_sigma[i], "a standard deviation");
+            if (error)
+                error->index = i;
+            return status;
+        }
+    return IMK_OK;
+}
+
+imk_status imki_drift_motion(const imk_drift_settings *settings, imki_drift_motion_of *motion,
+                             imk_error *error)
+{
+    if (settings->motion) {
+        motion->trajectory = *settings->motion;
+        double last;
+        imk_trajectory_span(&motion->trajectory, &motion->start, &last);
+        return IMK_OK;
+    }
+    const double roll_pitch_yaw[3] = {settings->roll, settings->pitch, settings->yaw};
+    motion->start = 0.0;
+    return imk_trajectory_standstill((imk_geodetic){settings->latitude, 0.0, settings->height},
+                                     roll_pitch_yaw, true, &motion->piece, &motion->trajectory,
+                                     error);
+}
+
+static imk_status check_motion(const imk_drift_settings *settings, imk_error *error)
+{
+    if (settings->motion) {
+        if (!settings->motion->earth)
+            return imk_error_set(error, IMK_ERROR_CONFLICT, "motion", "",
+                                 "a motion on the Earth: there is nothing to navigate on without");
+        const imk_status status = imk_trajectory_validate(settings->motion, error);
+        if (status != IMK_OK)
+            return status;
+    }
+    imki_drift_motion_of motion;
+    const imk_status status = imki_drift_motion(settings, &motion, error);
+    if (status != IMK_OK || settings->alignment != IMK_ALIGNED_SELF)
+        return status;
+    imk_motion_state state;
+    imk_trajectory_state(&motion.trajectory, motion.start, &state);
+    if (!(fabs(state.place.latitude) <= 89.0 * DEGREE))
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "alignment", "",
+                             "a given attitude: a unit within 1 deg of a pole finds no north");
+    const imk_vector3 earth = {{0.0, 0.0, IMK_EARTH_RATE}};
+    const imk_vector3 turning =
+        imk_vector3_subtract(imk_quaternion_rotate(state.attitude, state.angular_rate), earth);
+    if (!(imk_vector3_norm(turning) <= rest_rate &&
+          imk_vector3_norm(state.velocity) <= rest_velocity))
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "alignment", "",
+                             "a given attitude, or a motion that begins at rest");
+    return IMK_OK;
+}
+
+imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *settings,
+                              imk_error *error)
+{
+    imk_status status = imk_model_validate(model, error);
+    if (status != IMK_OK)
+        return status;
+    if (settings->cookie != COOKIE)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
+                             "a structure from imk_drift_default()");
+    status = check_triad(&model->gyro, "gyro", error);
+    if (status == IMK_OK)
+        status = check_triad(&model->accel, "accel", error);
+    if (status == IMK_OK)
+        status = check_numbers(settings, error);
+    if (status == IMK_OK)
+        status = check_times(settings, error);
+    if (status == IMK_OK)
+        status = check_motion(settings, error);
+    return status;
+}

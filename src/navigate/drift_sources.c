@@ -1,0 +1,359 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From a model to the sources of error that the linear theory knows: each term on all axes of its
+ * sensor one source, each number of it an independent element. Here those of known value, what
+ * differs from run to run, the clock and the start; noise in drift_noise_sources.c. */
+#include "drift_covariance_internal.h"
+
+#include "imukit/distort.h"
+#include "imukit/elementary.h"
+#include "imukit/noise.h"
+
+#include <string.h>
+
+/* ---- terms of known value ---------------------------------------------------------------------
+ */
+
+static const char *const kinds[2] = {"gyro", "accel"};
+
+typedef enum known_driver { CONSTANT, RAMP, DECAY } known_driver;
+
+/* A term whose numbers are known: `width` for each axis. */
+typedef struct known_term {
+    const double *value, *sigma;
+    int width;
+    bool own; /* the column is that of the axis' own kind of input */
+    imki_column_kind column;
+    known_driver driver;
+    const char *name;
+    const char *text[2];
+} known_term;
+
+static const double *numbers(const known_term *term, bool compensated, int axis)
+{
+    return (compensated ? term->sigma : term->value) + (size_t)axis * (size_t)term->width;
+}
+
+static imki_drift_column known_column(const known_term *term, const imk_triad *triad, int sensor,
+                                      int axis, int j)
+{
+    const imki_column_kind kind = term->own ? imki_drift_own_input(sensor) : term->column;
+    const bool by_part = term->width > 1 || term->own;
+    imki_drift_column column =
+        imki_drift_column_of(kind, sensor, axis, by_part ? (term->width > 1 ? j : axis) : 0);
+    if (kind != IMKI_COLUMN_CROSS)
+        return column;
+    const double *stated = triad->nonlinearity.pendulous_axis[axis];
+    if (imki_drift_has_any(stated, 3))
+        memcpy(column.pendulous, stated, sizeof column.pendulous);
+    else
+        column.pendulous[(axis + 2) % 3] = 1.0;
+    for (int k = 0; k < 3; k++) { /* pendulous x input */
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        const double input[3] = {axis == 0, axis == 1, axis == 2};
+        column.output[k] = column.pendulous[l] * input[m] - column.pendulous[m] * input[l];
+    }
+    return column;
+}
+
+static void add_known(imki_drift_plan *plan, const known_term *term, const imk_triad *triad,
+                      int sensor, bool compensated)
+{
+    /* A model without a warm-up states no time for it. */
+    if (!imki_drift_has_any(numbers(term, compensated, 0), 3 * term->width) ||
+        (term->driver == DECAY && !(triad->bias.warm_up_time.value > 0.0)))
+        return;
+    imki_drift_add_source(plan, kinds[sensor], term->name, "", term->text[sensor]);
+    const imki_drift_driver driver = term->driver == RAMP ? imki_driver_ramp()
+                                     : term->driver == DECAY
+                                         ? imki_driver_decay(triad->bias.warm_up_time.value)
+                                         : imki_driver_constant();
+    for (int axis = 0; axis < 3; axis++)
+        for (int j = 0; j < term->width; j++) {
+            const double x = numbers(term, compensated, axis)[j];
+            if (x == 0.0)
+                continue;
+            const imki_drift_column column = known_column(term, triad, sensor, axis, j);
+            imki_drift_add_constant(plan, compensated ? IMKI_ELEMENT_SIZE : IMKI_ELEMENT_MEAN,
+                                    &column, &driver, term->driver == RAMP ? 0.0 : x,
+                                    term->driver == RAMP ? x : 0.0);
+        }
+}
+
+#define AXES(member) triad->member.value, triad->member.sigma, 1
+#define ROWS(member, width) triad->member.value[0], triad->member.sigma[0], width
+
+/* Each function adds a few terms, in the order in which the model file has them. */
+
+static void add_all(imki_drift_plan *plan, const known_term *term, size_t count,
+                    const imk_triad *triad, int sensor, bool compensated)
+{
+    for (size_t i = 0; i < count; i++)
+        add_known(plan, &term[i], triad, sensor, compensated);
+}
+
+#define ADD(term) add_all(plan, term, sizeof(term) / sizeof(term)[0], triad, sensor, compensated)
+
+static void add_constants(imki_drift_plan *plan, const imk_triad *triad, int sensor,
+                          bool compensated)
+{
+    const known_term term[] = {
+        {AXES(bias.fixed),
+         false,
+         IMKI_COLUMN_ONE,
+         CONSTANT,
+         "bias.fixed",
+         {"gyro bias, fixed", "accelerometer bias, fixed"}},
+        {AXES(bias.warm_up_amplitude),
+         false,
+         IMKI_COLUMN_ONE,
+         DECAY,
+         "bias.warm_up",
+         {"gyro warm-up", "accelerometer warm-up"}},
+        {AXES(scale_factor.fixed),
+         true,
+         IMKI_COLUMN_ONE,
+         CONSTANT,
+         "scale_factor.fixed",
+         {"gyro scale factor", "accelerometer scale factor"}},
+    };
+    ADD(term);
+}
+
+static void add_nonlinearities(imki_drift_plan *plan, const imk_triad *triad, int sensor,
+                               bool compensated)
+{
+    const known_term term[] = {
+        {AXES(nonlinearity.k2),
+         false,
+         IMKI_COLUMN_SQUARE,
+         CONSTANT,
+         "nonlinearity.k2",
+         {"gyro nonlinearity, second order", "accelerometer nonlinearity, second order"}},
+        {AXES(nonlinearity.koq),
+         false,
+         IMKI_COLUMN_SIGNED,
+         CONSTANT,
+         "nonlinearity.koq",
+         {"gyro nonlinearity, odd quadratic", "accelerometer nonlinearity, odd quadratic"}},
+        {AXES(nonlinearity.k3),
+         false,
+         IMKI_COLUMN_CUBE,
+         CONSTANT,
+         "nonlinearity.k3",
+         {"gyro nonlinearity, third order", "accelerometer nonlinearity, third order"}},
+        {AXES(nonlinearity.asymmetry),
+         false,
+         IMKI_COLUMN_HALF,
+         CONSTANT,
+         "nonlinearity.asymmetry",
+         {"gyro asymmetry", "accelerometer asymmetry"}},
+    };
+    ADD(term);
+}
+
+static void add_rows(imki_drift_plan *plan, const imk_triad *triad, int sensor, bool compensated)
+{
+    const known_term term[] = {
+        {ROWS(misalignment, 3),
+         true,
+         IMKI_COLUMN_ONE,
+         CONSTANT,
+         "misalignment",
+         {"gyro misalignment", "accelerometer misalignment"}},
+        {ROWS(cross_axis, 3),
+         true,
+         IMKI_COLUMN_ONE,
+         CONSTANT,
+         "cross_axis",
+         {"gyro cross-axis response", "accelerometer cross-axis response"}},
+    };
+    const known_term of_gyro[] = {
+        {ROWS(g_sensitivity, 3),
+         false,
+         IMKI_COLUMN_FORCE,
+         CONSTANT,
+         "g_sensitivity",
+         {"gyro g-sensitivity", ""}},
+        {ROWS(g2_sensitivity, 6),
+         false,
+         IMKI_COLUMN_PRODUCT,
+         CONSTANT,
+         "g2_sensitivity",
+         {"gyro g2-sensitivity", ""}},
+    };
+    const known_term of_accel[] = {
+        {ROWS(nonlinearity.cross_products, 3),
+         false,
+         IMKI_COLUMN_CROSS,
+         CONSTANT,
+         "cross_products",
+         {"", "accelerometer cross products"}},
+        {ROWS(lever_arm, 3),
+         false,
+         IMKI_COLUMN_LEVER,
+         CONSTANT,
+         "lever_arm",
+         {"", "accelerometer lever arms"}},
+    };
+    ADD(term);
+    if (sensor == IMK_GYRO)
+        ADD(of_gyro);
+    else
+        ADD(of_accel);
+}
+
+static void add_ramps(imki_drift_plan *plan, const imk_triad *triad, int sensor, bool compensated)
+{
+    const known_term term[] = {
+        {AXES(noise.ramp),
+         false,
+         IMKI_COLUMN_ONE,
+         RAMP,
+         sensor == IMK_GYRO ? "noise.rate_ramp" : "noise.acceleration_ramp",
+         {"gyro rate ramp", "accelerometer ramp"}},
+    };
+    ADD(term);
+}
+
+/* ---- from run to run ---------------------------------------------------------------------------
+ */
+
+static void add_repeatabilities(imki_drift_plan *plan, const imk_triad *triad, int sensor)
+{
+    static const char *const names[2] = {"bias.repeatability", "scale_factor.repeatability"};
+    static const char *const texts[2][2] = {
+        {"gyro bias repeatability", "accelerometer bias repeatability"},
+        {"gyro scale factor repeatability", "accelerometer scale factor repeatability"}};
+    const imki_drift_driver driver = imki_driver_constant();
+    for (int which = 0; which < 2; which++) {
+        const double *value =
+            which == 0 ? triad->bias.repeatability.value : triad->scale_factor.repeatability.value;
+        if (!imki_drift_has_any(value, 3))
+            continue;
+        imki_drift_add_source(plan, kinds[sensor], names[which], "", texts[which][sensor]);
+        for (int axis = 0; axis < 3; axis++) {
+            const imki_drift_column column =
+                which == 0 ? imki_drift_column_of(IMKI_COLUMN_ONE, sensor, axis, 0)
+                           : imki_drift_column_of(imki_drift_own_input(sensor), sensor, axis, axis);
+            if (value[axis] != 0.0)
+                imki_drift_add_constant(plan, IMKI_ELEMENT_SIZE, &column, &driver, value[axis],
+                                        0.0);
+        }
+    }
+}
+
+/* ---- the clock and the start ------------------------------------------------------------------
+ */
+
+/* A body at rest looks the same at all times. */
+static void add_timing(imki_drift_plan *plan, const imk_timing *timing, bool compensated, double dt)
+{
+    const imki_drift_driver constant = imki_driver_constant(), white = imki_driver_white();
+    const imki_element_use use = compensated ? IMKI_ELEMENT_SIZE : IMKI_ELEMENT_MEAN;
+    const struct {
+        const imk_scalar *scalar;
+        imki_column_kind kind;
+        const char *name, *text;
+    } known[2] = {
+        {&timing->rate_error, IMKI_COLUMN_CLOCK, "rate_error", "rate error of the sample clock"},
+        {&timing->skew, IMKI_COLUMN_SKEW, "skew", "delay of the accelerometers"}};
+    for (int i = 0; i < 2; i++) {
+        const double x = compensated ? known[i].scalar->sigma : known[i].scalar->value;
+        const imki_drift_column column = imki_drift_column_of(known[i].kind, 0, 0, 0);
+        if (x == 0.0)
+            continue;
+        imki_drift_add_source(plan, "timing", known[i].name, "", known[i].text);
+        imki_drift_add_constant(plan, use, &column, &constant, x, 0.0);
+    }
+    if (timing->jitter.value != 0.0) {
+        const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_JITTER, 0, 0, 0);
+        imki_drift_add_source(plan, "timing", "jitter", "", "jitter of the samples");
+        imki_drift_add_noise(plan, IMKI_ELEMENT_ROUNDING, &column, &white,
+                             timing->jitter.value * timing->jitter.value * dt);
+        if (plan->element)
+            plan->element[plan->element_count - 1].state[0] = timing->jitter.value;
+    }
+}
+
+/* A unit that finds its attitude takes the vertical and north of the place where it believes to be:
+ * what a displacement of it turns these by [rad/m], rotation about north, east, down. */
+static imk_vector3 turn_of_place(imk_geodetic place, int direction)
+{
+    double meridian, prime_vertical;
+    imk_curvature_radii(place.latitude, &meridian, &prime_vertical);
+    const double north = 1.0 / (meridian + place.height),
+                 east = 1.0 / (prime_vertical + place.height);
+    const double slope = imk_sin(place.latitude) / imk_cos(place.latitude);
+    return direction == 0   ? (imk_vector3){{0.0, -north, 0.0}}
+           : direction == 1 ? (imk_vector3){{east, 0.0, -slope * east}}
+                            : (imk_vector3){{0.0, 0.0, 0.0}};
+}
+
+/* Constants that nothing drives: their column is that of a bias, but their driver is zero. */
+static void add_initial(imki_drift_plan *plan, const imk_drift_settings *settings,
+                        imk_geodetic start)
+{
+    static const char *const names[3] = {"position", "velocity", "attitude"};
+    static const char *const texts[3] = {"position at the start", "velocity at the start",
+                                         "attitude at the start"};
+    static const int place[3] = {6, 3, 0}; /* in x */
+    const bool self = settings->alignment == IMK_ALIGNED_SELF;
+    const imk_matrix3 axes = imk_ned_axes(start.latitude, start.longitude);
+    const imki_drift_driver constant = imki_driver_constant();
+    const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_ONE, IMK_GYRO, 0, 0);
+    for (int group = 0; group < 3; group++) {
+        const double *sigma = settings->initial_sigma + (ptrdiff_t)3 * group;
+        if (!imki_drift_has_any(sigma, 3) || (group == 2 && self))
+            continue;
+        imki_drift_add_source(plan, "initial", names[group], "", texts[group]);
+        for (int j = 0; j < 3; j++) {
+            imki_drift_element *element =
+                imki_drift_add_element(plan, IMKI_ELEMENT_SIZE, &column, &constant);
+            const imk_vector3 turn = imk_matrix3_apply(axes, turn_of_place(start, j));
+            for (int i = 0; element && i < 3; i++) {
+                element->x[place[group] + i] = axes.m[i][j] * sigma[j];
+                if (group == 0 && self)
+                    element->x[i] = turn.v[i] * sigma[j];
+            }
+        }
+    }
+}
+
+/* ---- all ---------------------------------------------------------------------------------------
+ */
+
+size_t imki_drift_drivers_max(const imk_model *model)
+{
+    const imk_noise *noise[2] = {&model->gyro.noise, &model->accel.noise};
+    size_t count = IMK_FLICKER_STAGES + 6; /* white, constant, walk, ramp, two warm-ups */
+    for (int i = 0; i < 2; i++)
+        count += 3 * (size_t)(noise[i]->gauss_markov_count + noise[i]->sinusoid_count +
+                              noise[i]->resonance_count);
+    return count;
+}
+
+static void add_triad(imki_drift_plan *plan, const imk_triad *triad, int sensor,
+                      const imk_drift_settings *settings)
+{
+    add_repeatabilities(plan, triad, sensor);
+    add_constants(plan, triad, sensor, settings->compensated);
+    add_nonlinearities(plan, triad, sensor, settings->compensated);
+    add_rows(plan, triad, sensor, settings->compensated);
+    add_ramps(plan, triad, sensor, settings->compensated);
+    imki_drift_noise_sources(plan, triad, sensor, settings);
+}
+
+void imki_drift_sources(imki_drift_plan *plan, const imk_model *model,
+                        const imk_drift_settings *settings, imk_geodetic start)
+{
+    add_triad(plan, &model->gyro, IMK_GYRO, settings);
+    add_triad(plan, &model->accel, IMK_ACCEL, settings);
+    if (settings->motion) {
+        add_timing(plan, &model->timing, settings->compensated, 1.0 / settings->rate);
+        if (settings->motion->line_count > 0)
+            imki_drift_omit(plan, "motion.vibration");
+    }
+    if (model->timing.drops.value > 0.0)
+        imki_drift_omit(plan, "timing.drops");
+    add_initial(plan, settings, start);
+}

@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit drift: its figures against independent ones, its answers applied and asked again, its
+ * campaigns in parts, its messages. */
+#include "run_command.h"
+
+#include <math.h>
+
+static const double mile = 1852;
+
+/* Biases at the limits of the table of classes, and nothing else. */
+static const char limits[] = "imukit: 1\nname: limits\n"
+                             "gyro: {bias: {repeatability: 0.01 deg/h}}\n"
+                             "accel: {bias: {repeatability: 50 ug}}\n";
+
+static json_t *document;
+
+/* The result of a line that prints JSON. */
+static json_t *result_of(const char *line)
+{
+    json_error_t problem;
+    if (run(line) != 0)
+        fail_msg("%s: %s", line, err);
+    document = json_loads(out, 0, &problem);
+    if (!document)
+        fail_msg("%s: %s", problem.text, out);
+    return json_object_get(document, "result");
+}
+
+static json_t *case_of(json_t *result, size_t index)
+{
+    return json_array_get(json_object_get(result, "models"), index);
+}
+
+static double value_of(json_t *quantity)
+{
+    return json_number_value(json_object_get(quantity, "value"));
+}
+
+static double figure(json_t *one, size_t row, const char *name)
+{
+    json_t *time = json_array_get(json_object_get(one, "times"), row);
+    return value_of(json_object_get(json_object_get(time, "figures"), name));
+}
+
+/* ---- figures ---------------------------------------------------------------------------------
+ */
+
+/* Independent arithmetic on a sphere (models.md's table: CEP and DRMS of biases alone); the
+ * ellipsoid differs by 1.5 % at most, the printed digits by 1 %. */
+static void test_table_of_classes(void **state)
+{
+    (void)state;
+    static const double cep[] = {1.04, 0.895 * 1852, 6.90 * 1852},
+                        drms[] = {1.25, 1.08 * 1852, 10.2 * 1852};
+    put("limits.yaml", limits);
+    json_t *one = case_of(result_of("$I drift limits.yaml --times 1min,1h,24h --json"), 0);
+    assert_string_equal(err, "");
+    for (size_t row = 0; row < 3; row++) {
+        CHECK_RELATIVE(figure(one, row, "cep"), cep[row], 0.03);
+        CHECK_RELATIVE(figure(one, row, "drms"), drms[row], 0.03);
+    }
+    json_decref(document);
+    sweep();
+}
+
+/* The claims of the presets: CEP by the computation of tests/model/test_position_claims.c, as
+ * docs/choose-a-sensor.md prints them. */
+static void test_presets(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double minute, hour;
+    } known[] = {{"strategic", 0.073, 0.061}, {"navigation", 0.88, 0.75}, {"tactical", 17, 83}};
+    json_t *result = result_of("$I drift strategic navigation tactical --times 1min,1h --json");
+    for (size_t m = 0; m < 3; m++) {
+        json_t *one = case_of(result, m);
+        assert_string_equal(json_string_value(json_object_get(one, "model")), known[m].name);
+        CHECK_RELATIVE(figure(one, 0, "cep"), known[m].minute, 0.04);
+        CHECK_RELATIVE(figure(one, 1, "cep"), known[m].hour * mile, 0.04);
+    }
+    json_decref(document);
+}
+
+/* Shares add up to the whole, the largest first; without known values the mean is 0. */
+static void test_budget(void **state)
+{
+    (void)state;
+    json_t *one =
+        case_of(result_of("$I drift navigation -d 2h --without misalignment,k2 --json"), 0);
+    json_t *budget = json_object_get(one, "budget"), *line;
+    double sum = 0, before = 1;
+    size_t index;
+    assert_true(json_array_size(budget) > 5);
+    json_array_foreach(budget, index, line)
+    {
+        const double share = json_number_value(json_object_get(line, "share"));
+        CHECK_BELOW(share, before);
+        CHECK_CLOSE(value_of(json_object_get(line, "mean_north")), 0.0, 0.0);
+        before = share;
+        sum += share;
+    }
+    CHECK_CLOSE(sum, 1.0, 1e-12);
+    assert_string_equal(json_string_value(json_object_get(json_array_get(budget, 0), "source")),
+                        "gyro.bias.repeatability");
+    json_decref(document);
+}
+
+/* Values that are known shift, and are gone after calibration but for their sigma: 1 deg/h +- 0.01
+ * leaves a hundredth, to 2 % (the ratio of a mean and a CEP is that of a line). */
+static void test_compensated(void **state)
+{
+    (void)state;
+    put("fixed.yaml", "imukit: 1\nname: fixed\n"
+                      "gyro: {bias: {fixed: 0 1 0 ± 0 0.01 0 deg/h}}\naccel: {}\n");
+    json_t *result = result_of("$I drift fixed.yaml --times 1h --compensated --json");
+    json_t *before = case_of(result, 0), *after = case_of(result, 1);
+    assert_true(json_is_false(json_object_get(before, "compensated")));
+    assert_true(json_is_true(json_object_get(after, "compensated")));
+    CHECK_RELATIVE(figure(before, 0, "cep"), figure(before, 0, "drms"), 1e-9);
+    CHECK_RELATIVE(figure(after, 0, "drms"), 0.01 * figure(before, 0, "drms"), 1e-9);
+    CHECK_RELATIVE(figure(after, 0, "cep"), 0.674490 * figure(after, 0, "drms"), 0.02);
+    json_decref(document);
+    assert_int_equal(run("$I drift fixed.yaml --times 1h --compensated"), 0);
+    check_contains(out, "CEP before", "columns");
+    check_contains(out, "known value", "the shift");
+    sweep();
+}
+
+/* Beyond the Earth's size nothing is printed as a position. */
+static void test_no_position(void **state)
+{
+    (void)state;
+    check_message("$I drift tactical -d 24h", 0,
+                  "imukit drift: warning: tactical: at 8 h the error is beyond a tenth of the "
+                  "Earth's radius: no longer a position\n");
+    check_contains(out, "no position", "24 h");
+    check_contains(out, "What makes it after 4 h", "the last that is one");
+    assert_null(strstr(out, "1 d          "));
+}
+
+/* ---- the inverse question --------------------------------------------------------------------
+ */
+
+/* A model of one term: what it must become, put into the model, meets the goal; three digits are
+ * printed. */
+static void test_requirement(void **state)
+{
+    (void)state;
+    char model[300], value[40];
+    static const char form[] = "imukit: 1\nname: one\ngyro: {bias: {repeatability: %s}}\n"
+                               "accel: {}\n";
+    snprintf(model, sizeof model, form, "0.1 deg/h");
+    put("one.yaml", model);
+    assert_int_equal(run("$I drift one.yaml --want 'CEP 1 nmi @ 1h'"), 0);
+    check_contains(out, "Not met", "verdict");
+    const char *line = strstr(out, "must become"), *begin = line ? strstr(line, "0.1 deg/h") : NULL;
+    assert_non_null(begin);
+    begin += strlen("0.1 deg/h");
+    begin += strspn(begin, " ");
+    snprintf(value, sizeof value, "%.*s", (int)(strstr(begin, "deg/h") + 5 - begin), begin);
+    snprintf(model, sizeof model, form, value);
+    put("one.yaml", model);
+    json_t *result = result_of("$I drift one.yaml --want 'CEP 1 nmi @ 1h' --json");
+    CHECK_RELATIVE(figure(case_of(result, 0),
+                          json_array_size(json_object_get(case_of(result, 0), "times")) - 1, "cep"),
+                   mile, 0.006);
+    json_decref(document);
+    sweep();
+}
+
+/* Devices that would do are those whose own CEP is small enough. */
+static void test_devices(void **state)
+{
+    (void)state;
+    json_t *want =
+        json_object_get(result_of("$I drift tactical --want 'CEP 1 nmi @ 1h' --json"), "want");
+    json_t *devices = json_object_get(want, "devices"), *device;
+    size_t index, met = 0;
+    double navigation = 0;
+    json_array_foreach(devices, index, device)
+    {
+        const double cep = value_of(json_object_get(device, "figure"));
+        const bool meets = json_is_true(json_object_get(device, "meets"));
+        assert_true(meets == (cep <= mile));
+        met += meets;
+        if (strcmp(json_string_value(json_object_get(device, "name")), "navigation") == 0)
+            navigation = cep;
+    }
+    assert_true(met >= 2 && met < json_array_size(devices) / 2);
+    json_decref(document);
+    json_t *one = case_of(result_of("$I drift navigation --times 1h --json"), 0);
+    CHECK_RELATIVE(figure(one, 0, "cep"), navigation, 1e-9);
+    json_decref(document);
+    check_message("$I drift navigation --want 'R95 10 km @ 1h'", 0, "");
+    check_contains(out, "Wanted: R95 10.0 km after 1 h. Met:", "verdict");
+}
+
+/* ---- runs ------------------------------------------------------------------------------------
+ */
+
+/* Parts of a campaign put together are the campaign, byte for byte, with any number of threads; and
+ * the statistics of the file are those that were printed. */
+static void test_campaign(void **state)
+{
+    (void)state;
+    char table[4000];
+    assert_int_equal(run("$I drift navigation --times 10s,1min -r 10Hz -n 30 --threads 1 -o a.h5"),
+                     0);
+    assert_string_equal(err, "");
+    const char *begin = strstr(out, "runs  CEP"), *end = strstr(out, "\n\nruns / cov");
+    assert_non_null(begin);
+    assert_non_null(end);
+    snprintf(table, sizeof table, "%.*s", (int)(end - begin), begin);
+    assert_int_equal(run("for i in 1 2 3; do $I drift navigation --times 10s,1min -r 10Hz -n 30 "
+                         "--shard $i/3 -o p$i.h5 || exit 1; done; $I merge p?.h5 -o b.h5 && "
+                         "cmp a.h5 b.h5"),
+                     0);
+    assert_int_equal(run("$I drift a.h5"), 0);
+    check_contains(out, table, "statistics of the file");
+    assert_int_equal(run("$I drift p2.h5"), 0);
+    check_contains(out, "10 of 30 runs, from run 10 on", "a part");
+    sweep();
+}
+
+/* Names, comments and the way numbers are written make no other campaign; another setting does. */
+static void test_parameters(void **state)
+{
+    (void)state;
+    put("a.yaml", limits);
+    put("b.yaml", "# the same\nimukit: 1\nname: other\ndescription: other\n"
+                  "gyro:\n  bias:\n    repeatability: 0.010 deg/h\n"
+                  "  evidence: {source: a guess}\naccel: {bias: {repeatability: 0.05 mg}}\n");
+    assert_int_equal(run("$I drift a.yaml --times 10s -r 10Hz -n 4 -o a.h5 && "
+                         "$I drift b.yaml --times 10s -r 10Hz -n 4 -o b.h5 && cmp a.h5 b.h5"),
+                     0);
+    assert_int_equal(run("$I drift a.yaml --times 10s -r 10Hz -n 4 --yaw 1deg -o c.h5"), 0);
+    assert_int_equal(run("cmp -s a.h5 c.h5"), 1);
+    assert_int_equal(run("$I merge a.h5 c.h5 -o d.h5; true"), 0);
+    check_contains(err, "c.h5", "a file of another campaign is named");
+    sweep();
+}
+
+/* 500 runs of biases alone: at 10 min everything is linear. The standard deviations are 5 % of a
+ * CEP at most (that of a line, sqrt(n)/(2 n f(r) r)), 3.2 % of a root mean square at most,
+ * 1/sqrt(2 n); five of them are a false alarm of 6e-7 each. */
+static void test_monte_carlo(void **state)
+{
+    (void)state;
+    put("limits.yaml", limits);
+    json_t *result = result_of("$I drift limits.yaml --times 10min -r 2Hz -n 500 --json");
+    json_t *runs =
+        json_array_get(json_object_get(json_object_get(result, "monte_carlo"), "times"), 0);
+    json_t *found = json_object_get(runs, "figures"), *one = case_of(result, 0);
+    assert_int_equal(json_integer_value(json_object_get(runs, "runs")), 500);
+    CHECK_RELATIVE(value_of(json_object_get(found, "cep")), figure(one, 0, "cep"), 0.26);
+    CHECK_RELATIVE(value_of(json_object_get(found, "velocity")), figure(one, 0, "velocity"), 0.16);
+    CHECK_RELATIVE(value_of(json_object_get(found, "heading")), figure(one, 0, "heading"), 0.16);
+    json_decref(document);
+    sweep();
+}
+
+/* ---- files -----------------------------------------------------------------------------------
+ */
+
+static void test_files(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I drift navigation tactical -d 1h -o a.csv --report a.html"), 0);
+    assert_int_equal(run("head -2 a.csv"), 0);
+    check_contains(out, "model,source,time [s],cep [m],r95 [m],drms [m]", "header");
+    check_contains(out, "\"navigation\",total,10,", "first row");
+    assert_int_equal(run("grep -c 'gyro.bias.repeatability,3600,' a.csv"), 0);
+    assert_string_equal(out, "2\n");
+    assert_int_equal(run("grep -q 'Comparison' a.html"), 0);
+    if (imk_plot_available()) {
+        assert_int_equal(run("$I drift navigation --compensated --plot a.svg && grep -q svg a.svg"),
+                         0);
+        assert_int_equal(run("$I drift navigation -d 1h --plot term"), 0);
+        check_contains(out, "Horizontal error", "term");
+    }
+    sweep();
+}
+
+static void test_motion(void **state)
+{
+    (void)state;
+    put("car.yaml", "imukit_motion: 1\nname: a drive\n"
+                    "start: {latitude: 48 deg, longitude: 11 deg, height: 500 m, heading: 90 deg}\n"
+                    "steps:\n  - hold 10 s\n  - accelerate to 15 m/s at 2 m/s^2\n  - hold 20 s\n"
+                    "  - stop at 3 m/s^2\n");
+    assert_int_equal(run("$I drift navigation --motion car.yaml --aligned self --align-time 60s"),
+                     0);
+    check_contains(out, "on car.yaml; attitude found by the unit itself", "title");
+    assert_int_equal(run("$I drift tactical -m car.yaml -r 20Hz -n 9 --times 10s,20s -o a.h5 && "
+                         "$I drift a.h5 --json"),
+                     0);
+    check_contains(out, "a drive", "the script is in the results");
+    check_message("$I drift tactical --motion car.yaml -d 1h", 2,
+                  "imukit drift: error: 3600 s: the motion ends after 43.5 s (or let it end with "
+                  "`then: hold`)\n" TRY("drift"));
+    sweep();
+}
+
+/* ---- messages --------------------------------------------------------------------------------
+ */
+
+static void test_messages(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line, *message;
+    } wrong[] = {
+        {"$I drift tactical --want 'CEP 1 nmi'",
+         "--want \"CEP 1 nmi\": the time is missing; write --want \"CEP 1 nmi @ 1h\""},
+        {"$I drift tactical --want 'CPE 1 nmi @ 1h'",
+         "--want \"CPE 1 nmi @ 1h\": \"CPE\" is no figure (did you mean CEP?); CEP, R95, DRMS, "
+         "height, velocity, tilt and heading are; write --want \"CEP 1 nmi @ 1h\""},
+        {"$I drift tactical --times 1min,foo",
+         "--times \"1min,foo\": \"foo\" is no positive time with a unit; write --times \"1min, "
+         "10min, 1h\""},
+        {"$I drift tactical --latitude 91deg", "--latitude 91 deg: expected -90deg to 90deg"},
+        {"$I drift tactical --align-time 10s", "--align-time is of --aligned self: add it"},
+        {"$I drift tactical navigation -n 10", "--monte-carlo is of one model at a time"},
+        {"$I drift tactical -n 10 --shard 4/3 -o a.h5",
+         "--shard 4/3: expected I/N, such as 3/10: the third of ten parts"},
+        {"$I drift tactical -n 10 --shard 1/3",
+         "--shard makes a part for imukit merge: add -o PART.h5"},
+        {"$I drift tactical -o a.h5",
+         "-o a.h5: figures against time are written as .csv (.h5 holds runs: add --monte-carlo "
+         "1000)"},
+        {"$I drift tactical --initial-attitude '1 2 deg'",
+         "--initial-attitude \"1 2 deg\": expected one or three numbers (north, east, down) that "
+         "are not negative, with a unit such as deg"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        char message[600];
+        snprintf(message, sizeof message, "imukit drift: error: %s\n" TRY("drift"),
+                 wrong[i].message);
+        check_message(wrong[i].line, 2, message);
+    }
+    check_message("$I drift tactical --latitude 89.9deg --aligned self", 1,
+                  "imukit drift: error: alignment: two settings exclude each other; expected a "
+                  "given attitude: a unit within 1 deg of a pole finds no north\n");
+    assert_int_equal(sweep(), 0);
+}
+
+/* What the linear theory leaves out is said. */
+static void test_omitted(void **state)
+{
+    (void)state;
+    put("band.yaml", "imukit: 1\nname: band\ngyro: {dead_band: 0.1 deg/h}\naccel: {}\n");
+    check_message("$I drift band.yaml -d 1min", 0,
+                  "imukit drift: warning: band.yaml: left out by the linear theory: "
+                  "gyro.dead_band; --monte-carlo has all that needs no temperature\n");
+    sweep();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_table_of_classes),
+        cmocka_unit_test(test_presets),
+        cmocka_unit_test(test_budget),
+        cmocka_unit_test(test_compensated),
+        cmocka_unit_test(test_no_position),
+        cmocka_unit_test(test_requirement),
+        cmocka_unit_test(test_devices),
+        cmocka_unit_test(test_campaign),
+        cmocka_unit_test(test_parameters),
+        cmocka_unit_test(test_monte_carlo),
+        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_messages),
+        cmocka_unit_test(test_omitted),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

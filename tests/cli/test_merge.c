@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit drift --shard and imukit merge: what is said, and that a campaign that was divided, killed
+ * and taken up again gives the bytes of an undisturbed one. */
+#include "run_command.h"
+
+#include <signal.h>
+
+/* White noise alone: runs are quick. */
+static const char model[] = "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h)}}\n"
+                            "accel: {noise: {velocity_random_walk: 0.1 m/s/sqrt(h)}}\n";
+
+#define DRIFT "$I drift m.yaml --duration 20s --seed 3 --monte-carlo 100 "
+
+static void make_shards(unsigned count)
+{
+    char line[512];
+    put("m.yaml", model);
+    for (unsigned i = 1; i <= count; i++) {
+        snprintf(line, sizeof line, DRIFT "--shard %u/%u -o s%u.h5", i, count, i);
+        assert_int_equal(run(line), 0);
+    }
+}
+
+static void shards_and_threads_do_not_matter(void **state)
+{
+    (void)state;
+    make_shards(3);
+    assert_int_equal(run(DRIFT "-o one.h5 --threads 1"), 0);
+    assert_int_equal(run(DRIFT "-o five.h5 --threads 5"), 0);
+    assert_int_equal(run("cmp one.h5 five.h5"), 0);
+    assert_int_equal(run("$I merge s2.h5 s3.h5 s1.h5 -o all.h5"), 0);
+    assert_string_equal(out, "all.h5: 100 of 100 runs from 3 of 3 files\n");
+    assert_string_equal(err, "");
+    assert_int_equal(run("cmp one.h5 all.h5"), 0);
+    assert_int_equal(run("$I merge s2.h5 s3.h5 s1.h5 -o all.csv.gz && " DRIFT "-o one.csv.gz"), 0);
+    assert_int_equal(run("cmp one.csv.gz all.csv.gz"), 0);
+    sweep();
+}
+
+static void damage(const char *path, long place)
+{
+    FILE *file = fopen(path, "r+b");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, place, SEEK_SET), 0);
+    const int byte = fgetc(file);
+    assert_int_equal(fseek(file, place, SEEK_SET), 0);
+    fputc(byte ^ 1, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void what_is_wrong_is_named(void **state)
+{
+    (void)state;
+    make_shards(10);
+    damage("s2.h5", 5000);
+    assert_int_equal(truncate("s3.h5", 1500), 0);
+    assert_int_equal(run("$I drift m.yaml --duration 20s --seed 4 --monte-carlo 100 --shard 7/10 "
+                         "-o s7.h5"),
+                     0);
+    assert_int_equal(run("rm s10.h5 && $I merge s?.h5 -o all.h5"), 1);
+    assert_string_equal(out, "");
+    check_contains(err,
+                   "imukit merge: warning: s2.h5: the file is damaged: its checksum does not agree "
+                   "with its content; compute it again\n",
+                   "a damaged shard");
+    check_contains(err, "imukit merge: warning: s3.h5: the file is cut short: 1500 of ",
+                   "a truncated shard");
+    check_contains(err,
+                   "imukit merge: warning: s7.h5: the seed is 4, not 3; expected a file of "
+                   "the same campaign as most others\n",
+                   "a shard of another seed");
+    check_contains(err,
+                   "imukit merge: error: runs 10-29,60-69,90-99 of 100 are missing; compute again "
+                   "with --shard i/10 for i = 2-3,7,10 (Slurm: sbatch --array=2-3,7,10), then "
+                   "merge again (--partial merges what there is)\n",
+                   "missing shards");
+    assert_int_equal(access("all.h5", F_OK), -1);
+    assert_int_equal(run("$I merge s?.h5 -o some.h5 --partial --json"), 0);
+    json_t *document = json_loads(out, 0, NULL);
+    assert_non_null(document);
+    const json_t *result = json_object_get(document, "result");
+    assert_int_equal(json_integer_value(json_object_get(result, "runs")), 60);
+    assert_string_equal(json_string_value(json_object_get(result, "missing_shards")), "2-3,7,10");
+    assert_int_equal(json_array_size(json_object_get(result, "left_out")), 3);
+    assert_int_equal(json_array_size(json_object_get(document, "warnings")), 4);
+    json_decref(document);
+    /* The advice, followed. */
+    assert_int_equal(run("for i in 2 3 7 10; do " DRIFT "--shard $i/10 -o new$i.h5; done"), 0);
+    assert_int_equal(run("$I merge some.h5 new*.h5 -o all.h5 && " DRIFT "-o one.h5"), 0);
+    assert_int_equal(run("cmp one.h5 all.h5"), 0);
+    sweep();
+}
+
+static void wrong_usage(void **state)
+{
+    (void)state;
+    check_message(
+        "$I merge -o all.h5", 2,
+        "imukit merge: error: an operand is missing: imukit merge SHARD...\n" TRY("merge"));
+    check_message(
+        "$I merge a.h5", 2,
+        "imukit merge: error: -o FILE is missing: the results file to write\n" TRY("merge"));
+    check_message("$I merge a.h5 -o all.txt", 1,
+                  "imukit merge: error: all.txt: the file format is not recognised; expected a "
+                  "name ending in .h5, .csv, .csv.gz or .csv.zst\n");
+    put("a.h5", "not a results file");
+    check_message("$I merge a.h5 b.h5 -o all.h5", 1,
+                  "imukit merge: warning: a.h5: the file format is not recognised; expected a "
+                  "results file that imukit wrote (.h5)\n"
+                  "imukit merge: warning: b.h5: the file cannot be opened: No such file or "
+                  "directory\n"
+                  "imukit merge: error: no file is usable; give results files of one campaign\n");
+    sweep();
+}
+
+static pid_t start(const char *shard, const char *path)
+{
+    const pid_t child = fork();
+    if (child == 0) {
+        if (!freopen("/dev/null", "w", stdout) || !freopen("said", "w", stderr))
+            _exit(1);
+        execl(command, command, "drift", "m.yaml", "--duration", "1min", "--seed", "3",
+              "--monte-carlo", "400", "--shard", shard, "-o", path, "--threads", "1", (char *)NULL);
+        _exit(1);
+    }
+    assert_true(child > 0);
+    return child;
+}
+
+/* @return true when the signal ended it, false when it was done before */
+static bool end(pid_t child, int number)
+{
+    int status;
+    kill(child, number);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFSIGNALED(status) ? WTERMSIG(status) == number : WEXITSTATUS(status) == 0);
+    return WIFSIGNALED(status);
+}
+
+/* Each shard is killed after ever longer times, so that it ends in the end on any machine. */
+static void killed_campaigns_end_in_the_same_bytes(void **state)
+{
+    (void)state;
+    enum { SHARDS = 5 };
+    unsigned kills = 0, random = 1;
+    put("m.yaml", model);
+    for (unsigned i = 1; i <= SHARDS; i++) {
+        char shard[16], path[16];
+        bool killed = true;
+        snprintf(shard, sizeof shard, "%u/%d", i, SHARDS);
+        snprintf(path, sizeof path, "s%u.h5", i);
+        for (unsigned life = 0; killed; life++) {
+            const pid_t child = start(shard, path);
+            random = (unsigned)(random * UINT64_C(16807) % 2147483647u);
+            usleep(15000 + random % 40000 * (1 + life));
+            killed = end(child, SIGKILL);
+            kills += killed;
+        }
+    }
+    assert_true(kills > 0);
+    assert_int_equal(run("$I merge s*.h5 -o all.h5 && $I drift m.yaml --duration 1min --seed 3 "
+                         "--monte-carlo 400 -o one.h5"),
+                     0);
+    assert_int_equal(run("cmp one.h5 all.h5"), 0);
+    sweep();
+}
+
+/* The size of a file; 0 when it is not there. */
+static long size_of(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 ? (long)about.st_size : 0;
+}
+
+/* Ctrl-C says how to go on, and the process ends by the signal. */
+static void an_interrupt_says_how_to_go_on(void **state)
+{
+    (void)state;
+    bool interrupted = false;
+    put("m.yaml", model);
+    for (int attempt = 0; attempt < 10 && !interrupted; attempt++) {
+        remove("x.h5");
+        const pid_t child = start("1/1", "x.h5");
+        /* The head, and a batch of runs: the campaign has begun. */
+        for (int wait = 0; wait < 20000 && size_of("x.h5.part") < 8000; wait++)
+            usleep(500);
+        interrupted = end(child, SIGINT);
+    }
+    assert_true(interrupted);
+    read_text("said", err);
+    check_contains(err,
+                   "interrupted: the runs computed so far are kept in x.h5.part, and the same "
+                   "command goes on from there\n",
+                   "SIGINT");
+    assert_int_equal(run("$I drift m.yaml --duration 1min --seed 4 --monte-carlo 400 -o x.h5"), 1);
+    assert_string_equal(err, "imukit drift: error: x.h5.part: the seed is 3, not 4; remove it to "
+                             "begin anew, or choose another name for the results\n");
+    assert_int_equal(run("$I drift m.yaml --duration 1min --seed 3 --monte-carlo 400 -o x.h5"), 0);
+    check_contains(err, " of 400 runs are there already\n", "what the interrupt left");
+    assert_int_equal(run("$I drift m.yaml --duration 1min --seed 3 --monte-carlo 400 -o x.h5"), 0);
+    assert_string_equal(err, "imukit drift: 400 of 400 runs are there already\n");
+    sweep();
+}
+
+/* The disk is full, as a limit of 8 KiB on files makes believe: nothing appears, what was there
+ * stays, and the reason is said. */
+static void a_full_disk(void **state)
+{
+    (void)state;
+    put("m.yaml", model);
+    assert_int_equal(run("trap '' XFSZ; ulimit -f 16; " DRIFT "-o x.h5"), 1);
+    check_contains(err,
+                   "imukit drift: error: x.h5.part: the file cannot be written: File too large; "
+                   "make room: what was there before is kept\n",
+                   "a limit on the size of files");
+    assert_int_equal(access("x.h5", F_OK), -1);
+    assert_int_equal(run(DRIFT "-o x.h5"), 0);
+    check_contains(err, " of 100 runs are there already\n", "what the full disk held");
+    assert_int_equal(run(DRIFT "-o one.h5 && cmp one.h5 x.h5"), 0);
+    sweep();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shards_and_threads_do_not_matter),
+        cmocka_unit_test(what_is_wrong_is_named),
+        cmocka_unit_test(wrong_usage),
+        cmocka_unit_test(killed_campaigns_end_in_the_same_bytes),
+        cmocka_unit_test(an_interrupt_says_how_to_go_on),
+        cmocka_unit_test(a_full_disk),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
