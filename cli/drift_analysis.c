@@ -7,14 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Beyond a tenth of the Earth's radius a distance on the tangent plane is no position; beyond a
- * tenth of a radian the square of an angle, which the linear theory drops, is a twentieth of it. */
-static const double largest_distance = 637100.0; /* [m] */
-static const double largest_angle = 0.1;         /* [rad] */
+/* Beyond a tenth of a radian the square of an angle, which the linear theory drops, is a twentieth
+ * of it [rad]. */
+static const double largest_angle = 0.1;
 
 drift_validity drift_validity_of(const imk_drift_figures *f)
 {
-    if (!(f->drms <= largest_distance))
+    if (!(f->drms <= IMK_DRIFT_DISTANCE_MAX))
         return DRIFT_LOST;
     return f->tilt <= largest_angle && f->heading <= largest_angle ? DRIFT_LINEAR : DRIFT_ROUGH;
 }

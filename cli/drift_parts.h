@@ -130,6 +130,9 @@ text_table drift_before_after_table(const drift_result *result);
 text_table drift_comparison_table(const drift_result *result);
 text_table drift_budget_table(const drift_case *one, size_t time, imk_drift_wish wish);
 text_table drift_shift_table(const drift_case *one, size_t time);
+/* "at rest at 45 deg north; attitude true at the start, height held by other means." */
+enum { DRIFT_CONDITIONS = 4400 };
+void drift_conditions(const drift_result *result, char *text, size_t size);
 void drift_print(const drift_result *result);
 /* Sentences about omitted terms, about errors beyond the linear range, about disagreement. */
 void drift_warn(const drift_result *result);

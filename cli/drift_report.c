@@ -74,7 +74,11 @@ static void put_models(imk_page *page, const drift_result *r)
 int drift_report(const drift_result *r, const drift_answer *answer, const char *path)
 {
     imk_error error;
+    char conditions[DRIFT_CONDITIONS];
     imk_page *page = imk_page_create("Error growth", r->model_count > 1 ? "" : r->name[0]);
+    drift_conditions(r, conditions, sizeof conditions);
+    conditions[0] = (char)(conditions[0] - 'a' + 'A');
+    imk_page_text(page, conditions);
     for (size_t i = 0; i < command_warning_count(); i++)
         imk_page_verdict(page, 2, command_warning_get(i)->message);
     put_figure(page, r);

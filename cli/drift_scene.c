@@ -95,6 +95,8 @@ static int read_start(const drift_options *o, imk_drift_settings *s)
                                "it: one of the two");
     if (o->aligned != 1 && !isnan(o->align_time))
         return command_misused("--align-time is of --aligned self: add it");
+    if (!isnan(o->align_time) && !(o->align_time >= 1.0 && o->align_time <= 1e7))
+        return command_misused("--align-time %g s: expected 1 s to 1e7 s", o->align_time);
     int code = read_initial("initial-position", o->initial_position, "m", s->initial_sigma);
     if (code < 0)
         code = read_initial("initial-velocity", o->initial_velocity, "m/s", s->initial_sigma + 3);
@@ -160,7 +162,7 @@ static void usual_times(double duration, times *t)
 /* --times "1min, 10 min, 1h" */
 static int stated_times(const char *text, times *t)
 {
-    const double latest = 1e10; /* [s]: imk_drift_validate() */
+    const double latest = 1e8; /* [s]: imk_drift_validate() */
     for (const char *begin = text; *begin;) {
         const size_t length = strcspn(begin, ",");
         double value, sigma;
@@ -194,6 +196,8 @@ static int choose_duration(const drift_options *o, const drift_scene *s, double 
         *duration = s->want.asked && !o->times ? s->want.time : isinf(length) ? day : length;
     if (!(*duration > 0))
         return command_misused("--duration must be positive");
+    if (*duration > 1e8)
+        return command_misused("--duration %g s: expected at most three years (1e8 s)", *duration);
     if (*duration * s->settings.rate < 1)
         return command_misused("--duration %g s is less than a sample at %g Hz", *duration,
                                s->settings.rate);
@@ -270,6 +274,10 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
         settings->rate = o->rate;
     if (!(settings->rate > 0))
         return command_misused("--rate must be positive");
+    if (!(settings->rate >= 1e-3 && settings->rate <= 1e6))
+        return command_misused("--rate %g Hz: expected 0.001 Hz to 1 MHz", settings->rate);
+    if (!(o->height >= -1e4 && o->height <= 1e5))
+        return command_misused("--height %g m: expected -10 km to 100 km", o->height);
     if (!(fabs(settings->latitude) <= quarter_turn))
         return command_misused("--latitude %g deg: expected -90deg to 90deg",
                                settings->latitude * 90 / quarter_turn);

@@ -299,24 +299,30 @@ void drift_print_table(text_table table)
     text_table_free(&table);
 }
 
-static void print_title(const drift_result *r)
+void drift_conditions(const drift_result *r, char *text, size_t size)
 {
     const imk_drift_settings *s = &r->scene->settings;
+    char where[80];
+    snprintf(where, sizeof where, "at rest at %.4g deg %s",
+             fabs(s->latitude) / imk_unit_of("deg").scale, s->latitude < 0 ? "south" : "north");
+    snprintf(text, size, "%s%s; attitude %s at the start, height %s.",
+             r->scene->motion ? "on " : where, r->scene->motion ? r->options->motion : "",
+             s->alignment == IMK_ALIGNED_SELF ? "found by the unit itself"
+             : s->initial_sigma[6] + s->initial_sigma[7] + s->initial_sigma[8] > 0 ? "given"
+                                                                                   : "true",
+             is_free(r) ? "free" : "held by other means");
+}
+
+static void print_title(const drift_result *r)
+{
     const char *bold = command_color(stdout, COLOR_BOLD),
                *reset = command_color(stdout, COLOR_RESET);
+    char conditions[DRIFT_CONDITIONS];
+    drift_conditions(r, conditions, sizeof conditions);
     printf("%sError growth%s", bold, reset);
     for (size_t m = 0; m < r->model_count; m++)
         printf("%s %s", m == 0 ? " of" : ",", r->name[m]);
-    if (r->scene->motion)
-        printf(" on %s", r->options->motion);
-    else
-        printf(" at rest at %.4g deg %s", fabs(s->latitude) / imk_unit_of("deg").scale,
-               s->latitude < 0 ? "south" : "north");
-    printf("; attitude %s at the start, height %s.\n",
-           s->alignment == IMK_ALIGNED_SELF ? "found by the unit itself"
-           : s->initial_sigma[6] + s->initial_sigma[7] + s->initial_sigma[8] > 0 ? "given"
-                                                                                 : "true",
-           is_free(r) ? "free" : "held by other means");
+    printf(" %s\n", conditions);
 }
 
 static void print_budget(const drift_result *r, const drift_case *one)

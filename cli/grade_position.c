@@ -9,10 +9,6 @@
 
 const double grade_time[GRADE_TIMES] = {60, 3600, 86400};
 
-/* The largest error that is a position still, for a class whose claim has no upper end: a tenth of
- * the Earth's radius, as in drift_validity_of(). */
-static const double largest_position = 637100.0; /* [m] */
-
 const char *grade_name(imk_grade grade)
 {
     const imk_grade_row *row = imk_grade_table(grade);
@@ -95,9 +91,11 @@ static void find_needs(grade_case *one, const imk_drift_analysis *a)
     const imk_grade_row *row = imk_grade_table(one->next);
     const bool open = row && isinf(row->position_limit);
     const size_t time = one->next == IMK_GRADE_STRATEGIC ? GRADE_DAY : GRADE_HOUR;
+    /* A class whose claim has no upper end wants an error that is a position still. */
     if (need && row &&
         imk_drift_require(a, time, open ? IMK_WISH_DRMS : IMK_WISH_CEP,
-                          open ? largest_position : row->position_limit, need, NULL) == IMK_OK) {
+                          open ? IMK_DRIFT_DISTANCE_MAX : row->position_limit, need,
+                          NULL) == IMK_OK) {
         size_t wanting = 0;
         one->next_all = need->all;
         for (size_t k = 0; k < a->source_count; k++) {

@@ -26,6 +26,9 @@ static int parse_position(const char *text, imk_geodetic *place)
             return command_misused("--position \"%s\": the %s cannot be read; expected latitude, "
                                    "longitude, height, such as \"34.25 deg, 108.91 deg, 380 m\"",
                                    text, name[i]);
+        if (sigma > 0)
+            return command_misused("--position \"%s\": the %s is taken as it is: leave its +- out",
+                                   text, name[i]);
         item += length + 1;
     }
     if (!(fabs(value[0]) <= 90.0 * degree) || !(fabs(value[1]) <= 360.0 * degree))
@@ -50,7 +53,27 @@ static int parse_attitude(navigation *n)
         return command_misused("--attitude \"%s\": expected roll, pitch and yaw with one unit, "
                                "such as \"0.5 -1.2 90 deg\", and their 1 sigma behind +- if known",
                                text);
+    const double turn = 360.0 * degree, quarter = 90.0 * degree;
+    if (!(fabs(n->euler[0]) <= turn && fabs(n->euler[1]) <= quarter && fabs(n->euler[2]) <= turn))
+        return command_misused("--attitude \"%s\": the pitch is within 90 deg, roll and yaw within "
+                               "360 deg",
+                               text);
     memcpy(n->attitude_sigma, sigma, sizeof n->attitude_sigma);
+    return -1;
+}
+
+static int parse_heading(navigation *n)
+{
+    const char *text = n->options->heading;
+    size_t count = 0;
+    imk_error error;
+    if (imk_quantity_parse(text, text + strlen(text), imk_unit_of("deg").dimension, 1, &n->heading,
+                           &n->heading_sigma, &count, NULL, &error) != IMK_OK ||
+        !(fabs(n->heading) <= 360.0 * degree))
+        return command_misused(
+            "--heading \"%s\": expected an azimuth within 360 deg, such as 30deg, "
+            "or \"30 +- 1 deg\" with its 1 sigma",
+            text);
     return -1;
 }
 
@@ -72,7 +95,7 @@ static int parse_updates(navigation *n)
             return command_misused("--zero-velocity %s: expected auto, or the time from stop to "
                                    "stop, such as 60s",
                                    text);
-        if (!(n->options->stop > 0 && n->options->stop <= n->update_every))
+        if (!(n->stop > 0 && n->stop <= n->update_every))
             return command_misused("--stop must be positive and not longer than the time from stop "
                                    "to stop");
     }
@@ -86,20 +109,29 @@ static int parse_updates(navigation *n)
     return -1;
 }
 
-int navigate_parse(navigation *n)
+/* Options that mean nothing without another one, or beside it. */
+static int check_company(const navigate_options *o)
 {
-    const navigate_options *o = n->options;
-    if (!o->position)
-        return command_misused("the place of the start is missing: add --position \"LATITUDE deg, "
-                               "LONGITUDE deg, HEIGHT m\"");
+    const bool automatic = o->zero_velocity && strcmp(o->zero_velocity, "auto") == 0;
     if (isnan(o->align) && !o->attitude)
         return command_misused(
             "the attitude at the start is missing: add --align 300s if the unit "
             "stands still that long first, or --attitude \"ROLL PITCH YAW deg\"");
     if (!isnan(o->align) && o->attitude)
         return command_misused("--align finds the attitude that --attitude gives: leave one out");
-    if (!isnan(o->heading) && o->attitude)
+    if (o->heading && o->attitude)
         return command_misused("--heading is part of --attitude: leave it out");
+    if (o->method >= 0 && o->attitude)
+        return command_misused("--align-method is of --align, which --attitude leaves out");
+    if (!isnan(o->stop) && (!o->zero_velocity || automatic))
+        return command_misused("--stop is of --zero-velocity TIME, such as --zero-velocity 60s");
+    if (!isnan(o->still_rotation) && !o->zero_velocity)
+        return command_misused("--still-rotation is of --zero-velocity: add it");
+    return -1;
+}
+
+static int check_numbers(const navigate_options *o)
+{
     if (!isnan(o->align) && !(o->align >= 1))
         return command_misused("--align must be 1 s or more");
     if (!(o->samples >= 1 && o->samples <= 4))
@@ -108,14 +140,31 @@ int navigate_parse(navigation *n)
         return command_misused("--interval must be positive");
     if (!(o->still_velocity > 0))
         return command_misused("--still-velocity must be positive");
-    if (!(o->still_rotation >= 0))
+    if (o->still_rotation < 0)
         return command_misused("--still-rotation must not be negative");
     if (!(o->standard_gravity > 9.7 && o->standard_gravity < 9.9))
         return command_misused("--standard-gravity is what g stands for in the log's units, "
                                "between 9.7 and 9.9 m/s^2");
-    int code = parse_position(o->position, &n->place);
+    return -1;
+}
+
+int navigate_parse(navigation *n)
+{
+    const navigate_options *o = n->options;
+    if (!o->position)
+        return command_misused("the place of the start is missing: add --position \"LATITUDE deg, "
+                               "LONGITUDE deg, HEIGHT m\"");
+    n->stop = isnan(o->stop) ? 5.0 : o->stop;
+    n->method = o->method < 0 ? IMK_ALIGNMENT_INERTIAL : (imk_alignment_method)o->method;
+    int code = check_company(o);
+    if (code < 0)
+        code = check_numbers(o);
+    if (code < 0)
+        code = parse_position(o->position, &n->place);
     if (code < 0 && o->attitude)
         code = parse_attitude(n);
+    if (code < 0 && o->heading)
+        code = parse_heading(n);
     if (code < 0)
         code = parse_updates(n);
     if (code < 0 && o->model) {

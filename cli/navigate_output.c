@@ -25,6 +25,9 @@ static const struct {
                             {"roll", "deg", 6},
                             {"pitch", "deg", 6},
                             {"yaw", "deg", 6},
+                            {"acceleration_north", "m/s^2", 6},
+                            {"acceleration_east", "m/s^2", 6},
+                            {"acceleration_down", "m/s^2", 6},
                             {"sigma_north", "m", 4},
                             {"sigma_east", "m", 4},
                             {"sigma_down", "m", 4},
@@ -35,21 +38,30 @@ static const struct {
                             {"sigma_attitude_east", "deg", 6},
                             {"sigma_attitude_down", "deg", 6}};
 
+static bool is_written(const navigation *n, size_t column)
+{
+    if (column >= TRACK_SIGMA)
+        return n->has_model;
+    return column < TRACK_ACCELERATION || n->options->gravity_free;
+}
+
 int navigate_write_track(const navigation *n, const char *path)
 {
-    const size_t count = n->has_model ? TRACK_COLUMNS : TRACK_SIGMA;
+    size_t count = 0;
     imk_log_column column[TRACK_COLUMNS];
     int decimals[TRACK_COLUMNS];
     const double *data[TRACK_COLUMNS];
     imk_log_writer *writer;
     imk_error error;
     memset(column, 0, sizeof column);
-    for (size_t k = 0; k < count; k++) {
-        snprintf(column[k].name, sizeof column[k].name, "%s", columns[k].name);
-        column[k].unit = imk_unit_of(columns[k].unit);
-        column[k].axis = -1;
-        decimals[k] = columns[k].decimals;
-        data[k] = n->track[k];
+    for (size_t k = 0; k < TRACK_COLUMNS; k++) {
+        if (!is_written(n, k))
+            continue;
+        snprintf(column[count].name, sizeof column[count].name, "%s", columns[k].name);
+        column[count].unit = imk_unit_of(columns[k].unit);
+        column[count].axis = -1;
+        decimals[count] = columns[k].decimals;
+        data[count++] = n->track[k];
     }
     if (imk_log_create(path, count, column, IMK_LOG_FIXED, decimals, n->track_rows, &writer,
                        &error) != IMK_OK)
@@ -66,7 +78,9 @@ static void set_pair(const navigation *n, text_table *table, size_t column, doub
 {
     char text[60];
     format_value(value, n->has_model ? sigma : 0.0, 4, text, sizeof text);
-    if (n->has_model)
+    if (n->has_model && sigma >= 100.0 && sigma < 1e7) /* 490, not 4.9e+02 */
+        text_table_set(table, column, "%s ± %.0f", text, sigma);
+    else if (n->has_model)
         text_table_set(table, column, "%s ± %.2g", text, sigma);
     else
         text_table_set(table, column, "%s", text);
@@ -128,9 +142,9 @@ static void print_attitude(const navigation *n)
         putchar('\n');
         return;
     }
-    printf("Aligned over %g s (%s): ", n->dt * (double)n->first, methods[o->method]);
+    printf("Aligned over %g s (%s): ", n->dt * (double)n->first, methods[n->method]);
     print_angles("", n->euler[0], n->euler[1], n->euler[2]);
-    puts(isnan(o->heading) ? "" : " (yaw given)");
+    puts(o->heading ? " (yaw given)" : "");
     printf("  1 sigma: tilt %.2g deg, heading %.2g deg%s\n",
            hypot(n->attitude_sigma[0], n->attitude_sigma[1]) / degree,
            n->attitude_sigma[2] / degree,

@@ -13,11 +13,12 @@
 
 typedef struct navigate_options {
     log_input log;
-    const char *position, *attitude, *model, *zero_velocity, *output, *plot, *report;
-    double align, heading, stop, still_velocity, still_rotation, interval, standard_gravity;
+    const char *position, *attitude, *heading, *model, *zero_velocity, *output, *plot, *report;
+    /* NaN: not given, of align, stop and still_rotation */
+    double align, stop, still_velocity, still_rotation, interval, standard_gravity;
     uint64_t samples;
-    int method, vertical;
-    bool json, strict;
+    int method, vertical; /* method -1: not given */
+    bool json, strict, gravity_free;
 } navigate_options;
 
 typedef enum update_policy { UPDATES_NONE = 0, UPDATES_EVERY, UPDATES_AUTO } update_policy;
@@ -33,7 +34,8 @@ enum {
     TRACK_ROLL = TRACK_VELOCITY + 3,
     TRACK_PITCH,
     TRACK_YAW,
-    TRACK_SIGMA, /* of position, velocity, attitude; north, east, down */
+    TRACK_ACCELERATION,                   /* … east, down: mean since the row before */
+    TRACK_SIGMA = TRACK_ACCELERATION + 3, /* of position, velocity, attitude; north, east, down */
     TRACK_COLUMNS = TRACK_SIGMA + IMK_NAVIGATION_ERRORS
 };
 
@@ -48,7 +50,9 @@ typedef struct navigation {
     bool has_model;
     imk_model *model;
     update_policy updates;
-    double update_every; /* [s] */
+    double update_every, stop; /* [s] */
+    imk_alignment_method method;
+    double heading, heading_sigma; /* when given [rad] */
     bool aligned;
     imk_alignment_result alignment;
     double euler[3];            /* roll, pitch, yaw at the start of navigation [rad] */
@@ -58,10 +62,21 @@ typedef struct navigation {
     imk_zero_velocity_estimate end;
     imk_zero_velocity_counts counts;
     size_t windows, still_windows; /* of the detector, when it was used */
+    size_t steady_windows;         /* that look still while the velocity is not 0 */
+    bool moved;                    /* the velocity changed by more than a standing unit's may */
     double largest;                /* horizontal distance from the start [m] */
     size_t track_rows;
     double *track[TRACK_COLUMNS];
 } navigation;
+
+/* Angle (sensor 0) or velocity (1) over one sample. */
+static inline imk_vector3 navigate_increment(const navigation *n, int sensor, size_t row)
+{
+    imk_vector3 out;
+    for (int i = 0; i < 3; i++)
+        out.v[i] = n->reading[3 * sensor + i][row] * n->dt;
+    return out;
+}
 
 /* Of all windows these many must be still for a unit to count as one that never moved. */
 bool navigate_at_rest(const navigation *n);

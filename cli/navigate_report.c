@@ -37,8 +37,10 @@ static bool fill(const navigation *n, track_figure *f, size_t *count)
         f->time[k] = n->track[TRACK_TIME][row];
         for (int i = 0; i < 2; i++) {
             f->way[i][k] = n->track[TRACK_NORTH + i][row];
-            f->high[i][k] = n->track[TRACK_SIGMA + i][row];
-            f->low[i][k] = -f->high[i][k];
+            /* About the start, where a unit that stood is; else about the track. */
+            const double middle = navigate_at_rest(n) ? 0.0 : f->way[i][k];
+            f->high[i][k] = middle + n->track[TRACK_SIGMA + i][row];
+            f->low[i][k] = middle - n->track[TRACK_SIGMA + i][row];
             f->speed[i][k] = n->track[TRACK_VELOCITY + i][row];
         }
     }
@@ -94,6 +96,7 @@ static bool make_figure(const navigation *n, track_figure *f)
                                   .x_label = p == 0 ? "east [m]" : "time [s]",
                                   .y_label = y_labels[p],
                                   .curve_count = p == 0 ? 1 : 2,
+                                  .key = IMK_KEY_BELOW,
                                   .curves = f->curve[p]};
     for (int axis = 0; axis < 2; axis++)
         f->panel[1 + axis].curve_count = axis_curves(n, f, axis, count, f->curve[1 + axis]);
@@ -152,9 +155,11 @@ int navigate_report(const navigation *n, const char *path)
     if (make_figure(n, &f)) {
         imk_page_figure(
             page, &f.figure,
-            n->has_model ? "Grey: 1 sigma of the error that the model predicts, about the start: "
-                           "for a unit that stands still."
-                         : "Horizontal track, and position and velocity against time.");
+            !n->has_model ? "Horizontal track, and position and velocity against time."
+            : navigate_at_rest(n)
+                ? "Grey: 1 sigma of the error that the model predicts, about the start, where the "
+                  "unit stood."
+                : "Grey: 1 sigma of the error that the model predicts, about the track.");
         free(f.memory);
     }
     text_table table = navigate_table(n);

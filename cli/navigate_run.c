@@ -12,21 +12,16 @@
  * same pace: often enough for a stop of some seconds, and rarely enough that the sway of a vehicle
  * differs from one to the next. */
 static const double window = 1.0, window_false_alarm = 1e-3; /* [s] */
-/* So many windows must be still for a unit to count as one that never moved. */
-static const double rest_fraction = 0.9;
-enum { REFUSED_MAX = 20 };
+/* So many windows must be still, and the velocity change by no more than this while they are not,
+ * for a unit to count as one that never moved. */
+static const double rest_fraction = 0.9, rest_velocity = 0.5; /* [m/s] */
+/* Updates refused in a row by which the estimate counts as lost; of a timetable, and found. */
+enum { REFUSED_MAX = 20, STANDS_REFUSED_MAX = 3 };
 
 bool navigate_at_rest(const navigation *n)
 {
-    return n->windows > 10 && (double)n->still_windows > rest_fraction * (double)n->windows;
-}
-
-static imk_vector3 increment(const navigation *n, int sensor, size_t row)
-{
-    imk_vector3 out;
-    for (int i = 0; i < 3; i++)
-        out.v[i] = n->reading[3 * sensor + i][row] * n->dt;
-    return out;
+    return n->windows > 10 && !n->moved && n->steady_windows == 0 &&
+           (double)n->still_windows > rest_fraction * (double)n->windows;
 }
 
 static int describe_errors(navigation *n)
@@ -38,7 +33,7 @@ static int describe_errors(navigation *n)
     s->hold_height = o->vertical == 0;
     s->samples = (int)o->samples;
     s->velocity_sigma = o->still_velocity;
-    s->rotation_sigma = o->still_rotation;
+    s->rotation_sigma = isnan(o->still_rotation) ? 0.0 : o->still_rotation;
     if (n->aligned)
         s->initial_sigma[3] = s->initial_sigma[4] = s->initial_sigma[5] = o->still_velocity;
     if (!n->has_model) {
@@ -55,8 +50,8 @@ static int describe_errors(navigation *n)
         n->model, imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude)),
         imk_matrix3_apply(c_bn, up), s, &error);
     if (status == IMK_OK && n->aligned)
-        status = imk_zero_velocity_aligned(&n->alignment, (imk_alignment_method)o->method,
-                                           isnan(o->heading), n->dt * (double)n->first, s);
+        status = imk_zero_velocity_aligned(&n->alignment, n->method, !o->heading,
+                                           n->dt * (double)n->first, s);
     for (int i = 0; i < 3 && !n->aligned; i++)
         s->initial_sigma[6 + i] = n->attitude_sigma[i];
     if (status == IMK_ERROR_UNSUPPORTED)
@@ -79,7 +74,24 @@ static int make_track(navigation *n, size_t every)
     return -1;
 }
 
-static void put_track(navigation *n, const imk_zero_velocity_estimate *estimate, double time)
+/* Relative to the Earth, Earth-fixed axes, mean over a sample: C f + g - 2 w x v. */
+static imk_vector3 acceleration(const navigation *n, const imk_navigation_state *before,
+                                const imk_navigation_state *after, size_t row)
+{
+    const imk_vector3 earth = {{0.0, 0.0, IMK_EARTH_RATE}};
+    const imk_vector3 force = imk_vector3_subtract(
+        imk_vector3_scale(navigate_increment(n, 1, row), 1.0 / n->dt), n->end.accel_bias);
+    const imk_vector3 turned =
+        imk_vector3_scale(imk_vector3_add(imk_quaternion_rotate(before->attitude, force),
+                                          imk_quaternion_rotate(after->attitude, force)),
+                          0.5);
+    return imk_vector3_subtract(imk_vector3_add(turned, imk_gravity_ecef(after->position)),
+                                imk_vector3_scale(imk_vector3_cross(earth, after->velocity), 2.0));
+}
+
+/* @param sum  of the accelerations of `count` samples since the row before */
+static void put_track(navigation *n, const imk_zero_velocity_estimate *estimate, double time,
+                      imk_vector3 sum, size_t count)
 {
     double row[TRACK_COLUMNS];
     imk_geodetic place;
@@ -99,6 +111,10 @@ static void put_track(navigation *n, const imk_zero_velocity_estimate *estimate,
      * else lead down by the curvature of the Earth. */
     row[TRACK_NORTH + 2] = n->place.height - place.height;
     imk_matrix3_to_euler(c_nb, &row[TRACK_ROLL], &row[TRACK_PITCH], &row[TRACK_YAW]);
+    const imk_matrix3 axes = imk_ned_axes(place.latitude, place.longitude);
+    sum = imk_matrix3_apply(imk_matrix3_transpose(axes), sum);
+    for (int i = 0; i < 3; i++)
+        row[TRACK_ACCELERATION + i] = count > 0 ? sum.v[i] / (double)count : 0.0;
     for (int i = 0; i < IMK_NAVIGATION_ERRORS; i++)
         row[TRACK_SIGMA + i] = sqrt(fmax(0.0, estimate->covariance[i][i]));
     for (int k = 0; k < TRACK_COLUMNS; k++)
@@ -112,7 +128,14 @@ static void put_track(navigation *n, const imk_zero_velocity_estimate *estimate,
 
 typedef struct stops {
     imk_standstill detector;
-    bool stood; /* the window before */
+    bool stood;           /* the window before */
+    bool tried, steady;   /* since it last moved, an update was tried; the first was refused */
+    imk_vector3 velocity; /* at the end of the last window that stood, Earth-fixed axes */
+    double time;          /* then */
+    /* Of smooth motion that was refused, Earth-fixed axes: its velocity, the one navigated at its
+     * end, and its speed at first; 0: none [m/s] */
+    imk_vector3 smooth, smooth_end;
+    double smooth_speed;
     double since_update;
 } stops;
 
@@ -121,7 +144,8 @@ static int learn_rest(navigation *n, stops *s)
     imk_error error;
     s->detector = imk_standstill_start(window, window_false_alarm);
     for (size_t row = 0; row < n->first; row++)
-        imk_standstill_learn(&s->detector, n->dt, increment(n, 0, row), increment(n, 1, row));
+        imk_standstill_learn(&s->detector, n->dt, navigate_increment(n, 0, row),
+                             navigate_increment(n, 1, row));
     if (imk_standstill_ready(&s->detector, &error) == IMK_OK)
         return -1;
     if (n->updates == UPDATES_AUTO)
@@ -132,23 +156,79 @@ static int learn_rest(navigation *n, stops *s)
     return -1;
 }
 
-/* A stand of one window may be a smooth stretch of road: the second one in a row counts. */
+/* Did the velocity change by more than tilt and bias explain, since the unit last seemed to stand?
+ */
+static void notice_motion(navigation *n, const imk_zero_velocity *filter, stops *s, bool stands,
+                          double force_sigma)
+{
+    const imk_navigation_state now = imk_zero_velocity_state(filter);
+    const double change = imk_vector3_norm(imk_vector3_subtract(now.velocity, s->velocity));
+    if (change > rest_velocity + 4.0 * force_sigma * (now.time - s->time))
+        n->moved = true;
+    if (stands) {
+        s->velocity = now.velocity;
+        s->time = now.time;
+    }
+}
+
+/* The velocity of smooth motion: found when it was first refused, it does not change while the
+ * signal is that of a stand, and by what the mechanisation says in between. */
+static imk_vector3 smooth_velocity(const stops *s, imk_vector3 now)
+{
+    return imk_vector3_add(s->smooth, imk_vector3_subtract(now, s->smooth_end));
+}
+
+/* A stand of one window may be a smooth stretch of road: the second one in a row counts. Smooth
+ * motion at a constant velocity has the signal of a stand: only the velocity tells, and it does so
+ * best at the beginning. Refused there, the rest of the stretch is left out too: later the velocity
+ * would be so uncertain that none fits it as well. For the same reason the next stretch is believed
+ * to be a stand only when the velocity has changed so as to be nearer to 0. */
+static void update_when_still(navigation *n, imk_zero_velocity *filter, stops *s, bool stands)
+{
+    const imk_vector3 now = imk_zero_velocity_state(filter).velocity;
+    if (!stands) {
+        s->tried = s->steady = false;
+        imk_zero_velocity_moved(filter);
+        return;
+    }
+    if (!s->steady && !s->stood)
+        return;
+    if (!s->tried) {
+        const double speed = imk_vector3_norm(smooth_velocity(s, now));
+        const bool goes_on = s->smooth_speed > 0.0 && speed > 0.5 * s->smooth_speed;
+        s->tried = true;
+        s->steady = goes_on || !imk_zero_velocity_update(filter);
+        if (!s->steady) {
+            s->smooth_speed = 0.0;
+        } else if (s->smooth_speed > 0.0) {
+            s->smooth = smooth_velocity(s, now);
+        } else {
+            s->smooth = now;
+            s->smooth_speed = imk_vector3_norm(now);
+        }
+    } else if (!s->steady) {
+        imk_zero_velocity_update(filter);
+    }
+    n->steady_windows += s->steady;
+    if (s->steady)
+        s->smooth_end = now;
+}
+
 static void watch(navigation *n, imk_zero_velocity *filter, stops *s, size_t row)
 {
     if (!(s->detector.window > 0.0))
         return;
     const imk_rest_readings rest = imk_zero_velocity_rest(filter);
-    const imk_standstill_verdict verdict =
-        imk_standstill_add(&s->detector, n->dt, increment(n, 0, row), increment(n, 1, row), &rest);
+    const imk_standstill_verdict verdict = imk_standstill_add(
+        &s->detector, n->dt, navigate_increment(n, 0, row), navigate_increment(n, 1, row), &rest);
     if (verdict == IMK_STANDSTILL_UNDECIDED)
         return;
     const bool stands = verdict == IMK_STANDSTILL_STANDS;
     n->windows++;
     n->still_windows += stands;
-    if (n->updates == UPDATES_AUTO && stands && s->stood)
-        imk_zero_velocity_update(filter);
-    else if (n->updates == UPDATES_AUTO && !stands)
-        imk_zero_velocity_moved(filter);
+    notice_motion(n, filter, s, stands, rest.force_sigma);
+    if (n->updates == UPDATES_AUTO)
+        update_when_still(n, filter, s, stands);
     s->stood = stands;
 }
 
@@ -157,7 +237,7 @@ static void keep_timetable(const navigation *n, imk_zero_velocity *filter, stops
 {
     const double half = 0.5 * n->dt;
     const double into = fmod(time - half, n->update_every) + half;
-    const double stop = n->options->stop, every = fmin(stop, window);
+    const double stop = n->stop, every = fmin(stop, window);
     if (into < n->update_every - stop + half) {
         s->since_update = 0.0;
         return;
@@ -178,16 +258,25 @@ static int follow(navigation *n, imk_zero_velocity *filter, stops *s, size_t eve
 {
     progress p = progress_begin("navigating", "rows", 1);
     imk_zero_velocity_get(filter, &n->end);
-    put_track(n, &n->end, n->first_time + n->dt * ((double)n->first - 1.0));
+    imk_vector3 sum = {{0}};
+    size_t count = 0;
+    put_track(n, &n->end, n->first_time + n->dt * ((double)n->first - 1.0), sum, count);
     for (size_t row = n->first; row < n->rows; row++) {
         const size_t done = row + 1 - n->first;
-        imk_zero_velocity_step(filter, n->dt, increment(n, 0, row), increment(n, 1, row));
+        const imk_navigation_state before = imk_zero_velocity_state(filter);
+        imk_zero_velocity_step(filter, n->dt, navigate_increment(n, 0, row),
+                               navigate_increment(n, 1, row));
+        const imk_navigation_state after = imk_zero_velocity_state(filter);
+        sum = imk_vector3_add(sum, acceleration(n, &before, &after, row));
+        count++;
         watch(n, filter, s, row);
         if (n->updates == UPDATES_EVERY)
             keep_timetable(n, filter, s, n->dt * (double)done);
         if (done % every == 0 || row + 1 == n->rows) {
             imk_zero_velocity_get(filter, &n->end);
-            put_track(n, &n->end, n->first_time + n->dt * (double)row);
+            put_track(n, &n->end, n->first_time + n->dt * (double)row, sum, count);
+            sum = (imk_vector3){{0}};
+            count = 0;
             progress_update(&p, row, n->rows);
         }
     }
@@ -200,16 +289,25 @@ static void warn_of_updates(const navigation *n)
 {
     const imk_zero_velocity_counts *c = &n->counts;
     const unsigned long long refused = c->refused, accepted = c->accepted;
+    const unsigned long long in_row = c->refused_in_row;
+    const bool found = n->updates == UPDATES_AUTO;
     if (c->refused > 0)
         command_warn("updates_refused",
                      "%llu of %llu updates do not fit what the model allows and were refused, "
                      "first at %.1f s: the unit moved then, or the model is too good for it",
                      refused, refused + accepted, n->first_time + c->first_refused);
-    if (c->refused_in_row >= REFUSED_MAX)
-        command_warn("updates_lost", "the last %llu updates were all refused: the estimate is lost",
-                     (unsigned long long)c->refused_in_row);
-    if (n->updates == UPDATES_AUTO && c->accepted + c->refused == 0)
-        command_warn("no_stop", "no standstill was found: there was no update");
+    if (n->steady_windows > 1)
+        command_warn("steady_motion",
+                     "%.4g s look like standing, but begin with a velocity that is not 0: taken "
+                     "for smooth motion and not used",
+                     window * (double)n->steady_windows);
+    if (in_row >= (found ? STANDS_REFUSED_MAX : REFUSED_MAX))
+        command_warn("updates_lost",
+                     "the last %llu updates were all refused: the estimate is lost%s", in_row,
+                     found ? ", or the unit moved smoothly ever since" : "");
+    if (n->updates != UPDATES_NONE && c->accepted + c->refused == 0)
+        command_warn("no_stop", "no standstill was %s: there was no update",
+                     found ? "found" : "due before the end of the log");
     if (c->degrees > 20) {
         const double q = c->chi_square / (double)c->degrees;
         if (q > 2.0)
@@ -220,11 +318,23 @@ static void warn_of_updates(const navigation *n)
     }
 }
 
+/* An absurd reading makes all that follows absurd. */
+static int check_track(const navigation *n)
+{
+    for (size_t row = 0; row < n->track_rows; row++)
+        for (int k = 0; k < TRACK_COLUMNS; k++)
+            if (!(fabs(n->track[k][row]) < 1e12))
+                return command_failed("%s: by %.3f s the estimate has left the Earth's "
+                                      "surroundings: a reading before is absurd, or its unit wrong",
+                                      n->path, n->track[TRACK_TIME][row]);
+    return -1;
+}
+
 int navigate_run(navigation *n)
 {
     imk_error error;
     imk_zero_velocity *filter;
-    stops s = {0};
+    stops s = {.velocity = n->start.velocity, .time = n->start.time};
     const double steps = n->options->interval / n->dt;
     const size_t every = steps < 1.5 ? 1 : steps < 1e15 ? (size_t)llround(steps) : n->rows;
     int code = describe_errors(n);
@@ -245,9 +355,7 @@ int navigate_run(navigation *n)
     free(memory);
     if (code < 0)
         warn_of_updates(n);
-    if (code < 0 && !isfinite(n->largest))
-        code = command_failed("%s: the estimate left the Earth's surroundings", n->path);
-    return code;
+    return code < 0 ? check_track(n) : code;
 }
 
 void navigate_free(navigation *n)

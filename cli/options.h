@@ -12,6 +12,7 @@ typedef enum option_kind {
     OPTION_FLAG,     /* bool: true when given */
     OPTION_TEXT,     /* const char * */
     OPTION_FILE,     /* const char *: completed as a file name */
+    OPTION_OUTPUT,   /* the same, of a file that is written: no operand, and no other output */
     OPTION_INTEGER,  /* uint64_t */
     OPTION_QUANTITY, /* double, SI: a number with a unit of the dimension of `unit` */
     OPTION_FRACTION, /* double in (0, 1): "0.95" or "95%" */

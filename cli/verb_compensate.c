@@ -12,7 +12,7 @@
 static const uint64_t decimals_shortest = UINT64_MAX;
 
 static const option compensate_option_table[] = {
-    {"output", 'o', OPTION_FILE, "LOG", NULL, NULL,
+    {"output", 'o', OPTION_OUTPUT, "LOG", NULL, NULL,
      "where to write: .csv (also .gz, .zst) or .npy; - (the default) is standard output",
      offsetof(compensate_options, output)},
     {"temperature", 0, OPTION_QUANTITY, "TEMPERATURE", "degC", NULL,

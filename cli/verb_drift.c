@@ -75,13 +75,13 @@ static const option output_option_table[] = {
     {"threads", 0, OPTION_INTEGER, "N", NULL, NULL,
      "threads to use; default: all processors. The results do not depend on it",
      offsetof(drift_options, threads)},
-    {"output", 'o', OPTION_FILE, "FILE", NULL, NULL,
+    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
      "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started again, it "
      "goes on. Else figures and terms against time (.csv)",
      offsetof(drift_options, output)},
-    {"plot", 0, OPTION_FILE, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
      "draw the growth and the shares of the terms", offsetof(drift_options, plot)},
-    {"report", 0, OPTION_FILE, "FILE.html", NULL, NULL, "write one self-contained page",
+    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
      offsetof(drift_options, report)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(drift_options, json)},
 };

@@ -7,13 +7,13 @@
 #include <string.h>
 
 static const option grade_option_table[] = {
-    {"plot", 0, OPTION_FILE, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
      "draw the maps: stability of bias against that of scale factor, of gyros and of "
      "accelerometers, and cost against performance",
      offsetof(grade_options, plot)},
     {"map", 0, OPTION_CHOICE, "WHICH", NULL, "all|gyro|accel|cost",
      "the one to draw; default: all, with --plot term gyro", offsetof(grade_options, map)},
-    {"report", 0, OPTION_FILE, "FILE.html", NULL, NULL, "write one self-contained page",
+    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
      offsetof(grade_options, report)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(grade_options, json)},
 };

@@ -5,12 +5,12 @@
 #include <stdlib.h>
 
 static const option identify_option_table[] = {
-    {"output", 'o', OPTION_FILE, "MODEL", NULL, NULL, "write the model here (.yaml or .json)",
+    {"output", 'o', OPTION_OUTPUT, "MODEL", NULL, NULL, "write the model here (.yaml or .json)",
      offsetof(identify_options, output)},
-    {"report", 0, OPTION_FILE, "FILE.html", NULL, NULL,
+    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
      "write one self-contained page: verdict, parameters, Allan plots, model",
      offsetof(identify_options, report)},
-    {"plot", 0, OPTION_FILE, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
      "draw the Allan deviation of each channel with the model", offsetof(identify_options, plot)},
     {"twin", 0, OPTION_FLAG, NULL, NULL, NULL,
      "simulate the model over the length of the log and draw its Allan deviation over the log's",

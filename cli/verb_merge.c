@@ -13,7 +13,7 @@ typedef struct merge_options {
 } merge_options;
 
 static const option merge_option_table[] = {
-    {"output", 'o', OPTION_FILE, "FILE", NULL, NULL,
+    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
      "results file: .h5 or .csv (.csv.gz, .csv.zst)", offsetof(merge_options, output)},
     {"partial", 0, OPTION_FLAG, NULL, NULL, NULL, "write what is there although runs are missing",
      offsetof(merge_options, partial)},

@@ -18,8 +18,8 @@ static const option navigate_option_table[] = {
      "unit "
      "may rock); the same and an estimate of the rest",
      offsetof(navigate_options, method)},
-    {"heading", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL,
-     "azimuth of body x at the start, for gyros that cannot find north",
+    {"heading", 0, OPTION_TEXT, "ANGLE", NULL, NULL,
+     "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 deg\"",
      offsetof(navigate_options, heading)},
     {"attitude", 0, OPTION_TEXT, "ANGLES", NULL, NULL,
      "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\"",
@@ -52,14 +52,18 @@ static const option navigate_option_table[] = {
     {"standard-gravity", 0, OPTION_QUANTITY, "G", "m/s^2", NULL,
      "what g stands for in accelerometer columns in g, mg or ug; default 9.80665m/s^2",
      offsetof(navigate_options, standard_gravity)},
+    {"gravity-free", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "put the acceleration relative to the Earth into the track: mean since the row before; north, "
+     "east, down",
+     offsetof(navigate_options, gravity_free)},
     {"interval", 0, OPTION_QUANTITY, "TIME", "s", NULL, "between rows of the track; default 1s",
      offsetof(navigate_options, interval)},
-    {"output", 'o', OPTION_FILE, "TRACK", NULL, NULL,
+    {"output", 'o', OPTION_OUTPUT, "TRACK", NULL, NULL,
      "write the track: .csv (also .gz, .zst) or .npy; - is standard output",
      offsetof(navigate_options, output)},
-    {"plot", 0, OPTION_FILE, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
      "draw the track, and the way from the start against time", offsetof(navigate_options, plot)},
-    {"report", 0, OPTION_FILE, "FILE.html", NULL, NULL, "write one self-contained page",
+    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
      offsetof(navigate_options, report)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the summary as JSON",
      offsetof(navigate_options, json)},
@@ -170,13 +174,13 @@ static int check(const navigate_options *o)
 static int run(int count, char **words)
 {
     navigate_options o = {.align = (double)NAN,
-                          .heading = (double)NAN,
-                          .stop = 5.0,
+                          .stop = (double)NAN,
                           .still_velocity = 0.01,
+                          .still_rotation = (double)NAN,
                           .interval = 1.0,
                           .standard_gravity = 9.80665,
                           .samples = 3,
-                          .method = IMK_ALIGNMENT_INERTIAL};
+                          .method = -1};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&navigate_verb, count, words, &o, operands);
     if (code < 0)

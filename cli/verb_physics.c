@@ -69,26 +69,26 @@ static const option run_option_table[] = {
 };
 
 static const option output_option_table[] = {
-    {"output", 'o', OPTION_FILE, "FILE", NULL, NULL,
+    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
      "the log (.csv, also .gz, .zst, or .npy; default: standard output), the model of --reduce, or "
      "the design of --show",
      offsetof(physics_options, output)},
-    {"signals", 0, OPTION_FILE, "FILE.csv", NULL, NULL, "write what happens inside, against time",
+    {"signals", 0, OPTION_OUTPUT, "FILE.csv", NULL, NULL, "write what happens inside, against time",
      offsetof(physics_options, signals)},
     {"signal-rate", 0, OPTION_QUANTITY, "RATE", "Hz", NULL,
      "rows per second of --signals; default: the output rate. Another rate is a run of its own",
      offsetof(physics_options, signal_rate)},
-    {"plot", 0, OPTION_FILE, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
      "draw the outputs of the run against time (with --sine also against the input), or what "
      "--sweep found; without either, the views of the instrument",
      offsetof(physics_options, plot)},
     {"view", 0, OPTION_TEXT, "VIEW", NULL, NULL,
      "the view to --plot: its number, or how its title begins", offsetof(physics_options, view)},
-    {"animate", 0, OPTION_FILE, "FILE.svg", NULL, NULL,
+    {"animate", 0, OPTION_OUTPUT, "FILE.svg", NULL, NULL,
      "draw a view of one signal against another as a picture that moves: that of --view, else the "
      "first",
      offsetof(physics_options, animate)},
-    {"report", 0, OPTION_FILE, "FILE.html", NULL, NULL,
+    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
      "write one self-contained page: outputs, views, design, error model",
      offsetof(physics_options, report)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON",

@@ -20,7 +20,7 @@ static const option simulate_option_table[] = {
      offsetof(simulate_options, rate)},
     {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
      "length, such as 2h; default: the whole motion", offsetof(simulate_options, duration)},
-    {"output", 'o', OPTION_FILE, "LOG", NULL, NULL,
+    {"output", 'o', OPTION_OUTPUT, "LOG", NULL, NULL,
      "where to write: .csv (also .gz, .zst) or .npy; - (the default) is standard output; a "
      "directory, DIR/, with --runs",
      offsetof(simulate_options, output)},
@@ -36,7 +36,7 @@ static const option simulate_option_table[] = {
     {"format", 0, OPTION_TEXT, "EXTENSION", NULL, NULL,
      "of the logs of --runs: csv (default), csv.gz, csv.zst or npy",
      offsetof(simulate_options, format)},
-    {"truth", 0, OPTION_FILE, "FILE", NULL, NULL,
+    {"truth", 0, OPTION_OUTPUT, "FILE", NULL, NULL,
      "write the true motion, and what perfect sensors would have read, row by row",
      offsetof(simulate_options, truth)},
     {"increments", 0, OPTION_FLAG, NULL, NULL, NULL,

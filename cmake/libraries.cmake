@@ -78,7 +78,7 @@ if(IMUKIT_IO)
   pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
   pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
   # Its serial form, where that has a name of its own.
-  pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)
+  pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial>=1.10.2 hdf5>=1.10.2)
   find_package(ZLIB REQUIRED)
   find_package(Threads REQUIRED)
   imukit_library(imukit-io SOURCES ${io_sources} OURS imukit

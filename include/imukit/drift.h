@@ -37,6 +37,10 @@ extern "C" {
 
 enum { IMK_DRIFT_STATES = 9, IMK_DRIFT_LANES = 8 };
 
+/** A tenth of the Earth's radius [m]: a horizontal error beyond it is no position any more, and the
+ *  linear theory says nothing about it. */
+#define IMK_DRIFT_DISTANCE_MAX 637100.0
+
 typedef enum imk_vertical {
     IMK_VERTICAL_SLAVED = 0, /**< height and climb follow the truth */
     IMK_VERTICAL_FREE        /**< grows without bound: doubles every 6.6 min */

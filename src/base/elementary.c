@@ -9,6 +9,8 @@
  */
 #include "imukit/elementary.h"
 
+#include "base/sine_internal.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -25,11 +27,6 @@
 static const double ln2_high = 0x1.62e42feep-1;
 static const double ln2_low = 0x1.a39ef35793c76p-33;
 
-/* high + low, |low| below an ulp of high. */
-typedef struct precise {
-    double high, low;
-} precise;
-
 static uint64_t bits_of(double x)
 {
     uint64_t bits;
@@ -44,28 +41,6 @@ static double double_of(uint64_t bits)
     return x;
 }
 
-/* a + b exactly. */
-static precise sum_of(double a, double b)
-{
-    const double high = a + b;
-    const double b_part = high - a;
-    return (precise){high, (a - (high - b_part)) + (b - b_part)};
-}
-
-/* a + b exactly, for |a| >= |b| or a = 0. */
-static precise ordered_sum_of(double a, double b)
-{
-    const double high = a + b;
-    return (precise){high, b - (high - a)};
-}
-
-/* Nearest integer of |x| < 2^51: at 3 2^51 the ulp is 1. */
-static double nearest_integer(double x)
-{
-    const double shift = 0x1.8p52;
-    return (x + shift) - shift;
-}
-
 /* 2^n, -1022 <= n <= 1023. */
 static double power_of_two(int n)
 {
@@ -75,9 +50,9 @@ static double power_of_two(int n)
 /* e^x = 2^n (high + low) with n returned, |x| < 800:
  *
  *     n = nearest x / ln 2,   r = x - n ln 2,   e^r = 1 + r + r^2 P(r) */
-static int reduced_exp(double x, precise *result)
+static int reduced_exp(double x, imki_precise *result)
 {
-    const double n = nearest_integer(x * 1.4426950408889634);
+    const double n = imki_nearest_integer(x * 1.4426950408889634);
     const double high = x - n * ln2_high;
     const double low = n * ln2_low;
     const double r = high - low;
@@ -93,7 +68,7 @@ static int reduced_exp(double x, precise *result)
     p = p * r + 0.04166666666666673;
     p = p * r + 0.16666666666666685;
     p = p * r + 0.5;
-    *result = ordered_sum_of(1.0, r);
+    *result = imki_ordered_sum_of(1.0, r);
     result->low += r * r * p + lost;
     return (int)n;
 }
@@ -106,7 +81,7 @@ double imk_exp(double x)
         return (double)INFINITY;
     if (x < -745.2) /* ln (smallest subnormal / 2) = -745.1332 */
         return 0.0;
-    precise reduced;
+    imki_precise reduced;
     const int n = reduced_exp(x, &reduced);
     /* In two steps, as 2^n itself may be out of range; only the second one can round. */
     const int half = n / 2;
@@ -124,10 +99,10 @@ double imk_expm1(double x)
         return imk_exp(x) - 1.0;
     if (x < -40.0) /* e^x is less than a tenth of an ulp */
         return -1.0;
-    precise reduced;
+    imki_precise reduced;
     const int n = reduced_exp(x, &reduced);
     const double scale = power_of_two(n);
-    const precise sum = sum_of(-1.0, scale * reduced.high);
+    const imki_precise sum = imki_sum_of(-1.0, scale * reduced.high);
     return sum.high + (sum.low + scale * reduced.low);
 }
 
@@ -167,29 +142,16 @@ double imk_ln(double x)
     p = p * z + 2 * 0.1999999999970734;
     p = p * z + 2 * 0.3333333333333367;
     const double tail = h - s * (h + z * p);
-    const precise sum = ordered_sum_of(n * ln2_high, f);
+    const imki_precise sum = imki_ordered_sum_of(n * ln2_high, f);
     return sum.high + (sum.low + (n * ln2_low - tail));
 }
 
-/* sum - n pi/2. pi/2 is cut in parts of 33 bits and the next 53, so that the products of the first
- * three with |n| < 2^20, or a power of two times that, are exact. */
-static precise less_quarter_turns(precise sum, double n)
-{
-    static const double half_pi[] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69,
-                                     0x1.b839a252049c1p-104};
-    for (int i = 0; i < 4; i++) {
-        const precise next = sum_of(sum.high, -(n * half_pi[i]));
-        sum = (precise){next.high, sum.low + next.low};
-    }
-    return sum_of(sum.high, sum.low);
-}
-
 /* x = q pi/2 + rest with |rest| <= pi/4; q mod 4 is returned. |x| <= 1e15. */
-static unsigned quadrant_of(double x, precise *rest)
+static unsigned quadrant_of(double x, imki_precise *rest)
 {
     static const double scales[] = {0x1p40, 0x1p20, 1.0}; /* of n; a multiple of 4 or 1 */
     static const double reach[] = {1e15, 0x1p40, 0x1p20}; /* of each and the smaller ones */
-    *rest = (precise){x, 0.0};
+    *rest = (imki_precise){x, 0.0};
     if (fabs(x) <= 0.785)
         return 0;
     int i = 2;
@@ -197,39 +159,10 @@ static unsigned quadrant_of(double x, precise *rest)
         i--;
     double n = 0.0;
     for (; i < 3; i++) {
-        n = nearest_integer(rest->high * (0.63661977236758134 / scales[i]));
-        *rest = less_quarter_turns(*rest, n * scales[i]);
+        n = imki_nearest_integer(rest->high * (0.63661977236758134 / scales[i]));
+        *rest = imki_less_quarter_turns(*rest, n * scales[i]);
     }
     return (unsigned)(int)n & 3;
-}
-
-/* sin(r + e) = r + e cos r + r^3 P(r^2), for |r| <= pi/4 and e its rounding error. */
-static double reduced_sin(precise x)
-{
-    const double r = x.high;
-    const double w = r * r;
-    double p = 1.58968283229245e-10;
-    p = p * w + -2.5050758660138353e-08;
-    p = p * w + 2.755731369527243e-06;
-    p = p * w + -0.00019841269829817102;
-    p = p * w + 0.008333333333322425;
-    p = p * w + -0.16666666666666632;
-    return r + (x.low * (1.0 - 0.5 * w) + r * w * p);
-}
-
-/* cos(r + e) = 1 - r^2/2 - e sin r + r^4 P(r^2) */
-static double reduced_cos(precise x)
-{
-    const double r = x.high;
-    const double w = r * r;
-    double p = -1.1359669464417574e-11;
-    p = p * w + 2.087572367640147e-09;
-    p = p * w + -2.75573143551828e-07;
-    p = p * w + 2.4801587289491637e-05;
-    p = p * w + -0.0013888888888874138;
-    p = p * w + 0.0416666666666666;
-    const precise sum = ordered_sum_of(1.0, -0.5 * w);
-    return sum.high + (sum.low + (w * w * p - r * x.low));
 }
 
 /* sin of x + quarters pi/2. */
@@ -237,9 +170,9 @@ static double shifted_sin(double x, unsigned quarters)
 {
     if (!(fabs(x) <= 1e15))
         return (double)NAN;
-    precise rest;
+    imki_precise rest;
     quarters += quadrant_of(x, &rest);
-    const double value = quarters & 1 ? reduced_cos(rest) : reduced_sin(rest);
+    const double value = quarters & 1 ? imki_reduced_cos(rest) : imki_reduced_sin(rest);
     return quarters & 2 ? -value : value;
 }
 

@@ -48,30 +48,34 @@ typedef struct philox_plan {
     uint64_t key0[IMKI_PHILOX_ROUNDS], key1[IMKI_PHILOX_ROUNDS];
 } philox_plan;
 
+/* The round keys: once for all draws of a call. */
+static void plan_seed(philox_plan *plan, uint64_t seed)
+{
+    uint32_t key0 = (uint32_t)seed, key1 = (uint32_t)(seed >> 32);
+    for (int i = 0; i < IMKI_PHILOX_ROUNDS; i++) {
+        plan->key0[i] = key0;
+        plan->key1[i] = key1;
+        key0 += IMKI_PHILOX_W0;
+        key1 += IMKI_PHILOX_W1;
+    }
+}
+
 /* Round i of Philox4x32 [SALMON2011]:
  *
  *     {hi(M1 w2) ^ w1 ^ k0, lo(M1 w2), hi(M0 w0) ^ w3 ^ k1, lo(M0 w0)}
  *
  * With w1 known to be the same in all blocks of a call, and w2, w3 the stream, the first and second
  * word after round 1 are known too, and so is the product of the first one in round 2. */
-static philox_plan plan_philox(uint64_t seed, uint64_t stream, uint64_t block)
+static void plan_stream(philox_plan *plan, uint64_t stream, uint64_t block)
 {
-    philox_plan plan;
-    uint32_t key0 = (uint32_t)seed, key1 = (uint32_t)(seed >> 32);
-    for (int i = 0; i < IMKI_PHILOX_ROUNDS; i++) {
-        plan.key0[i] = key0;
-        plan.key1[i] = key1;
-        key0 += IMKI_PHILOX_W0;
-        key1 += IMKI_PHILOX_W1;
-    }
     const uint64_t product1 = IMKI_PHILOX_M1 * (uint32_t)stream;
-    const uint32_t word0 = (uint32_t)(product1 >> 32) ^ (uint32_t)(block >> 32) ^ (uint32_t)seed;
+    const uint32_t word0 =
+        (uint32_t)(product1 >> 32) ^ (uint32_t)(block >> 32) ^ (uint32_t)plan->key0[0];
     const uint64_t product2 = IMKI_PHILOX_M0 * word0;
-    plan.round1_word2 = (stream >> 32) ^ plan.key1[0];
-    plan.round2_word0 = (uint32_t)product1 ^ plan.key0[1];
-    plan.round2_word2 = (product2 >> 32) ^ plan.key1[1];
-    plan.round2_word3 = (uint32_t)product2;
-    return plan;
+    plan->round1_word2 = (stream >> 32) ^ plan->key1[0];
+    plan->round2_word0 = (uint32_t)product1 ^ plan->key0[1];
+    plan->round2_word2 = (product2 >> 32) ^ plan->key1[1];
+    plan->round2_word3 = (uint32_t)product2;
 }
 
 /* The numbers n of words 0, 1 and of words 2, 3 of LANES blocks.
@@ -176,10 +180,12 @@ static void draw_groups(uint64_t seed, const imki_draw *draws, size_t count)
     real e[2] = {as_real(spread(0)), as_real(spread(0))}, s[2] = {e[0], e[0]};
     double unused[IMKI_GROUP_NORMALS];
     double *lanes = unused, *lanes_next = unused; /* of what is finished now, and next */
+    philox_plan plan;
+    plan_seed(&plan, seed);
     for (size_t d = 0; d <= count; d++) {
         const imki_draw draw = d < count ? draws[d] : (imki_draw){.out = unused};
         const size_t passes = d < count ? draw.groups * SETS : STRANDS - 1;
-        const philox_plan plan = plan_philox(seed, draw.stream, draw.group * IMKI_GROUP_BLOCKS);
+        plan_stream(&plan, draw.stream, draw.group * IMKI_GROUP_BLOCKS);
         word block = lane_numbers() + spread(draw.group * IMKI_GROUP_BLOCKS);
         for (size_t pass = 0; pass < passes; pass++) {
             word next[2];

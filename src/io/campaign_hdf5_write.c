@@ -232,15 +232,15 @@ static void make(void *context)
     w->done = w->done && end == w->values + size && w->image.size >= w->values;
 }
 
-imk_status imki_hdf5_write(const imki_record *record, unsigned char **bytes, size_t *size,
-                           imk_error *error)
+imk_status imki_hdf5_write(const imki_record *record, const char *path, unsigned char **bytes,
+                           size_t *size, imk_error *error)
 {
     writing w = {.record = record};
     imki_hdf5_use(make, &w);
     if (!w.done) {
         free(w.image.at);
-        return imk_error_set(error, IMK_ERROR_WRITE, "", "libhdf5 does not make such a file",
-                             "HDF5 1.10 or later, and more memory");
+        return imk_error_set(error, IMK_ERROR_WRITE, path, "libhdf5 does not make such a file",
+                             "make room in memory");
     }
     memset(w.image.at, 0, IMKI_SEAL_SIZE);
     *bytes = w.image.at;

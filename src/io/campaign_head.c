@@ -173,8 +173,7 @@ imk_status imki_record_read(unsigned char *head, size_t head_size, imki_record *
                             imk_error *error)
 {
     imki_record read = {.head = head, .head_size = head_size};
-    if (!view_record(&read) || !runs_are_valid(&read) || !texts_fit(&read.campaign) ||
-        !values_fit(&read.campaign, read.runs)) {
+    if (!view_record(&read) || !runs_are_valid(&read) || !values_fit(&read.campaign, read.runs)) {
         imki_record_free(&read);
         return imki_record_refuse(error);
     }

@@ -60,9 +60,10 @@ imk_status imki_seal_verify(int file, uint64_t size, imki_seal *seal, imk_error 
 void imki_hdf5_use(void (*use)(void *context), void *context);
 /* All of a results file in front of its values, which follow at once: from malloc(). The first
  * IMKI_SEAL_SIZE bytes are the seal's, and zero.
- * @return IMK_ERROR_MEMORY, IMK_ERROR_WRITE */
-imk_status imki_hdf5_write(const imki_record *record, unsigned char **bytes, size_t *size,
-                           imk_error *error);
+ * @param path  for the error
+ * @return IMK_ERROR_WRITE: memory is exhausted, or libhdf5 lays files out in a way of its own */
+imk_status imki_hdf5_write(const imki_record *record, const char *path, unsigned char **bytes,
+                           size_t *size, imk_error *error);
 /* Read what a file is about, after it was verified.
  * @param file    the same, open
  * @param values  where they begin

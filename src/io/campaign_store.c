@@ -102,7 +102,7 @@ static imk_status put_hdf5_head(store *s, const char *path, imk_error *error)
     if (!imki_output_file_can_replace(s->file))
         return imk_error_set(error, IMK_ERROR_WRITE, path, "it is not a regular file",
                              "a regular file, for its checksum is written last");
-    const imk_status status = imki_hdf5_write(s->record, &bytes, &size, error);
+    const imk_status status = imki_hdf5_write(s->record, path, &bytes, &size, error);
     if (status != IMK_OK)
         return status;
     s->seal.size = size + s->record->runs * imki_run_size(&s->record->campaign);

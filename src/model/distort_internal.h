@@ -44,6 +44,11 @@ imki_exposure imki_expose(int sensor, const imk_stimulus *stimulus);
 void imki_distort_chunks(imk_kernel kernel, const imk_axis_response *axis,
                          const imki_exposure *exposure, size_t chunks, double *out);
 
+/* The same where the motion stays what it is in the first chunk, which is all that is read of it;
+ * the warm-up alone goes on, and there is no temperature. */
+void imki_distort_still(imk_kernel kernel, const imk_axis_response *axis,
+                        const imki_exposure *exposure, size_t chunks, double *out);
+
 /* response = reading - response */
 void imki_residual(imk_kernel kernel, size_t chunks, const double *reading, double *response);
 /* sum += gain * residual */
@@ -56,6 +61,8 @@ void imki_limit(imk_kernel kernel, size_t chunks, double limit, double *x);
 #define IMKI_DISTORT_LOOPS(isa)                                                                    \
     void imki_distort_chunks_##isa(const imk_axis_response *axis, const imki_exposure *exposure,   \
                                    size_t chunks, double *out);                                    \
+    void imki_distort_still_##isa(const imk_axis_response *axis, const imki_exposure *exposure,    \
+                                  size_t chunks, double *out);                                     \
     void imki_residual_##isa(size_t chunks, const double *reading, double *response);              \
     void imki_add_residual_##isa(size_t chunks, double gain, const double *residual, double *sum); \
     void imki_limit_##isa(size_t chunks, double limit, double *x);

@@ -219,6 +219,74 @@ KERNEL void distort_chunks(const imk_axis_response *axis, const imki_exposure *x
         distort_step(axis, x, i, out);
 }
 
+/* ---- a motion that stays what it is in the first chunk ---- */
+
+enum { STILL_TERMS = IMK_FEATURES + 3 };
+
+KERNEL void still_row(lanes *term, uint32_t features, const imk_axis_response *axis,
+                      const imki_exposure *x, lanes (*place)[VECTORS])
+{
+    lanes sum[VECTORS] = {{0.0}};
+    add_row(sum, features, axis->other, x, 0, place);
+    *term = sum[0];
+}
+
+/* What distort_step adds to the bias, one after another, up to u. @return how many */
+KERNEL size_t still_terms(const imk_axis_response *axis, const imki_exposure *x,
+                          lanes term[STILL_TERMS], lanes *input)
+{
+    lanes u[VECTORS] = {{0.0}}, force[3][VECTORS], (*place)[VECTORS] = NULL;
+    uint32_t other = axis->used[IMKI_OTHER] & x->available;
+    const uint32_t products = IMKI_PRODUCT_FEATURES;
+    size_t count = 0;
+    if (axis->has_place && x->turns) {
+        place = force;
+        other = axis->used[IMKI_OTHER] & IMKI_OWN_FEATURES;
+        force_at(force, axis->place, x, 0);
+    }
+    add_row(u, axis->used[IMKI_INPUT], axis->input, x, 0, place);
+    for (uint32_t rest = other & ~products; rest; rest &= rest - 1)
+        still_row(&term[count++], rest & -rest, axis, x, place);
+    if ((other & products) == products)
+        still_row(&term[count++], products, axis, x, place);
+    else
+        for (uint32_t rest = other & products; rest; rest &= rest - 1)
+            still_row(&term[count++], rest & -rest, axis, x, place);
+    term[count++] = axis->scale * u[0];
+    if (axis->has_nonlinearity) {
+        lanes sum[VECTORS] = {{0.0}};
+        add_nonlinearity(sum, u, axis);
+        term[count++] = sum[0];
+    }
+    if (axis->has_cross_products) {
+        lanes sum[VECTORS] = {{0.0}};
+        add_cross_products(sum, u, axis, x, 0, place);
+        term[count++] = sum[0];
+    }
+    *input = u[0];
+    return count;
+}
+
+/* Only the warm-up changes: all else is added as distort_step adds it, but computed once. */
+KERNEL void distort_still(const imk_axis_response *axis, const imki_exposure *x, size_t chunks,
+                          double *out)
+{
+    lanes term[STILL_TERMS], u;
+    const size_t count = still_terms(axis, x, term, &u);
+    for (size_t i = 0; i < chunks * IMKI_CHUNK; i += STEP) {
+        lanes y[VECTORS];
+        for (int v = 0; v < VECTORS; v++)
+            y[v] = (lanes){0.0} + axis->bias;
+        if (axis->warm_up != 0.0 && x->warm_up)
+            add_product(y, axis->warm_up, x->warm_up + i);
+        for (size_t k = 0; k < count; k++)
+            for (int v = 0; v < VECTORS; v++)
+                y[v] += term[k];
+        for (int v = 0; v < VECTORS; v++)
+            ((lanes *)(out + i))[v] = y[v] + u;
+    }
+}
+
 KERNEL void residual(size_t chunks, const double *reading, double *response)
 {
     for (size_t v = 0; v < chunks * (IMKI_CHUNK / LANES); v++)
@@ -243,6 +311,11 @@ KERNEL void limit_all(size_t chunks, double limit, double *x)
                                           size_t chunks, double *out)                              \
     {                                                                                              \
         distort_chunks(axis, x, chunks, out);                                                      \
+    }                                                                                              \
+    target void imki_distort_still_##isa(const imk_axis_response *axis, const imki_exposure *x,    \
+                                         size_t chunks, double *out)                               \
+    {                                                                                              \
+        distort_still(axis, x, chunks, out);                                                       \
     }                                                                                              \
     target void imki_residual_##isa(size_t chunks, const double *reading, double *response)        \
     {                                                                                              \

@@ -9,6 +9,12 @@ void imki_distort_chunks(imk_kernel kernel, const imk_axis_response *axis,
     IMKI_CALL(kernel, imki_distort_chunks, axis, exposure, chunks, out);
 }
 
+void imki_distort_still(imk_kernel kernel, const imk_axis_response *axis,
+                        const imki_exposure *exposure, size_t chunks, double *out)
+{
+    IMKI_CALL(kernel, imki_distort_still, axis, exposure, chunks, out);
+}
+
 void imki_residual(imk_kernel kernel, size_t chunks, const double *reading, double *response)
 {
     IMKI_CALL(kernel, imki_residual, chunks, reading, response);

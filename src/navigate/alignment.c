@@ -30,7 +30,7 @@ static imk_status check(const imk_alignment_settings *s, imk_error *error)
     if (s->cookie != COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "alignment", "",
                              "a structure from imk_alignment_default()");
-    if (!(s->method >= IMK_ALIGNMENT_MEANS && s->method <= IMK_ALIGNMENT_FINE))
+    if ((unsigned)s->method > (unsigned)IMK_ALIGNMENT_FINE)
         return refuse(error, "method", (double)s->method, "one of the three methods");
     if (!(fabs(s->place.latitude) <= 90.0 * degree))
         return refuse(error, "place.latitude", s->place.latitude, "a latitude within 90 deg");

@@ -19,7 +19,7 @@ enum {
     IMKI_DRIFT_MOMENTS = 6,  /* powers of time in a column over a step */
     IMKI_DRIFT_SLOTS = 32,   /* lengths of steps that drivers remember */
     IMKI_DRIFT_BLOCK = 16,   /* steps made ready at a time */
-    IMKI_DRIFT_COLUMNS = 128 /* 54 of gyros, 51 of accelerometers, 3 of the clock, at most */
+    IMKI_DRIFT_COLUMNS = 128 /* 57 of gyros, 48 of accelerometers, 3 of the clock, at most */
 };
 
 typedef struct imki_matrix9 {
@@ -91,7 +91,7 @@ typedef enum imki_column_kind {
     IMKI_COLUMN_DELAY,    /* the derivative of -u: a filter's delay */
     IMKI_COLUMN_SKEW,     /* delay of all accelerometers */
     IMKI_COLUMN_CLOCK,    /* rate error of the sample clock */
-    IMKI_COLUMN_JITTER    /* shift of samples in time */
+    IMKI_COLUMN_JITTER    /* shift of samples in time; its last one stays, like what is rounded */
 } imki_column_kind;
 
 typedef struct imki_drift_column {
@@ -105,7 +105,7 @@ typedef enum imki_element_use {
     IMKI_ELEMENT_MEAN,    /* known: moves the mean */
     IMKI_ELEMENT_SIZE,    /* a constant (ramp, phase …) of unknown size, 1 sigma given */
     IMKI_ELEMENT_NOISE,   /* driven by noise */
-    IMKI_ELEMENT_ROUNDING /* driven by noise, seen with what is being carried */
+    IMKI_ELEMENT_ROUNDING /* driven by noise, seen with what is being carried: rounding, jitter */
 } imki_element_use;
 
 typedef struct imki_drift_element {

@@ -118,8 +118,16 @@ static void add_sinusoids(imki_drift_plan *plan, const imk_noise *noise, int sen
     }
 }
 
+/* Density at low frequencies of the samples of a resonance. Its design ends at a million cycles a
+ * sample (noise.h), where samples know nothing of one another. */
+static double folded_density(imk_resonance resonance, double dt)
+{
+    const double density = imk_resonance_sampled_spectrum(resonance, dt, 1e-3 / dt);
+    return isfinite(density) ? density : resonance.sigma * resonance.sigma * dt;
+}
+
 /* Up to a quarter of the sample rate the process itself; above it, where samples fold it, white
- * noise of the density its samples have at low frequencies. */
+ * noise. */
 static void add_resonances(imki_drift_plan *plan, const imk_noise *noise, int sensor, double dt)
 {
     for (int i = 0; i < noise->resonance_count; i++) {
@@ -138,8 +146,7 @@ static void add_resonances(imki_drift_plan *plan, const imk_noise *noise, int se
             const imki_drift_driver driver =
                 folded ? imki_driver_white() : imki_driver_resonance(2.0 * PI * r.frequency, r.q);
             imki_drift_add_noise(plan, IMKI_ELEMENT_NOISE, &column, &driver,
-                                 folded ? imk_resonance_sampled_spectrum(r, dt, 1e-3 / dt)
-                                        : r.sigma * r.sigma);
+                                 folded ? folded_density(r, dt) : r.sigma * r.sigma);
         }
     }
 }

@@ -138,7 +138,7 @@ imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t time, im
     double figure[IMK_DRIFT_SOURCES_MAX];
     if (time >= analysis->time_count)
         return imk_error_set(error, IMK_ERROR_RANGE, "time", "", "an index of the analysis' times");
-    if ((int)wish < 0 || wish > IMK_WISH_HEADING)
+    if ((unsigned)wish > (unsigned)IMK_WISH_HEADING)
         return imk_error_set(error, IMK_ERROR_RANGE, "wish", "", "one of imk_drift_wish");
     if (!(goal > 0.0 && goal < (double)INFINITY)) {
         const imk_status status =

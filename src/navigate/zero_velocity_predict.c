@@ -13,8 +13,9 @@
  *     P  <- Phi P Phi^T + integral of A(s) N^2 A(s)^T ds,     A(s) = (I + F s + F^2 s^2/2) B
  *
  * the integral by Simpson's rule, which is exact for velocity and attitude. A part decays by
- * e^{-h/T} and acts for T (1 - e^{-h/T}) instead of h. What is left out is of
- * order (h/R) g and (h |w|)^4: nothing for steps of a second. The integral of the gyros' noise
+ * e^{-h/T} from step to step and is constant within: the sum's variance then is 1 + h^2/(12 T^2)
+ * times that of the integral. What else is left out is of order (h/R) g and (h |w|)^4: nothing for
+ * steps of a second. The integral of the gyros' noise
  * since a stand began, s, has with the errors the covariance J <- Phi J + Gamma N^2. */
 #include "navigate/zero_velocity_internal.h"
 
@@ -128,20 +129,18 @@ static void make_step(const imk_zero_velocity *f, double h, const imk_matrix3 *c
         }
 }
 
-/* Of each part over a step: what remains of it, for how much of the step it acts, and what noise is
- * added. */
+/* Of each part over a step: what remains of it, and what noise is added. */
 typedef struct part_step {
-    double decay, action, noise[3];
+    double decay, noise[3];
 } part_step;
 
 static part_step make_part(const imk_bias_part *part, double h)
 {
-    part_step step = {.decay = 1.0, .action = 1.0};
+    part_step step = {.decay = 1.0};
     const double t = part->correlation_time;
     if (t > 0.0) {
         const double lost = -imk_expm1(-h / t);
         step.decay = 1.0 - lost;
-        step.action = t * lost / h;
         for (int i = 0; i < 3; i++)
             step.noise[i] = part->sigma[i] * part->sigma[i] * lost * (2.0 - lost);
     } else {
@@ -162,7 +161,7 @@ static void advance(const imk_zero_velocity *f, const step_matrices *step, const
     for (int sensor = 0; sensor < 2; sensor++)
         for (size_t p = 0; p < f->parts[sensor]; p++, parts++)
             for (int axis = 0; axis < 3; axis++, at += stride) {
-                bias[sensor][axis] += parts->action * *at;
+                bias[sensor][axis] += *at;
                 *at *= parts->decay;
             }
     for (int i = 0; i < ERRORS; i++) {

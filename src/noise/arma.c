@@ -62,7 +62,8 @@ imk_status imk_arma_start(imk_arma_state *state, const imk_arma *arma, imk_rando
     return IMK_OK;
 }
 
-void imki_arma_block(imk_arma_state *state, double *block)
+/* One sequence alone. */
+static void add_block(imk_arma_state *state, double *block)
 {
     double normals[IMK_NOISE_BLOCK];
     imk_random_normals(state->random, state->stream, state->next, IMK_NOISE_BLOCK, normals);
@@ -85,9 +86,61 @@ void imki_arma_block(imk_arma_state *state, double *block)
     state->e2 = e2;
 }
 
+static void load_lane(imki_arma_lanes *lanes, size_t lane, const imk_arma_state *state)
+{
+    lanes->a1[lane] = state->a1;
+    lanes->a2[lane] = state->a2;
+    lanes->b0[lane] = state->b0;
+    lanes->b1[lane] = state->b1;
+    lanes->b2[lane] = state->b2;
+    lanes->y1[lane] = state->y1;
+    lanes->y2[lane] = state->y2;
+    lanes->e1[lane] = state->e1;
+    lanes->e2[lane] = state->e2;
+}
+
+static void store_lane(const imki_arma_lanes *lanes, size_t lane, imk_arma_state *state)
+{
+    state->y1 = lanes->y1[lane];
+    state->y2 = lanes->y2[lane];
+    state->e1 = lanes->e1[lane];
+    state->e2 = lanes->e2[lane];
+    state->next += IMK_NOISE_BLOCK;
+}
+
+/* Half a block at a time, for the sake of the stack. Spare lanes have coefficients of zero, and the
+ * normals of the first. */
+void imki_arma_blocks(imk_arma_state *const *states, size_t count, double *const *blocks)
+{
+    enum { HALF = IMK_NOISE_BLOCK / 2, LANES = IMKI_ARMA_LANES };
+    IMKI_ALIGNED double normals[LANES][HALF];
+    imki_draw draws[LANES];
+    imki_arma_lanes lanes = {.count = count};
+    if (count == 1)
+        add_block(states[0], blocks[0]);
+    if (count <= 1)
+        return;
+    for (size_t i = 0; i < LANES; i++)
+        lanes.normals[i] = normals[0];
+    for (size_t i = 0; i < count; i++) {
+        load_lane(&lanes, i, states[i]);
+        lanes.normals[i] = normals[i];
+        lanes.block[i] = blocks[i];
+    }
+    for (size_t half = 0; half < 2; half++) {
+        for (size_t i = 0; i < count; i++)
+            draws[i] =
+                imki_draw_of(states[i]->stream, states[i]->next + half * HALF, HALF, normals[i]);
+        imki_random_draws(states[0]->random, draws, count);
+        imki_add_arma(states[0]->random.kernel, &lanes, half);
+    }
+    for (size_t i = 0; i < count; i++)
+        store_lane(&lanes, i, states[i]);
+}
+
 static void next_block(void *state, double *block)
 {
-    imki_arma_block(state, block);
+    add_block(state, block);
 }
 
 void imk_arma_add(imk_arma_state *state, size_t count, double *out)

@@ -19,6 +19,9 @@
 
 enum { IMKI_SEGMENTS = IMK_NOISE_BLOCK / IMK_NOISE_STEPS };
 
+/* Normals and blocks on the stack: a vector across two lines of the cache costs two accesses. */
+#define IMKI_ALIGNED _Alignas(64)
+
 #define IMKI_PI 3.141592653589793
 #define IMKI_START_NORMAL                                                                          \
     ((uint64_t)1 << 63)                     /* normals for starting values: never reached by k     \
@@ -68,6 +71,31 @@ void imki_add_blocks(imk_noise_block *block, void (*next)(void *state, double *b
 
 /* block += scale * normals */
 void imki_add_scaled(imk_kernel kernel, double scale, const double *normals, double *block);
+/* block += per_sample k, k = first … first + 511 */
+void imki_add_ramp(imk_kernel kernel, double per_sample, uint64_t first, double *block);
+/* A sine that turns: phase of sample 0 and step per sample in 2^-64 cycles, and sine and cosine of
+ * i steps. */
+typedef struct imki_turning {
+    double amplitude;
+    uint64_t phase, step;
+    const double *turn_sine, *turn_cosine; /* i = 0 … IMK_NOISE_STEPS - 1 */
+} imki_turning;
+/* block += amplitude sin phase[k] */
+void imki_add_sinusoid(imk_kernel kernel, const imki_turning *turning, double *block);
+/* Sequences y[k] = a1 y[k-1] + a2 y[k-2] + b0 e[k] + b1 e[k-1] + b2 e[k-2], one to a lane: each
+ * alone waits for its own sums, and its bits allow no cutting into segments. Lanes from `count` on
+ * are computed and thrown away. */
+enum { IMKI_ARMA_LANES = 8 };
+typedef struct imki_arma_lanes {
+    double a1[IMKI_ARMA_LANES], a2[IMKI_ARMA_LANES];
+    double b0[IMKI_ARMA_LANES], b1[IMKI_ARMA_LANES], b2[IMKI_ARMA_LANES];
+    double y1[IMKI_ARMA_LANES], y2[IMKI_ARMA_LANES], e1[IMKI_ARMA_LANES], e2[IMKI_ARMA_LANES];
+    const double *normals[IMKI_ARMA_LANES]; /* of this half, in time order */
+    double *block[IMKI_ARMA_LANES];
+    size_t count;
+} imki_arma_lanes;
+/* block += y of 256 samples, the first half of each block (half = 0) or the second (1) */
+void imki_add_arma(imk_kernel kernel, imki_arma_lanes *lanes, size_t half);
 /* One of several recursions that run together, because each alone waits for its own sums:
  * y[k] = phi y[k-1] + n[k]. */
 typedef struct imki_recursion {
@@ -122,8 +150,9 @@ void imki_gauss_markov_blocks(imk_gauss_markov_state *states, size_t count, doub
 size_t imki_flicker_draws(const imk_flicker_state *state, double *normals, imki_draw *draws);
 void imki_flicker_block(imk_flicker_state *state, double *normals, double *block);
 
-void imki_arma_block(imk_arma_state *state, double *block);
-void imki_sinusoid_block(imk_sinusoid_state *state, double *block);
+/* count <= IMKI_ARMA_LANES sequences of one seed, each added to a block of its own. */
+void imki_arma_blocks(imk_arma_state *const *states, size_t count, double *const *blocks);
+void imki_sinusoid_block(imk_sinusoid_state *state, imk_kernel kernel, double *block);
 /* Applies, instead of adding. Not to be mixed with imk_quantization_apply() within a block. */
 void imki_quantization_block(imk_quantization_state *state, imk_kernel kernel, double *block);
 

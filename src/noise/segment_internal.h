@@ -7,6 +7,9 @@
 
 #define IMKI_SEGMENT_LOOPS(isa)                                                                    \
     void imki_add_scaled_##isa(double scale, const double *normals, double *block);                \
+    void imki_add_ramp_##isa(double per_sample, uint64_t first, double *block);                    \
+    void imki_add_sinusoid_##isa(const imki_turning *turning, double *block);                      \
+    void imki_add_arma_##isa(imki_arma_lanes *lanes_of, size_t half);                              \
     void imki_add_recursions_##isa(const imki_recursion *recursions, size_t count, double *block); \
     void imki_add_flicker_##isa(const imki_recursion *recursions, double held, double *change,     \
                                 double *block);                                                    \

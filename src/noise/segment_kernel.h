@@ -5,6 +5,7 @@
 #ifndef IMUKIT_SEGMENT_KERNEL_H
 #define IMUKIT_SEGMENT_KERNEL_H
 
+#include "base/sine_internal.h"
 #include "noise/segment_internal.h"
 
 #define KERNEL static inline __attribute__((always_inline))
@@ -23,6 +24,34 @@ KERNEL void add_scaled(double scale, const double *restrict normals, double *res
     for (size_t i = 0; i < STEPS; i++)
         for (size_t v = 0; v < VECTORS; v++)
             AT(block, i, v) += scale * CONST_AT(normals, i, v);
+}
+
+KERNEL void add_ramp(double per_sample, uint64_t first, double *restrict block)
+{
+    double start[SEGMENTS];
+    for (size_t s = 0; s < SEGMENTS; s++)
+        start[s] = (double)(first + s * STEPS);
+    for (size_t i = 0; i < STEPS; i++)
+        for (size_t v = 0; v < VECTORS; v++)
+            AT(block, i, v) += per_sample * (CONST_AT(start, 0, v) + (double)(int)i);
+}
+
+/* The sines of all segments' starts are a plain loop, which the compiler turns into vectors. */
+KERNEL void add_sinusoid(const imki_turning *turning, double *restrict block)
+{
+    IMKI_ALIGNED double angle[SEGMENTS], sine[SEGMENTS], cosine[SEGMENTS];
+    for (size_t s = 0; s < SEGMENTS; s++)
+        angle[s] = imki_angle(turning->phase + s * STEPS * turning->step);
+    for (size_t s = 0; s < SEGMENTS; s++) {
+        double at_sine, at_cosine;
+        imki_sine_and_cosine(angle[s], &at_sine, &at_cosine);
+        sine[s] = turning->amplitude * at_sine;
+        cosine[s] = turning->amplitude * at_cosine;
+    }
+    for (size_t i = 0; i < STEPS; i++)
+        for (size_t v = 0; v < VECTORS; v++)
+            AT(block, i, v) += CONST_AT(sine, 0, v) * turning->turn_cosine[i] +
+                               CONST_AT(cosine, 0, v) * turning->turn_sine[i];
 }
 
 /* A recursion of single values, which waits for itself all the time: it is given two steps whenever
@@ -44,7 +73,8 @@ KERNEL void two_links(chain *c)
 KERNEL void add_together(const imki_recursion *recursions, size_t count, chain *beside,
                          double *restrict block)
 {
-    double start[TOGETHER][SEGMENTS], carried[TOGETHER];
+    IMKI_ALIGNED double start[TOGETHER][SEGMENTS];
+    double carried[TOGETHER];
     lanes now[TOGETHER][VECTORS] = {{{0.0}}};
     imki_recursion r[TOGETHER];
     for (size_t c = 0; c < count; c++) {
@@ -97,7 +127,7 @@ KERNEL void add_flicker(const imki_recursion *r, double held, double *change,
 KERNEL void add_sums(double gain, const double *restrict normals, double *restrict value,
                      double *restrict block)
 {
-    double local[IMK_NOISE_BLOCK], total[SEGMENTS], start[SEGMENTS];
+    IMKI_ALIGNED double local[IMK_NOISE_BLOCK], total[SEGMENTS], start[SEGMENTS];
     lanes now[VECTORS] = {{0.0}};
     for (size_t i = 0; i < STEPS; i++)
         for (size_t v = 0; v < VECTORS; v++) {
@@ -120,7 +150,7 @@ KERNEL void add_sums(double gain, const double *restrict normals, double *restri
 KERNEL void quantize(double lsb, double dt, double *restrict residual, double *restrict block)
 {
     const double per_step = 1.0 / lsb, rate_step = lsb / dt, shift = 0x1.8p52;
-    double local[IMK_NOISE_BLOCK], start[SEGMENTS];
+    IMKI_ALIGNED double local[IMK_NOISE_BLOCK], start[SEGMENTS];
     lanes now[VECTORS] = {{0.0}};
     for (size_t i = 0; i < STEPS; i++)
         for (size_t v = 0; v < VECTORS; v++)
@@ -161,12 +191,9 @@ typedef double row __attribute__((vector_size(8 * ROWS), aligned(8), may_alias))
 
 /* Transpose 8 rows of 8: pairs of elements, then pairs of pairs, then halves change places between
  * vectors. */
-KERNEL void transpose(const double *restrict in, size_t in_stride, double *restrict out,
-                      size_t out_stride)
+KERNEL void transpose_rows(row a[ROWS])
 {
-    row a[ROWS], b[ROWS];
-    for (size_t i = 0; i < ROWS; i++)
-        a[i] = *(const row *)(in + i * in_stride);
+    row b[ROWS];
     for (size_t i = 0; i < ROWS; i += 2) {
         b[i] = __builtin_shufflevector(a[i], a[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
         b[i + 1] = __builtin_shufflevector(a[i], a[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
@@ -177,10 +204,59 @@ KERNEL void transpose(const double *restrict in, size_t in_stride, double *restr
             a[j + 2] = __builtin_shufflevector(b[j], b[j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
         }
     for (size_t s = 0; s < 4; s++) {
-        *(row *)(out + s * out_stride) =
-            __builtin_shufflevector(a[s], a[s + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-        *(row *)(out + (s + 4) * out_stride) =
-            __builtin_shufflevector(a[s], a[s + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+        b[s] = __builtin_shufflevector(a[s], a[s + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+        b[s + 4] = __builtin_shufflevector(a[s], a[s + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+    for (size_t s = 0; s < ROWS; s++)
+        a[s] = b[s];
+}
+
+KERNEL void transpose(const double *restrict in, size_t in_stride, double *restrict out,
+                      size_t out_stride)
+{
+    row a[ROWS];
+    for (size_t i = 0; i < ROWS; i++)
+        a[i] = *(const row *)(in + i * in_stride);
+    transpose_rows(a);
+    for (size_t i = 0; i < ROWS; i++)
+        *(row *)(out + i * out_stride) = a[i];
+}
+
+/* Eight sequences side by side, in lanes: transposed 8 samples at a time, advanced sample by
+ * sample, and transposed again into the segments of each block. y[k-1] comes last: only one
+ * multiplication and addition wait for the sample before. */
+KERNEL void add_arma(imki_arma_lanes *l, size_t half)
+{
+    enum { HALF = IMK_NOISE_BLOCK / 2 };
+    IMKI_ALIGNED row y[HALF];
+    row e[ROWS], y1 = *(row *)l->y1, y2 = *(row *)l->y2;
+    row e1 = *(row *)l->e1, e2 = *(row *)l->e2;
+    const row a1 = *(row *)l->a1, a2 = *(row *)l->a2;
+    const row b0 = *(row *)l->b0, b1 = *(row *)l->b1, b2 = *(row *)l->b2;
+    for (size_t k = 0; k < HALF; k += ROWS) {
+        for (size_t lane = 0; lane < ROWS; lane++)
+            e[lane] = *(const row *)(l->normals[lane] + k);
+        transpose_rows(e);
+        for (size_t i = 0; i < ROWS; i++) {
+            row now = (b0 * e[i] + b1 * e1 + b2 * e2) + a2 * y2;
+            now += a1 * y1;
+            y[k + i] = now;
+            y2 = y1;
+            y1 = now;
+            e2 = e1;
+            e1 = e[i];
+        }
+    }
+    *(row *)l->y1 = y1;
+    *(row *)l->y2 = y2;
+    *(row *)l->e1 = e1;
+    *(row *)l->e2 = e2;
+    for (size_t i = 0; i < STEPS; i++) {
+        for (size_t s = 0; s < ROWS; s++)
+            e[s] = y[s * STEPS + i];
+        transpose_rows(e);
+        for (size_t lane = 0; lane < l->count; lane++)
+            *(row *)(l->block[lane] + i * SEGMENTS + half * ROWS) += e[lane];
     }
 }
 
@@ -189,7 +265,7 @@ enum { HOLDS = STEPS / 4 }; /* in a segment */
 /* The last hold of a segment is also the first one of the next when the offset is not 0. */
 KERNEL void add_held(const double *restrict held, size_t offset, double *restrict block)
 {
-    double parts[(HOLDS + 1) * SEGMENTS];
+    IMKI_ALIGNED double parts[(HOLDS + 1) * SEGMENTS];
     for (size_t s = 0; s < SEGMENTS; s += ROWS)
         transpose(held + s * HOLDS, HOLDS, parts + s, SEGMENTS);
     for (size_t s = 0; s < SEGMENTS && offset > 0; s++)
@@ -218,6 +294,18 @@ KERNEL void to_segment_order(const double *restrict samples, double *restrict bl
     target void imki_add_scaled_##isa(double scale, const double *normals, double *block)          \
     {                                                                                              \
         add_scaled(scale, normals, block);                                                         \
+    }                                                                                              \
+    target void imki_add_ramp_##isa(double per_sample, uint64_t first, double *block)              \
+    {                                                                                              \
+        add_ramp(per_sample, first, block);                                                        \
+    }                                                                                              \
+    target void imki_add_sinusoid_##isa(const imki_turning *turning, double *block)                \
+    {                                                                                              \
+        add_sinusoid(turning, block);                                                              \
+    }                                                                                              \
+    target void imki_add_arma_##isa(imki_arma_lanes *lanes_of, size_t half)                        \
+    {                                                                                              \
+        add_arma(lanes_of, half);                                                                  \
     }                                                                                              \
     target void imki_add_recursions_##isa(const imki_recursion *recursions, size_t count,          \
                                           double *block)                                           \

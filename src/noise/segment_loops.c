@@ -8,6 +8,21 @@ void imki_add_scaled(imk_kernel kernel, double scale, const double *normals, dou
     IMKI_CALL(kernel, imki_add_scaled, scale, normals, block);
 }
 
+void imki_add_ramp(imk_kernel kernel, double per_sample, uint64_t first, double *block)
+{
+    IMKI_CALL(kernel, imki_add_ramp, per_sample, first, block);
+}
+
+void imki_add_sinusoid(imk_kernel kernel, const imki_turning *turning, double *block)
+{
+    IMKI_CALL(kernel, imki_add_sinusoid, turning, block);
+}
+
+void imki_add_arma(imk_kernel kernel, imki_arma_lanes *lanes, size_t half)
+{
+    IMKI_CALL(kernel, imki_add_arma, lanes, half);
+}
+
 void imki_add_recursions(imk_kernel kernel, const imki_recursion *recursions, size_t count,
                          double *block)
 {

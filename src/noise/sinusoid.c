@@ -57,22 +57,18 @@ imk_status imk_sinusoid_start(imk_sinusoid_state *state, imk_sinusoid sinusoid, 
     return IMK_OK;
 }
 
-void imki_sinusoid_block(imk_sinusoid_state *state, double *block)
+void imki_sinusoid_block(imk_sinusoid_state *state, imk_kernel kernel, double *block)
 {
-    for (size_t segment = 0; segment < IMKI_SEGMENTS; segment++) {
-        double angle = imki_angle(state->phase);
-        double sine = state->amplitude * imk_sin(angle);
-        double cosine = state->amplitude * imk_cos(angle);
-        for (size_t i = 0; i < IMK_NOISE_STEPS; i++)
-            block[i * IMKI_SEGMENTS + segment] +=
-                sine * state->turn_cosine[i] + cosine * state->turn_sine[i];
-        state->phase += state->step * IMK_NOISE_STEPS;
-    }
+    const imki_turning turning = {state->amplitude, state->phase, state->step, state->turn_sine,
+                                  state->turn_cosine};
+    imki_add_sinusoid(kernel, &turning, block);
+    state->phase += state->step * IMK_NOISE_BLOCK;
 }
 
+/* The state knows no instruction set; a block is short enough for any. */
 static void next_block(void *state, double *block)
 {
-    imki_sinusoid_block(state, block);
+    imki_sinusoid_block(state, IMK_KERNEL_SCALAR, block);
 }
 
 void imk_sinusoid_add(imk_sinusoid_state *state, size_t count, double *out)

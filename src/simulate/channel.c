@@ -7,6 +7,7 @@
  *
  * Samples are made in blocks of 512 counted from sample 0, so it does not matter how many are asked
  * for at a time. */
+#include "model/distort_internal.h"
 #include "simulate/simulate_internal.h"
 
 #include <string.h>
@@ -204,10 +205,29 @@ static imk_stimulus later(const imk_stimulus *stimulus, size_t first)
     return s;
 }
 
+/* A unit at rest that warms up. */
+static void respond_still(imki_channel *channel, const imk_distortion *distortion,
+                          const imki_scene *scene, size_t part, size_t rows, double *out)
+{
+    imk_stimulus stimulus = scene->stimulus[channel->sensor];
+    for (int i = 0; i < 2; i++)
+        if (stimulus.warm_up[i])
+            stimulus.warm_up[i] += part;
+    const imki_exposure exposure = imki_expose(channel->sensor, &stimulus);
+    imki_distort_still(distortion->kernel, &distortion->axis[channel->sensor][channel->axis],
+                       &exposure, rows / IMKI_CHUNK, out);
+    if (channel->band_limit.present)
+        limit_band(&channel->band_limit, rows, out);
+}
+
 void imki_channel_response(imki_channel *channel, const imk_distortion *distortion,
                            const imki_scene *scene, size_t part, size_t rows, double *out)
 {
-    double parts[IMK_NOISE_BLOCK];
+    if (scene->still) {
+        respond_still(channel, distortion, scene, part, rows, out);
+        return;
+    }
+    IMKI_ALIGNED double parts[IMK_NOISE_BLOCK];
     const size_t substeps = scene->substeps;
     const size_t rows_at_once = IMK_NOISE_BLOCK / substeps;
     for (size_t row = 0; row < rows; row += rows_at_once) {
@@ -261,7 +281,8 @@ static size_t process_draws(const imki_channel *channel, size_t first, double *n
 static void add_noise(imki_channel *channel, double *block)
 {
     enum { BLOCK = IMK_NOISE_BLOCK, DRAWS = 5 + IMKI_TOGETHER };
-    double white[BLOCK], walk[BLOCK], flicker[IMKI_FLICKER_NORMALS], other[IMKI_TOGETHER * BLOCK];
+    IMKI_ALIGNED double white[BLOCK], walk[BLOCK], flicker[IMKI_FLICKER_NORMALS];
+    IMKI_ALIGNED double other[IMKI_TOGETHER * BLOCK];
     imki_draw draws[DRAWS];
     size_t count = 0;
     if (channel->white_present)
@@ -287,25 +308,65 @@ static void add_noise(imki_channel *channel, double *block)
     }
 }
 
-void imki_channel_block(imki_channel *channel, bool constant, double *out)
+/* The deterministic part, and the ramp, in segment order. */
+static void begin_block(imki_channel *channel, bool constant, double *out)
 {
-    double block[IMK_NOISE_BLOCK];
-    if (constant)
+    IMKI_ALIGNED double samples[IMK_NOISE_BLOCK];
+    if (constant) {
         for (size_t j = 0; j < IMK_NOISE_BLOCK; j++)
-            block[j] = channel->constant;
-    else
-        imki_to_segment_order(channel->kernel, out, block);
+            out[j] = channel->constant;
+    } else {
+        memcpy(samples, out, sizeof samples);
+        imki_to_segment_order(channel->kernel, samples, out);
+    }
     if (channel->ramp != 0.0)
-        for (size_t k = 0; k < IMK_NOISE_BLOCK; k++)
-            block[imki_place(k)] += channel->ramp * (double)(channel->next + k);
-    if (channel->arma_present)
-        imki_arma_block(&channel->arma, block);
-    add_noise(channel, block);
-    for (int i = 0; i < channel->sinusoid_count; i++)
-        imki_sinusoid_block(&channel->sinusoid[i], block);
-    for (int i = 0; i < channel->resonance_count; i++)
-        imki_arma_block(&channel->resonance[i], block);
+        imki_add_ramp(channel->kernel, channel->ramp, channel->next, out);
+}
+
+static void end_block(imki_channel *channel, double *out)
+{
+    IMKI_ALIGNED double block[IMK_NOISE_BLOCK];
+    memcpy(block, out, sizeof block);
     output_stage(channel, block);
     imki_to_time_order(channel->kernel, block, out);
     channel->next += IMK_NOISE_BLOCK;
+}
+
+/* Filtered white noise (instance -1) or the same resonance of each channel that has it. */
+static void add_arma(size_t count, imki_channel *const *channels, int instance, double *const *out)
+{
+    imk_arma_state *states[IMKI_CHANNELS] = {NULL};
+    double *blocks[IMKI_CHANNELS] = {NULL};
+    size_t present = 0;
+    for (size_t i = 0; i < count; i++) {
+        imki_channel *channel = channels[i];
+        if (instance < 0 ? !channel->arma_present : instance >= channel->resonance_count)
+            continue;
+        states[present] = instance < 0 ? &channel->arma : &channel->resonance[instance];
+        blocks[present++] = out[i];
+    }
+    imki_arma_blocks(states, present, blocks);
+}
+
+/* Blocks stand in `out` in segment order until they are finished. */
+void imki_channel_blocks(size_t count, imki_channel *const *channels, bool constant,
+                         double *const *out)
+{
+    int resonances = 0;
+    for (size_t i = 0; i < count; i++) {
+        begin_block(channels[i], constant, out[i]);
+        if (channels[i]->resonance_count > resonances)
+            resonances = channels[i]->resonance_count;
+    }
+    add_arma(count, channels, -1, out);
+    for (size_t i = 0; i < count; i++) {
+        imki_channel *channel = channels[i];
+        add_noise(channel, out[i]);
+        for (int j = 0; j < channel->sinusoid_count; j++)
+            imki_sinusoid_block(&channel->sinusoid[j], channel->kernel, out[i]);
+    }
+    for (int j = 0; j < resonances; j++)
+        add_arma(count, channels, j, out);
+    for (size_t i = 0; i < count; i++)
+        end_block(channels[i], out[i]);
 }

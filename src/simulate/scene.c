@@ -8,6 +8,7 @@
  * and covers b[k-1] … b[k] in M equal parts. Temperature and warm-up, which are slow, are taken in
  * the middle of a part without jitter. Nothing here depends on how rows are divided into stretches.
  */
+#include "model/distort_internal.h"
 #include "simulate/simulate_internal.h"
 
 #include <string.h>
@@ -219,8 +220,9 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
                          e->hysteresis[0].span == e->hysteresis[1].span;
     e->same_warm_up =
         e->warm_up_present[0] && e->warm_up_present[1] && e->warm_up_time[0] == e->warm_up_time[1];
+    e->still = !e->motion_varies && !e->temperature && e->substeps == 1;
     if (!e->motion_varies)
-        fill_rest(e, e->column, IMKI_STRETCH);
+        fill_rest(e, e->column, e->still ? (size_t)IMKI_CHUNK : (size_t)IMKI_STRETCH);
     e->stimulus[IMK_GYRO] = stimulus_of(e, e->column, 0);
     e->stimulus[IMK_ACCEL] =
         stimulus_of(e, e->column, e->skew != 0.0 && e->motion_varies ? IMKI_LATE : 0);

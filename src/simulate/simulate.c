@@ -238,6 +238,7 @@ typedef struct row_work {
     const imki_scene *scene; /* what it sees */
     size_t first, rows;
     double *const *out;
+    size_t groups; /* of channels */
 } row_work;
 
 /* The deterministic part of these rows in one channel. */
@@ -249,15 +250,30 @@ static void run_response(void *context, size_t item)
                           work->rows, work->out[item] + work->first);
 }
 
-/* Noise and output of the blocks that these rows complete. */
+/* Noise and output of the blocks that these rows complete: every groups-th channel, which mixes
+ * gyros and accelerometers, so that groups of one simulator have much the same to do. */
 static void run_blocks(void *context, size_t item)
 {
     const row_work *work = context;
     imk_simulator *simulator = work->simulator;
     const size_t begin = work->first / IMK_NOISE_BLOCK, end = work->first + work->rows;
-    for (size_t block = begin; (block + 1) * IMK_NOISE_BLOCK <= end; block++)
-        imki_channel_block(&simulator->channel[item], !simulator->scene.varies,
-                           work->out[item] + block * IMK_NOISE_BLOCK);
+    for (size_t block = begin; (block + 1) * IMK_NOISE_BLOCK <= end; block++) {
+        imki_channel *channels[IMKI_CHANNELS];
+        double *out[IMKI_CHANNELS];
+        size_t count = 0;
+        for (size_t i = item; i < simulator->channels; i += work->groups) {
+            channels[count] = &simulator->channel[i];
+            out[count++] = work->out[i] + block * IMK_NOISE_BLOCK;
+        }
+        imki_channel_blocks(count, channels, !simulator->scene.varies, out);
+    }
+}
+
+/* Channels are computed together, but all threads have one group. */
+static size_t groups_of(const imk_simulator *simulator, const imk_executor *executor)
+{
+    const size_t threads = executor && executor->threads > 1 ? executor->threads : 1;
+    return threads < simulator->channels ? threads : simulator->channels;
 }
 
 /* Rows made at a time: a power of two of them, so that stretches and blocks fit each other. */
@@ -277,15 +293,17 @@ static void make_blocks(imk_simulator *simulator, size_t blocks, double *const *
     const size_t rows = blocks * IMK_NOISE_BLOCK;
     const bool varies = simulator->scene.varies;
     const size_t stretch = varies ? stretch_rows(simulator, executor) : rows;
+    const size_t groups = groups_of(simulator, executor);
     for (size_t first = 0; first < rows; first += stretch) {
-        row_work work = {simulator, &simulator->scene, first,
-                         rows - first < stretch ? rows - first : stretch, out};
+        row_work work = {simulator, &simulator->scene,
+                         first,     rows - first < stretch ? rows - first : stretch,
+                         out,       groups};
         if (varies) {
             imki_scene_fill(&simulator->scene, simulator->next + first, work.rows, executor);
             /* All channels before any noise, which would push the motion out of the cache. */
             imk_execute(executor, simulator->channels, run_response, &work);
         }
-        imk_execute(executor, simulator->channels, run_blocks, &work);
+        imk_execute(executor, groups, run_blocks, &work);
     }
     simulator->next += rows;
 }
@@ -343,9 +361,11 @@ static void make_together(size_t count, imk_simulator *const *simulators, size_t
         imki_scene_fill(scene, next + first, now, NULL);
         for (int part = 0; part < 2; part++)
             for (size_t i = 0; i < count; i++) {
-                row_work work = {simulators[i], scene, first, now, columns[i]};
-                imk_execute(NULL, simulators[i]->channels, part == 0 ? run_response : run_blocks,
-                            &work);
+                row_work work = {simulators[i], scene, first, now, columns[i], 1};
+                if (part == 0)
+                    imk_execute(NULL, simulators[i]->channels, run_response, &work);
+                else
+                    run_blocks(&work, 0);
             }
     }
     for (size_t i = 0; i < count; i++)

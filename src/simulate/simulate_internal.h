@@ -40,6 +40,7 @@ typedef struct imki_scene {
     double interval, jitter, skew;              /* of true time [s] */
     size_t substeps;
     bool motion_varies, varies; /* in time; anything at all */
+    bool still;                 /* nothing but the warm-up varies, and a row is one part */
     bool needs_acceleration, hysteresis_present[2], warm_up_present[2];
     bool same_hysteresis, same_warm_up; /* of both kinds of sensor: made once */
     double warm_up_time[2];
@@ -112,14 +113,20 @@ typedef struct imki_channel {
 imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, size_t substeps,
                               imk_random random, uint32_t run, imk_error *error);
 
-/* The deterministic part of `rows` rows, out of the stretch from its part `part` on. */
+/* The deterministic part of `rows` rows, whole blocks of 512 where the scene is still, out of the
+ * stretch from its part `part` on. */
 void imki_channel_response(imki_channel *channel, const imk_distortion *distortion,
                            const imki_scene *scene, size_t part, size_t rows, double *out);
 
-/* Noise and output stage of the next 512 samples.
+enum { IMKI_CHANNELS = 2 * IMK_AXES_MAX };
+
+/* Noise and output stage of the next 512 samples of several channels of one unit: together, because
+ * some terms wait for their own sums and others can be computed meanwhile.
+ * @param count     <= IMKI_CHANNELS
  * @param constant  true: the deterministic part is channel->constant; false: it stands in out
- * @param out       in time order */
-void imki_channel_block(imki_channel *channel, bool constant, double *out);
+ * @param out       in time order, one of each channel */
+void imki_channel_blocks(size_t count, imki_channel *const *channels, bool constant,
+                         double *const *out);
 
 /* ---- simulate.c: many runs of one motion ---- */
 

@@ -257,6 +257,14 @@ static void test_monte_carlo(void **state)
     CHECK_RELATIVE(value_of(json_object_get(found, "velocity")), figure(one, 0, "velocity"), 0.16);
     CHECK_RELATIVE(value_of(json_object_get(found, "heading")), figure(one, 0, "heading"), 0.16);
     json_decref(document);
+    /* Of a few runs the 95 % intervals alone say nothing against the linear theory. */
+    for (int seed = 1; seed <= 10; seed++) {
+        char line[160];
+        snprintf(line, sizeof line,
+                 "$I drift limits.yaml --duration 10s -r 2Hz -n 8 --seed %d >/dev/null", seed);
+        assert_int_equal(run(line), 0);
+        assert_string_equal(err, "");
+    }
     sweep();
 }
 
@@ -320,6 +328,12 @@ static void test_messages(void **state)
          "--times \"1min,foo\": \"foo\" is no positive time with a unit; write --times \"1min, "
          "10min, 1h\""},
         {"$I drift tactical --latitude 91deg", "--latitude 91 deg: expected -90deg to 90deg"},
+        {"$I drift tactical --height 200km", "--height 200000 m: expected -10 km to 100 km"},
+        {"$I drift tactical --rate 1GHz", "--rate 1e+09 Hz: expected 0.001 Hz to 1 MHz"},
+        {"$I drift tactical --duration 30000h",
+         "--duration 1.08e+08 s: expected at most three years (1e8 s)"},
+        {"$I drift tactical --aligned self --align-time 0s",
+         "--align-time 0 s: expected 1 s to 1e7 s"},
         {"$I drift tactical --align-time 10s", "--align-time is of --aligned self: add it"},
         {"$I drift tactical navigation -n 10", "--monte-carlo is of one model at a time"},
         {"$I drift tactical -n 10 --shard 4/3 -o a.h5",

@@ -110,6 +110,92 @@ static void test_refusals(void **state)
     sweep();
 }
 
+/* Options that would mean nothing, and texts out of range. */
+static void test_company(void **state)
+{
+    (void)state;
+    put_models();
+    write_rest();
+#define REFUSED(options, message)                                                                  \
+    check_message("$I navigate rest.csv " options, 2,                                              \
+                  "imukit navigate: error: " message "\n" TRY("navigate"))
+    REFUSED(PLACE " --attitude '0 0 0 deg' --align-method fine",
+            "--align-method is of --align, which --attitude leaves out");
+    REFUSED(PLACE " --align 10s --stop 3s",
+            "--stop is of --zero-velocity TIME, such as --zero-velocity 60s");
+    REFUSED(PLACE " --align 10s --model unit.yaml --zero-velocity auto --stop 3s",
+            "--stop is of --zero-velocity TIME, such as --zero-velocity 60s");
+    REFUSED(PLACE " --align 10s --still-rotation 1deg/h",
+            "--still-rotation is of --zero-velocity: add it");
+    REFUSED(PLACE " --align 10s --heading 720deg",
+            "--heading \"720deg\": expected an azimuth within 360 deg, such as 30deg, or \"30 +- 1 "
+            "deg\" with its 1 sigma");
+    REFUSED(PLACE " --attitude '0 95 0 deg'",
+            "--attitude \"0 95 0 deg\": the pitch is within 90 deg, roll and yaw within 360 deg");
+    REFUSED("--align 10s --position '45 +- 1 deg, 10 deg, 0 m'",
+            "--position \"45 +- 1 deg, 10 deg, 0 m\": the latitude is taken as it is: leave its +- "
+            "out");
+    REFUSED(PLACE " --align 10s -o rest.csv",
+            "--output rest.csv would overwrite what is read: give another name");
+    REFUSED(PLACE " --align 10s -o ./rest.csv",
+            "--output ./rest.csv would overwrite what is read: give another name");
+    REFUSED(PLACE " --align 10s -o a.svg --plot a.svg",
+            "--output and --plot both write a.svg: give another name");
+    assert_int_equal(run("$I navigate rest.csv " PLACE " --align 10s --heading '300 +- 2 deg'"), 0);
+    check_contains(out, "yaw -60.0000 deg (yaw given)", "heading");
+    check_contains(out, "heading 2 deg", "its sigma");
+    assert_int_equal(run("$I navigate rest.csv " PLACE " --align 10s --model unit.yaml "
+                         "--zero-velocity 1h"),
+                     0);
+    assert_string_equal(err, "imukit navigate: warning: no standstill was due before the end of "
+                             "the log: there was no update\n");
+    check_message("$I navigate rest.csv " PLACE " --align 1s", 1,
+                  "imukit navigate: error: rest.csv: --align 1s is too short to find an attitude; "
+                  "minutes are due\n");
+    sweep();
+}
+
+static void put_readings(const char *units, const char *rate, const char *force)
+{
+    char text[4000];
+    size_t used = (size_t)snprintf(text, sizeof text, "%s", units);
+    for (int k = 0; k < 20; k++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%d,%s,%s\n", k, rate, force);
+    put("readings.csv", text);
+}
+
+/* Units and signs that cannot be: 15 deg/h is 1/240 deg/s. */
+static void test_units(void **state)
+{
+    (void)state;
+#define HEADER(gyro, accel)                                                                        \
+    "time [s],gyro_x [" gyro "],gyro_y [" gyro "],gyro_z [" gyro "],accel_x [" accel               \
+    "],accel_y [" accel "],accel_z [" accel "]\n"
+    put_readings(HEADER("rad/s", "m/s^2"), "0.00295,0,-0.00295", "0,0,-9.806");
+    assert_int_equal(run("$I navigate readings.csv " PLACE " --align 15s --align-method means"), 0);
+    check_contains(err, "their unit, rad/s, may be deg/s; or north cannot be found", "deg/s");
+    put_readings(HEADER("deg/s", "m/s^2"), "0.00295,0,-0.00295", "0,0,-9.806");
+    assert_int_equal(run("$I navigate readings.csv --position '-45 deg, 10 deg, 0 m' --align 15s "
+                         "--align-method means"),
+                     0);
+    check_contains(err, "the sign of the latitude is wrong", "latitude");
+    put_readings(HEADER("deg/s", "g"), "0.00295,0,-0.00295", "0,0,-9.806");
+    assert_int_equal(run("$I navigate readings.csv " PLACE " --attitude '0 0 0 deg'"), 0);
+    check_contains(err, "the accelerometers' unit, g, is likely to be m/s^2", "g");
+    put_readings(HEADER("deg/s", "m/s^2"), "0.00295,0,-0.00295", "0,0,-9.806");
+    assert_int_equal(run("$I navigate readings.csv " PLACE " --attitude '0 20 0 deg'"), 0);
+    check_contains(err, "begins with an acceleration of 3.41 m/s^2: the attitude", "attitude");
+    assert_int_equal(run("(cat readings.csv; echo 20,0,0,0,1e200,0,-1e200; echo 21,0,0,0,0,0,-9) "
+                         "> absurd.csv; $I navigate absurd.csv " PLACE " --align 15s "
+                         "--align-method means -o track.csv"),
+                     1);
+    assert_string_equal(err, "imukit navigate: error: absurd.csv: by 20.000 s the estimate has "
+                             "left the Earth's surroundings: a reading before is absurd, or its "
+                             "unit wrong\n");
+    assert_int_equal(access("track.csv", F_OK), -1);
+    sweep();
+}
+
 /* ---- the parked laser-gyro log -----------------------------------------------------------------
  */
 
@@ -250,13 +336,85 @@ static void test_stops(void **state)
     sweep();
 }
 
+/* A cruise without any vibration has the signal of a stand. Two minutes at 25 m/s must not be taken
+ * for one, nor the whole log for a unit that never moved; the stop behind is used. */
+static void test_smooth_motion(void **state)
+{
+    (void)state;
+    put_models();
+    put("cruise.yaml", "imukit_motion: 1\n"
+                       "start: {latitude: 45 deg, longitude: 10 deg, height: 100 m, heading: 30 "
+                       "deg}\n"
+                       "steps:\n"
+                       "  - hold 60 s\n"
+                       "  - accelerate to 25 m/s at 5 m/s^2\n"
+                       "  - hold 10 min\n"
+                       "  - stop at 5 m/s^2\n"
+                       "  - hold 20 s\n");
+    assert_int_equal(
+        run("$I simulate perfect.yaml --motion cruise.yaml --rate 20Hz -o perfect.csv && "
+            "$I simulate tactical --motion cruise.yaml --rate 20Hz --seed 3 -o real.csv"),
+        0);
+    double truth[2], found[2];
+    end_of("perfect.csv " PLACE " --align 60s", truth);
+    end_of("real.csv " PLACE " --align 60s --model tactical --zero-velocity auto 2>err2", found);
+    assert_int_equal(run("cat err2; rm err2"), 0);
+    check_contains(out, "look like standing, but begin with a velocity that is not 0", "cruise");
+    assert_null(strstr(out, "the estimate is lost"));
+    const double off = hypot(found[0] - truth[0], found[1] - truth[1]);
+    assert_int_equal(run("$I navigate real.csv " PLACE " --align 60s --heading 30deg --model "
+                         "tactical --zero-velocity auto 2>/dev/null"),
+                     0);
+    const double predicted = number_after(out, "the model predicts ");
+    print_message("cruise: off by %.0f m of %.0f, predicted %.0f m rms\n", off,
+                  hypot(truth[0], truth[1]), predicted);
+    CHECK_BELOW(off, 4.0 * predicted);
+    CHECK_BELOW(predicted, 1000.0);
+    assert_null(strstr(out, "stood still all the time"));
+    sweep();
+}
+
+/* v dv/ds of the motion: 2 m/s^2 to the east of north by 30 deg, and towards the centre of the
+ * Earth v^2/R at constant height. */
+static void test_gravity_free(void **state)
+{
+    (void)state;
+    put_models();
+    put("dash.yaml", "imukit_motion: 1\n"
+                     "start: {latitude: 45 deg, longitude: 10 deg, height: 100 m, heading: 30 "
+                     "deg}\n"
+                     "smoothing: 1 ms\n"
+                     "steps:\n"
+                     "  - hold 10 s\n"
+                     "  - accelerate to 20 m/s at 2 m/s^2\n"
+                     "  - hold 10 s\n");
+    assert_int_equal(run("$I simulate perfect.yaml --motion dash.yaml --rate 50Hz -o dash.csv"), 0);
+    assert_int_equal(run("$I navigate dash.csv " PLACE " --attitude '0 0 30 deg' --interval 5s "
+                         "--gravity-free -o - | cut -d, -f14-"),
+                     0);
+    double a[6][3];
+    char *line = strchr(out, '\n');
+    check_contains(out,
+                   "acceleration_north [m/s^2],acceleration_east [m/s^2],acceleration_down "
+                   "[m/s^2]\n",
+                   "header");
+    for (int k = 0; k < 6; k++, line = strchr(line + 1, '\n'))
+        assert_int_equal(sscanf(line, "\n%lf,%lf,%lf", &a[k][0], &a[k][1], &a[k][2]), 3);
+    const double degree = 0.017453292519943295, rounding = 1e-6;
+    CHECK_CLOSE(a[2][0], 0.0, rounding + 1e-6);
+    CHECK_CLOSE(a[4][0], 2.0 * cos(30.0 * degree), 1e-3); /* turning axes: v/R = 3e-6 rad/s */
+    CHECK_CLOSE(a[4][1], 2.0 * sin(30.0 * degree), 1e-3);
+    CHECK_CLOSE(a[5][2], 400.0 / 6.38e6, rounding + 1e-6); /* 20 m/s by then */
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_perfect),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_parked),
-        cmocka_unit_test(test_stops),
+        cmocka_unit_test(test_perfect),       cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_company),       cmocka_unit_test(test_units),
+        cmocka_unit_test(test_parked),        cmocka_unit_test(test_stops),
+        cmocka_unit_test(test_smooth_motion), cmocka_unit_test(test_gravity_free),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

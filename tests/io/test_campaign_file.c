@@ -127,7 +127,7 @@ static void what_libhdf5_makes_is_small(void **state)
     unsigned char *bytes;
     size_t size;
     CHECK_STATUS(imki_record_make(&campaign, RUNS_MAX, run, &record, &error), IMK_OK);
-    CHECK_STATUS(imki_hdf5_write(&record, &bytes, &size, &error), IMK_OK);
+    CHECK_STATUS(imki_hdf5_write(&record, "x.h5", &bytes, &size, &error), IMK_OK);
     const size_t content = 8 * (TIMES_MAX + RUNS_MAX) + 2 * STATES_MAX * 59;
     assert_in_range(size, content, content + 8192);
     assert_int_equal(size % 8, 0);
