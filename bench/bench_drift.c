@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What drift costs, with the complete model: every deterministic term at constant temperature, and
- * every noise term, on six axes.
+/* What drift costs, with every deterministic term at constant temperature, on six axes, and with
+ * two lists of noise: the complete model of bench_simulate.c (N, B, K, Q and two Gauss-Markov), and
+ * every term there is (N, B, K, R, Q, a Gauss-Markov, a sinusoid and a resonance).
  *
- *   drift_runs_rest, _car   Monte Carlo at 100 Hz on one core, in millions of samples a second, of
- *                           simulation and navigation together
- *   drift_1000_hours        a thousand runs of an hour at 100 Hz on two cores [s]
+ *   drift_runs_complete, _complete_car   Monte Carlo at 100 Hz on one core, in millions of samples
+ *   drift_every_term, _every_term_car    a second, of simulation and navigation together, at rest
+ *                                        and through the car profile
+ *   drift_1000_hours        a thousand runs of an hour at 100 Hz on two cores, with every term [s]
  *   drift_covariance_24h    covariance of a day with the budget of all terms [ms]
  *   drift_two_shards        two processes with --shard against one with all runs [s]
  *   drift_two_ranks         two ranks of imukit-mpi against one [s], where it has been built
@@ -57,7 +59,7 @@ static void remark(const char *what, double value, const char *unit, bool holds,
             holds ? "holds" : "MISSED");
 }
 
-/* ---- the complete model -----------------------------------------------------------------------
+/* ---- the models --------------------------------------------------------------------------------
  */
 
 static imk_axes axes(double value)
@@ -78,9 +80,8 @@ static imk_rows rows(double value)
 }
 
 /* Of a tactical unit; `size` is the unit of the bias [rad/s, m/s^2]. */
-static void complete(imk_triad *triad, double size)
+static void set_deterministic(imk_triad *triad, double size)
 {
-    imk_noise *noise = &triad->noise;
     triad->bias.fixed = triad->bias.repeatability = axes(size);
     triad->bias.warm_up_amplitude = axes(0.1 * size);
     triad->bias.warm_up_time.value = 300.0;
@@ -90,28 +91,49 @@ static void complete(imk_triad *triad, double size)
     triad->nonlinearity.asymmetry = axes(1e-5);
     triad->misalignment = rows(1e-5);
     triad->cross_axis = rows(1e-5);
+    triad->range = axes(1000.0 * pi);
+}
+
+static void set_noise(imk_noise *noise, double size)
+{
     noise->density = IMK_DENSITY_TWO_SIDED;
     noise->white = axes(3.0 * size);
     noise->bias_instability = axes(0.1 * size);
     noise->random_walk = axes(1e-3 * size);
-    noise->ramp = axes(1e-6 * size);
     noise->quantization = axes(0.1 * size);
-    noise->gauss_markov_count = noise->sinusoid_count = noise->resonance_count = 1;
+    noise->gauss_markov_count = 1;
     noise->gauss_markov[0].sigma = axes(0.1 * size);
     noise->gauss_markov[0].correlation_time = axes(300.0);
+}
+
+static void set_second_process(imk_noise *noise, double size)
+{
+    noise->gauss_markov_count = 2;
+    noise->gauss_markov[1].sigma = axes(0.2 * size);
+    noise->gauss_markov[1].correlation_time = axes(20.0);
+}
+
+static void set_other_terms(imk_noise *noise, double size)
+{
+    noise->ramp = axes(1e-6 * size);
+    noise->sinusoid_count = noise->resonance_count = 1;
     noise->sinusoid[0].amplitude = axes(0.1 * size);
     noise->sinusoid[0].frequency = axes(20.0);
     noise->resonance[0].sigma = axes(0.1 * size);
     noise->resonance[0].frequency = axes(20.0);
     noise->resonance[0].q = axes(12.0);
-    triad->range = axes(1000.0 * pi);
 }
 
-static imk_model complete_model(void)
+static imk_model make_model(bool every_term)
 {
     imk_model model = imk_model_default();
-    complete(&model.gyro, 5e-6);
-    complete(&model.accel, 1e-2);
+    imk_triad *triads[2] = {&model.gyro, &model.accel};
+    for (int i = 0; i < 2; i++) {
+        const double size = i == 0 ? 5e-6 : 1e-2;
+        set_deterministic(triads[i], size);
+        set_noise(&triads[i]->noise, size);
+        (every_term ? set_other_terms : set_second_process)(&triads[i]->noise, size);
+    }
     model.gyro.g_sensitivity = rows(1e-8);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 6; j++)
@@ -133,10 +155,12 @@ typedef struct monte_carlo {
     double *errors;
 } monte_carlo;
 
-static monte_carlo *make_campaign(const imk_trajectory *motion, const double *end, uint32_t runs)
+static monte_carlo *make_campaign(bool every_term, const imk_trajectory *motion, const double *end,
+                                  uint32_t runs)
 {
     monte_carlo *c = allocate(sizeof *c);
-    *c = (monte_carlo){.model = complete_model(), .settings = imk_drift_default(), .runs = runs};
+    *c = (monte_carlo){
+        .model = make_model(every_term), .settings = imk_drift_default(), .runs = runs};
     c->settings.motion = motion;
     c->settings.time = end;
     c->settings.time_count = 1;
@@ -172,10 +196,13 @@ static void run_first(void *context)
     bench_use(c->errors);
 }
 
-static void bench_runs(const char *name, const imk_trajectory *motion, const char *isa)
+static void bench_runs(const char *name, bool every_term, const imk_trajectory *motion,
+                       const char *isa)
 {
-    const double end = 60.0; /* short, since the shortest of many is taken */
-    monte_carlo *c = make_campaign(motion, &end, RUNS);
+    /* Short, since the shortest of many is taken; long enough for the start to be a small part, as
+     * it is of a campaign of hours. */
+    const double end = 300.0;
+    monte_carlo *c = make_campaign(every_term, motion, &end, RUNS);
     const double time = bench_best(REPEATS, run_first, c);
     const double speed = 1e-6 * RUNS * end * c->settings.rate / time;
     remark(name, speed, "M/s", speed >= 10.0, "10 M/s");
@@ -194,7 +221,8 @@ static void bench_car(const char *isa)
     expect(imk_motion_script_pieces(&script, &count, &error), &error);
     imk_trajectory_piece *piece = allocate(count * sizeof *piece);
     expect(imk_motion_script_compile(&script, piece, count, &trajectory, &error), &error);
-    bench_runs("drift_runs_car", &trajectory, isa);
+    bench_runs("drift_runs_complete_car", false, &trajectory, isa);
+    bench_runs("drift_every_term_car", true, &trajectory, isa);
     free(piece);
 }
 
@@ -209,7 +237,7 @@ static void run_share(void *context, size_t thread)
 static void bench_hours(const char *isa)
 {
     const double end = 3600.0;
-    monte_carlo *c = make_campaign(NULL, &end, 1000);
+    monte_carlo *c = make_campaign(true, NULL, &end, 1000);
     imk_thread_pool *pool = imk_thread_pool_create(THREADS);
     const imk_executor executor = imk_thread_pool_executor(pool);
     const double start = bench_now();
@@ -244,7 +272,7 @@ static void run_day(void *context)
 
 static void bench_day(void)
 {
-    const imk_model model = complete_model();
+    const imk_model model = make_model(true);
     double time[TIMES_MAX];
     for (int i = 0; i < TIMES_MAX; i++)
         time[i] = 3600.0 * (i + 1);
@@ -413,7 +441,8 @@ int main(void)
 {
     const char *isa = imk_kernel_name(imk_random_seeded(0).kernel);
     bench_pin();
-    bench_runs("drift_runs_rest", NULL, isa);
+    bench_runs("drift_runs_complete", false, NULL, isa);
+    bench_runs("drift_every_term", true, NULL, isa);
     bench_car(isa);
     bench_day();
     char directory[] = "/tmp/imukit_bench_XXXXXX", command[64];

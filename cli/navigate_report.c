@@ -121,6 +121,12 @@ static void put_verdict(imk_page *page, const navigation *n)
     navigate_drift_sentence(n, text, sizeof text);
     imk_page_heading(page, "Verdict");
     imk_page_verdict(page, command_warning_count() > 0 ? 1 : 0, text);
+    const imk_zero_velocity_counts *c = &n->counts;
+    if (c->accepted + c->refused > 0) {
+        snprintf(text, sizeof text, "Zero-velocity updates: %llu, refused %llu.",
+                 (unsigned long long)c->accepted, (unsigned long long)c->refused);
+        imk_page_text(page, text);
+    }
     for (size_t k = 0; k < command_warning_count(); k++)
         imk_page_verdict(page, 2, command_warning_get(k)->message);
 }
@@ -132,8 +138,10 @@ static void put_start(imk_page *page, const navigation *n)
     snprintf(text, sizeof text,
              "%s: roll %.4f, pitch %.4f, yaw %.4f deg; 1 sigma %.2g deg of tilt, %.2g deg of "
              "heading.",
-             n->aligned ? "Found by the unit itself, at rest" : "Given", n->euler[0] / degree,
-             n->euler[1] / degree, n->euler[2] / degree,
+             !n->aligned           ? "Given"
+             : n->options->heading ? "Tilt found by the unit itself, at rest; heading given"
+                                   : "Found by the unit itself, at rest",
+             n->euler[0] / degree, n->euler[1] / degree, n->euler[2] / degree,
              hypot(n->attitude_sigma[0], n->attitude_sigma[1]) / degree,
              n->attitude_sigma[2] / degree);
     imk_page_heading(page, "Attitude at the start");

@@ -186,8 +186,9 @@ static int check_numbers(const physics_options *o)
         return command_misused("--duration %g s: too many samples", o->duration);
     if (o->run > UINT32_MAX)
         return command_misused("--run: expected at most %u", UINT32_MAX);
-    if (o->output && o->signals && strcmp(o->output, o->signals) == 0)
-        return command_misused("the log and the signals cannot both go to %s", o->output);
+    if (o->output && o->signals && strcmp(o->output, "-") == 0 && strcmp(o->signals, "-") == 0)
+        return command_misused("the log and the signals cannot both go to standard output: name a "
+                               "file");
     if (o->json && ((o->output && strcmp(o->output, "-") == 0) ||
                     (o->signals && strcmp(o->signals, "-") == 0)))
         return command_misused("a log and --json cannot both go to standard output: name a file");

@@ -16,7 +16,9 @@
  *     gyros' noise has turned the attitude by since the start taken off.
  *
  *  Constant errors do to the other two what they do to means: nothing that one unit sees at one
- *  place tells a level bias from a tilt or a bias to the east from a heading.
+ *  place tells a level bias from a tilt or a bias to the east from a heading. And the attitude they
+ *  carry along turns with the gyros' bias meanwhile, that of means does not: with gyros worse than
+ *  the Earth's rotation, which find no north, means give the better vertical.
  *  Equations: docs/theory/alignment.md. */
 #ifndef IMUKIT_ALIGNMENT_H
 #define IMUKIT_ALIGNMENT_H
@@ -54,8 +56,9 @@ typedef struct imk_alignment_result {
     imk_navigation_state
         state;               /**< at the end of the time: where it is by then, as it last moved */
     double roll, pitch, yaw; /**< [rad]; yaw is the azimuth of body x, east of north */
-    double covariance[3][3]; /**< of the attitude error about north, east, down [rad^2]. Without a
-                                  model good to a factor of 1.5 in sigma */
+    double covariance[3][3]; /**< of the attitude error about north, east, down [rad^2], for small
+                                  errors: a heading of sigma above a radian is not known at all.
+                                  Without a model good to a factor of 1.5 in sigma */
     double disturbance;      /**< rms of the horizontal velocity that is not gravity's, in means
                                   over a 256th of the duration [m/s]; means: 0 */
     double gravity_ratio;    /**< mean force found over normal gravity: far from 1, a unit is
@@ -80,8 +83,9 @@ IMK_API imk_status imk_alignment_start(void *memory, size_t size,
 IMK_API void imk_alignment_add(imk_alignment *alignment, double dt, imk_vector3 angle,
                                imk_vector3 velocity, const imk_vector3 *moving);
 /** The attitude at the end of the last sample. More may be added after. About 0.1 ms.
- *  @return IMK_ERROR_TOO_SHORT (less than a second, or, but for means, than a 32nd of the
- * duration), IMK_ERROR_SINGULAR (force or rate is missing, or they are parallel; not finite) */
+ *  @return IMK_ERROR_TOO_SHORT (less than a second, than eight samples, or than a 32nd of the
+ *          duration; means: without a model than a quarter, with one only the first),
+ *          IMK_ERROR_SINGULAR (force or rate is missing, or they are parallel; not finite) */
 IMK_API imk_status imk_alignment_finish(const imk_alignment *alignment,
                                         imk_alignment_result *result, imk_error *error);
 

@@ -84,10 +84,12 @@ typedef struct imk_strapdown {
                                                                   and force, of first and second
                                                                   order: half the slope, a sixth of
                                                                   the bend */
-    /** What imk_strapdown_run() carries from call to call, and the state it left. Internal. */
+    /** What imk_strapdown_run() carries from call to call, the state it left, and hold_height as it
+     *  was. Internal. */
     imk_strapdown_block block;
     double carried[IMK_STRAPDOWN_CARRIED];
     imk_navigation_state reported;
+    bool held;
 } imk_strapdown;
 
 /** Start at a state; the attitude is made a unit quaternion. A body that is moving already may be
@@ -118,7 +120,7 @@ IMK_API void imk_strapdown_invert(const imk_navigation_state *from, const imk_na
 /** `count` samples of equal length at once, in blocks; where `samples` is not 3, as so many
  *  imk_strapdown_step(). On return `state` is that after the last sample. The bits do not depend on
  *  how samples are divided among calls; but where the state has been changed in between, by a step
- *  or a correction, or dt, a new block begins.
+ *  or a correction, or hold_height, or dt, a new block begins.
  *  @param channel  means over the samples of angular rate x, y, z [rad/s] and specific force x, y,
  *                  z [m/s^2]: six arrays of `count`
  *  @param height,climb  of the end of each sample, with hold_height; NULL: they stay */
@@ -149,8 +151,8 @@ IMK_API imk_navigation_state imk_strapdown_lanes_state(const imk_strapdown_lanes
                                                        size_t lane);
 /** `count` samples of equal length in every lane: the bits imk_strapdown_run() has from the same
  *  state with the same samples, whatever those of other lanes, the kernel, and how `count` is
- *  divided. A change of dt begins a new block. On AVX-512 some 3 ns per lane and sample, at 80 Hz
- * or more; slower samples make smaller blocks.
+ *  divided (but for the sign of NaN, which one that is lost becomes). A change of dt begins a new block. On AVX-512 some 3 ns per lane and sample, at 80 Hz
+ *  or more; slower samples make smaller blocks.
  *  @param kernel   of imk_random_seeded(), or IMK_KERNEL_SCALAR
  *  @param channel  [lane][rate x, y, z, force x, y, z]: as in imk_strapdown_run(); lanes may share
  *                  arrays

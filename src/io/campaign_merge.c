@@ -134,13 +134,22 @@ static void contradict(merge *m, shard *s, uint64_t run, const char *other)
     refuse(m, s, &error);
 }
 
-/* @return false when memory or a file fails; the files are as if they did not agree then */
-static bool compare(merge *m, shard *a, shard *b, imk_error *error)
+static imk_status load(const shard *s, imk_campaign_results **results, imk_error *error)
+{
+    const imk_status status = imk_campaign_load(s->path, results, error);
+    if (status != IMK_OK && error)
+        snprintf(error->field, sizeof error->field, "%.95s", s->path);
+    return status;
+}
+
+/* Refuse both when they do not agree. */
+static imk_status compare(merge *m, shard *a, shard *b, imk_error *error)
 {
     imk_campaign_results *left = NULL, *right = NULL;
-    bool read = imk_campaign_load(a->path, &left, error) == IMK_OK &&
-                imk_campaign_load(b->path, &right, error) == IMK_OK;
-    if (read) {
+    imk_status status = load(a, &left, error);
+    if (status == IMK_OK)
+        status = load(b, &right, error);
+    if (status == IMK_OK) {
         const uint64_t run = first_difference(left, right);
         if (run != UINT64_MAX) {
             contradict(m, a, run, b->path);
@@ -149,7 +158,7 @@ static bool compare(merge *m, shard *a, shard *b, imk_error *error)
     }
     imk_campaign_free(left);
     imk_campaign_free(right);
-    return read;
+    return status;
 }
 
 static bool has_gaps(const shard *s)
@@ -160,15 +169,14 @@ static bool has_gaps(const shard *s)
 /* Compare a shard with one that is sorted before it, if they may have runs in common. */
 static imk_status compare_with(merge *m, shard *s, shard *other, imk_error *error)
 {
-    if (!other || other == s || other->refused || s->refused ||
-        other->last < s->results.record.run[0])
+    if (!other || other->refused || s->refused || other->last < s->results.record.run[0])
         return IMK_OK;
-    return compare(m, s, other, error) ? IMK_OK : IMK_ERROR_READ;
+    return compare(m, s, other, error);
 }
 
 /* One pass over the shards, sorted by their first run, up to the first contradiction. Each is
- * compared with the one before it that reaches furthest: that one holds every run the new one may
- * share with any before, unless it is a partial merge with gaps; those are compared with all.
+ * compared with the one without gaps before it that reaches furthest, which holds every run the new
+ * one may share with any without gaps before; and with all partial merges that have gaps.
  * @param found  a contradiction: with two shards less the furthest are others */
 static imk_status find_contradiction(merge *m, bool *found, imk_error *error)
 {
@@ -182,11 +190,12 @@ static imk_status find_contradiction(merge *m, bool *found, imk_error *error)
             continue;
         status = compare_with(m, s, furthest, error);
         for (size_t k = 0; k < i && gaps > 0 && status == IMK_OK; k++)
-            if (has_gaps(&m->shards[k]) && &m->shards[k] != furthest)
+            if (has_gaps(&m->shards[k]))
                 status = compare_with(m, s, &m->shards[k], error);
         *found = s->refused;
-        gaps += has_gaps(s);
-        if (!furthest || s->last >= furthest->last)
+        if (has_gaps(s))
+            gaps++;
+        else if (!furthest || s->last >= furthest->last)
             furthest = s;
     }
     return status;

@@ -39,7 +39,13 @@ static imk_status damaged(imk_error *error, const char *found)
 static imk_status refuse_line(const char *block, size_t there, imk_error *error)
 {
     static const char signature[] = "\x89HDF\r\n\x1a\n"; /* behind the user block */
+    static const char under_way[] = "imukit campaign part ";
     const size_t digits = strspn(block + MAGIC, "0123456789");
+    if (there == 0)
+        return damaged(error, "the file is empty");
+    if (strncmp(block, under_way, sizeof under_way - 1) == 0)
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "it is a campaign under way",
+                             "its results file: the command that was interrupted makes it");
     const bool ours = strncmp(block, magic, MAGIC) == 0;
     if (ours && digits > 0 && block[MAGIC + digits] == ' ' && (digits > 1 || block[MAGIC] != '1')) {
         char found[24];

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Alignment by gravity in inertial axes: samples become velocities, and these means over epochs.
  *
- * The body's own inertial axes i are the body's at the start; the reference axes r are the
- * Earth-fixed ones at the start. With the gyros' C_ib,
+ * The body's own inertial axes i are the body's at the start; the reference axes r are inertial as
+ * well, north-east-down at the start: there gravity is far larger along one axis than along the
+ * others, and what rounding leaves of the one does not get into the others. With the gyros' C_ib,
  *
  *     V_i = integral of C_ib f dt
- *     V_r = integral of C_re (w x v - g) dt + C_re v          C_re = turn by w t about the axis
+ *     V_r = integral of C_re (w x v - g) dt + C_re v          C_re: Earth-fixed axes by now to r
  *
  * f being the force, v the velocity relative to the Earth (in Earth-fixed axes), so that
  * V_i = C_ri^T V_r but for a constant [WU2011]. alignment_solution.c finds C_ri. */
@@ -20,7 +21,9 @@ void imki_alignment_inertial_start(imk_alignment *alignment)
 {
     imki_velocities *v = &alignment->velocities;
     v->body = imk_quaternion_identity();
-    v->position = imk_ecef_from_geodetic(alignment->settings.place);
+    const imk_geodetic place = alignment->settings.place;
+    v->position = imk_ecef_from_geodetic(place);
+    v->axes = imk_matrix3_transpose(imk_ned_axes(place.latitude, place.longitude));
     alignment->coarse = imk_matrix3_identity();
     alignment->next_rebase = 4;
 }
@@ -55,10 +58,11 @@ static imk_vector3 measured_step(imki_velocities *v, double dt, imk_vector3 angl
     return step;
 }
 
-imk_vector3 imki_alignment_to_reference(double time, imk_vector3 v)
+imk_vector3 imki_alignment_to_reference(const imk_alignment *alignment, double time, imk_vector3 v)
 {
     const double c = imk_cos(IMK_EARTH_RATE * time), s = imk_sin(IMK_EARTH_RATE * time);
-    return (imk_vector3){{c * v.v[0] - s * v.v[1], s * v.v[0] + c * v.v[1], v.v[2]}};
+    const imk_vector3 turned = {{c * v.v[0] - s * v.v[1], s * v.v[0] + c * v.v[1], v.v[2]}};
+    return imk_matrix3_apply(alignment->velocities.axes, turned);
 }
 
 static imk_vector3 earth_velocity(imk_vector3 position, const imk_vector3 *moving)
@@ -79,7 +83,8 @@ void imki_alignment_inertial_add(imk_alignment *alignment, double dt, imk_vector
     const imk_vector3 gravity = imk_gravity_ecef(halfway);
     const imk_vector3 force = {{-IMK_EARTH_RATE * v->moving.v[1] - gravity.v[0],
                                 IMK_EARTH_RATE * v->moving.v[0] - gravity.v[1], -gravity.v[2]}};
-    const imk_vector3 known = imki_alignment_to_reference(middle, imki_scaled(dt, force));
+    const imk_vector3 known =
+        imki_alignment_to_reference(alignment, middle, imki_scaled(dt, force));
     const imk_vector3 measured = measured_step(v, dt, angle, velocity);
     /* Both in the middle of the sample, where the velocity is given. */
     for (int i = 0; i < 3; i++) {
@@ -87,8 +92,9 @@ void imki_alignment_inertial_add(imk_alignment *alignment, double dt, imk_vector
         v->epoch_reference.v[i] += dt * (v->reference.v[i] + 0.5 * known.v[i]);
     }
     if (moving != NULL)
-        v->epoch_reference = imki_sum(
-            v->epoch_reference, imki_alignment_to_reference(middle, imki_scaled(dt, v->moving)));
+        v->epoch_reference =
+            imki_sum(v->epoch_reference,
+                     imki_alignment_to_reference(alignment, middle, imki_scaled(dt, v->moving)));
     v->measured = imki_sum(v->measured, measured);
     v->reference = imki_sum(v->reference, known);
     v->position = imki_sum(v->position, imki_scaled(dt, v->moving));
@@ -113,8 +119,10 @@ static imki_velocity_noise noise_of(const imk_alignment *a, double *rounding)
     const double turned = g * g * imki_alignment_isotropic(&gyro.white);
     const double forced =
         imki_alignment_isotropic(&accel.walk) + imki_alignment_isotropic(&accel.change);
-    /* A bias is constant in the body's axes, not in inertial ones: the third order in time. */
-    const double bent = g * IMK_EARTH_RATE * t * t * t / 6.0;
+    /* A bias is constant in the body's axes, not in inertial ones, from which they turn with the
+     * Earth, and those the gyros find with the bias: the third order in time. */
+    const double turning = sqrt(IMK_EARTH_RATE * IMK_EARTH_RATE + bias);
+    const double bent = g * turning * t * t * t / 6.0;
     *rounding =
         imki_alignment_isotropic(&accel.quantum) * dt / a->epoch_length + bent * bent * bias;
     return (imki_velocity_noise){.force = imki_alignment_isotropic(&accel.white) +

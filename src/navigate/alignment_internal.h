@@ -138,6 +138,7 @@ typedef struct imki_velocities {
     imk_vector3 last_angle, last_velocity;
     double last_step;
     imk_vector3 position, moving;                /**< Earth-fixed */
+    imk_matrix3 axes;                            /**< Earth-fixed axes at the start to reference */
     double last_epoch;                           /**< end of the last complete one [s] */
     imk_vector3 epoch_measured, epoch_reference; /**< sums, times dt */
 } imki_velocities;
@@ -168,8 +169,8 @@ void imki_alignment_inertial_add(imk_alignment *alignment, double dt, imk_vector
                                  imk_vector3 velocity, const imk_vector3 *moving);
 /** The epoch is complete. */
 void imki_alignment_inertial_close(imk_alignment *alignment);
-/** From Earth-fixed axes at `time` to those at the start. */
-imk_vector3 imki_alignment_to_reference(double time, imk_vector3 v);
+/** From Earth-fixed axes at `time` to reference axes. */
+imk_vector3 imki_alignment_to_reference(const imk_alignment *alignment, double time, imk_vector3 v);
 /** Result of the methods inertial and fine (alignment_solution.c). */
 imk_status imki_alignment_inertial_finish(const imk_alignment *alignment,
                                           imk_alignment_result *result, imk_error *error);

@@ -68,12 +68,15 @@ static imk_matrix3 mean_covariance(const imki_alignment_errors *errors, double d
     return sum;
 }
 
+/* Fewer say too little about their scatter. */
+enum { EPOCHS_MIN = 8 };
+
 /* From the scatter of the means of epochs: half the mean square of neighbours' differences is the
  * variance of one, if they are independent. */
 static imk_matrix3 scatter_covariance(const double *scatter, size_t epochs)
 {
     imk_matrix3 m = {{{0}}};
-    for (int i = 0; i < 3 && epochs > 1; i++)
+    for (int i = 0; i < 3; i++)
         m.m[i][i] = 0.5 * scatter[i] / ((double)(epochs - 1) * (double)epochs);
     return m;
 }
@@ -82,6 +85,9 @@ imk_status imki_alignment_means_finish(const imk_alignment *alignment, imk_align
                                        imk_error *error)
 {
     const imk_alignment_settings *settings = &alignment->settings;
+    if (settings->model == NULL && alignment->epochs < EPOCHS_MIN)
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "alignment", "",
+                             "at least eight samples and a quarter of the duration");
     const double per_time = 1.0 / alignment->time;
     const imk_vector3 force = imk_vector3_scale(alignment->velocity, per_time);
     const imk_vector3 rate = imk_vector3_scale(alignment->angle, per_time);

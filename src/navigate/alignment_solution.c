@@ -238,9 +238,11 @@ static void to_result(const imk_alignment *a, const solution *s, imk_alignment_r
     const imki_velocities *v = &a->velocities;
     const imk_geodetic place = imk_geodetic_from_ecef(v->position);
     const double turned = IMK_EARTH_RATE * a->time, c = imk_cos(turned), z = imk_sin(turned);
+    /* From Earth-fixed axes at the start to those of now. */
     const imk_matrix3 c_er = {{{c, z, 0.0}, {-z, c, 0.0}, {0.0, 0.0, 1.0}}};
     const imk_matrix3 c_en = imk_ned_axes(place.latitude, place.longitude);
-    const imk_matrix3 c_nr = imk_matrix3_multiply(imk_matrix3_transpose(c_en), c_er);
+    const imk_matrix3 c_nr = imk_matrix3_multiply(
+        imk_matrix3_multiply(imk_matrix3_transpose(c_en), c_er), imk_matrix3_transpose(v->axes));
     const imk_matrix3 c_nb = imk_matrix3_multiply(c_nr, imk_quaternion_to_matrix(s->attitude));
     imk_matrix3 covariance = imk_matrix3_multiply(imk_matrix3_multiply(c_nr, s->covariance),
                                                   imk_matrix3_transpose(c_nr));
@@ -264,7 +266,7 @@ imk_status imki_alignment_inertial_finish(const imk_alignment *alignment,
         return imk_error_set(error, IMK_ERROR_TOO_SHORT, "alignment", "",
                              "at least a 32nd of the duration");
     const imk_vector3 gravity = imk_gravity_ecef(a->velocities.position);
-    solution s = {.force = imki_alignment_to_reference(a->time, imki_scaled(-1.0, gravity))};
+    solution s = {.force = imki_alignment_to_reference(a, a->time, imki_scaled(-1.0, gravity))};
     if (!judge(a, &a->equal, &s.equal) || !mix(a, &s))
         return imk_error_set(error, IMK_ERROR_SINGULAR, "alignment", "",
                              "force and a turn of it that are finite and not zero");

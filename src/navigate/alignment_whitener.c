@@ -230,8 +230,13 @@ imk_status imki_whitener_fit(const imki_whitener *whitener, const imk_matrix3 *c
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             change.m[i][j] = fit->scale * back.m[i][j] - coarse->m[i][j];
-            fit->information.m[i][j] = (i == j ? total : 0.0) - f->known[i][j];
+            fit->information.m[i][j] = -f->known[i][j];
         }
+    /* Of the diagonal the two others', not the trace less its own: about the vertical that would
+     * be a small difference. */
+    for (int i = 0; i < 3; i++)
+        fit->information.m[i][i] =
+            f->known[(i + 1) % 3][(i + 1) % 3] + f->known[(i + 2) % 3][(i + 2) % 3];
     double rest[3][3];
     rest_with(f, &change, rest);
     const imk_vector3 down =

@@ -45,7 +45,7 @@ typedef struct imki_block_constants {
     double angle;                                /* h, that the Earth turns by */
     double cosine_to_one, sine;                  /* of h/2: 1 - cos, sin */
     double solved;                               /* 1/(1 + h^2) */
-    double middle, way_share, edge;              /* (m + 1)/2, dt/m, dt/(12 m) */
+    double middle, way_share, edge;              /* (m + 2)/4, 2 dt/m, dt/(3 m) */
     double gradient_velocity, gradient_position; /* g/R T^2/6, g/R T^3/12 */
     double vertical;                             /* T/(2 R) */
 } imki_block_constants;

@@ -108,8 +108,9 @@ void imk_strapdown_run(imk_strapdown *strapdown, size_t count, double dt,
         take_steps(s, count, dt, channel, height, climb);
         return;
     }
-    if (!is_same(&s->state, &s->reported))
+    if (!is_same(&s->state, &s->reported) || s->hold_height != s->held)
         enter(s);
+    s->held = s->hold_height;
     s->carried[IMKI_HEIGHT] = s->height;
     s->carried[IMKI_CLIMB] = s->climb;
     if (s->block.step != dt)

@@ -4,6 +4,7 @@
  * hold, so they serve as exact values. Limits are those of elementary.h. */
 #include "check.h"
 
+#include "base/sine_internal.h"
 #include "imukit/elementary.h"
 
 #include <float.h>
@@ -261,6 +262,42 @@ static void bits_never_change(void **state)
     assert_int_equal(fingerprint(imk_cos, -2e7, 2e3 + 0.1), UINT64_C(0xf8888a8a9030c2a9));
 }
 
+static void check_both(double x)
+{
+    double value[2];
+    const double expected[2] = {imk_sin(x), imk_cos(x)};
+    imki_sine_and_cosine(x, &value[0], &value[1]);
+    assert_memory_equal(value, expected, sizeof value);
+}
+
+/* Over the circle, where a function takes another way or changes its sign, and close to 0. */
+static void both_at_once_have_the_same_bits(void **state)
+{
+    (void)state;
+    const double pi = 3.141592653589793;
+    static const double edge[] = {0.785,
+                                  0.7853981633974483,
+                                  1.5707963267948966,
+                                  2.356194490192345,
+                                  3.141592653589793,
+                                  0x1p-27,
+                                  0x1p-26,
+                                  0x1p-64,
+                                  0x1p-62};
+    for (int i = -100000; i <= 100000; i++)
+        check_both(pi * 1e-5 * i);
+    for (double x = 1.0; x > 0x1p-65; x *= 0.99) {
+        check_both(x);
+        check_both(-x);
+    }
+    for (size_t i = 0; i < sizeof edge / sizeof edge[0]; i++)
+        for (int side = -1; side <= 1; side++) {
+            double x = side == 0 ? edge[i] : nextafter(edge[i], side * 4.0);
+            check_both(x < pi ? x : pi);
+            check_both(x < pi ? -x : -pi);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -274,6 +311,7 @@ int main(void)
         cmocka_unit_test(sin_and_cos_of_large_arguments),
         cmocka_unit_test(sin_and_cos_at_their_ends),
         cmocka_unit_test(bits_never_change),
+        cmocka_unit_test(both_at_once_have_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

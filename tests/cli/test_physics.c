@@ -410,7 +410,7 @@ static void test_refusals(void **state)
          E
          "--plot a.pdf: expected a name ending in .svg or .png, or the word term\n" TRY("physics")},
         {"ring_laser -d 1s -o a.csv --signals a.csv", 2,
-         E "the log and the signals cannot both go to a.csv\n" TRY("physics")},
+         E "--output and --signals both write a.csv: give another name\n" TRY("physics")},
         {"ring_laser -d 1s -o - --json", 2,
          E "a log and --json cannot both go to standard output: name a file\n" TRY("physics")},
         {"ring_laser -d 1s --temperature '-1 K'", 2,

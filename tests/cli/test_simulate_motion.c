@@ -377,7 +377,8 @@ static void test_refusals(void **state)
     REFUSED("AHRS $D -o x/", "-o x/ is a directory: name a file, or add --runs N");
     REFUSED("AHRS $D --format npy",
             "--format is for --runs: a single log has it in its name, -o LOG.npy");
-    REFUSED("AHRS $D --truth x.csv -o x.csv", "the log and the truth cannot both go to x.csv");
+    REFUSED("AHRS $D --truth x.csv -o x.csv",
+            "--output and --truth both write x.csv: give another name");
     REFUSED("AHRS $D --truth -",
             "the log and the truth cannot both go to standard output: add -o LOG");
     REFUSED("AHRS $D --yaw 5deg", "--roll, --pitch and --yaw are of a unit at rest: with --motion "

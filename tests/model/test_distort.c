@@ -6,6 +6,7 @@
 
 #include "imukit/distort.h"
 #include "imukit/random.h"
+#include "model/distort_internal.h"
 
 /* ---- the equation, literally ----------------------------------------------------------------- */
 
@@ -279,6 +280,50 @@ static void pendulous_axes(void **state)
     CHECK_CLOSE(read_one(&model, IMK_ACCEL, 1, &s), 3.4 + 17e-6, 1e-15);
 }
 
+/* A motion of which one chunk is known and that stays so, while the warm-up goes on: what the whole
+ * map reads of it. Some components, or the warm-up, are not there. */
+static void a_still_unit_warms_up(void **state)
+{
+    (void)state;
+    uint64_t random = 4;
+    static imk_distortion distortion;
+    static motion_samples m;
+    double chunk[9][IMKI_CHUNK], whole[SAMPLES_MAX], still[SAMPLES_MAX];
+    const imk_kernel kernels[2] = {IMK_KERNEL_SCALAR, imk_random_seeded(0).kernel};
+    for (int trial = 0; trial < 100; trial++) {
+        const imk_model model = draw_unit(&random, false);
+        start(&distortion, &model, kernels[0]);
+        draw_motion(&random, SAMPLES_MAX, &m);
+        imk_stimulus at_rest = {.warm_up = {m.stimulus.warm_up[0], m.stimulus.warm_up[1]}};
+        for (int c = 0; c < 9; c++) {
+            const double **of = c < 3   ? &at_rest.angular_rate[c]
+                                : c < 6 ? &at_rest.specific_force[c - 3]
+                                        : &at_rest.angular_acceleration[c - 6];
+            for (int k = 0; k < SAMPLES_MAX; k++)
+                m.value[c][k] = m.value[c][0];
+            for (int k = 0; k < IMKI_CHUNK; k++)
+                chunk[c][k] = m.value[c][0];
+            *of = trial % (c + 2) == 1 ? NULL : m.value[c];
+        }
+        if (trial % 5 == 4)
+            at_rest.warm_up[0] = at_rest.warm_up[1] = NULL;
+        imk_stimulus known = at_rest;
+        for (int j = 0; j < 3; j++) {
+            known.angular_rate[j] = at_rest.angular_rate[j] ? chunk[j] : NULL;
+            known.specific_force[j] = at_rest.specific_force[j] ? chunk[3 + j] : NULL;
+            known.angular_acceleration[j] = at_rest.angular_acceleration[j] ? chunk[6 + j] : NULL;
+        }
+        for (int sensor = 0; sensor < 2; sensor++)
+            for (int i = 0; i < distortion.axis_count[sensor]; i++) {
+                const imki_exposure exposure = imki_expose(sensor, &known);
+                imk_distort(&distortion, sensor, i, &at_rest, SAMPLES_MAX, whole);
+                imki_distort_still(kernels[trial % 2], &distortion.axis[sensor][i], &exposure,
+                                   SAMPLES_MAX / IMKI_CHUNK, still);
+                assert_memory_equal(whole, still, sizeof whole);
+            }
+    }
+}
+
 static void constants_of_the_run(void **state)
 {
     (void)state;
@@ -370,6 +415,7 @@ int main(void)
         cmocka_unit_test(constants_and_zeros),
         cmocka_unit_test(lever_arm_pulls_inwards),
         cmocka_unit_test(pendulous_axes),
+        cmocka_unit_test(a_still_unit_warms_up),
         cmocka_unit_test(constants_of_the_run),
         cmocka_unit_test(temperature_is_clipped),
         cmocka_unit_test(hysteresis_follows_its_equation),

@@ -7,6 +7,7 @@
 
 #include "imukit/distributions.h"
 #include "imukit/noise.h"
+#include "noise/generator_internal.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -459,6 +460,47 @@ static void test_arma_recursion(void **unused)
     }
 }
 
+/* Sequences computed together, in lanes, have the bits each has alone, with every kernel. */
+static void test_arma_together(void **unused)
+{
+    (void)unused;
+    enum { BLOCK = IMK_NOISE_BLOCK, BLOCKS = 3, MOST = IMKI_ARMA_LANES };
+    static imk_arma_state alone[MOST], lane[MOST];
+    static double expected[MOST][BLOCKS * BLOCK], block[MOST][BLOCK];
+    const imk_random random = imk_random_seeded(5);
+    imk_arma_state *states[MOST];
+    double *blocks[MOST];
+    for (size_t i = 0; i < MOST; i++) {
+        const imk_resonance resonance = {0.3 * (double)(i + 1), 7.0 * (double)(i + 1), 3.0};
+        CHECK_OK(imk_resonance_start(&alone[i], resonance, 0.01, random, 40 + i));
+        for (size_t k = 0; k < BLOCKS * BLOCK; k++)
+            expected[i][k] = (double)k;
+        lane[i] = alone[i];
+        imk_arma_add(&alone[i], BLOCKS * BLOCK, expected[i]);
+        states[i] = &lane[i];
+        blocks[i] = block[i];
+    }
+    for (imk_kernel kernel = IMK_KERNEL_SCALAR;; kernel = random.kernel) {
+        for (size_t count = 0; count <= MOST; count++) {
+            imk_arma_state before[MOST];
+            memcpy(before, lane, sizeof before);
+            for (size_t b = 0; b < BLOCKS; b++) {
+                for (size_t i = 0; i < count; i++)
+                    for (size_t k = 0; k < BLOCK; k++)
+                        block[i][imki_place(k)] = (double)(b * BLOCK + k);
+                lane[0].random.kernel = kernel;
+                imki_arma_blocks(states, count, blocks);
+                for (size_t i = 0; i < count; i++)
+                    for (size_t k = 0; k < BLOCK; k++)
+                        CHECK_CLOSE(block[i][imki_place(k)], expected[i][b * BLOCK + k], 0.0);
+            }
+            memcpy(lane, before, sizeof before);
+        }
+        if (kernel == random.kernel)
+            break;
+    }
+}
+
 /* A million samples on, the phase is what the frequency says, by 128-bit arithmetic; 1e9 samples on
  * the count is still exact, as it has no fraction to lose. */
 static void test_sinusoid_phase(void **unused)
@@ -592,6 +634,7 @@ int main(void)
         cmocka_unit_test(test_no_period),
         cmocka_unit_test(test_gauss_markov_recursion),
         cmocka_unit_test(test_arma_recursion),
+        cmocka_unit_test(test_arma_together),
         cmocka_unit_test(test_sinusoid_phase),
         cmocka_unit_test(test_quantization_residual),
         cmocka_unit_test(test_quantization_allan_variance),
