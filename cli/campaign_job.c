@@ -196,9 +196,8 @@ void campaign_job_work(campaign_job *job, const campaign_work *work, size_t thre
 int campaign_job_close(campaign_job *job, double **values)
 {
     int code = -1;
+    const bool caught = job->writer != NULL;
     progress_end(&job->line);
-    if (job->writer)
-        release_signals();
     if (job->failed) {
         code = command_error(&job->error, NULL);
     } else if (job->writer) {
@@ -207,6 +206,9 @@ int campaign_job_close(campaign_job *job, double **values)
             code = command_error(&error, NULL);
         job->writer = NULL;
     }
+    /* Until here, for to write a large file takes time: PATH.part stays until it has its name. */
+    if (caught)
+        release_signals();
     if (code < 0 && values) {
         *values = job->values;
         job->values = NULL;

@@ -109,13 +109,13 @@ IMK_API void imk_strapdown_invert(const imk_navigation_state *from, const imk_na
 
 /* ---- many samples at once ----------------------------------------------------------------------
  *
- * In two speeds [SAVAGE1998a, SAVAGE1998b]: samples are gathered into blocks of up to 32 and up to
- * 0.4 s, in axes that keep the attitude the body had when the block began. There its turn and the
- * integrals of the force are found pair by pair of samples, the turn exact, with the coning and
- * sculling of the straight lines through the two: of coning with phase x per sample x^2/20 is
- * missed. The Earth (gravity, Coriolis, its own turn, the vertical channel) acts once per block.
- * Errors are of fourth order in a pair and of third in a block: on the drive of 10 minutes at
- * 100 Hz some micrometres, and 1e-6 of what the sensors' errors do. */
+ * In two speeds [SAVAGE1998a, SAVAGE1998b]: samples are gathered into blocks of 2 to 32, up to
+ * 0.4 s where that is two or more, in axes that keep the attitude the body had when the block
+ * began. There its turn and the integrals of the force are found pair by pair of samples, the turn
+ * exact, with the coning and sculling of the straight lines through the two: of coning with phase x
+ * per sample x^2/20 is missed. The Earth (gravity, Coriolis, its own turn, the vertical channel)
+ * acts once per block. Errors are of fourth order in a pair and of third in a block: on the drive
+ * of 10 minutes at 100 Hz some micrometres, and 1e-6 of what the sensors' errors do. */
 
 /** `count` samples of equal length at once, in blocks; where `samples` is not 3, as so many
  *  imk_strapdown_step(). On return `state` is that after the last sample. The bits do not depend on
@@ -151,8 +151,9 @@ IMK_API imk_navigation_state imk_strapdown_lanes_state(const imk_strapdown_lanes
                                                        size_t lane);
 /** `count` samples of equal length in every lane: the bits imk_strapdown_run() has from the same
  *  state with the same samples, whatever those of other lanes, the kernel, and how `count` is
- *  divided (but for the sign of NaN, which one that is lost becomes). A change of dt begins a new block. On AVX-512 some 3 ns per lane and sample, at 80 Hz
- *  or more; slower samples make smaller blocks.
+ *  divided (but for the sign of NaN, which one that is lost becomes). A change of dt begins a new
+ *  block. On AVX-512 some 3 ns per lane and sample, at 80 Hz or more; slower samples make smaller
+ *  blocks.
  *  @param kernel   of imk_random_seeded(), or IMK_KERNEL_SCALAR
  *  @param channel  [lane][rate x, y, z, force x, y, z]: as in imk_strapdown_run(); lanes may share
  *                  arrays

@@ -131,12 +131,10 @@ static axis_errors errors_of_axis(const imk_triad *triad, int axis, double durat
     const imk_noise *noise = &triad->noise;
     /* Rounding of each sample, when noise is larger than the step. */
     const double rounding = square(triad->resolution.value[axis]) / 12.0 * dt;
-    const double walk = square(noise->random_walk.value[axis]);
     axis_errors errors = {.white = square(noise->white.value[axis]) + rounding,
                           .mean = square(triad->bias.fixed.sigma[axis]) +
-                                  square(triad->bias.repeatability.value[axis]) +
-                                  walk * duration / 3.0,
-                          .walk = walk,
+                                  square(triad->bias.repeatability.value[axis]),
+                          .walk = square(noise->random_walk.value[axis]),
                           .quantum = square(noise->quantization.value[axis])};
     add_flicker(&errors, noise->bias_instability.value[axis], duration, dt);
     add_lists(&errors, noise, axis, duration);

@@ -115,7 +115,7 @@ static imki_velocity_noise noise_of(const imk_alignment *a, double *rounding)
     const imki_alignment_errors gyro =
         imki_alignment_errors_of(&a->settings.model->gyro, a->settings.duration, dt, none, NULL);
     const double t = a->settings.duration, walk = imki_alignment_isotropic(&gyro.walk);
-    const double bias = fmax(imki_alignment_isotropic(&gyro.mean) - walk * t / 3.0, 0.0);
+    const double bias = imki_alignment_isotropic(&gyro.mean);
     const double turned = g * g * imki_alignment_isotropic(&gyro.white);
     const double forced =
         imki_alignment_isotropic(&accel.walk) + imki_alignment_isotropic(&accel.change);

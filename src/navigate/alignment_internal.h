@@ -32,9 +32,9 @@ void imki_alignment_response(imk_matrix3 c_nb, double latitude, double gravity,
 /** Of one triad, in body axes. */
 typedef struct imki_alignment_errors {
     imk_matrix3 white;   /**< density [unit^2/Hz] */
-    imk_matrix3 mean;    /**< covariance of the mean over the time of all else but quantization
+    imk_matrix3 mean;    /**< covariance of the mean over the time of all else but what follows
                               [unit^2] */
-    imk_matrix3 walk;    /**< K^2 [unit^2/s] */
+    imk_matrix3 walk;    /**< K^2 [unit^2/s]: of the mean K^2 T/3 */
     imk_matrix3 change;  /**< K^2 of a random walk that changes as much over the time as flicker and
                               Gauss-Markov processes are [unit^2/s] */
     imk_matrix3 reading; /**< covariance of errors that depend on what is measured [unit^2] */

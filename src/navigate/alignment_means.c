@@ -56,14 +56,14 @@ void imki_alignment_response(imk_matrix3 c_nb, double latitude, double gravity,
     add_congruent(imk_matrix3_multiply(heading, c_nb), *rate, covariance);
 }
 
-/* Covariance of a mean: white/T + mean + reading + 2 Q^2/T^2. */
+/* Covariance of a mean: white/T + mean + K^2 T/3 + reading + 2 Q^2/T^2. */
 static imk_matrix3 mean_covariance(const imki_alignment_errors *errors, double duration)
 {
     imk_matrix3 sum;
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             sum.m[r][c] = errors->white.m[r][c] / duration + errors->mean.m[r][c] +
-                          errors->reading.m[r][c] +
+                          errors->walk.m[r][c] * duration / 3.0 + errors->reading.m[r][c] +
                           2.0 * errors->quantum.m[r][c] / (duration * duration);
     return sum;
 }

@@ -9,9 +9,13 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 /* The same number, bit for bit but for the sign of zero. */
@@ -219,6 +223,106 @@ static void a_damaged_part_is_used_as_far_as_it_goes(void **state)
     free(bytes);
 }
 
+/* ---- what is on the disk, and when ---- */
+
+/* These stand in for those of the C library, and keep account: s file synced, d directory synced, r
+ * renamed, u removed. */
+static char events[64];
+static double ahead; /* of the clock [s] */
+
+static void note(char event)
+{
+    const size_t length = strlen(events);
+    if (length + 1 < sizeof events)
+        events[length] = event;
+}
+
+int fsync(int file)
+{
+    struct stat about;
+    note(fstat(file, &about) == 0 && S_ISDIR(about.st_mode) ? 'd' : 's');
+    return fdatasync(file);
+}
+
+int rename(const char *from, const char *to)
+{
+    note('r');
+    return renameat(AT_FDCWD, from, AT_FDCWD, to);
+}
+
+int unlink(const char *path)
+{
+    note('u');
+    return unlinkat(AT_FDCWD, path, 0);
+}
+
+int clock_gettime(clockid_t clock, struct timespec *now)
+{
+    struct timeval time;
+    (void)clock;
+    gettimeofday(&time, NULL);
+    const double seconds = (double)time.tv_sec + ahead;
+    *now = (struct timespec){.tv_sec = (time_t)seconds, .tv_nsec = 1000 * (long)time.tv_usec};
+    return 0;
+}
+
+/* A crash of the machine costs the last seconds at most: PATH.part is synced every five, the
+ * results file before it gets its name, and PATH.part goes after that. */
+static void the_disk_is_never_behind(void **state)
+{
+    (void)state;
+    const imk_campaign campaign = make_campaign();
+    imk_campaign_writer *writer;
+    imk_error error;
+    CHECK_STATUS(imk_campaign_create("x.h5", &campaign, 0, 3, &writer, &error), IMK_OK);
+    memset(events, 0, sizeof events);
+    CHECK_STATUS(add_runs(writer, 0, 1, &error), IMK_OK);
+    assert_string_equal(events, "");
+    ahead += 5.5;
+    CHECK_STATUS(add_runs(writer, 1, 1, &error), IMK_OK);
+    assert_string_equal(events, "s");
+    CHECK_STATUS(add_runs(writer, 2, 1, &error), IMK_OK);
+    assert_string_equal(events, "s");
+    CHECK_STATUS(imk_campaign_commit(writer, &error), IMK_OK);
+    assert_string_equal(events, "ssrdu");
+    /* A run that comes twice is one. */
+    CHECK_STATUS(imk_campaign_create("y.h5", &campaign, 0, 3, &writer, &error), IMK_OK);
+    CHECK_STATUS(add_runs(writer, 1, 1, &error), IMK_OK);
+    CHECK_STATUS(add_runs(writer, 1, 1, &error), IMK_OK);
+    assert_int_equal(imk_campaign_done(writer), 1);
+    imk_campaign_stop(writer);
+}
+
+/* Each byte of the head of a record is under its checksum: what it says of which runs follow is not
+ * believed otherwise. It ends the file there, which is cut. */
+static void a_damaged_record_head_ends_the_file(void **state)
+{
+    (void)state;
+    const imk_campaign campaign = make_campaign();
+    imk_campaign_writer *writer;
+    imk_error error;
+    struct stat about;
+    CHECK_STATUS(imk_campaign_create("x.h5", &campaign, 0, RUNS, &writer, &error), IMK_OK);
+    for (uint64_t run = 0; run < 30; run += 10)
+        CHECK_STATUS(add_runs(writer, run, 10, &error), IMK_OK);
+    imk_campaign_stop(writer);
+    size_t size;
+    unsigned char *bytes = read_bytes("x.h5.part", &size);
+    const size_t record = 24 + 10 * RUN_VALUES * sizeof(double), second = size - 2 * record;
+    for (size_t place = second; place < second + 24; place++) {
+        bytes[place] ^= 4;
+        write_bytes("x.h5.part", bytes, size);
+        bytes[place] ^= 4;
+        CHECK_STATUS(imk_campaign_create("x.h5", &campaign, 0, RUNS, &writer, &error), IMK_OK);
+        assert_int_equal(imk_campaign_done(writer), 10);
+        assert_true(imk_campaign_has(writer, 9) && !imk_campaign_has(writer, 14));
+        imk_campaign_stop(writer);
+        assert_int_equal(stat("x.h5.part", &about), 0);
+        assert_int_equal(about.st_size, second);
+    }
+    free(bytes);
+}
+
 static void check_conflict(const imk_campaign *campaign, uint64_t first, uint64_t runs,
                            const char *found)
 {
@@ -259,6 +363,10 @@ static void a_part_of_another_campaign_is_refused(void **state)
     check_conflict(&other, 10, 20, "the times are not the same");
     other = campaign;
     other.state_count = STATES - 1;
+    check_conflict(&other, 10, 20, "the states are not the same");
+    const char *units[STATES] = {"m", "m/s", "deg"};
+    other = campaign;
+    other.unit = units;
     check_conflict(&other, 10, 20, "the states are not the same");
     write_bytes("x.h5.part", (const unsigned char *)"a letter, which someone may want to keep", 41);
     check_conflict(&campaign, 10, 20, "it is not what an interrupted campaign leaves");
@@ -305,7 +413,7 @@ static void a_full_disk_loses_nothing(void **state)
     (void)state;
     const imk_campaign campaign = make_campaign();
     compute_shard("whole.h5", &campaign, 0, RUNS);
-    size_t size;
+    size_t size, first_size_read;
     free(read_bytes("whole.h5", &size));
     signal(SIGXFSZ, SIG_IGN);
     struct rlimit before, limit;
@@ -314,6 +422,8 @@ static void a_full_disk_loses_nothing(void **state)
     imk_error error;
     imk_status status = IMK_OK;
     CHECK_STATUS(imk_campaign_create("x.h5", &campaign, 0, RUNS, &writer, &error), IMK_OK);
+    free(read_bytes("x.h5.part", &first_size_read));
+    const off_t first_size = (off_t)first_size_read;
     limit = before;
     limit.rlim_cur = size / 2;
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -321,12 +431,17 @@ static void a_full_disk_loses_nothing(void **state)
     for (; run < RUNS && status == IMK_OK; run++)
         status = add_runs(writer, run, 1, &error);
     const imk_status again = add_runs(writer, run - 1, 1, &error);
+    struct stat about;
+    assert_int_equal(stat("x.h5.part", &about), 0);
     setrlimit(RLIMIT_FSIZE, &before);
     CHECK_STATUS(status, IMK_ERROR_WRITE);
     CHECK_STATUS(again, IMK_ERROR_WRITE);
     assert_string_equal(error.field, "x.h5.part");
     assert_string_equal(error.found, strerror(EFBIG));
     assert_in_range(run, RUNS / 4, RUNS / 2 + 1);
+    /* What was written of the last one has been given back. */
+    const off_t record = 24 + RUN_VALUES * (off_t)sizeof(double);
+    assert_int_equal(about.st_size, first_size + (off_t)(run - 1) * record);
     assert_int_equal(imk_campaign_done(writer), run - 1);
     /* Space is there again: in this process, and in the next. */
     CHECK_STATUS(add_runs(writer, run - 1, 1, &error), IMK_OK);
@@ -378,6 +493,8 @@ int main(void)
         cmocka_unit_test_teardown(csv_has_a_row_per_run_and_time, clean),
         cmocka_unit_test_teardown(killed_and_restarted, clean),
         cmocka_unit_test_teardown(a_damaged_part_is_used_as_far_as_it_goes, clean),
+        cmocka_unit_test_teardown(the_disk_is_never_behind, clean),
+        cmocka_unit_test_teardown(a_damaged_record_head_ends_the_file, clean),
         cmocka_unit_test_teardown(a_part_of_another_campaign_is_refused, clean),
         cmocka_unit_test_teardown(what_cannot_be_is_refused, clean),
         cmocka_unit_test_teardown(a_full_disk_loses_nothing, clean),

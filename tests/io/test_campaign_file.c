@@ -279,6 +279,26 @@ static void a_forged_file_is_refused(void **state)
     assert_int_equal(WEXITSTATUS(status), 0);
 }
 
+/* A merge closes its files in between: one that has changed then is not mixed in. */
+static void a_file_that_changes_meanwhile_is_refused(void **state)
+{
+    (void)state;
+    imk_campaign campaign = make_campaign();
+    imki_results results;
+    imk_error error;
+    compute_shard("x.h5", &campaign, 0, 2);
+    CHECK_STATUS(imki_results_open("x.h5", &results, &error), IMK_OK);
+    imki_results_pause(&results);
+    CHECK_STATUS(imki_results_resume("x.h5", &results, &error), IMK_OK);
+    imki_results_pause(&results);
+    campaign.seed = 43;
+    remove("x.h5");
+    compute_shard("x.h5", &campaign, 0, 2);
+    CHECK_STATUS(imki_results_resume("x.h5", &results, &error), IMK_ERROR_READ);
+    assert_string_equal(error.found, "the file has changed meanwhile");
+    imki_results_close(&results);
+}
+
 /* ---- of another shape ---- */
 
 typedef enum shape {
@@ -431,6 +451,7 @@ int main(void)
         cmocka_unit_test_teardown(what_libhdf5_makes_is_small, clean),
         cmocka_unit_test_teardown(the_callers_libhdf5_is_left_as_it_is, clean),
         cmocka_unit_test_teardown(a_damaged_file_is_refused, clean),
+        cmocka_unit_test_teardown(a_file_that_changes_meanwhile_is_refused, clean),
         cmocka_unit_test_teardown(a_forged_file_is_refused, clean),
         cmocka_unit_test_teardown(a_file_of_another_shape_is_refused, clean),
     };

@@ -15,6 +15,13 @@ static const char *paths[FILES_MAX];
 static imk_campaign_complaint complaints[FILES_MAX];
 static imk_campaign_merge_report report;
 
+/* Nothing here is about crashes of the machine, and some hundred files would wait for the disk. */
+int fsync(int file)
+{
+    (void)file;
+    return 0;
+}
+
 static int set_up(void **state)
 {
     (void)state;
@@ -219,6 +226,89 @@ static void contradictions_are_left_out(void **state)
     check_same_file("all.h5", "whole.h5");
 }
 
+/* A partial merge that reaches furthest but has not the runs two others share does not hide that
+ * they do not agree. */
+static void contradictions_behind_gaps_are_found(void **state)
+{
+    (void)state;
+    const imk_campaign campaign = make_campaign();
+    imk_campaign_writer *writer;
+    imk_error error;
+    double values[RUN_VALUES];
+    compute_shard("first.h5", &campaign, 0, 2);
+    compute_shard("last.h5", &campaign, 100, 37);
+    const char *ends[] = {"first.h5", "last.h5"};
+    CHECK_STATUS(imk_campaign_merge(2, ends, "ends.h5", true, &report, &error), IMK_OK);
+    compute_shard("good.h5", &campaign, 0, 60);
+    compute_shard("rest.h5", &campaign, 50, 87);
+    CHECK_STATUS(imk_campaign_create("bad.h5", &campaign, 20, 1, &writer, &error), IMK_OK);
+    fill_runs(20, 1, values);
+    values[3] = -values[3];
+    CHECK_STATUS(imk_campaign_add(writer, 20, 1, values, &error), IMK_OK);
+    CHECK_STATUS(imk_campaign_commit(writer, &error), IMK_OK);
+    const char *some[] = {"ends.h5", "bad.h5", "good.h5", "rest.h5"};
+    CHECK_STATUS(imk_campaign_merge(4, some, "all.h5", false, &report, &error), IMK_ERROR_CONFLICT);
+    assert_int_equal(report.complaint_count, 2);
+    assert_string_equal(complaints[0].error.found, "run 20 has other numbers in another file");
+    assert_string_equal(report.missing, "2-49");
+    /* And one that does not agree with a partial merge is found with others between them. */
+    CHECK_STATUS(imk_campaign_create("odd.h5", &campaign, 120, 1, &writer, &error), IMK_OK);
+    fill_runs(120, 1, values);
+    values[3] = -values[3];
+    CHECK_STATUS(imk_campaign_add(writer, 120, 1, values, &error), IMK_OK);
+    CHECK_STATUS(imk_campaign_commit(writer, &error), IMK_OK);
+    const char *more[] = {"odd.h5", "good.h5", "ends.h5"};
+    CHECK_STATUS(imk_campaign_merge(3, more, "all.h5", false, &report, &error), IMK_ERROR_CONFLICT);
+    assert_int_equal(report.complaint_count, 2);
+    assert_string_equal(report.missing, "60-136");
+}
+
+/* Of as many files of each, the campaign is that of the first given. */
+static void the_first_of_equals_counts(void **state)
+{
+    (void)state;
+    imk_campaign other = make_campaign();
+    imk_error error;
+    compute_shard("a.h5", &other, 0, 70);
+    compute_shard("b.h5", &other, 70, 67);
+    other.seed = 43;
+    compute_shard("c.h5", &other, 0, 70);
+    compute_shard("d.h5", &other, 70, 67);
+    const char *some[] = {"a.h5", "c.h5", "d.h5", "b.h5"};
+    CHECK_STATUS(imk_campaign_merge(4, some, "all.h5", false, &report, &error), IMK_OK);
+    check_same_file("all.h5", "whole.h5");
+    assert_int_equal(report.complaint_count, 2);
+    assert_string_equal(complaints[0].error.found, "the seed is 43, not 42");
+}
+
+/* "0-99999,100001-119999,…": 14 characters a piece, from a million on 16, and 1000 have room. With
+ * fewer of the first files the list ends at another place. */
+static void long_lists_end_in_dots(void **state)
+{
+    (void)state;
+    enum { FILES = 90, SHIFTS = 16 };
+    imk_campaign campaign = make_campaign();
+    imk_error error;
+    campaign.run_count = 2000000;
+    for (size_t i = 0; i < FILES; i++) {
+        snprintf(names[i], sizeof names[0], "s%zu.h5", i);
+        compute_shard(names[i], &campaign, 100000 + 20000 * i, 1);
+    }
+    for (size_t shift = 0; shift < SHIFTS; shift++) {
+        CHECK_STATUS(
+            imk_campaign_merge(FILES - shift, paths + shift, "all.h5", false, &report, &error),
+            IMK_ERROR_CONFLICT);
+        char start[64];
+        const size_t length = strlen(report.missing);
+        snprintf(start, sizeof start, "0-%zu,%zu-%zu,", 99999 + 20000 * shift,
+                 100001 + 20000 * shift, 119999 + 20000 * shift);
+        assert_memory_equal(report.missing, start, strlen(start));
+        assert_in_range(length, sizeof report.missing - 25, sizeof report.missing - 1);
+        assert_string_equal(report.missing + length - 5, "9,...");
+        assert_int_equal(report.present, FILES - shift);
+    }
+}
+
 static void nothing_usable(void **state)
 {
     (void)state;
@@ -227,6 +317,16 @@ static void nothing_usable(void **state)
     CHECK_STATUS(merge(1, true, &error), IMK_ERROR_EMPTY);
     assert_int_equal(report.complaint_count, 1);
     CHECK_STATUS(merge(0, true, &error), IMK_ERROR_EMPTY);
+    /* What a full disk, and what a killed process may leave of a shard. */
+    const imk_campaign campaign = make_campaign();
+    imk_campaign_writer *writer;
+    write_bytes("empty.h5", (const unsigned char *)"", 0);
+    CHECK_STATUS(imk_campaign_create("x.h5", &campaign, 0, 2, &writer, &error), IMK_OK);
+    imk_campaign_stop(writer);
+    const char *some[] = {"empty.h5", "x.h5.part"};
+    CHECK_STATUS(imk_campaign_merge(2, some, "all.h5", true, &report, &error), IMK_ERROR_EMPTY);
+    assert_string_equal(complaints[0].error.found, "the file is empty");
+    assert_string_equal(complaints[1].error.found, "it is a campaign under way");
     assert_false(is_there("all.h5"));
 }
 
@@ -239,6 +339,9 @@ int main(void)
         cmocka_unit_test_teardown(a_partial_merge_is_completed, clean),
         cmocka_unit_test_teardown(other_campaigns_are_left_out, clean),
         cmocka_unit_test_teardown(contradictions_are_left_out, clean),
+        cmocka_unit_test_teardown(contradictions_behind_gaps_are_found, clean),
+        cmocka_unit_test_teardown(the_first_of_equals_counts, clean),
+        cmocka_unit_test_teardown(long_lists_end_in_dots, clean),
         cmocka_unit_test_teardown(nothing_usable, clean),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

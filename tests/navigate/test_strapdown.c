@@ -151,26 +151,30 @@ static void test_inverse(void **state)
 enum { POWERS = 4 };
 
 /* What rate and force are at a time within the step and before: polynomials. */
+typedef struct polynomial {
+    double of[3][POWERS]; /* coefficients of t^0 ... t^3, by axis */
+} polynomial;
+
 typedef struct polynomial_motion {
-    double rate[3][POWERS], force[3][POWERS]; /* coefficients of t^0 ... t^3 */
+    polynomial rate, force;
 } polynomial_motion;
 
 /* The integral of a polynomial from 0. */
-static imk_vector3 integral_to(const double coefficient[3][POWERS], double t)
+static imk_vector3 integral_to(const polynomial *p, double t)
 {
     imk_vector3 sum = {{0}};
     for (int i = 0; i < 3; i++)
         for (int k = POWERS; k-- > 0;)
-            sum.v[i] = (sum.v[i] + coefficient[i][k] / (k + 1)) * t;
+            sum.v[i] = (sum.v[i] + p->of[i][k] / (k + 1)) * t;
     return sum;
 }
 
-static imk_vector3 value_at(const double coefficient[3][POWERS], double t)
+static imk_vector3 value_at(const polynomial *p, double t)
 {
     imk_vector3 sum = {{0}};
     for (int i = 0; i < 3; i++)
         for (int k = POWERS; k-- > 0;)
-            sum.v[i] = sum.v[i] * t + coefficient[i][k];
+            sum.v[i] = sum.v[i] * t + p->of[i][k];
     return sum;
 }
 
@@ -189,22 +193,22 @@ static imk_navigation_state step_of(const polynomial_motion *m, int samples, dou
         imk_strapdown_step(
             &s, to - from,
             imk_vector3_scale(
-                imk_vector3_subtract(integral_to(m->rate, to), integral_to(m->rate, from)), sign),
-            imk_vector3_subtract(integral_to(m->force, to), integral_to(m->force, from)));
+                imk_vector3_subtract(integral_to(&m->rate, to), integral_to(&m->rate, from)), sign),
+            imk_vector3_subtract(integral_to(&m->force, to), integral_to(&m->force, from)));
         from = to;
     }
     s.state = imk_strapdown_start(start).state;
     s.position_low = (imk_vector3){{0}};
     s.attitude_low = (imk_quaternion){0, 0, 0, 0};
-    imk_strapdown_step(&s, dt, imk_vector3_scale(integral_to(m->rate, dt), sign),
-                       integral_to(m->force, dt));
+    imk_strapdown_step(&s, dt, imk_vector3_scale(integral_to(&m->rate, dt), sign),
+                       integral_to(&m->force, dt));
     return s.state;
 }
 
 /* With rate and force that are the polynomials the step takes them for, every integral is exact to
  * second order in the two together: of velocity int a x f and of position int (dt - t) a x f, a the
  * integral of the rate, and half of int a x w of the attitude. Half the difference of two steps
- * with opposite rates leaves that product; what is left are third orders of the rate (1e-8 of it)
+ * with opposite rates leaves that product; what is left are third orders of the rate (1e-7 of it)
  * and the Earth's turn meanwhile (1e-6). The force is as large as rounding of the position demands.
  * The attitude's part is even in the rate: the sum of two. */
 static void test_second_order(void **state)
@@ -215,24 +219,24 @@ static void test_second_order(void **state)
         imk_navigation_state_ned(0.0, places[0], (imk_vector3){{0}}, imk_matrix3_identity());
     const imk_random random = imk_random_seeded(3);
     for (int samples = 1; samples <= 4; samples++) {
-        polynomial_motion m = {{{0}}, {{0}}};
+        polynomial_motion m = {{{{0}}}, {{{0}}}};
         double n[24], scale = 1.0;
         imk_random_normals(random, imk_stream(0, 1, 0, 0), 32 * (uint64_t)samples, 24, n);
         for (int k = 0; k < samples; k++, scale *= 5.0 / dt)
             for (int i = 0; i < 3; i++) {
-                m.rate[i][k] = 1e-4 / dt * scale * n[6 * k + i];
-                m.force[i][k] = 1e6 / dt * scale * n[6 * k + 3 + i];
+                m.rate.of[i][k] = 1e-5 / dt * scale * n[6 * k + i];
+                m.force.of[i][k] = 1e7 / dt * scale * n[6 * k + 3 + i];
             }
         imk_vector3 velocity = {{0}}, way = {{0}}, turn = {{0}};
         enum { POINTS = 2000 }; /* midpoints: to 1e-7 */
         for (int p = 0; p < POINTS; p++) {
             const double t = (p + 0.5) * dt / POINTS, weight = dt / POINTS;
-            const imk_vector3 a = integral_to(m.rate, t);
-            const imk_vector3 af = imk_vector3_cross(a, value_at(m.force, t));
+            const imk_vector3 a = integral_to(&m.rate, t);
+            const imk_vector3 af = imk_vector3_cross(a, value_at(&m.force, t));
             velocity = imk_vector3_add(velocity, imk_vector3_scale(af, weight));
             way = imk_vector3_add(way, imk_vector3_scale(af, weight * (dt - t)));
             turn = imk_vector3_add(
-                turn, imk_vector3_scale(imk_vector3_cross(a, value_at(m.rate, t)), 0.5 * weight));
+                turn, imk_vector3_scale(imk_vector3_cross(a, value_at(&m.rate, t)), 0.5 * weight));
         }
         const imk_navigation_state plus = step_of(&m, samples, 1.0, &start, dt),
                                    minus = step_of(&m, samples, -1.0, &start, dt);
