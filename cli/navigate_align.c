@@ -183,6 +183,17 @@ static void given_attitude(navigation *n)
     n->attitude_sigma[1] = hypot(s * roll, c * pitch);
 }
 
+/* Gravity's turn in inertial axes is lost in biases larger than the Earth's rotation, and the tilt
+ * with it: of 20 deg that they turn in the time it is off by 14. The mean force asks no gyro. */
+static imk_alignment_method chosen_method(const navigation *n)
+{
+    const double coarse = 1.5 * IMK_EARTH_RATE;
+    if (n->options->method >= 0)
+        return (imk_alignment_method)n->options->method;
+    return imk_vector3_norm(mean_reading(n, 0)) > coarse ? IMK_ALIGNMENT_MEANS
+                                                         : IMK_ALIGNMENT_INERTIAL;
+}
+
 static int self_align(navigation *n)
 {
     imk_alignment_settings settings = imk_alignment_default();
@@ -236,6 +247,7 @@ int navigate_align(navigation *n)
         given_attitude(n);
         return -1;
     }
+    n->method = chosen_method(n);
     const int code = self_align(n);
     if (code >= 0)
         return code;

@@ -155,7 +155,6 @@ int navigate_parse(navigation *n)
         return command_misused("the place of the start is missing: add --position \"LATITUDE deg, "
                                "LONGITUDE deg, HEIGHT m\"");
     n->stop = isnan(o->stop) ? 5.0 : o->stop;
-    n->method = o->method < 0 ? IMK_ALIGNMENT_INERTIAL : (imk_alignment_method)o->method;
     int code = check_company(o);
     if (code < 0)
         code = check_numbers(o);

@@ -133,22 +133,30 @@ static void print_angles(const char *label, double roll, double pitch, double ya
     printf("%sroll %.4f, pitch %.4f, yaw %.4f deg", label, shown[0], shown[1], shown[2]);
 }
 
+static const char *const method_names[] = {"means", "inertial", "fine"};
+
+/* Beyond this sigma a heading is as good as any other [rad]. */
+static const double unknown_heading = 1.0;
+
 static void print_attitude(const navigation *n)
 {
-    static const char *const methods[] = {"means", "inertial", "fine"};
     const navigate_options *o = n->options;
     if (!n->aligned) {
         print_angles("Attitude given: ", n->euler[0], n->euler[1], n->euler[2]);
         putchar('\n');
         return;
     }
-    printf("Aligned over %g s (%s): ", n->dt * (double)n->first, methods[n->method]);
+    const bool coarse = o->method < 0 && n->method == IMK_ALIGNMENT_MEANS;
+    printf("Aligned over %g s (%s%s): ", n->dt * (double)n->first, method_names[n->method],
+           coarse ? ", as the gyros read more than the Earth's rotation" : "");
     print_angles("", n->euler[0], n->euler[1], n->euler[2]);
     puts(o->heading ? " (yaw given)" : "");
-    printf("  1 sigma: tilt %.2g deg, heading %.2g deg%s\n",
-           hypot(n->attitude_sigma[0], n->attitude_sigma[1]) / degree,
-           n->attitude_sigma[2] / degree,
-           n->has_model ? "" : " (scatter alone; --model counts the biases in)");
+    printf("  1 sigma: tilt %.2g deg", hypot(n->attitude_sigma[0], n->attitude_sigma[1]) / degree);
+    if (!(n->attitude_sigma[2] < unknown_heading))
+        printf(", north not found");
+    else if (n->attitude_sigma[2] > 0.0)
+        printf(", heading %.2g deg", n->attitude_sigma[2] / degree);
+    puts(n->has_model ? "" : " (scatter alone; --model counts the biases in)");
     printf("  force %.6f of normal gravity, rotation %.4f of the Earth's, sway %.2g m/s\n",
            n->alignment.gravity_ratio, n->alignment.earth_rate_ratio, n->alignment.disturbance);
 }
@@ -159,9 +167,10 @@ static void print_end_attitude(const navigation *n)
     double *const *t = n->track;
     print_angles("\nAttitude: ", t[TRACK_ROLL][last], t[TRACK_PITCH][last], t[TRACK_YAW][last]);
     if (n->has_model)
-        printf("; 1 sigma: tilt %.2g deg, heading %.2g deg",
-               hypot(t[TRACK_SIGMA + 6][last], t[TRACK_SIGMA + 7][last]) / degree,
-               t[TRACK_SIGMA + 8][last] / degree);
+        printf("; 1 sigma: tilt %.2g deg",
+               hypot(t[TRACK_SIGMA + 6][last], t[TRACK_SIGMA + 7][last]) / degree);
+    if (n->has_model && t[TRACK_SIGMA + 8][last] < unknown_heading)
+        printf(", heading %.2g deg", t[TRACK_SIGMA + 8][last] / degree);
     putchar('\n');
 }
 
@@ -206,6 +215,7 @@ static json_t *alignment_json(const navigation *n)
     if (!n->aligned)
         return object;
     const imk_alignment_result *a = &n->alignment;
+    json_object_set_new(object, "method", json_string(method_names[n->method]));
     json_object_set_new(object, "duration", json_quantity(n->dt * (double)n->first, "s"));
     json_object_set_new(object, "disturbance", json_quantity(a->disturbance, "m/s"));
     json_object_set_new(object, "gravity_ratio", json_number(a->gravity_ratio));

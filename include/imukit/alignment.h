@@ -70,6 +70,7 @@ typedef struct imk_alignment_result {
 /** An alignment under way: opaque memory of imk_alignment_size() bytes (23 kB), aligned as a
  * double, given by the caller. */
 typedef struct imk_alignment imk_alignment;
+/** Bytes for an alignment with these settings. */
 IMK_API size_t imk_alignment_size(const imk_alignment_settings *settings);
 /** @return IMK_ERROR_UNINITIALISED, _RANGE, _NOT_FINITE, _CONFLICT (within 1 deg of a pole: no
  *          north there), _UNSUPPORTED (a model without gyros or accelerometers, or with fewer than

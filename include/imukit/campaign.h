@@ -95,6 +95,7 @@ typedef struct imk_campaign_results {
  *          IMK_ERROR_READ (damaged or cut short: error.found says which), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_campaign_load(const char *path, imk_campaign_results **results,
                                      imk_error *error);
+/** Free results; NULL is allowed. */
 IMK_API void imk_campaign_free(imk_campaign_results *results);
 
 /** What was wrong with one file of a merge. */

@@ -275,6 +275,31 @@ static void test_parked(void **state)
     sweep();
 }
 
+/* Gyros with a bias of 0.1 deg/s, 70 times the Earth's rotation, turn 8 deg in the minute of
+ * alignment: the vertical is found all the same, to what 0.06 mg/sqrt(Hz) and 0.3 deg/sqrt(h)
+ * leave, and north is not claimed. */
+static void test_coarse_gyros(void **state)
+{
+    (void)state;
+    assert_int_equal(run("printf 'imukit: 1\\ngyro:\\n  bias: {fixed: 0.1 -0.05 0.08 deg/s, "
+                         "repeatability: 0.1 deg/s}\\n  noise: {angle_random_walk: 0.3 "
+                         "deg/sqrt(h)}\\naccel:\\n  noise: {density: two-sided, "
+                         "velocity_random_walk: 60 ug/sqrt(Hz)}\\n' > coarse.yaml && $I simulate "
+                         "coarse.yaml --rate 20Hz --duration 70s --seed 1 -o coarse.csv"),
+                     0);
+    assert_int_equal(run("$I navigate coarse.csv --position '45 deg, 0 deg, 0 m' --align 60s "
+                         "--heading 30deg"),
+                     0);
+    check_contains(out, "(means, as the gyros read more than the Earth's rotation)", "method");
+    CHECK_CLOSE(number_after(out, "roll "), 0.0, 0.01);
+    CHECK_CLOSE(number_after(out, "pitch "), 0.0, 0.01);
+    assert_int_equal(run("$I navigate coarse.csv --position '45 deg, 0 deg, 0 m' --align 60s "
+                         "--model coarse.yaml"),
+                     0);
+    check_contains(out, "north not found", "heading");
+    sweep();
+}
+
 /* Three legs of a drive with stops between them. With perfect sensors its end is known; a unit with
  * 1 mg and 1 deg/h that finds its stops by itself ends within what the filter says (4 sigma: 1e-4
  * for each of two, and the draw is fixed), and nearer than one that does not. */
@@ -412,10 +437,11 @@ static void test_gravity_free(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_perfect),       cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_company),       cmocka_unit_test(test_units),
-        cmocka_unit_test(test_parked),        cmocka_unit_test(test_stops),
-        cmocka_unit_test(test_smooth_motion), cmocka_unit_test(test_gravity_free),
+        cmocka_unit_test(test_perfect),      cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_company),      cmocka_unit_test(test_units),
+        cmocka_unit_test(test_parked),       cmocka_unit_test(test_coarse_gyros),
+        cmocka_unit_test(test_stops),        cmocka_unit_test(test_smooth_motion),
+        cmocka_unit_test(test_gravity_free),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
