@@ -4,6 +4,7 @@
  * it stands. */
 #include "distort_internal.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* Feature k is the product of these components, or one component: -1. */
@@ -40,6 +41,19 @@ imki_exposure imki_expose(int sensor, const imk_stimulus *s)
     for (int j = 0; j < 3; j++)
         x.turns = x.turns || s->angular_rate[j] || s->angular_acceleration[j];
     return x;
+}
+
+/* Bytes of two structures that are the same; what stands between members is 0 or counts as
+ * different. */
+static bool same_bytes(const void *a, const void *b, size_t from, size_t to)
+{
+    return memcmp((const char *)a + from, (const char *)b + from, to - from) == 0;
+}
+
+bool imki_axes_alike(const imk_axis_response *a, const imk_axis_response *b)
+{
+    return same_bytes(a, b, 0, offsetof(imk_axis_response, bias)) &&
+           same_bytes(a, b, offsetof(imk_axis_response, k2), sizeof *a);
 }
 
 enum { ARRAYS = 13 };

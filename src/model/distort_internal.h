@@ -49,6 +49,14 @@ void imki_distort_chunks(imk_kernel kernel, const imk_axis_response *axis,
 void imki_distort_still(imk_kernel kernel, const imk_axis_response *axis,
                         const imki_exposure *exposure, size_t chunks, double *out);
 
+/* True when nothing but the bias and the scale factor may differ. */
+bool imki_axes_alike(const imk_axis_response *a, const imk_axis_response *b);
+
+/* What `count` axes read of one motion over whole chunks, all of them alike: as
+ * imki_distort_chunks() gives it. There is no temperature. */
+void imki_distort_alike(imk_kernel kernel, size_t count, const imk_axis_response *const *axes,
+                        const imki_exposure *exposure, size_t chunks, double *const *out);
+
 /* response = reading - response */
 void imki_residual(imk_kernel kernel, size_t chunks, const double *reading, double *response);
 /* sum += gain * residual */
@@ -63,6 +71,9 @@ void imki_limit(imk_kernel kernel, size_t chunks, double limit, double *x);
                                    size_t chunks, double *out);                                    \
     void imki_distort_still_##isa(const imk_axis_response *axis, const imki_exposure *exposure,    \
                                   size_t chunks, double *out);                                     \
+    void imki_distort_alike_##isa(size_t count, const imk_axis_response *const *axes,              \
+                                  const imki_exposure *exposure, size_t chunks,                    \
+                                  double *const *out);                                             \
     void imki_residual_##isa(size_t chunks, const double *reading, double *response);              \
     void imki_add_residual_##isa(size_t chunks, double gain, const double *residual, double *sum); \
     void imki_limit_##isa(size_t chunks, double limit, double *x);

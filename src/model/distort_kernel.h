@@ -287,6 +287,84 @@ KERNEL void distort_still(const imk_axis_response *axis, const imki_exposure *x,
     }
 }
 
+/* ---- sensors that differ in bias and scale factor only ---- */
+
+/* What the motion alone makes of a step: what is added to the bias in turn, before s u and after.
+ */
+typedef struct shared_step {
+    lanes term[STILL_TERMS][VECTORS];
+    lanes input[VECTORS]; /* u */
+    size_t before, after;
+} shared_step;
+
+KERNEL lanes *next_term(shared_step *step, size_t *count)
+{
+    lanes *term = step->term[step->before + step->after];
+    (*count)++;
+    for (int v = 0; v < VECTORS; v++)
+        term[v] = (lanes){0.0};
+    return term;
+}
+
+KERNEL void shared_terms(const imk_axis_response *axis, const imki_exposure *x, size_t i,
+                         shared_step *step)
+{
+    lanes force[3][VECTORS], (*place)[VECTORS] = axis->has_place && x->turns ? force : NULL;
+    const uint32_t products = IMKI_PRODUCT_FEATURES;
+    uint32_t other = axis->used[IMKI_OTHER] & x->available;
+    step->before = step->after = 0;
+    if (place) {
+        other = axis->used[IMKI_OTHER] & IMKI_OWN_FEATURES;
+        force_at(force, axis->place, x, i);
+    }
+    for (int v = 0; v < VECTORS; v++)
+        step->input[v] = (lanes){0.0};
+    add_row(step->input, axis->used[IMKI_INPUT], axis->input, x, i, place);
+    for (uint32_t rest = other & ~products; rest; rest &= rest - 1)
+        add_row(next_term(step, &step->before), rest & -rest, axis->other, x, i, place);
+    if ((other & products) == products)
+        add_row(next_term(step, &step->before), products, axis->other, x, i, place);
+    else
+        for (uint32_t rest = other & products; rest; rest &= rest - 1)
+            add_row(next_term(step, &step->before), rest & -rest, axis->other, x, i, place);
+    if (axis->has_nonlinearity)
+        add_nonlinearity(next_term(step, &step->after), step->input, axis);
+    if (axis->has_cross_products)
+        add_cross_products(next_term(step, &step->after), step->input, axis, x, i, place);
+}
+
+KERNEL void respond_to(const imk_axis_response *axis, const imki_exposure *x, size_t i,
+                       const shared_step *step, double *out)
+{
+    lanes y[VECTORS];
+    for (int v = 0; v < VECTORS; v++)
+        y[v] = (lanes){0.0} + axis->bias;
+    if (axis->warm_up != 0.0 && x->warm_up)
+        add_product(y, axis->warm_up, x->warm_up + i);
+    for (size_t k = 0; k < step->before; k++)
+        for (int v = 0; v < VECTORS; v++)
+            y[v] += step->term[k][v];
+    for (int v = 0; v < VECTORS; v++)
+        y[v] += axis->scale * step->input[v];
+    for (size_t k = step->before; k < step->before + step->after; k++)
+        for (int v = 0; v < VECTORS; v++)
+            y[v] += step->term[k][v];
+    for (int v = 0; v < VECTORS; v++)
+        ((lanes *)(out + i))[v] = y[v] + step->input[v];
+}
+
+/* Adding what distort_step adds, in its order; what is common to all is computed once. */
+KERNEL void distort_alike(size_t count, const imk_axis_response *const *axes,
+                          const imki_exposure *x, size_t chunks, double *const *out)
+{
+    _Alignas(64) shared_step step; /* so that no vector of it is in two lines of the cache */
+    for (size_t i = 0; i < chunks * IMKI_CHUNK; i += STEP) {
+        shared_terms(axes[0], x, i, &step);
+        for (size_t k = 0; k < count; k++)
+            respond_to(axes[k], x, i, &step, out[k]);
+    }
+}
+
 KERNEL void residual(size_t chunks, const double *reading, double *response)
 {
     for (size_t v = 0; v < chunks * (IMKI_CHUNK / LANES); v++)
@@ -316,6 +394,12 @@ KERNEL void limit_all(size_t chunks, double limit, double *x)
                                          size_t chunks, double *out)                               \
     {                                                                                              \
         distort_still(axis, x, chunks, out);                                                       \
+    }                                                                                              \
+    target void imki_distort_alike_##isa(size_t count, const imk_axis_response *const *axes,       \
+                                         const imki_exposure *x, size_t chunks,                    \
+                                         double *const *out)                                       \
+    {                                                                                              \
+        distort_alike(count, axes, x, chunks, out);                                                \
     }                                                                                              \
     target void imki_residual_##isa(size_t chunks, const double *reading, double *response)        \
     {                                                                                              \

@@ -15,6 +15,12 @@ void imki_distort_still(imk_kernel kernel, const imk_axis_response *axis,
     IMKI_CALL(kernel, imki_distort_still, axis, exposure, chunks, out);
 }
 
+void imki_distort_alike(imk_kernel kernel, size_t count, const imk_axis_response *const *axes,
+                        const imki_exposure *exposure, size_t chunks, double *const *out)
+{
+    IMKI_CALL(kernel, imki_distort_alike, count, axes, exposure, chunks, out);
+}
+
 void imki_residual(imk_kernel kernel, size_t chunks, const double *reading, double *response)
 {
     IMKI_CALL(kernel, imki_residual, chunks, reading, response);

@@ -159,13 +159,14 @@ static imk_status check_seam(const imk_trajectory_piece *before, const imk_traje
 static imk_status check_height(const imk_trajectory *trajectory, size_t index, double s,
                                imk_error *error)
 {
-    imki_instant instant;
     const imk_trajectory_piece *piece = &trajectory->piece[index];
-    const imk_trajectory bare = {.earth = false};
-    imki_instant_of(&bare, piece, piece->start + s, &instant);
     imk_vector3 position;
-    for (int i = 0; i < 3; i++)
-        position.v[i] = trajectory->origin[i] + instant.position[i];
+    for (int i = 0; i < 3; i++) {
+        double p = piece->position[i][6];
+        for (int power = 5; power >= 0; power--)
+            p = p * s + piece->position[i][power];
+        position.v[i] = trajectory->origin[i] + p;
+    }
     const double radius = imk_vector3_norm(position);
     if (!(radius >= 6.34e6 && radius <= 1.64e7))
         return refuse(error, IMK_ERROR_RANGE, "position", index, radius,

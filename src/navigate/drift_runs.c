@@ -14,6 +14,7 @@
 #include "imukit/noise.h"
 #include "navigate/alignment_internal.h"
 #include "navigate/drift_settings_internal.h"
+#include "navigate/strapdown_internal.h"
 #include "simulate/simulate_internal.h"
 
 #include <math.h>
@@ -174,8 +175,10 @@ static imk_status start_run(crew *c, run *r, unsigned char **memory, imk_error *
     simulation.seed = c->random.seed;
     simulation.run = r->number;
     const size_t size = simulator_size(c->model, s);
-    imk_status status = imki_simulator_start(take(memory, size), size, model, &simulation,
-                                             r != c->run, &r->simulator, error);
+    /* The motion is that of the settings, which are valid, or has been checked by the first run. */
+    const bool checked = r != c->run || c->trajectory == &c->motion.trajectory;
+    imk_status status = imki_simulator_start(take(memory, size), size, model, &simulation, checked,
+                                             &r->simulator, error);
     if (status != IMK_OK)
         return status;
     const double begin = imk_simulator_true_time(r->simulator, (int64_t)c->alignment_rows);
@@ -311,14 +314,18 @@ static imk_navigation_state state_of(const crew *c, size_t i)
                             : imk_strapdown_lanes_state(&c->lanes[0], i);
 }
 
-/* True heights at the ends of rows `first` … of a run, without the jitter of its clock. */
-static void make_heights(crew *c, const run *r, uint64_t first, size_t rows)
+/* True heights at the ends of rows `first` … of a run, without the jitter of its clock: of those
+ * that the lanes use. */
+static void make_heights(crew *c, const run *r, const imk_strapdown_lanes *lanes, uint64_t first,
+                         size_t rows)
 {
+    size_t row[ROWS];
     if (!c->moves || !c->slaved)
         return;
-    for (size_t k = 0; k < rows; k++)
-        c->time[k] = c->start + (double)(first + k) * r->interval;
-    imki_drift_heights(c->trajectory, rows, c->time, c->height, c->climb);
+    const size_t count = imki_lanes_heights(lanes, c->dt, rows, row);
+    for (size_t i = 0; i < count; i++)
+        c->time[i] = c->start + (double)(first + row[i]) * r->interval;
+    imki_drift_heights(c->trajectory, count, row, c->time, c->height, c->climb);
 }
 
 /* Rows from … to - 1 of the block that begins at `first`. */
@@ -332,7 +339,7 @@ static void navigate(crew *c, uint64_t first, size_t from, size_t to)
         for (size_t lane = 0; lane < LANES; lane++)
             for (size_t j = 0; j < CHANNELS; j++)
                 channel[lane][j] = c->run[c->clocks_differ ? i : run_of(c, lane)].column[j] + from;
-        make_heights(c, &c->run[i], first + from, to - from);
+        make_heights(c, &c->run[i], &c->lanes[i], first + from, to - from);
         imk_strapdown_lanes_run(&c->lanes[i], c->kernel, to - from, c->dt,
                                 (const double *const(*)[CHANNELS])channel, height, climb);
     }

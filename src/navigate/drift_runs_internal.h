@@ -15,9 +15,10 @@ void imki_drift_residual(imk_model *model, imk_random random, uint32_t run);
 
 /* ---- drift_truth.c ---- */
 
-/* Height above the ellipsoid [m] and upward velocity [m/s] at `count` increasing times. */
-void imki_drift_heights(const imk_trajectory *trajectory, size_t count, const double *time,
-                        double *height, double *climb);
+/* Height above the ellipsoid [m] and upward velocity [m/s] at `count` increasing times: time k
+ * gives element row[k]. */
+void imki_drift_heights(const imk_trajectory *trajectory, size_t count, const size_t *row,
+                        const double *time, double *height, double *climb);
 
 /* Truth at a time, as a state of navigation (whose time is `stamp`). */
 imk_navigation_state imki_drift_truth(const imk_trajectory *trajectory, double time, double stamp);

@@ -46,8 +46,8 @@ static void moving_point(const imk_trajectory *trajectory, const imk_trajectory_
     }
 }
 
-void imki_drift_heights(const imk_trajectory *trajectory, size_t count, const double *time,
-                        double *height, double *climb)
+void imki_drift_heights(const imk_trajectory *trajectory, size_t count, const size_t *row,
+                        const double *time, double *height, double *climb)
 {
     imki_cursor cursor;
     imki_cursor_start(&cursor, trajectory, time[0]);
@@ -58,8 +58,8 @@ void imki_drift_heights(const imk_trajectory *trajectory, size_t count, const do
         const double x = trajectory->origin[0] + p[0], y = trajectory->origin[1] + p[1];
         const double z = trajectory->origin[2] + p[2], pp = x * x + y * y;
         const slope vertical = vertical_at(pp, z);
-        height[k] = height_along(vertical, pp, z);
-        climb[k] = vertical.k * (x * v[0] + y * v[1]) + vertical.s * v[2];
+        height[row[k]] = height_along(vertical, pp, z);
+        climb[row[k]] = vertical.k * (x * v[0] + y * v[1]) + vertical.s * v[2];
     }
 }
 

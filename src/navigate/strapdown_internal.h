@@ -146,4 +146,11 @@ static inline imk_vector3 imki_gravity_midway(const imk_navigation_state *state,
     return imk_gravity_ecef(imki_sum(state->position, imki_scaled(0.5 * dt, state->velocity)));
 }
 
+/* Which of `count` samples of one dt imk_strapdown_lanes_run() would take a height and a climb
+ * from: those at which a block ends, and the last.
+ * @param sample  room for count
+ * @return how many */
+size_t imki_lanes_heights(const imk_strapdown_lanes *lanes, double dt, size_t count,
+                          size_t *sample);
+
 #endif

@@ -3,6 +3,8 @@
  * each group goes through all samples and leaves the block where the others do. */
 #include "navigate/strapdown_block_internal.h"
 
+#include "navigate/strapdown_internal.h"
+
 enum { LANES = IMK_STRAPDOWN_LANES };
 
 void imk_strapdown_lanes_start(imk_strapdown_lanes *lanes, size_t lane,
@@ -81,4 +83,17 @@ void imk_strapdown_lanes_run(imk_strapdown_lanes *lanes, imk_kernel kernel, size
         use.run(&run);
     }
     lanes->block = block;
+}
+
+size_t imki_lanes_heights(const imk_strapdown_lanes *lanes, double dt, size_t count, size_t *sample)
+{
+    const size_t size = imki_block_size(dt);
+    const size_t taken = lanes->block.step == dt ? lanes->block.taken : 0;
+    size_t used = 0;
+    if (count == 0)
+        return 0;
+    for (size_t k = size - taken - 1; k + 1 < count; k += size)
+        sample[used++] = k;
+    sample[used++] = count - 1;
+    return used;
 }

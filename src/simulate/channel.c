@@ -247,6 +247,35 @@ void imki_channel_response(imki_channel *channel, const imk_distortion *distorti
     }
 }
 
+static const imk_axis_response *axis_response(const imki_channel *channel,
+                                              const imk_distortion *distortion)
+{
+    return &distortion->axis[channel->sensor][channel->axis];
+}
+
+void imki_channel_responses(size_t count, imki_channel *const *channels,
+                            const imk_distortion *const *distortions, const imki_scene *scene,
+                            size_t rows, double *const *out)
+{
+    const int sensor = channels[0]->sensor;
+    const imk_axis_response *axes[IMKI_SIDE_BY_SIDE] = {axis_response(channels[0], distortions[0])};
+    bool alike = scene->substeps == 1 && !scene->temperature && rows % IMKI_CHUNK == 0;
+    for (size_t i = 1; alike && i < count; i++) {
+        axes[i] = axis_response(channels[i], distortions[i]);
+        alike = channels[i]->sensor == sensor && imki_axes_alike(axes[0], axes[i]);
+    }
+    if (!alike) {
+        for (size_t i = 0; i < count; i++)
+            imki_channel_response(channels[i], distortions[i], scene, 0, rows, out[i]);
+        return;
+    }
+    const imki_exposure exposure = imki_expose(sensor, &scene->stimulus[sensor]);
+    imki_distort_alike(distortions[0]->kernel, count, axes, &exposure, rows / IMKI_CHUNK, out);
+    for (size_t i = 0; i < count; i++)
+        if (channels[i]->band_limit.present)
+            limit_band(&channels[i]->band_limit, rows, out[i]);
+}
+
 /* ---- noise and output ---- */
 
 static void output_stage(imki_channel *channel, double *block)

@@ -186,8 +186,11 @@ static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
     e->hysteresis[sensor] = imk_hysteresis_start(triad);
     e->warm_up_present[sensor] = has_warm_up(triad);
     e->warm_up_time[sensor] = triad->bias.warm_up_time.value;
+    e->same_warm_up =
+        e->warm_up_present[0] && e->warm_up_present[1] && e->warm_up_time[0] == e->warm_up_time[1];
     double part = e->interval / (double)e->substeps;
-    for (size_t i = 0; e->warm_up_present[sensor] && i < IMK_NOISE_BLOCK; i++)
+    const bool needs_table = e->warm_up_present[sensor] && !e->same_warm_up;
+    for (size_t i = 0; needs_table && i < IMK_NOISE_BLOCK; i++)
         e->warm_up_table[(size_t)sensor * IMK_NOISE_BLOCK + i] =
             imk_exp(-((double)i * part) / e->warm_up_time[sensor]);
 }
@@ -218,8 +221,6 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
     start_triad(e, &model->accel, IMK_ACCEL);
     e->same_hysteresis = e->hysteresis_present[0] && e->hysteresis_present[1] &&
                          e->hysteresis[0].span == e->hysteresis[1].span;
-    e->same_warm_up =
-        e->warm_up_present[0] && e->warm_up_present[1] && e->warm_up_time[0] == e->warm_up_time[1];
     e->still = !e->motion_varies && !e->temperature && e->substeps == 1;
     if (!e->motion_varies)
         fill_rest(e, e->column, e->still ? (size_t)IMKI_CHUNK : (size_t)IMKI_STRETCH);

@@ -349,6 +349,25 @@ void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *c
 
 /* ---- several at once ---- */
 
+/* The deterministic part of rows first … first + rows - 1, a channel of several simulators at a
+ * time. */
+static void respond_together(size_t count, imk_simulator *const *simulators,
+                             const imki_scene *scene, size_t first, size_t rows,
+                             double *const *const *columns)
+{
+    for (size_t j = 0; j < simulators[0]->channels; j++) {
+        imki_channel *channels[IMKI_SIDE_BY_SIDE];
+        const imk_distortion *distortions[IMKI_SIDE_BY_SIDE];
+        double *out[IMKI_SIDE_BY_SIDE];
+        for (size_t i = 0; i < count; i++) {
+            channels[i] = &simulators[i]->channel[j];
+            distortions[i] = &simulators[i]->distortion;
+            out[i] = columns[i][j] + first;
+        }
+        imki_channel_responses(count, channels, distortions, scene, rows, out);
+    }
+}
+
 /* Rows of simulators that see the same: the motion is made once, by the first. */
 static void make_together(size_t count, imk_simulator *const *simulators, size_t rows,
                           double *const *const *columns)
@@ -359,14 +378,11 @@ static void make_together(size_t count, imk_simulator *const *simulators, size_t
     for (size_t first = 0; first < rows; first += stretch) {
         const size_t now = rows - first < stretch ? rows - first : stretch;
         imki_scene_fill(scene, next + first, now, NULL);
-        for (int part = 0; part < 2; part++)
-            for (size_t i = 0; i < count; i++) {
-                row_work work = {simulators[i], scene, first, now, columns[i], 1};
-                if (part == 0)
-                    imk_execute(NULL, simulators[i]->channels, run_response, &work);
-                else
-                    run_blocks(&work, 0);
-            }
+        respond_together(count, simulators, scene, first, now, columns);
+        for (size_t i = 0; i < count; i++) {
+            row_work work = {simulators[i], scene, first, now, columns[i], 1};
+            run_blocks(&work, 0);
+        }
     }
     for (size_t i = 0; i < count; i++)
         simulators[i]->next += rows;
@@ -378,7 +394,8 @@ void imki_simulators_next(size_t count, imk_simulator *const *simulators, size_t
     for (size_t i = 0; i < count;) {
         size_t same = 1;
         const imki_scene *scene = &simulators[i]->scene;
-        while (scene->varies && i + same < count &&
+        while (scene->varies && same < IMKI_SIDE_BY_SIDE && i + same < count &&
+               simulators[i + same]->channels == simulators[i]->channels &&
                imki_scenes_agree(scene, &simulators[i + same]->scene))
             same++;
         if (same > 1)

@@ -118,6 +118,14 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
 void imki_channel_response(imki_channel *channel, const imk_distortion *distortion,
                            const imki_scene *scene, size_t part, size_t rows, double *out);
 
+enum { IMKI_SIDE_BY_SIDE = 8 };
+
+/* The same of one channel of each of several units, rows from part 0 on.
+ * @param count  <= IMKI_SIDE_BY_SIDE */
+void imki_channel_responses(size_t count, imki_channel *const *channels,
+                            const imk_distortion *const *distortions, const imki_scene *scene,
+                            size_t rows, double *const *out);
+
 enum { IMKI_CHANNELS = 2 * IMK_AXES_MAX };
 
 /* Noise and output stage of the next 512 samples of several channels of one unit: together, because

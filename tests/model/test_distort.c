@@ -324,6 +324,59 @@ static void a_still_unit_warms_up(void **state)
     }
 }
 
+/* Units that differ in bias and scale factor only, worked on together: what each reads alone. */
+static void units_alike(void **state)
+{
+    (void)state;
+    enum { UNITS = 3 };
+    uint64_t random = 6;
+    static imk_distortion unit[UNITS];
+    static motion_samples m;
+    double alone[SAMPLES_MAX], together[UNITS][SAMPLES_MAX];
+    double *const out[UNITS] = {together[0], together[1], together[2]};
+    const imk_kernel best = imk_random_seeded(0).kernel;
+    const imk_kernel kernels[] = {IMK_KERNEL_SCALAR, best,
+                                  best == IMK_KERNEL_AVX512 ? IMK_KERNEL_AVX2 : best};
+    for (int trial = 0; trial < 100; trial++) {
+        const imk_model model = draw_unit(&random, false);
+        draw_motion(&random, SAMPLES_MAX, &m);
+        imk_stimulus s = {.warm_up = {m.stimulus.warm_up[0], m.stimulus.warm_up[1]}};
+        for (int c = 0; c < 9; c++) {
+            const double **of = c < 3   ? &s.angular_rate[c]
+                                : c < 6 ? &s.specific_force[c - 3]
+                                        : &s.angular_acceleration[c - 6];
+            *of = trial % (c + 2) == 1 ? NULL : m.value[c];
+        }
+        for (int k = 0; k < UNITS; k++) {
+            imk_run_constants constants = {.bias = {{0.0}}};
+            for (int sensor = 0; sensor < 2; sensor++)
+                for (int i = 0; i < 3; i++) {
+                    constants.bias[sensor][i] = 0.1 * k * (i + 1);
+                    constants.scale_factor[sensor][i] = 1e-3 * k * (i - 4);
+                }
+            CHECK_OK(imk_distortion_start(&unit[k], &model, &constants, kernels[0], NULL));
+        }
+        for (int sensor = 0; sensor < 2; sensor++)
+            for (int i = 0; i < unit[0].axis_count[sensor]; i++) {
+                const imki_exposure exposure = imki_expose(sensor, &s);
+                const imk_axis_response *const axes[UNITS] = {
+                    &unit[0].axis[sensor][i], &unit[1].axis[sensor][i], &unit[2].axis[sensor][i]};
+                assert_true(imki_axes_alike(axes[0], axes[1]));
+                imki_distort_alike(kernels[trial % 3], UNITS, axes, &exposure,
+                                   SAMPLES_MAX / IMKI_CHUNK, out);
+                for (int k = 0; k < UNITS; k++) {
+                    imk_distort(&unit[k], sensor, i, &s, SAMPLES_MAX, alone);
+                    assert_memory_equal(together[k], alone, sizeof alone);
+                }
+                imk_axis_response *const other = &unit[1].axis[sensor][i];
+                double *const changed[] = {&other->input[0], &other->other[11], &other->k2,
+                                           &other->warm_up, &other->place[2]};
+                *changed[trial % 5] += 1.0;
+                assert_false(imki_axes_alike(axes[0], axes[1]));
+            }
+    }
+}
+
 static void constants_of_the_run(void **state)
 {
     (void)state;
@@ -416,6 +469,7 @@ int main(void)
         cmocka_unit_test(lever_arm_pulls_inwards),
         cmocka_unit_test(pendulous_axes),
         cmocka_unit_test(a_still_unit_warms_up),
+        cmocka_unit_test(units_alike),
         cmocka_unit_test(constants_of_the_run),
         cmocka_unit_test(temperature_is_clipped),
         cmocka_unit_test(hysteresis_follows_its_equation),

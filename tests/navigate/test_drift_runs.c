@@ -566,7 +566,8 @@ static void test_initial(void **state)
 
 /* ---- the same bits ---- */
 
-/* Settings that take every way through: at rest, moving, moving with clocks that differ. */
+/* Settings that take every way through: at rest, moving, moving with models that differ, and with
+ * clocks that differ. */
 static void check_same_bits(const imk_model *model, const imk_drift_settings *settings)
 {
     double all[LANES][TIMES][STATES], part[LANES][TIMES][STATES];
@@ -575,8 +576,8 @@ static void check_same_bits(const imk_model *model, const imk_drift_settings *se
     compute(model, settings, 5, 20, LANES, &all[0][0][0]);
     compute(model, settings, 5, 20, LANES, &part[0][0][0]);
     assert_memory_equal(all, part, sizeof all);
-    for (uint32_t first = 0; first < LANES; first += 3) {
-        const size_t count = LANES - first < 3 ? LANES - first : 3;
+    for (uint32_t first = 0; first < LANES; first += 7) { /* seven, and one alone */
+        const size_t count = LANES - first < 7 ? LANES - first : 7;
         compute(model, settings, 5, 20 + first, count, &part[0][0][0]);
         assert_memory_equal(all[first], part[0], count * sizeof all[0]);
     }
@@ -604,6 +605,7 @@ static void test_same_bits(void **state)
     settings.initial_sigma[6] = 1e-3;
     check_same_bits(&model, &settings);
     settings.motion = &c.trajectory;
+    check_same_bits(&model, &settings);
     settings.compensated = true;
     check_same_bits(&model, &settings);
     model.timing.rate_error.sigma = 3e-5;
