@@ -50,7 +50,7 @@ static size_t columns_of(const imk_log_reader *reader, int sensor)
 static int check_unit(const imk_log_column *column, const imk_triad *triad, int sensor,
                       const compensate_options *o, const char *log, const char *name)
 {
-    bool counts = triad->sensitivity.value[0] > 0;
+    bool counts = triad->sensitivity.value[0] != 0;
     if (counts && !in_counts(column))
         return command_failed("%s: %s is in %s, but %s makes counts (%s.sensitivity): these are "
                               "not the readings it describes",

@@ -10,6 +10,15 @@
 #include "imukit/compensate.h"
 #include "imukit/model_file.h"
 
+/* Code instead of a log. */
+typedef struct compensate_emission {
+    const char *directory, *prefix;
+    int arithmetic; /* imk_firmware_arithmetic */
+    uint64_t vectors;
+} compensate_emission;
+enum { COMPENSATE_EMIT_OPTIONS = 4 };
+extern const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS];
+
 typedef struct compensate_options {
     log_input log;
     const char *output, *to_gyro_unit, *to_accel_unit;
@@ -17,6 +26,7 @@ typedef struct compensate_options {
     uint64_t decimals, threads;
     bool flags, json, strict;
     term_selection terms;
+    compensate_emission emission;
 } compensate_options;
 
 /* How columns of a log and axes of a model belong together, and which columns are written. */
@@ -53,6 +63,8 @@ int compensate_select(const compensate_options *o, imk_model *model);
 term_list compensate_taken_out(const imk_model *model);
 /* What it leaves in the log: of the terms of the whole model, as far as the sensors are there. */
 term_list compensate_left_in(const imk_model *model, const imk_model *whole);
+/* --emit-c: the model of the first operand as C code. @return the exit code */
+int compensate_emit(const compensate_options *o, const char *const *operands);
 /* The first term that needs a temperature, or NULL. */
 const char *compensate_temperature_term(const imk_model *model);
 

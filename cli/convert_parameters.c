@@ -13,9 +13,10 @@
 
 /* Position 0 is what is in force when the option is not given. The names stand in the order of
  * imk_parameter_format and imk_density. */
-static const char formats[] = "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4";
+static const char formats[] =
+    "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot";
 static const char target_formats[] =
-    "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4";
+    "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot";
 
 const option parameter_option_table[PARAMETER_OPTIONS] = {
     {"from", 0, OPTION_CHOICE, "FORMAT", NULL, formats,
@@ -34,8 +35,8 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
 /* Files that may hold parameters; logs are not looked into. */
 static bool may_be_parameters(const char *path)
 {
-    static const char *const ends[] = {".yaml", ".yml",  ".json",  ".m",      ".sdf",
-                                       ".xml",  ".urdf", ".world", ".params", ".param"};
+    static const char *const ends[] = {".yaml", ".yml",   ".json",   ".m",     ".sdf", ".xml",
+                                       ".urdf", ".world", ".params", ".param", ".parm"};
     size_t length = strlen(path);
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
         size_t end = strlen(ends[i]);

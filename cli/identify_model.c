@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* From the identified terms to a model file, and back to a log: the twin. */
 #include "identify_parts.h"
+#include "model_changes.h"
 
 #include "imukit/simulate.h"
 
@@ -64,39 +65,6 @@ imk_model identify_noise_model(const identification *i)
     return model;
 }
 
-/* Lines of one text that the other does not hold. */
-static void print_missing_lines(const char *text, const char *other, char sign)
-{
-    while (*text) {
-        size_t length = strcspn(text, "\n");
-        bool found = false;
-        for (const char *line = other; *line && !found;) {
-            size_t other_length = strcspn(line, "\n");
-            found = other_length == length && strncmp(line, text, length) == 0;
-            line += other_length + (line[other_length] == '\n');
-        }
-        if (!found)
-            fprintf(stderr, "%c %.*s\n", sign, (int)length, text);
-        text += length + (text[length] == '\n');
-    }
-}
-
-static void print_changes(const char *path, const imk_model *before, const imk_model *after,
-                          const imk_document *document)
-{
-    char *old_text = NULL, *new_text = NULL;
-    size_t size;
-    imk_error error;
-    if (imk_model_print(before, document, &old_text, &size, &error) == IMK_OK &&
-        imk_model_print(after, document, &new_text, &size, &error) == IMK_OK) {
-        fprintf(stderr, "Changes to %s:\n", path);
-        print_missing_lines(old_text, new_text, '-');
-        print_missing_lines(new_text, old_text, '+');
-    }
-    free(old_text);
-    free(new_text);
-}
-
 /* Replace the noise, the output filter and the evidence of a triad, and nothing else. */
 static int merge_kind(identification *i, channel_kind kind, imk_model *noise)
 {
@@ -133,7 +101,7 @@ static int write_into(identification *i, imk_model *noise)
     if (code < 0 && i->options->name)
         snprintf(i->model.name, sizeof i->model.name, "%s", i->options->name);
     if (code < 0 && before)
-        print_changes(i->options->into, before, &i->model, document);
+        model_print_changes(i->options->into, before, &i->model, document);
     if (code < 0 && i->options->output &&
         imk_model_write(i->options->output, &i->model, document, &error) != IMK_OK)
         code = command_error(&error, NULL);

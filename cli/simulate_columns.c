@@ -68,7 +68,7 @@ static void describe_triad(const imk_triad *triad, const sensor_columns *sensor,
         imk_log_column *column = &layout->column[layout->count];
         *column = (imk_log_column){.quantity = sensor->quantity, .unit = sensor->unit};
         layout->factor[layout->count] = 1;
-        if (triad->sensitivity.value[axis] > 0) {
+        if (triad->sensitivity.value[axis] != 0) {
             column->unit = imk_unit_of("count");
         } else if (sensor->interval > 0) {
             column->increment = true;
@@ -92,8 +92,8 @@ int time_decimals(double rate, double start)
 /* Counts are of the rate, whatever unit is asked for. */
 static int check_counts(const simulate_options *o, const imk_model *model)
 {
-    const bool gyro = model->gyro.present && model->gyro.sensitivity.value[0] > 0;
-    const bool accel = model->accel.present && model->accel.sensitivity.value[0] > 0;
+    const bool gyro = model->gyro.present && model->gyro.sensitivity.value[0] != 0;
+    const bool accel = model->accel.present && model->accel.sensitivity.value[0] != 0;
     if (o->increments && (gyro || accel))
         return command_misused("--increments: a model with a sensitivity makes counts, which are "
                                "rates; leave the option out");

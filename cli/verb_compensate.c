@@ -54,16 +54,16 @@ static int run(int count, char **words);
 
 const verb compensate_verb = {
     .name = "compensate",
-    .summary = "log + model -> log without the errors the model describes",
-    .operands = "LOG MODEL",
-    .operands_minimum = 2,
+    .summary = "log + model -> log without the errors the model describes; model -> C code",
+    .operands = "[LOG] MODEL",
+    .operands_minimum = 1,
     .operands_maximum = 2,
     .examples = {{"imukit compensate raw.csv unit.yaml -o clean.csv",
                   "biases, scale factors, misalignment and whatever else the model has are taken "
                   "out"},
-                 {"imukit compensate raw.csv.zst unit.yaml -o clean.csv.zst --temperature 25degC "
-                  "--flags",
-                  "a log without a temperature column; saturated samples are marked"}},
+                 {"imukit compensate unit.yaml --emit-c firmware",
+                  "the same for a device: C99 code for one sample, with its error bound and a "
+                  "self-test"}},
     .description =
         "LOG is CSV (also .gz, .zst) or .npy; - is standard input. MODEL is a model file or a name "
         "from `imukit devices`. Gyro and accel columns become angular rate and specific force of "
@@ -71,9 +71,13 @@ const verb compensate_verb = {
         "temperature and warm-up, scale factor, nonlinearity, misalignment, cross-axis and "
         "g-sensitivity, lever arms, counts. Noise, hysteresis, repeatability and bandwidth stay, "
         "because a model knows their size and not their course.\n\nWith lever arms, the angular "
-        "acceleration is the central difference of the rates. A gap in time begins anew.",
+        "acceleration is the central difference of the rates. A gap in time begins anew.\n\nWith "
+        "--emit-c and no LOG, the correction is written as C99 code without loops, heap or libm. "
+        "Lever arms, warm-up and the rate of temperature stay in there.",
     .groups = {{"Options", sizeof compensate_option_table / sizeof compensate_option_table[0],
                 compensate_option_table, 0},
+               {"Code for a device", COMPENSATE_EMIT_OPTIONS, compensate_emit_options,
+                offsetof(compensate_options, emission)},
                {"Terms", TERM_OPTIONS, term_options, offsetof(compensate_options, terms)},
                {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
                 offsetof(compensate_options, log)}},
@@ -224,7 +228,7 @@ static int check(const compensate_options *o)
     if (o->decimals != decimals_shortest && o->decimals > 17)
         return command_misused("--decimals %llu: expected 0 to 17",
                                (unsigned long long)o->decimals);
-    if (o->json && (!o->output || strcmp(o->output, "-") == 0))
+    if (o->json && !o->emission.directory && (!o->output || strcmp(o->output, "-") == 0))
         return command_misused("--json and the log cannot both go to standard output: add -o LOG");
     if (!isnan(o->temperature) && !(o->temperature >= 0))
         return command_misused("--temperature is below absolute zero");
@@ -241,14 +245,20 @@ static int check(const compensate_options *o)
 
 static int run(int count, char **words)
 {
-    compensate_options o = {
-        .temperature = (double)NAN, .temperature_time = 30, .decimals = decimals_shortest};
+    compensate_options o = {.temperature = (double)NAN,
+                            .temperature_time = 30,
+                            .decimals = decimals_shortest,
+                            .emission = {.vectors = 64}};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&compensate_verb, count, words, &o, operands);
     if (code < 0)
         code = check(&o);
     if (code >= 0)
         return code;
+    if (o.emission.directory)
+        return compensate_emit(&o, operands);
+    if (!operands[1])
+        return command_misused("an operand is missing: imukit compensate LOG MODEL");
     compensation *c = calloc(1, sizeof *c);
     imk_model *models = malloc(2 * sizeof *models);
     if (c && models) {

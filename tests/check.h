@@ -14,6 +14,7 @@
 #include "imukit/status.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static inline void check_close(double actual, double expected, double tolerance, const char *text,
                                const char *file, int line)
@@ -55,6 +56,17 @@ static inline void check_status(imk_status actual, imk_status expected, const ch
                     imk_status_name(expected));
         _fail(file, line);
     }
+}
+
+/** Repetitions of a statistical test whose limits follow from their number: `full`, or that divided
+ *  by IMUKIT_TEST_RUNS where the environment sets it (under sanitizers, which look for other
+ *  mistakes than of statistics), at least 8. */
+static inline uint32_t check_runs(uint32_t full)
+{
+    const char *text = getenv("IMUKIT_TEST_RUNS");
+    const long divisor = text ? strtol(text, NULL, 10) : 1;
+    const uint32_t runs = divisor > 1 ? full / (uint32_t)divisor : full;
+    return runs > 8 ? runs : 8;
 }
 
 /** |actual - expected| <= tolerance */

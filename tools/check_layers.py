@@ -20,7 +20,7 @@ RANK = {module: rank for rank, modules in enumerate(LAYERS) for module in module
 PUBLIC = {
     "base": "attitude decimal distributions elementary executor fourier least_squares "
             "linear_algebra names random status units",
-    "model": "correct distort model",
+    "model": "correct distort model model_parameter",
     "noise": "noise",
     "motion": "earth motion motion_script",
     "simulate": "simulate",
@@ -28,10 +28,12 @@ PUBLIC = {
     "physics": "fibre_optic free_gyro instrument mems_accelerometer pendulous_servo rate_gyro "
                "rate_integrating_gyro ring_laser shell_gyro spinning_mass suspended_rotor "
                "tuned_gyro tuning_fork vibrating_beam",
-    "compensate": "compensate",
-    "calibrate": "laboratory",
+    "compensate": "compensate firmware",
+    "calibrate": "calibration calibration_plan evaluate ferraris laboratory procedure "
+                 "reference_alignment repeatability static_detection test_record thermal",
     "navigate": "alignment drift navigate zero_velocity",
-    "io": "campaign design_file io log model_file motion_file output_file parameter_file thread_pool",
+    "io": "campaign design_file firmware_file io log model_file motion_file output_file "
+          "parameter_file thread_pool",
     "report": "report",
 }
 # Headers that gather others: imukit.h the core, for users only; io.h what is right of it.

@@ -11,4 +11,6 @@ export ASAN_OPTIONS=strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 # Tests that draw hundreds of millions of numbers honour this; the sanitizers need no more.
 export IMUKIT_TEST_DRAWS=${IMUKIT_TEST_DRAWS:-1000000}
+# The repetitions of statistical tests are divided by this.
+export IMUKIT_TEST_RUNS=${IMUKIT_TEST_RUNS:-8}
 ctest --preset sanitize -j "$(nproc)" --no-tests=error

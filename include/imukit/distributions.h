@@ -32,6 +32,19 @@ IMK_API double imk_chi_square_probability(double x, double degrees);
 /** x below which chi-square lies with this probability. */
 IMK_API double imk_chi_square_quantile(double probability, double degrees);
 
+/** Regularised incomplete beta function I_x(a, b), a, b > 0, with y = 1 - x given besides, so that
+ *  neither end is lost to rounding; relative error of the smaller one of I and 1 - I < 1e-12 for
+ *  a, b <= 1e6. About 1 us, more with the square root of a and b. */
+IMK_API double imk_beta_lower(double a, double b, double x, double y);
+
+/** Probability that a ratio of mean squares with these degrees of freedom (F distribution) exceeds
+ *  f >= 0. Infinite `denominator`: chi-square over its degrees. */
+IMK_API double imk_f_upper(double f, double numerator, double denominator);
+/** The ratio that is exceeded with this probability, relative error < 1e-12; some us. */
+IMK_API double imk_f_upper_quantile(double probability, double numerator, double denominator);
+/** Quantile of Student's distribution; infinite degrees: the normal one. */
+IMK_API double imk_student_quantile(double probability, double degrees);
+
 #ifdef __cplusplus
 }
 #endif

@@ -50,6 +50,7 @@ typedef struct imk_log_settings {
         *temperature_unit; /**< where the file has none */
     double rate;           /**< [Hz]; needed when there is no time column; 0: from time */
     const char *axes;      /**< "right-forward-up" …: mapped to forward-right-down; NULL: as is */
+    bool any_columns;      /**< accept a table without time and sensors too; false */
 } imk_log_settings;
 
 /** Everything from the header of the file. */

@@ -64,7 +64,7 @@ typedef struct imk_bias {
     imk_axes temperature_rate;  /**< [unit/(K/s)] */
     imk_axes warm_up_amplitude; /**< [unit] */
     imk_scalar warm_up_time;    /**< [s], > 0 when the amplitude is not 0 */
-    imk_axes hysteresis;        /**< width over the temperature range [unit] */
+    imk_axes hysteresis;        /**< width over the range, warming less cooling [unit] */
 } imk_bias;
 
 typedef struct imk_scale_factor {
@@ -164,7 +164,26 @@ typedef struct imk_evidence {
     imk_interval interval[IMK_INTERVALS_MAX];
 } imk_evidence;
 
-/** The sensor model. Start from imk_model_default(), then change fields. About 45 kB. */
+enum { IMK_CORRELATED_MAX = 64 };
+
+/** Place of one number of a model; see model_parameter.h. */
+typedef struct imk_model_parameter {
+    uint8_t sensor; /**< 0 gyro, 1 accelerometer */
+    uint8_t term;   /**< imk_model_term */
+    uint8_t axis;   /**< 0 … IMK_AXES_MAX - 1 */
+    uint8_t element;
+} imk_model_parameter;
+
+/** Correlations of what was estimated together; with the sigmas of the parameters they are its
+ *  covariance. Documents, like imk_evidence; error analyses read it. */
+typedef struct imk_correlation {
+    int count; /**< 0 … IMK_CORRELATED_MAX; 0: none stated */
+    imk_model_parameter parameter[IMK_CORRELATED_MAX];
+    float value[IMK_CORRELATED_MAX * (IMK_CORRELATED_MAX - 1) / 2]; /**< of parameters i > j at
+                                                                        i (i - 1)/2 + j; -1 … 1 */
+} imk_correlation;
+
+/** The sensor model. Start from imk_model_default(), then change fields. About 53 kB. */
 typedef struct imk_model {
     uint32_t cookie;
     char name[96];
@@ -174,6 +193,7 @@ typedef struct imk_model {
     imk_triad accel;      /**< [m/s^2] */
     imk_timing timing;
     imk_evidence gyro_evidence, accel_evidence;
+    imk_correlation correlation;
 } imk_model;
 
 /** A perfect unit: orthogonal triads of gyros and accelerometers without any error. */
@@ -186,8 +206,8 @@ IMK_API imk_model imk_model_default(void);
  *  @param error  field is the dotted path ("gyro.noise.gauss_markov[1].correlation_time"), index
  *                the axis
  *  @return IMK_OK, IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT, _KEY_MISSING (neither
- *          gyro nor accel), _KEY_UNKNOWN or _KEY_DUPLICATE (key of an interval), _ARGUMENT (a text
- *          without end) */
+ *          gyro nor accel), _KEY_UNKNOWN or _KEY_DUPLICATE (key of an interval, parameter of the
+ *          correlation), _ARGUMENT (a text without end) */
 IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
 
 /** Switch terms off, to see the effect of the others alone.
@@ -201,7 +221,8 @@ IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
 IMK_API imk_status imk_model_select(imk_model *model, bool keep, size_t count,
                                     const char *const *names, imk_error *error);
 
-/** True when two models would simulate the same bytes (name, evidence and sigmas aside). */
+/** True when two models would simulate the same bytes (name, evidence, correlation and sigmas
+ * aside). */
 IMK_API bool imk_model_equal(const imk_model *a, const imk_model *b);
 
 /* ---- catalogue: real devices and grade presets ---------------------------------------------- */

@@ -24,11 +24,12 @@ typedef enum imk_parameter_format {
     IMK_PARAMETERS_NAVEGO,       /**< assignments to a structure, .m */
     IMK_PARAMETERS_OPENVINS,     /**< kalibr_imu_chain.yaml */
     IMK_PARAMETERS_VINS,         /**< acc_n, gyr_n, acc_w, gyr_w in an OpenCV yaml */
-    IMK_PARAMETERS_PX4           /**< TC_…, CAL_… in a parameter file */
+    IMK_PARAMETERS_PX4,          /**< TC_…, CAL_… in a parameter file */
+    IMK_PARAMETERS_ARDUPILOT     /**< INS_ACC…, INS_GYR…, INS_TCAL… in a parameter file */
 } imk_parameter_format;
 
 /** Name of a format ("kalibr", "gazebo", "matlab", "gnss-ins-sim", "navego", "openvins", "vins",
- *  "px4"); NULL beyond the last. */
+ *  "px4", "ardupilot"); NULL beyond the last. */
 IMK_API const char *imk_parameter_format_name(imk_parameter_format format);
 /** Format of a name; IMK_PARAMETERS_UNKNOWN when there is none. */
 IMK_API imk_parameter_format imk_parameter_format_find(const char *name);

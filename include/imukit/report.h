@@ -128,6 +128,8 @@ IMK_API void imk_page_figure(imk_page *page, const imk_figure *figure, const cha
 /** An animation, drawn into the page. */
 IMK_API void imk_page_animation(imk_page *page, const imk_animation *animation,
                                 const char *caption);
+/** On paper, and in a PDF, what follows begins a new sheet; nothing on the screen. */
+IMK_API void imk_page_break(imk_page *page);
 /** Preformatted text, such as a model file. */
 IMK_API void imk_page_code(imk_page *page, const char *text);
 /** Write the page and free it; NULL path only frees. */

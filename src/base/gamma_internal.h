@@ -9,6 +9,9 @@ double imki_log_gamma_one_plus(double x);
 /** What Stirling's formula lacks: log Gamma(x) - [(x - 1/2) log x - x + log(2 pi)/2], x >= 10. */
 double imki_stirling_error(double x);
 
+/** mu - log(1 + mu), mu > -1, without cancellation. */
+double imki_log_deficit(double mu);
+
 /** x^a e^{-x} / Gamma(a + 1), a > 0, x > 0. */
 double imki_gamma_power(double a, double x);
 

@@ -17,7 +17,7 @@
 
 /* mu - log(1 + mu), accurate for small mu: with t = mu/(2 + mu),
  * log(1 + mu) = 2 (t + t^3/3 + t^5/5 + …) and mu - 2t = mu t. */
-static double log_deficit(double mu)
+double imki_log_deficit(double mu)
 {
     if (!(fabs(mu) < 0.5))
         return mu - log1p(mu);
@@ -36,7 +36,7 @@ double imki_gamma_power(double a, double x)
         return exp(a * log(x) - x - imk_log_gamma(a + 1.0));
     /* Without the large logarithms that would cancel: a^a e^-a sqrt(2 pi a)/Gamma(a + 1) is close
      * to 1 and x^a e^{a-x} / a^a is e^{-a (mu - log(1 + mu))}, mu = x/a - 1. */
-    return exp(-a * log_deficit((x - a) / a) - imki_stirling_error(a)) / sqrt(two_pi * a);
+    return exp(-a * imki_log_deficit((x - a) / a) - imki_stirling_error(a)) / sqrt(two_pi * a);
 }
 
 /* P for x < a + 1, by terms that fall from the start. */
@@ -127,7 +127,7 @@ static void temme(double a, double mu, double *lower, double *upper)
                                9.699126059056237e-19};
     enum { LAST = (int)(sizeof d / sizeof d[0]) - 1 };
     const double two_pi = 6.28318530717958647693;
-    const double half_square = log_deficit(mu);
+    const double half_square = imki_log_deficit(mu);
     const double eta = copysign(sqrt(2.0 * half_square), mu);
     double beta[LAST + 2] = {0};
     double sum = 0.0;

@@ -85,8 +85,8 @@ static void find_ranges(imk_compensator *c, const imk_triad *triad, int sensor)
         if (!triad->present || i >= triad->axis_count || !(triad->range.value[i] > 0.0))
             continue;
         double margin = 0.5 * triad->resolution.value[i];
-        if (triad->sensitivity.value[i] > 0.0)
-            margin += 0.5 / triad->sensitivity.value[i];
+        if (triad->sensitivity.value[i] != 0.0)
+            margin += 0.5 / fabs(triad->sensitivity.value[i]);
         margin += triad->noise.quantization.value[i] * sqrt(12.0) / c->dt;
         margin += 1e-9 * triad->range.value[i];
         c->range[sensor][i] = triad->range.value[i] - margin;

@@ -220,7 +220,7 @@ static bool is_doubled(const imki_log_layout_read *layout, size_t index)
 static imk_status check_layout(const imki_log_layout_read *layout, const imk_log_settings *settings,
                                imk_error *error)
 {
-    bool known = settings->columns != NULL;
+    bool known = settings->columns != NULL || settings->any_columns;
     for (size_t i = 0; i < layout->column_count; i++)
         known |= layout->column[i].quantity != IMK_QUANTITY_OTHER;
     if (!known)

@@ -79,7 +79,12 @@ bool imki_item_at(size_t index, imki_item *item)
         return true;
     }
     index -= 2 * per_sensor;
-    if (index >= imki_timing_field_count)
+    if (index == imki_timing_field_count) {
+        item->type = IMKI_ITEM_CORRELATION;
+        snprintf(item->path, sizeof item->path, "correlation");
+        return true;
+    }
+    if (index > imki_timing_field_count)
         return false;
     item->type = IMKI_ITEM_TIMING;
     item->field = &imki_timing_fields[index];
@@ -151,6 +156,8 @@ bool imki_item_equal(const imki_item *item, const imk_model *a, const imk_model 
     case IMKI_ITEM_INTERVALS:
         return equal_intervals(imki_evidence_of(a, item->kind), imki_evidence_of(b, item->kind),
                                a_triad->axis_count, item->is_bound);
+    case IMKI_ITEM_CORRELATION:
+        return imki_correlation_equal(&a->correlation, &b->correlation);
     case IMKI_ITEM_TIMING:
         return *imki_field_values(item->field, &a->timing) ==
                    *imki_field_values(item->field, &b->timing) &&
@@ -176,6 +183,8 @@ bool imki_item_absent(const imki_item *item, const imk_model *model)
         return next_interval(evidence, 0, triad->axis_count, item->is_bound) ==
                evidence->interval_count;
     }
+    case IMKI_ITEM_CORRELATION:
+        return model->correlation.count == 0;
     case IMKI_ITEM_TIMING:
         return *imki_field_values(item->field, &model->timing) == 0 &&
                *imki_field_sigmas(item->field, &model->timing) == 0;

@@ -25,7 +25,8 @@ typedef enum imki_item_type {
     IMKI_ITEM_SENSOR,    /* that gyro: or accel: stands there */
     IMKI_ITEM_FIELD,     /* a field of a triad */
     IMKI_ITEM_INTERVALS, /* evidence.interval_95 or evidence.upper_bound */
-    IMKI_ITEM_TIMING     /* a field of the timing */
+    IMKI_ITEM_TIMING,    /* a field of the timing */
+    IMKI_ITEM_CORRELATION
 } imki_item_type;
 
 typedef struct imki_item {
@@ -51,6 +52,11 @@ const imk_evidence *imki_evidence_of(const imk_model *model, int kind);
 
 /* True when the interval is the bound of an absent term. */
 bool imki_is_bound(const imk_interval *interval, int axis_count);
+
+/* model_yaml_correlation.c. Equal as they are written: to six decimals. */
+bool imki_correlation_equal(const imk_correlation *a, const imk_correlation *b);
+imk_status imki_read_correlation(const imk_document *document, imk_correlation *correlation,
+                                 imk_error *error);
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
@@ -86,6 +92,10 @@ void imki_write_element(imki_writer *writer, const imki_field *field, int kind,
                         const imk_triad *triad, int index);
 void imki_write_interval(imki_writer *writer, const imk_interval *interval, int kind,
                          const imk_triad *triad, bool is_bound);
+
+/* In one line; in lines below its key. */
+void imki_write_correlation(imki_writer *writer, const imk_correlation *correlation);
+void imki_write_correlation_block(imki_writer *writer, const imk_correlation *correlation);
 
 /* Beginning and end of a mapping within a mapping. */
 void imki_open_group(imki_writer *writer, const char *key);

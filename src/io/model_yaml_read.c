@@ -300,7 +300,7 @@ static imk_status read_version(const imk_document *document, imk_error *error)
 static imk_status check_top_keys(const imk_document *document, imk_error *error)
 {
     static const char *const names[] = {"imukit", "name",  "description", "residual_of",
-                                        "gyro",   "accel", "timing"};
+                                        "gyro",   "accel", "timing",      "correlation"};
     enum { COUNT = sizeof names / sizeof names[0] };
     for (int key = document->node[0].first; key != IMKI_NONE;
          key = document->node[document->node[key].next].next) {
@@ -336,5 +336,7 @@ imk_status imki_document_read_model(const imk_document *document, imk_model *mod
         status = read_sensor(document, IMKI_ACCEL, &model->accel, &model->accel_evidence, error);
     if (status == IMK_OK)
         status = read_timing(document, &model->timing, error);
+    if (status == IMK_OK)
+        status = imki_read_correlation(document, &model->correlation, error);
     return status;
 }

@@ -342,6 +342,9 @@ void imki_write_item_value(imki_writer *writer, const imki_item *item, const imk
     case IMKI_ITEM_SENSOR:
         imki_write_text(writer, "{}");
         break;
+    case IMKI_ITEM_CORRELATION:
+        imki_write_correlation(writer, &model->correlation);
+        break;
     case IMKI_ITEM_INTERVALS:
         write_intervals(writer, item, model);
         break;

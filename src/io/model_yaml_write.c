@@ -181,6 +181,10 @@ void imki_write_item(imki_writer *writer, const imki_item *item, const imk_model
         write_block_list(writer, item, model);
         return;
     }
+    if (item->type == IMKI_ITEM_CORRELATION && writer->layout == IMKI_BLOCK) {
+        imki_write_correlation_block(writer, &model->correlation);
+        return;
+    }
     imki_write_text(writer, " ");
     imki_write_item_value(writer, item, model);
     if (writer->layout == IMKI_BLOCK)

@@ -29,6 +29,7 @@ static const struct format {
     [IMK_PARAMETERS_OPENVINS] = {"openvins", imki_openvins_read, imki_openvins_write},
     [IMK_PARAMETERS_VINS] = {"vins", imki_vins_read, imki_vins_write},
     [IMK_PARAMETERS_PX4] = {"px4", imki_px4_read, imki_px4_write},
+    [IMK_PARAMETERS_ARDUPILOT] = {"ardupilot", imki_ardupilot_read, imki_ardupilot_write},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
@@ -163,6 +164,8 @@ static imk_parameter_format recognise(const char *text, size_t size)
     if (has_word(text, "CAL_GYRO") || has_word(text, "CAL_ACC") || has_word(text, "TC_G") ||
         has_word(text, "TC_A"))
         return IMK_PARAMETERS_PX4;
+    if (has_word(text, "INS_ACC") || has_word(text, "INS_GYR") || has_word(text, "INS_TCAL"))
+        return IMK_PARAMETERS_ARDUPILOT;
     return has_assignment(text) ? IMK_PARAMETERS_NAVEGO : IMK_PARAMETERS_UNKNOWN;
 }
 
@@ -253,7 +256,7 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
     if (format == IMK_PARAMETERS_UNKNOWN)
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "",
                              "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, "
-                             "openvins, vins or px4 (--from says which)");
+                             "openvins, vins, px4 or ardupilot (--from says which)");
     imk_status status = check_density(settings, format, error);
     if (status == IMK_OK)
         status = formats[format].read(&p);

@@ -42,7 +42,7 @@ typedef imk_status imki_parameter_function(imki_parameters *p);
 imki_parameter_function imki_kalibr_read, imki_kalibr_write, imki_gazebo_read, imki_gazebo_write,
     imki_matlab_read, imki_matlab_write, imki_gnss_ins_sim_read, imki_gnss_ins_sim_write,
     imki_navego_read, imki_navego_write, imki_openvins_read, imki_openvins_write, imki_vins_read,
-    imki_vins_write, imki_px4_read, imki_px4_write;
+    imki_vins_write, imki_px4_read, imki_px4_write, imki_ardupilot_read, imki_ardupilot_write;
 
 /* Read back what was written and note what is not there (parameter_compare.c). `format` is the name
  * for the notes.
@@ -136,6 +136,11 @@ imk_status imki_white_where_infinite(imki_parameters *p, imki_place place, imk_t
 void imki_to_axes(const double values[3], imk_axes *axes);
 /* For formats with one number for all axes: the largest, with a note when they differ. */
 double imki_largest(imki_parameters *p, const char *name, const imk_axes *axes);
+
+/* A bias polynomial of an axis as c[0] … c[3] of powers of T - centre [K] (parameter_cubic.c).
+ * @return the largest error over the valid range: 0 up to the third order */
+double imki_cubic(const imk_temperature_polynomial *polynomial, int axis, double centre,
+                  double c[4]);
 
 /* kalibr's four noise keys, which OpenVINS shares. */
 enum { IMKI_KALIBR_NOISE_KEYS = 4 };

@@ -319,11 +319,17 @@ static void write_thermal(imki_parameters *p, int kind, const imk_temperature_po
     if (t->order == 0)
         return;
     imki_note(p, true, "TC_%c0_ID is not known: set it to the ID of the device", letter);
+    double cubic[3][ORDER + 1], worst = 0;
+    for (int i = 0; i < 3; i++)
+        worst = fmax(worst, imki_cubic(t, i, t->reference, cubic[i]));
+    if (worst > 0)
+        imki_note(
+            p, true, "%s.bias.temperature: PX4 has cubics; the nearest one is up to %.2g %s off",
+            kind == IMKI_GYRO ? "gyro" : "accel", worst, kind == IMKI_GYRO ? "rad/s" : "m/s^2");
     for (int k = 0; k <= ORDER; k++)
         for (int i = 0; i < 3; i++) {
             snprintf(name, sizeof name, "TC_%c0_X%d_%d", letter, k, i);
-            bool there = k > 0 && k <= t->order;
-            write_parameter(p, name, there ? t->coefficient[k - 1].value[i] : 0, false);
+            write_parameter(p, name, cubic[i][k], false);
         }
     for (int i = 0; i < 3; i++) {
         snprintf(name, sizeof name, "TC_%c0_%s", letter, names[i]);

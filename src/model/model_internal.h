@@ -3,11 +3,16 @@
 #ifndef IMUKI_MODEL_INTERNAL_H
 #define IMUKI_MODEL_INTERNAL_H
 
+#include "imukit/model_parameter.h"
+
 /* "IMK" and the number of the struct's layout: tells a model from uninitialised memory. */
 #define IMKI_MODEL_COOKIE 0x494D4B01u
 /* The same of the structs made from a model. */
 #define IMKI_DISTORTION_COOKIE 0x494D4B11u
 #define IMKI_CORRECTION_SETTINGS_COOKIE 0x494D4B12u
 #define IMKI_CORRECTION_COOKIE 0x494D4B13u
+
+/* True when the model has such a number. */
+bool imki_model_parameter_exists(const imk_model *model, imk_model_parameter parameter);
 
 #endif

@@ -57,7 +57,7 @@ const imki_field imki_triad_fields[] = {
     {BOTH("bias.warm_up.time"), IMKI_SCALAR, 0, AT(bias.warm_up_time), NO_COUNT, UNIT("s"),
      NO_UNITS, UNIT("s"), NOT_NEGATIVE},
     {BOTH("bias.hysteresis"), IMKI_AXES, 0, AT(bias.hysteresis), NO_COUNT, UNITS("deg/h", "mg"),
-     NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+     NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
     {BOTH("scale_factor.fixed"), IMKI_AXES, IMKI_OPEN, AT(scale_factor.fixed), NO_COUNT,
      UNIT("ppm"), NO_UNITS, UNIT("1"), -1.0, DBL_MAX},
     {BOTH("scale_factor.repeatability"), IMKI_AXES, 0, AT(scale_factor.repeatability), NO_COUNT,

@@ -380,6 +380,44 @@ static imk_status check_evidence(const imk_evidence *evidence, const imk_triad *
     return status;
 }
 
+/* Numbers of sensors that are not present are not looked at, but must be numbers of some model. */
+static imk_status check_correlated(const imk_model *model, int index, imk_error *error)
+{
+    static const path where = {"correlation.parameters", 0};
+    const imk_model_parameter parameter = model->correlation.parameter[index];
+    const bool present = parameter.sensor == IMKI_GYRO ? model->gyro.present : model->accel.present;
+    char unused[IMK_MODEL_PARAMETER_NAME];
+    if (imk_model_parameter_name(parameter, unused) != IMK_OK ||
+        (present && !imki_model_parameter_exists(model, parameter)))
+        return refuse(error, IMK_ERROR_KEY_UNKNOWN, &where, index, 0, 0,
+                      "a number of the model, like accel.bias.fixed.x");
+    for (int i = 0; i < index; i++)
+        if (memcmp(&model->correlation.parameter[i], &parameter, sizeof parameter) == 0)
+            return refuse(error, IMK_ERROR_KEY_DUPLICATE, &where, index, 0, 0,
+                          "every parameter once");
+    return IMK_OK;
+}
+
+static imk_status check_correlation(const imk_model *model, imk_error *error)
+{
+    static const path where = {"correlation.values", 0};
+    const imk_correlation *correlation = &model->correlation;
+    if (!(correlation->count >= 0 && correlation->count <= IMK_CORRELATED_MAX))
+        return refuse(error, IMK_ERROR_RANGE, &where, -1, correlation->count, IMK_CORRELATED_MAX,
+                      "0 to 64 parameters");
+    imk_status status = IMK_OK;
+    for (int i = 0; status == IMK_OK && i < correlation->count; i++)
+        status = check_correlated(model, i, error);
+    for (int i = 0; status == IMK_OK && i < correlation->count; i++)
+        for (int j = 0; j < i; j++) {
+            const double value = (double)correlation->value[i * (i - 1) / 2 + j];
+            if (!(value >= -1 && value <= 1))
+                return refuse(error, IMK_ERROR_RANGE, &where, i, value, 1,
+                              "correlations from -1 to 1");
+        }
+    return status;
+}
+
 imk_status imk_model_validate(const imk_model *model, imk_error *error)
 {
     if (!model || model->cookie != IMKI_MODEL_COOKIE)
@@ -404,5 +442,7 @@ imk_status imk_model_validate(const imk_model *model, imk_error *error)
         status = check_evidence(&model->gyro_evidence, &model->gyro, IMKI_GYRO, error);
     if (status == IMK_OK)
         status = check_evidence(&model->accel_evidence, &model->accel, IMKI_ACCEL, error);
+    if (status == IMK_OK)
+        status = check_correlation(model, error);
     return status;
 }

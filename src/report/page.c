@@ -41,8 +41,11 @@ static const char style[] =
     "figure{margin:1rem 0}figure svg{width:100%;height:auto}"
     "figcaption{color:#5b6770;font-size:.9rem}\n"
     "footer{margin-top:3rem;color:#7a858d;font-size:.82rem}\n"
-    "@media print{body,main{background:#fff}main{max-width:none;padding:0}"
-    "figure,table,pre{break-inside:avoid}}\n";
+    "@media print{@page{margin:15mm}body{font-size:10.5pt;print-color-adjust:exact;"
+    "-webkit-print-color-adjust:exact}body,main{background:#fff}"
+    "main{max-width:none;padding:0;min-height:0}h1,h2{break-after:avoid}"
+    "figure,table,tr,pre,.verdict{break-inside:avoid}.table{overflow:visible}"
+    "pre{white-space:pre-wrap}th,td{padding:.2rem .5rem}.sheet{break-after:page}}\n";
 
 static void element(imk_page *page, const char *open, const char *text, const char *close)
 {
@@ -103,6 +106,11 @@ void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *con
         fputs("</tr>\n", page->stream);
     }
     fputs("</table></div>\n", page->stream);
+}
+
+void imk_page_break(imk_page *page)
+{
+    element(page, "<div class=\"sheet\">", "", "</div>\n");
 }
 
 void imk_page_code(imk_page *page, const char *text)

@@ -4,6 +4,7 @@
 #ifndef IMUKIT_TESTS_RANDOM_MODEL_H
 #define IMUKIT_TESTS_RANDOM_MODEL_H
 
+#include "imukit/model_parameter.h"
 #include "imukit/units.h"
 #include "model/model_schema_internal.h"
 
@@ -205,6 +206,26 @@ static inline void random_evidence(uint64_t *state, int kind, const imk_triad *t
     }
 }
 
+/* Some of the numbers of the model, correlated to the decimals that are written. */
+static inline void random_correlation(uint64_t *state, imk_model *model)
+{
+    imk_correlation *correlation = &model->correlation;
+    const bool many = random_below(state, 16) == 0;
+    const int most = 1 + random_below(state, many ? IMK_CORRELATED_MAX : 6);
+    for (unsigned sensor = 0; sensor < 2; sensor++)
+        for (unsigned term = 0; term < IMK_MODEL_TERMS; term++)
+            for (unsigned axis = 0; axis < IMK_AXES_MAX; axis++)
+                for (unsigned element = 0; element < 6; element++) {
+                    const imk_model_parameter parameter = {(uint8_t)sensor, (uint8_t)term,
+                                                           (uint8_t)axis, (uint8_t)element};
+                    if (correlation->count < most && random_below(state, 4) == 0 &&
+                        imk_model_parameter_at(model, parameter, NULL))
+                        correlation->parameter[correlation->count++] = parameter;
+                }
+    for (int k = 0; k < correlation->count * (correlation->count - 1) / 2; k++)
+        correlation->value[k] = (float)(random_below(state, 2000001) - 1000000) / 1e6f;
+}
+
 /* A valid model in which each field is there with a probability of 1/`sparsity`. */
 static inline imk_model random_model(uint64_t *state, int sparsity, bool other_axes)
 {
@@ -236,6 +257,8 @@ static inline imk_model random_model(uint64_t *state, int sparsity, bool other_a
             random_axes(state, &imki_timing_fields[i], imki_timing_fields[i].unit[0],
                         &scalar->value, &scalar->sigma, 1, false);
     }
+    if (random_below(state, sparsity) == 0)
+        random_correlation(state, &model);
     return model;
 }
 

@@ -284,6 +284,26 @@ static const refusal refusals[] = {
     {"gyro:\n\trange: 1 deg/s", IMK_ERROR_SYNTAX, 3, 1, "", "tabs"},
     {"? {a: b}\n: c", IMK_ERROR_SYNTAX, 2, 3, "", "key"},
     {"name: x", IMK_ERROR_KEY_MISSING, 1, 1, "gyro", "accel"},
+    /* The correlation: its keys, names, rows and numbers. */
+    {"accel: {}\ncorrelation: 1", IMK_ERROR_SYNTAX, 3, 14, "correlation", "parameters and values"},
+    {"accel: {}\ncorrelation: {parameters: [accel.bias.fixed.x]}", IMK_ERROR_KEY_MISSING, 3, 14,
+     "correlation", "values"},
+    {"accel: {}\ncorrelation: {parameter: []}", IMK_ERROR_KEY_UNKNOWN, 3, 15,
+     "correlation.parameter", "did you mean \"parameters\""},
+    {"accel: {}\ncorrelation: {parameters: [accel.bias.x], values: []}", IMK_ERROR_KEY_UNKNOWN, 3,
+     28, "correlation.parameters[0]", "like accel.bias.fixed.x"},
+    {"accel: {}\ncorrelation:\n  parameters: [accel.bias.fixed.x, accel.bias.fixed.y]\n"
+     "  values: [0.1 0.2]",
+     IMK_ERROR_SYNTAX, 5, 12, "correlation.values[0]", "a row of 1 number"},
+    {"accel: {}\ncorrelation:\n  parameters: [accel.bias.fixed.x, accel.bias.fixed.y]\n"
+     "  values: []",
+     IMK_ERROR_SYNTAX, 5, 11, "correlation.values", "a row for each parameter but the first"},
+    {"accel: {}\ncorrelation:\n  parameters: [accel.bias.fixed.x, accel.bias.fixed.y]\n"
+     "  values: [1.5]",
+     IMK_ERROR_RANGE, 5, 11, "correlation.values", "from -1 to 1"},
+    {"accel: {}\ncorrelation:\n  parameters: [accel.bias.fixed.x, accel.misalignment.y.y]\n"
+     "  values: [0.5]",
+     IMK_ERROR_KEY_UNKNOWN, 4, 15, "correlation.parameters", "a number of the model"},
 };
 
 static void errors_point_to_their_place(void **state)
@@ -667,6 +687,7 @@ static void examples_of_the_manual_are_models(void **state)
     assert_int_equal(count, 2);
     assert_int_equal(model.gyro.noise.resonance_count, 1);
     assert_int_equal(model.gyro_evidence.interval_count, 3);
+    assert_int_equal(model.correlation.count, 3);
     CHECK_RELATIVE(model.timing.drops.value, 0.001, rounding);
     free(manual);
 }

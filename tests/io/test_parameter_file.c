@@ -88,7 +88,8 @@ static const struct sample {
                {"navego.m", "navego", 0},
                {"openvins.yaml", "openvins", 0},
                {"vins.yaml", "vins", 200},
-               {"px4.params", "px4", 0}};
+               {"px4.params", "px4", 0},
+               {"ardupilot.param", "ardupilot", 0}};
 enum { SAMPLES = sizeof samples / sizeof samples[0] };
 
 /* ---- recognition ----------------------------------------------------------------------------- */
@@ -98,7 +99,7 @@ static void test_names(void **state)
     (void)state;
     assert_null(imk_parameter_format_name(IMK_PARAMETERS_UNKNOWN));
     assert_null(imk_parameter_format_name((imk_parameter_format)99));
-    for (int i = 1; i <= IMK_PARAMETERS_PX4; i++)
+    for (int i = 1; i <= IMK_PARAMETERS_ARDUPILOT; i++)
         assert_int_equal(
             imk_parameter_format_find(imk_parameter_format_name((imk_parameter_format)i)), i);
     assert_int_equal(imk_parameter_format_find("klaibr"), IMK_PARAMETERS_UNKNOWN);
@@ -547,7 +548,7 @@ static void test_random_models(void **state)
     int written = 0;
     for (int i = 0; i < 60; i++) {
         imk_model random = random_model(&seed, 4, false);
-        for (int format = 1; format <= IMK_PARAMETERS_PX4; format++) {
+        for (int format = 1; format <= IMK_PARAMETERS_ARDUPILOT; format++) {
             imk_parameter_settings settings = imk_parameter_settings_default();
             settings.format = (imk_parameter_format)format;
             settings.rate = 200;

@@ -419,17 +419,17 @@ static void test_covariance(void **state)
 {
     (void)state;
     const imk_model noise = navigation_model(false), all = navigation_model(true);
-    check_normalised(&noise, 45.0 * degree, 500, 1.0);
-    check_normalised(&all, -35.0 * degree, 500, 1.2);
-    check_normalised(&all, 85.0 * degree, 100, 1.2);
+    check_normalised(&noise, 45.0 * degree, check_runs(500), 1.0);
+    check_normalised(&all, -35.0 * degree, check_runs(500), 1.2);
+    check_normalised(&all, 85.0 * degree, check_runs(100), 1.2);
     /* Accelerometers that walk by more than gyros turn; coarse angles. */
     imk_model walking = navigation_model(false), coarse = walking;
     for (int i = 0; i < 3; i++) {
         walking.accel.noise.random_walk.value[i] = 5e-6 * standard_g;
         coarse.gyro.noise.quantization.value[i] = 10.0 * ARCSECOND;
     }
-    check_normalised(&walking, 45.0 * degree, 100, 1.0);
-    check_normalised(&coarse, 45.0 * degree, 100, 1.0);
+    check_normalised(&walking, 45.0 * degree, check_runs(100), 1.0);
+    check_normalised(&coarse, 45.0 * degree, check_runs(100), 1.0);
 }
 
 /* A bias that turns the unit by 0.3 to 8 deg meanwhile: north is lost, but the tilt of means and

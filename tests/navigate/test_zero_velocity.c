@@ -325,10 +325,10 @@ static void test_consistency(void **state)
 {
     (void)state;
     imk_zero_velocity_settings s = tactical(1.0);
-    check_consistency("free vertical", &s, 200, 180.0);
+    check_consistency("free vertical", &s, check_runs(200), 180.0);
     s.hold_height = true;
     s.rotation_sigma = 1e-9;
-    check_consistency("held height, zero rotation", &s, 200, 180.0);
+    check_consistency("held height, zero rotation", &s, check_runs(200), 180.0);
 }
 
 /* The unit of tactical() as a model. */
@@ -355,6 +355,7 @@ static imk_model tactical_model(double gyros)
 static void check_self_alignment(const char *name, imk_alignment_method method)
 {
     enum { RUNS = 200 };
+    const uint32_t runs = check_runs(RUNS);
     static const int states[7] = {0, 1, 3, 4, 6, 7, 8};
     static memory m, am;
     static double value[2][RUNS];
@@ -363,7 +364,7 @@ static void check_self_alignment(const char *name, imk_alignment_method method)
     const imk_model model = tactical_model(gyros);
     const double aligned = 100.0;
     imk_error error;
-    for (uint32_t run = 0; run < RUNS; run++) {
+    for (uint32_t run = 0; run < runs; run++) {
         imk_zero_velocity_settings s = tactical(gyros);
         unit u = make_unit(&s, 5000 + run, 10.0);
         u.turn = 0.0;
@@ -407,9 +408,9 @@ static void check_self_alignment(const char *name, imk_alignment_method method)
     }
     char label[80];
     snprintf(label, sizeof label, "self-aligned (%s), free", name);
-    check_chi_square(label, RUNS, value[0], 7.0);
+    check_chi_square(label, runs, value[0], 7.0);
     snprintf(label, sizeof label, "self-aligned (%s), after a stop", name);
-    check_chi_square(label, RUNS, value[1], 7.0);
+    check_chi_square(label, runs, value[1], 7.0);
 }
 
 static void test_self_alignment(void **state)

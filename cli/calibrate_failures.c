@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Why nothing came out: what was found in the log, what is needed, what to do. A doubt about the
+ * log, where there is one that explains it, says more than the procedure that stumbled. */
+#include "calibrate_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The first doubt that makes a log useless. */
+static const imk_doubt_finding *reason(const bench *b, const bench_log *log)
+{
+    for (size_t k = 0; k < log->doubt_count; k++)
+        if (doubt_matters(log, &log->doubt[k]) &&
+            doubt_sentence(b, log, &log->doubt[k]).level == LEVEL_USELESS)
+            return &log->doubt[k];
+    return NULL;
+}
+
+static int too_short(const bench_log *log, const imk_error *error)
+{
+    const char *name = imk_procedure_name(log->procedure);
+    const char *due = error->expected;
+    if (strcmp(error->field, "hold") == 0)
+        return command_failed("%s: %g of at least %g holds were found for %s%s%s", log->path,
+                              error->value, error->limit, name, due[0] ? ": " : "", due);
+    if (strcmp(error->field, "turn") == 0)
+        return command_failed("%s: %g of at least %g turns were found for %s%s%s", log->path,
+                              error->value, error->limit, name, due[0] ? ": " : "", due);
+    if (strcmp(error->field, "step") == 0)
+        return command_failed("%s: %g of at least %g steps of constant reference were found for "
+                              "%s%s%s",
+                              log->path, error->value, error->limit, name, due[0] ? ": " : "", due);
+    if (strcmp(error->field, "temperature") == 0)
+        return command_failed("%s: the temperature varies by %.3g K; at least %.3g K are needed to "
+                              "see what it does",
+                              log->path, error->value, error->limit);
+    return command_error(error, log->path);
+}
+
+static int key_missing(const bench_log *log, const imk_error *error)
+{
+    const char *name = imk_procedure_name(log->procedure);
+    if (strncmp(error->field, "reference", 9) == 0)
+        return command_failed("%s: %s needs to know what the unit was exposed to%s%s: add --motion "
+                              "PROGRAMME, or columns such as reference_rate_z [deg/s] and "
+                              "reference_force_x [g] to the log",
+                              log->path, name, error->expected[0] ? "; " : "", error->expected);
+    if (strcmp(error->field, "temperature") == 0)
+        return command_failed("%s has no column temperature [degC], which %s needs", log->path,
+                              name);
+    if (strcmp(error->field, "section") == 0)
+        return command_failed("%s: %s needs a column of texts that names the sections: add "
+                              "--section NAME",
+                              log->path, name);
+    return command_failed("%s: %s needs %s", log->path, name,
+                          error->expected[0] ? error->expected : error->field);
+}
+
+static int unit_missing(const bench *b, const bench_log *log, const imk_error *error)
+{
+    const bool gyro = strncmp(error->field, "gyro", 4) == 0;
+    return command_failed(
+        "%s: the %s readings are counts, and %s does not tell how many make a unit: add "
+        "--%s-sensitivity \"%s\" from the data sheet, or --model MODEL of an earlier calibration",
+        log->path, gyro ? "gyro" : "accelerometer",
+        b->repeatability ? "repeatability" : imk_procedure_name(log->procedure),
+        gyro ? "gyro" : "accel", gyro ? "4778 count/(rad/s)" : "415 count/(m/s^2)");
+}
+
+/* Columns without a single number. */
+static int not_finite(const bench_log *log, const imk_error *error)
+{
+    static const char *const names[2] = {"gyro", "accel"};
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int axis = 0; axis < log->record.axis_count[sensor]; axis++) {
+            size_t row = 0;
+            while (row < log->record.count && !isfinite(log->record.reading[sensor][axis][row]))
+                row++;
+            if (row == log->record.count)
+                return command_failed("%s: %s_%c is never a number: nothing can be estimated from "
+                                      "it; look into the log, or name the columns with --columns",
+                                      log->path, names[sensor],
+                                      axis < 3 ? "xyz"[axis] : '0' + axis);
+        }
+    return command_error(error, log->path);
+}
+
+int bench_observe_failed(const bench *b, const bench_log *log, const imk_error *error)
+{
+    const imk_doubt_finding *doubt = reason(b, log);
+    if (doubt) {
+        const calibrate_sentence sentence = doubt_sentence(b, log, doubt);
+        return command_failed("%s: %s", log->path, sentence.text);
+    }
+    switch (error->status) {
+    case IMK_ERROR_TOO_SHORT:
+        return too_short(log, error);
+    case IMK_ERROR_KEY_MISSING:
+        return key_missing(log, error);
+    case IMK_ERROR_UNIT_MISSING:
+        return unit_missing(b, log, error);
+    case IMK_ERROR_NOT_FINITE:
+        return not_finite(log, error);
+    default:
+        return command_error(error, log->path);
+    }
+}
+
+/* ---- solution -------------------------------------------------------------------------------- */
+
+/* What would determine a parameter. */
+static const char *remedy_for(const imk_model_parameter *parameter)
+{
+    switch (parameter->term) {
+    case IMK_MODEL_BIAS:
+        return "hold the unit with this axis both up and down";
+    case IMK_MODEL_SCALE_FACTOR:
+        return parameter->sensor == 0 ? "turn the unit about this axis, by 90 deg or more"
+                                      : "hold the unit with this axis both up and down";
+    case IMK_MODEL_MISALIGNMENT:
+    case IMK_MODEL_CROSS_AXIS:
+        return parameter->sensor == 0
+                   ? "turn the unit about the other axis too"
+                   : "hold the unit in poses between the axes too, such as on its edges";
+    case IMK_MODEL_G_SENSITIVITY:
+    case IMK_MODEL_G2_SENSITIVITY:
+        return "hold the unit in more attitudes, each axis up and down, or leave it out: --without "
+               "g_sensitivity,g2_sensitivity";
+    case IMK_MODEL_LEVER_ARM:
+        return "turn the unit fast about two axes at least";
+    case IMK_MODEL_BIAS_TEMPERATURE:
+    case IMK_MODEL_SCALE_TEMPERATURE:
+    case IMK_MODEL_TEMPERATURE_RATE:
+        return "sweep the temperature wider, or lower --temperature-order";
+    default:
+        return "apply more levels of it, of both signs, or leave it out: --without nonlinearity";
+    }
+}
+
+static int undetermined(const bench *b, const imk_error *error)
+{
+    imk_model_parameter parameter;
+    char poses[120] = "";
+    if (imk_model_parameter_parse(error->field, &parameter) != IMK_OK)
+        return command_error(error, NULL);
+    const bool known = b->log_count == 1 && b->log[0].procedure == IMK_PROCEDURE_MULTIPOSITION &&
+                       bench_advise(b, &b->log[0], poses, sizeof poses);
+    return command_failed("the logs do not determine %s: %s%s%s", error->field,
+                          remedy_for(&parameter),
+                          known ? "; of further poses most would tell " : "", poses);
+}
+
+int bench_solve_failed(const bench *b, const imk_error *error)
+{
+    for (size_t k = 0; k < b->log_count; k++) {
+        const imk_doubt_finding *doubt = reason(b, &b->log[k]);
+        if (doubt)
+            return command_failed("%s: %s", b->log[k].path,
+                                  doubt_sentence(b, &b->log[k], doubt).text);
+    }
+    switch (error->status) {
+    case IMK_ERROR_SINGULAR:
+        return undetermined(b, error);
+    case IMK_ERROR_UNIT_MISSING:
+        return unit_missing(b, &b->log[0], error);
+    case IMK_ERROR_TOO_SHORT:
+        return command_failed("%g observations%s%s are too few, %g are needed: add poses or turns "
+                              "that differ from those there are",
+                              error->value, error->field[0] ? " of " : "", error->field,
+                              error->limit);
+    case IMK_ERROR_NO_CONVERGENCE:
+        return command_failed("no set of parameters fits the logs: the estimate does not settle. "
+                              "Check units (--accel-unit, --gyro-unit), --gravity, and that each "
+                              "log is of the procedure named");
+    case IMK_ERROR_NOT_FINITE:
+        return command_failed("a reading that is no number came into the estimate%s%s: nothing is "
+                              "estimated from it",
+                              error->field[0] ? ", in " : "", error->field);
+    case IMK_ERROR_CONFLICT:
+        if (strcmp(error->field, "frame") == 0)
+            return command_failed("--frame %s contradicts what is estimated: %s",
+                                  imk_triad_frame_name(b->calibration->frame),
+                                  error->expected[0] ? error->expected
+                                                     : "name another frame, or other terms");
+        return command_error(error, NULL);
+    default:
+        return command_error(error, NULL);
+    }
+}

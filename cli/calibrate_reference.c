@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the unit was exposed to: columns of the log beside the readings, or the programme that the
+ * table ran (--motion), as means over the log's samples. */
+#include "calibrate_parts.h"
+
+#include "imukit/random.h"
+#include "imukit/reference_alignment.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An offset is searched for so far on both sides, when the log is long enough [s]. */
+static const double largest_shift = 10.0;
+/* Correlation of readings and programme from which on they are taken to be of one motion. */
+static const double followed = 0.5;
+
+static double *reference_column(bench_log *log, int column)
+{
+    const size_t rows = log->record.count;
+    if (!log->reference)
+        log->reference = calloc(BENCH_REFERENCES * rows, sizeof *log->reference);
+    return log->reference ? log->reference + (size_t)column * rows : NULL;
+}
+
+/* ---- columns --------------------------------------------------------------------------------- */
+
+/* Index of the column of this name with the dimension of a unit; -1: there is none. */
+static int find_column(const bench_log *log, const char *name, const char *unit, int *found)
+{
+    *found = -1;
+    for (size_t c = 0; c < log->log.column_count; c++) {
+        const imk_log_column *column = &log->log.column[c];
+        if (strcmp(column->name, name) != 0)
+            continue;
+        if (!column->unit.text[0])
+            return command_failed("%s: %s has no unit; write it into the header, such as %s [%s]",
+                                  log->path, name, name, unit);
+        if (!imk_dimension_equal(column->unit.dimension, imk_unit_of(unit).dimension))
+            return command_failed("%s: %s [%s] should be %s, such as %s", log->path, name,
+                                  column->unit.text,
+                                  imk_dimension_name(imk_unit_of(unit).dimension), unit);
+        *found = (int)c;
+    }
+    return -1;
+}
+
+/* reference_rate_x … of one vector: the components that are not there are zero. */
+static int take_vector(bench_log *log, const char *name, const char *unit, const double *target[3])
+{
+    double *zero = NULL;
+    int column[3];
+    for (int k = 0; k < 3; k++) {
+        char full[48];
+        snprintf(full, sizeof full, "%s_%c", name, "xyz"[k]);
+        int code = find_column(log, full, unit, &column[k]);
+        if (code >= 0)
+            return code;
+    }
+    if (column[0] < 0 && column[1] < 0 && column[2] < 0)
+        return -1;
+    for (int k = 0; k < 3; k++) {
+        if (column[k] < 0 && !zero && !(zero = reference_column(log, 0)))
+            return command_failed("memory is exhausted");
+        target[k] = column[k] < 0 ? zero : log->log.data[column[k]];
+    }
+    return -1;
+}
+
+static int take_table(const bench *b, bench_log *log)
+{
+    int column;
+    int code = find_column(log, "table_rate", "deg/s", &column);
+    if (code >= 0 || column < 0)
+        return code;
+    if (b->options->table_axis < 0)
+        return command_misused("%s has a column table_rate: say about which axis of the unit it "
+                               "turns, such as --table-axis z",
+                               log->path);
+    double *zero = reference_column(log, 0);
+    if (!zero)
+        return command_failed("memory is exhausted");
+    for (int k = 0; k < 3; k++)
+        log->record.reference_rate[k] = zero;
+    log->record.reference_rate[b->options->table_axis] = log->log.data[column];
+    return -1;
+}
+
+static bool has_reference(const bench_log *log)
+{
+    return log->record.reference_rate[0] || log->record.reference_force[0];
+}
+
+/* ---- programme ------------------------------------------------------------------------------- */
+
+static double time_of(const imk_test_record *record, size_t row)
+{
+    return record->time ? record->time[row] : (double)row * record->dt;
+}
+
+static void fill_from_recorded(const imk_recorded_motion *motion, bench_log *log,
+                               double *const column[BENCH_REFERENCES])
+{
+    for (size_t row = 0; row < log->record.count; row++) {
+        const double place =
+            floor((time_of(&log->record, row) - log->motion_offset) * motion->rate + 0.5);
+        const bool inside = place >= 0 && place < (double)motion->count;
+        const size_t k = inside ? (size_t)place : 0;
+        for (int i = 0; i < 3; i++) {
+            column[i][row] = inside ? motion->angular_rate[i][k] : (double)NAN;
+            column[3 + i][row] = inside ? motion->specific_force[i][k] : (double)NAN;
+            column[6 + i][row] = !inside ? (double)NAN
+                                 : motion->angular_acceleration[i]
+                                     ? motion->angular_acceleration[i][k]
+                                     : 0;
+        }
+    }
+}
+
+/* Means over stretches without gap: sample k covers the sample interval that ends at its time. */
+static bool fill_from_trajectory(const imk_trajectory *trajectory, bench_log *log,
+                                 double *const column[BENCH_REFERENCES])
+{
+    const imk_test_record *record = &log->record;
+    const imk_random random = imk_random_seeded(0);
+    double *boundary = malloc((record->count + 1) * sizeof *boundary);
+    for (size_t begin = 0, end; boundary && begin < record->count; begin = end) {
+        double now = time_of(record, begin);
+        boundary[0] = now - record->dt - log->motion_offset;
+        boundary[1] = now - log->motion_offset;
+        for (end = begin + 1; end < record->count; end++) {
+            const double next = time_of(record, end);
+            if (next - now > 1.5 * record->dt)
+                break;
+            now = next;
+            boundary[end - begin + 1] = now - log->motion_offset;
+        }
+        double *at[BENCH_REFERENCES];
+        for (int i = 0; i < BENCH_REFERENCES; i++)
+            at[i] = column[i] + begin;
+        imk_trajectory_means(trajectory, random.kernel, end - begin, boundary, at, at + 6, at + 3);
+    }
+    free(boundary);
+    return boundary != NULL;
+}
+
+static bool fill_from_motion(const bench *b, bench_log *log)
+{
+    double *column[BENCH_REFERENCES];
+    for (int i = 0; i < BENCH_REFERENCES; i++)
+        if (!(column[i] = reference_column(log, i)))
+            return false;
+    for (int i = 0; i < 3; i++) {
+        log->record.reference_rate[i] = column[i];
+        log->record.reference_force[i] = column[3 + i];
+        log->record.reference_acceleration[i] = column[6 + i];
+    }
+    const imk_motion *motion = imk_motion_file_motion(b->motion);
+    if (motion->trajectory)
+        return fill_from_trajectory(motion->trajectory, log, column);
+    fill_from_recorded(motion->recorded, log, column);
+    return true;
+}
+
+/* Where the log begins in the programme, from the readings. */
+static imk_status search_offset(const bench_log *log, imk_reference_shift *shift, imk_error *error)
+{
+    const double length = (double)log->record.count * log->record.dt;
+    const double most = fmin(largest_shift, length / 4);
+    const size_t size = imk_reference_offset_workspace_size(&log->record, most);
+    void *workspace = malloc(size > 0 ? size : 1);
+    const imk_status status =
+        workspace ? imk_reference_offset(&log->record, most, workspace, size, shift, error)
+                  : imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    free(workspace);
+    return status;
+}
+
+static int find_offset(bench_log *log)
+{
+    imk_error error;
+    imk_reference_shift shift;
+    if (search_offset(log, &shift, &error) != IMK_OK)
+        return command_error(&error, log->path);
+    if (!(shift.correlation > followed))
+        return command_failed("%s does not follow the programme at any offset within %.3g s (the "
+                              "best correlation is %.2f): is it the programme that was run?",
+                              log->path, largest_shift, shift.correlation);
+    log->motion_offset = shift.offset;
+    command_note("%s: the programme begins at %.4f s of the log (1 sigma %.2g s, correlation %.4f)",
+                 log->path, shift.offset, shift.sigma, shift.correlation);
+    if (shift.rival > 0.95 * shift.correlation)
+        command_warn("motion_offset",
+                     "%s: at %.4f s the programme fits nearly as well; if that is right, add "
+                     "--motion-offset %.4fs",
+                     log->path, shift.rival_offset, shift.rival_offset);
+    return -1;
+}
+
+/* A log that begins at another time than the programme looks like a bad sensor. */
+static void check_offset(const bench_log *log)
+{
+    imk_error error;
+    imk_reference_shift shift;
+    if (search_offset(log, &shift, &error) != IMK_OK || !(shift.correlation > followed) ||
+        fabs(shift.offset) < log->record.dt + 5 * shift.sigma)
+        return;
+    command_warn("motion_offset",
+                 "%s follows the programme best when that begins %.4f s later in the log than it "
+                 "was told (1 sigma %.2g s): add --motion-offset %.4fs, or auto",
+                 log->path, shift.offset, shift.sigma, log->motion_offset + shift.offset);
+}
+
+static int take_motion(const bench *b, bench_log *log)
+{
+    const char *text = b->options->motion_offset;
+    const bool search = text && strcmp(text, "auto") == 0;
+    if (text && !search) {
+        double sigma;
+        size_t count;
+        imk_error error;
+        if (imk_quantity_parse(text, text + strlen(text), imk_unit_of("s").dimension, 1,
+                               &log->motion_offset, &sigma, &count, NULL, &error) != IMK_OK)
+            return command_misused("--motion-offset %s: expected the time of the log at which the "
+                                   "programme begins, such as 2.5s, or auto",
+                                   text);
+    }
+    if (!fill_from_motion(b, log))
+        return command_failed("memory is exhausted");
+    if (!search) {
+        check_offset(log);
+        return -1;
+    }
+    int code = find_offset(log);
+    if (code < 0 && !fill_from_motion(b, log))
+        code = command_failed("memory is exhausted");
+    return code;
+}
+
+int bench_reference(bench *b, bench_log *log)
+{
+    imk_test_record *record = &log->record;
+    int code = take_vector(log, "reference_rate", "deg/s", record->reference_rate);
+    if (code < 0)
+        code = take_vector(log, "reference_force", "g", record->reference_force);
+    if (code < 0)
+        code =
+            take_vector(log, "reference_acceleration", "deg/s^2", record->reference_acceleration);
+    if (code < 0 && !record->reference_rate[0])
+        code = take_table(b, log);
+    if (code >= 0 || !b->motion)
+        return code;
+    if (has_reference(log))
+        return command_misused("%s has reference columns and --motion says what they say: leave "
+                               "one out",
+                               log->path);
+    return take_motion(b, log);
+}

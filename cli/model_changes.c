@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Two model files compared line by line. */
+#include "model_changes.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Lines of one text that the other does not hold. */
+static void print_missing_lines(const char *text, const char *other, char sign)
+{
+    while (*text) {
+        size_t length = strcspn(text, "\n");
+        bool found = false;
+        for (const char *line = other; *line && !found;) {
+            size_t other_length = strcspn(line, "\n");
+            found = other_length == length && strncmp(line, text, length) == 0;
+            line += other_length + (line[other_length] == '\n');
+        }
+        if (!found)
+            fprintf(stderr, "%c %.*s\n", sign, (int)length, text);
+        text += length + (text[length] == '\n');
+    }
+}
+
+void model_print_changes(const char *path, const imk_model *before, const imk_model *after,
+                         const imk_document *document)
+{
+    char *old_text = NULL, *new_text = NULL;
+    size_t size;
+    imk_error error;
+    if (imk_model_print(before, document, &old_text, &size, &error) == IMK_OK &&
+        imk_model_print(after, document, &new_text, &size, &error) == IMK_OK) {
+        fprintf(stderr, "Changes to %s:\n", path);
+        print_missing_lines(old_text, new_text, '-');
+        print_missing_lines(new_text, old_text, '+');
+    }
+    free(old_text);
+    free(new_text);
+}

@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit calibrate: logs of bench tests -> bias, scale factor, misalignment … with uncertainty. */
+#include "calibrate_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const option result_options[] = {
+    {"procedure", 'p', OPTION_TEXT, "NAME", NULL, NULL,
+     "what was done: multiposition, sixposition, ferraris, rate-table, tumble, centrifuge, spin, "
+     "thermal or repeatability; one for all logs, or one for each, with commas between",
+     offsetof(calibrate_options, procedure)},
+    {"output", 'o', OPTION_OUTPUT, "MODEL", NULL, NULL, "write the model here (.yaml or .json)",
+     offsetof(calibrate_options, output)},
+    {"into", 0, OPTION_FILE, "MODEL", NULL, NULL,
+     "start from this model and replace only what is estimated; the changes are printed",
+     offsetof(calibrate_options, into)},
+    {"model", 'm', OPTION_FILE, "MODEL", NULL, NULL,
+     "known before: sensitivities, and terms that are not estimated",
+     offsetof(calibrate_options, model)},
+    {"name", 0, OPTION_TEXT, "TEXT", NULL, NULL, "name of the model; default: that of the log file",
+     offsetof(calibrate_options, name)},
+    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
+     "write one self-contained page: verdict, parameters, residuals, model",
+     offsetof(calibrate_options, report)},
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+     "draw the residuals, and where each log stands still", offsetof(calibrate_options, plot)},
+    {"poses", 0, OPTION_FLAG, NULL, NULL, NULL, "print every observation with its residuals",
+     offsetof(calibrate_options, poses)},
+    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
+     offsetof(calibrate_options, json)},
+    {"strict", 0, OPTION_FLAG, NULL, NULL, NULL, "exit with 1 when there is a warning",
+     offsetof(calibrate_options, strict)},
+    {"plan", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "print the programme of a test instead; the operand is a model of the unit, with its noise, "
+     "and -o the motion file to write",
+     offsetof(calibrate_options, plan)},
+    {"want", 0, OPTION_TEXT, "WISHES", NULL, NULL,
+     "with --plan: 1 sigma to reach, such as \"accel.scale_factor 50 ppm, gyro.bias 5 deg/h\"",
+     offsetof(calibrate_options, want)},
+    {"soak", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "with --plan, thermal: held at each temperature before it is measured; default 10min",
+     offsetof(calibrate_options, soak)},
+    {"anyway", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "write the model although the verdict says that it is not usable",
+     offsetof(calibrate_options, anyway)},
+};
+
+static const option test_options[] = {
+    {"position", 0, OPTION_TEXT, "POSITION", NULL, NULL,
+     "latitude, longitude and height of the test, for gravity and the Earth's rotation, such as "
+     "\"48.1 deg, 11.6 deg, 520 m\"",
+     offsetof(calibrate_options, position)},
+    {"gravity", 'g', OPTION_QUANTITY, "G", "m/s^2", NULL,
+     "local gravity when it is known better than by the position, such as 9.80743m/s^2",
+     offsetof(calibrate_options, gravity)},
+    {"no-earth", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "references contain no rotation of the Earth: the gyros' bias takes it in",
+     offsetof(calibrate_options, no_earth)},
+    {"frame", 0, OPTION_CHOICE, "FRAME", NULL,
+     "upper-triangular|lower-triangular|symmetric|reference",
+     "what fixes the rotation of the triads: gravity alone does not; default upper-triangular, "
+     "with a procedure of known attitudes reference",
+     offsetof(calibrate_options, frame)},
+    {"estimate", 0, OPTION_TEXT, "TERMS", NULL, NULL,
+     "own list of what is estimated, such as \"bias,scale_factor,accel.misalignment\"; default: "
+     "what the procedure determines",
+     offsetof(calibrate_options, estimate)},
+    {"with", 0, OPTION_TEXT, "TERMS", NULL, NULL,
+     "estimate these besides: nonlinearity, cross_products, g_sensitivity, g2_sensitivity, gyro",
+     offsetof(calibrate_options, with)},
+    {"without", 0, OPTION_TEXT, "TERMS", NULL, NULL, "do not estimate these",
+     offsetof(calibrate_options, without)},
+    {"accel-sensitivity", 0, OPTION_TEXT, "NUMBER", NULL, NULL,
+     "nominal, of logs in counts, such as \"415 count/(m/s^2)\"",
+     offsetof(calibrate_options, sensitivity[1])},
+    {"gyro-sensitivity", 0, OPTION_TEXT, "NUMBER", NULL, NULL,
+     "the same, such as \"4778 count/(rad/s)\"", offsetof(calibrate_options, sensitivity[0])},
+    {"accel-zero", 0, OPTION_TEXT, "NUMBER", NULL, NULL,
+     "counts at zero input, such as \"32768 count\"", offsetof(calibrate_options, zero_offset[1])},
+    {"gyro-zero", 0, OPTION_TEXT, "NUMBER", NULL, NULL, "the same",
+     offsetof(calibrate_options, zero_offset[0])},
+    {"robust", 0, OPTION_CHOICE, "CHOICE", NULL, "yes|no",
+     "observations that do not fit the others lose their weight (the default)",
+     offsetof(calibrate_options, robust)},
+    {"estimator", 0, OPTION_CHOICE, "CHOICE", NULL, "maximum-likelihood|closed-form",
+     "ferraris: closed-form solves the session as published for it, with --trim 0s to the last "
+     "digit; for comparison. Default maximum-likelihood",
+     offsetof(calibrate_options, estimator)},
+};
+
+static const option log_options[] = {
+    {"section", 0, OPTION_TEXT, "COLUMN", NULL, NULL,
+     "column of texts that name the holds, turns or runs; default: the only column of texts",
+     offsetof(calibrate_options, section)},
+    {"initial-rest", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "the log begins with so long a rest; default: the quietest part is searched for",
+     offsetof(calibrate_options, initial_rest)},
+    {"window", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "over which scatter is judged; default: chosen from the log",
+     offsetof(calibrate_options, window)},
+    {"minimum", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "shortest rest, step or run that counts; default 1s at rest, 0.5s of a reference",
+     offsetof(calibrate_options, minimum)},
+    {"trim", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "left out at both ends of a step or run; default 0.2s", offsetof(calibrate_options, trim)},
+    {"settle", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "left out at its beginning besides, until filters have settled; default 0s",
+     offsetof(calibrate_options, settle)},
+    {"placement", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL,
+     "1 sigma of each placement on a face; default 0.1deg for sixposition and ferraris",
+     offsetof(calibrate_options, placement)},
+    {"mounting", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL,
+     "1 sigma of the unit's attitude on its fixture or table, which all holds share; default 0deg",
+     offsetof(calibrate_options, mounting)},
+    {"turn-angle", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL,
+     "ferraris: angle of each turn about its axis, with sign; default 360deg",
+     offsetof(calibrate_options, turn_angle)},
+    {"motion", 0, OPTION_FILE, "PROGRAMME", NULL, NULL,
+     "motion file that the table ran: the reference", offsetof(calibrate_options, motion)},
+    {"motion-offset", 0, OPTION_TEXT, "TIME|auto", NULL, NULL,
+     "time of the log at which the programme begins; auto finds it; default 0s",
+     offsetof(calibrate_options, motion_offset)},
+    {"table-axis", 0, OPTION_CHOICE, "AXIS", NULL, "x|y|z",
+     "of the unit, about which a column table_rate [deg/s] turns it",
+     offsetof(calibrate_options, table_axis)},
+    {"temperature-order", 0, OPTION_INTEGER, "N", NULL, NULL,
+     "thermal: order of the bias, 1 to 5; default: chosen by cross-validation",
+     offsetof(calibrate_options, temperature_order)},
+    {"reference-temperature", 0, OPTION_QUANTITY, "T", "degC", NULL,
+     "thermal: where the polynomials vanish; default 25degC if within the sweep",
+     offsetof(calibrate_options, reference_temperature)},
+};
+
+#define COUNT(table) (sizeof(table) / sizeof *(table))
+
+static int run(int count, char **words);
+
+const verb calibrate_verb = {
+    .name = "calibrate",
+    .summary = "logs of bench tests -> bias, scale, misalignment with uncertainty",
+    .operands = "LOG...",
+    .operands_minimum = 1,
+    .operands_maximum = IMK_TEST_RECORDS_MAX,
+    .examples = {{"imukit calibrate poses.csv --procedure multiposition --position \"48.1 deg, "
+                  "11.6 deg, 520 m\" -o model.yaml",
+                  "a unit turned by hand, resting some seconds in each of 20 or more attitudes"},
+                 {"imukit calibrate poses.csv table.csv --procedure multiposition,rate-table "
+                  "--motion programme.yaml -o model.yaml --report report.html",
+                  "two tests solved together; the table ran the programme"}},
+    .description =
+        "LOG is CSV (also .gz, .zst) or .npy, in physical units or raw counts. A procedure looks "
+        "at "
+        "each log and adds what it observed; all logs are solved at once, robustly, and every "
+        "parameter comes with 1 sigma, a 95 % interval, and correlations. A verdict says in plain "
+        "words whether the result can be used.\n\n"
+        "multiposition needs no equipment: attitudes at rest, turned by hand between. sixposition "
+        "and ferraris want the faces of a housing, the latter full turns about three axes. "
+        "rate-table, tumble, centrifuge and spin want to know what the unit was exposed to: "
+        "columns reference_rate_x [deg/s] …, reference_force_x [g] … in the log (mean over the "
+        "sample, in inertial space, gravity included), table_rate [deg/s] with --table-axis, or "
+        "the programme of the table as a motion file. thermal wants a column temperature. "
+        "repeatability compares power cycles: a log, a section or a MODEL of each; models compare "
+        "the scale factors too.\n\n"
+        "docs/calibrate.md says how to do each test.",
+    .groups = {{"Options", COUNT(result_options), result_options, 0},
+               {"The test", COUNT(test_options), test_options, 0},
+               {"What to look for in the logs", COUNT(log_options), log_options, 0},
+               {"Reading the logs", LOG_FORMAT_OPTIONS, log_input_options,
+                offsetof(calibrate_options, log)}},
+    .run = run};
+
+static int show(bench *b)
+{
+    const calibrate_options *o = b->options;
+    const bool useless = bench_level(b) == LEVEL_USELESS;
+    const bool writes = !useless || o->anyway;
+    const int end = (useless && !o->anyway) || (o->strict && command_warning_count() > 0)
+                        ? EXIT_FAILED
+                        : EXIT_DONE;
+    int code = -1;
+    if (writes)
+        code = bench_write_model(b);
+    else if (o->output)
+        command_note("%s is not written (--anyway would)", o->output);
+    if (code < 0 && o->report)
+        code = bench_report(b, o->report);
+    if (code >= 0)
+        return code;
+    if (o->json)
+        code = bench_json(b, end);
+    else
+        bench_print(b);
+    const int drawn = o->plot ? bench_draw(b, o->plot) : -1;
+    return drawn >= 0 ? drawn : code >= 0 ? code : end;
+}
+
+static int observe_and_solve(bench *b)
+{
+    int code = -1;
+    for (size_t k = 0; code < 0 && k < b->log_count; k++)
+        code = bench_observe(b, &b->log[k]);
+    return code < 0 ? bench_solve(b) : code;
+}
+
+/* Solve, or compare runs. */
+static int find_result(bench *b)
+{
+    if (bench_has_run_models(b))
+        return bench_compare_models(b);
+    const int code = bench_prepare(b);
+    if (code >= 0)
+        return code;
+    if (b->repeatability)
+        return bench_compare_runs(b);
+    return b->options->estimator != 0 ? bench_closed_form(b) : observe_and_solve(b);
+}
+
+static int calibrate(bench *b)
+{
+    const int code = find_result(b);
+    if (code >= 0)
+        return code;
+    bench_make_model(b);
+    bench_judge(b);
+    return show(b);
+}
+
+static int check(const calibrate_options *o)
+{
+    if (o->into && o->model)
+        return command_misused("--into names the model to start from, as --model does: leave one "
+                               "out");
+    if (o->want && !o->plan)
+        return command_misused("--want is of --plan");
+    if (!isnan(o->soak) && (!o->plan || !(o->soak >= 0)))
+        return command_misused("--soak is of --plan, 0 s or more");
+    if (o->temperature_order > IMK_TEMPERATURE_ORDER_MAX)
+        return command_misused("--temperature-order %llu: expected 1 to 5",
+                               (unsigned long long)o->temperature_order);
+    return command_check_plot(o->plot);
+}
+
+static void free_bench(bench *b)
+{
+    for (size_t k = 0; b->log && k < b->log_count; k++)
+        bench_log_free(&b->log[k]);
+    if (b->calibration) {
+        free(b->calibration->observation);
+        free(b->calibration->turn);
+    }
+    imk_motion_file_free(b->motion);
+    imk_document_free(b->document);
+    free(b->calibration);
+    free(b->result);
+    free(b->ferraris);
+    free(b->runs);
+    free(b->log);
+    free(b);
+}
+
+static int run(int count, char **words)
+{
+    const double none = (double)NAN;
+    calibrate_options o = {.gravity = none,
+                           .placement = none,
+                           .mounting = none,
+                           .turn_angle = none,
+                           .initial_rest = none,
+                           .window = none,
+                           .minimum = none,
+                           .trim = none,
+                           .settle = none,
+                           .reference_temperature = none,
+                           .soak = none,
+                           .frame = -1,
+                           .table_axis = -1};
+    const char *paths[IMK_TEST_RECORDS_MAX];
+    int code = options_parse(&calibrate_verb, count, words, &o, paths);
+    if (code < 0)
+        code = check(&o);
+    if (code >= 0)
+        return code;
+    bench *b = calloc(1, sizeof *b);
+    if (!b)
+        return command_failed("memory is exhausted");
+    b->options = &o;
+    while (b->log_count < IMK_TEST_RECORDS_MAX && paths[b->log_count])
+        b->log_count++;
+    b->log = calloc(b->log_count + 1, sizeof *b->log);
+    b->calibration = calloc(1, sizeof *b->calibration);
+    if (b->log && b->calibration) {
+        for (size_t k = 0; k < b->log_count; k++)
+            b->log[k].path = paths[k];
+        code = o.plan ? bench_plan(b) : calibrate(b);
+    } else {
+        code = command_failed("memory is exhausted");
+    }
+    free_bench(b);
+    return code;
+}

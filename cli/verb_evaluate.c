@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit evaluate: references and readings -> the figures of a test laboratory. */
+#include "evaluate_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BENCH(field) offsetof(evaluate_options, bench.field)
+
+static const option result_options[] = {
+    {"limit", 0, OPTION_TEXT, "LIMITS", NULL, NULL,
+     "hold figures against limits, such as \"linearity 0.05 %, zero 0.2 deg/s\": a column says "
+     "which are met",
+     offsetof(evaluate_options, limit)},
+    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
+     "write a test report that can be printed: figures, plots, definitions, levels",
+     offsetof(evaluate_options, report)},
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+     "draw the deviations from both lines, and the hysteresis loop",
+     offsetof(evaluate_options, plot)},
+    {"levels", 0, OPTION_FLAG, NULL, NULL, NULL, "print the mean readings of every level",
+     offsetof(evaluate_options, levels)},
+    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
+     "of intervals, and of the coverage; default 0.95", offsetof(evaluate_options, confidence)},
+    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
+     offsetof(evaluate_options, json)},
+    {"strict", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "exit with 1 when a limit is not met, or there is another warning",
+     offsetof(evaluate_options, strict)},
+    {"unit", 0, OPTION_TEXT, "TEXT", NULL, NULL, "for the report: what was tested",
+     offsetof(evaluate_options, unit)},
+    {"serial", 0, OPTION_TEXT, "TEXT", NULL, NULL, "its serial number",
+     offsetof(evaluate_options, serial)},
+    {"operator", 0, OPTION_TEXT, "TEXT", NULL, NULL, "who tested it",
+     offsetof(evaluate_options, operator_name)},
+    {"laboratory", 0, OPTION_TEXT, "TEXT", NULL, NULL, "where",
+     offsetof(evaluate_options, laboratory)},
+    {"date", 0, OPTION_TEXT, "TEXT", NULL, NULL, "when; never filled in by itself",
+     offsetof(evaluate_options, date)},
+    {"at-temperature", 0, OPTION_TEXT, "TEXT", NULL, NULL, "at which temperature",
+     offsetof(evaluate_options, temperature)},
+};
+
+static const option test_options[] = {
+    {"static", 0, OPTION_FILE, "LOG", NULL, NULL,
+     "log of the unit at rest: bias instability, fitted and by the Allan minimum",
+     offsetof(evaluate_options, rest)},
+    {"full-scale", 0, OPTION_TEXT, "QUANTITY", NULL, NULL,
+     "what % of full scale is of, such as \"300 deg/s\"; default: the largest reference",
+     offsetof(evaluate_options, full_scale)},
+    {"sensitivity", 0, OPTION_TEXT, "QUANTITY", NULL, NULL,
+     "nominal, of readings in counts, such as \"131 count/(deg/s)\": figures are then in the unit "
+     "of the reference, with accuracy",
+     offsetof(evaluate_options, sensitivity)},
+    {"zero", 0, OPTION_TEXT, "QUANTITY", NULL, NULL, "counts at zero, such as \"32768 count\"",
+     offsetof(evaluate_options, zero)},
+    {"level-width", 0, OPTION_TEXT, "QUANTITY", NULL, NULL,
+     "references not further apart are one level; default 1e-5 of full scale in logs, 0 in tables",
+     offsetof(evaluate_options, level_width)},
+    {"motion", 0, OPTION_FILE, "PROGRAMME", NULL, NULL,
+     "motion file that the table ran: the reference of a log", BENCH(motion)},
+    {"motion-offset", 0, OPTION_TEXT, "TIME|auto", NULL, NULL,
+     "time of the log at which the programme begins; auto finds it; default 0s",
+     BENCH(motion_offset)},
+    {"table-axis", 0, OPTION_CHOICE, "AXIS", NULL, "x|y|z",
+     "of the unit, about which a column table_rate [deg/s] turns it", BENCH(table_axis)},
+    {"section", 0, OPTION_TEXT, "COLUMN", NULL, NULL,
+     "column of texts that names the runs of a log", BENCH(section)},
+    {"minimum", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "shortest stretch of constant reference that counts; default 0.5s", BENCH(minimum)},
+    {"trim", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "left out at both ends of a stretch; default 0.2s", BENCH(trim)},
+    {"settle", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "left out at its beginning besides, until filters have settled; default 0s", BENCH(settle)},
+};
+
+#define COUNT(table) (sizeof(table) / sizeof *(table))
+
+static int run(int count, char **words);
+
+const verb evaluate_verb = {
+    .name = "evaluate",
+    .summary = "references and readings -> linearity, hysteresis, resolution, report",
+    .operands = "FILE...",
+    .operands_minimum = 0,
+    .operands_maximum = IMK_EVALUATION_RUNS_MAX,
+    .examples = {{"imukit evaluate table.csv --limit \"linearity 0.05 %\" --report report.html",
+                  "a table with the columns reference [deg/s] and reading [deg/s], in the order "
+                  "taken"},
+                 {"imukit evaluate steps.csv --motion programme.yaml --static rest.csv --plot "
+                  "deviations.svg",
+                  "a log of a rate table that ran the programme, and one at rest"}},
+    .description =
+        "FILE is a table, CSV with the columns reference and reading (or several: reading_x …) "
+        "with "
+        "their units, and if there are such: direction (up, down; else inferred from the order), "
+        "run (power cycles), sigma; or a log of a sensor with what it was exposed to: columns "
+        "reference_rate_x [deg/s] …, reference_force_x [g] …, table_rate [deg/s] with "
+        "--table-axis, "
+        "or --motion. Every stretch of constant reference of a log is a reading. Each file is a "
+        "run.\n\n"
+        "Every figure comes with an interval. How large the noise is follows from repeated "
+        "readings of one reference, reached from the same side: take each level twice or more. "
+        "docs/evaluate.md has the definitions.",
+    .groups = {{"Options", COUNT(result_options), result_options, 0},
+               {"The test", COUNT(test_options), test_options, 0},
+               {"Reading logs", LOG_INPUT_OPTIONS, log_input_options, BENCH(log)}},
+    .run = run};
+
+/* ---- quantities that need the channel's unit ------------------------------------------------- */
+
+/* A quantity of an option; untouched when it was not given. */
+static int read_quantity(const char *name, const char *text, imk_dimension dimension, double *value)
+{
+    imk_error error;
+    double sigma, found;
+    size_t count;
+    char sentence[400];
+    if (!text)
+        return -1;
+    if (imk_quantity_parse(text, text + strlen(text), dimension, 1, &found, &sigma, &count, NULL,
+                           &error) != IMK_OK) {
+        imk_error_text(&error, NULL, sentence, sizeof sentence);
+        return command_misused("--%s: %s", name, sentence);
+    }
+    if (!(found > 0) && strcmp(name, "zero") != 0)
+        return command_misused("--%s %s: expected a quantity above 0", name, text);
+    *value = found;
+    return -1;
+}
+
+/* Counts become what they stand for. */
+static int apply_sensitivity(const evaluate_options *o, evaluate_channel *c)
+{
+    const imk_dimension counts = imk_unit_of("count").dimension;
+    imk_dimension dimension = counts;
+    double sensitivity = 0, zero = 0;
+    if (!o->sensitivity || !imk_dimension_equal(c->reading_unit.dimension, counts))
+        return -1;
+    for (int k = 0; k < 7; k++)
+        dimension.half[k] = (int8_t)(dimension.half[k] - c->reference_unit.dimension.half[k]);
+    int code = read_quantity("sensitivity", o->sensitivity, dimension, &sensitivity);
+    if (code < 0)
+        code = read_quantity("zero", o->zero, counts, &zero);
+    for (size_t k = 0; code < 0 && k < c->count; k++) {
+        c->reading[k] = (c->reading[k] - zero) / sensitivity;
+        c->sigma[k] /= sensitivity;
+    }
+    if (code < 0)
+        c->reading_unit = c->reference_unit;
+    return code;
+}
+
+static int prepare(const evaluate_options *o, evaluate_channel *c)
+{
+    double largest = 0;
+    c->settings = imk_evaluation_default();
+    c->settings.confidence = o->confidence;
+    int code = apply_sensitivity(o, c);
+    c->settings.same_unit =
+        imk_dimension_equal(c->reading_unit.dimension, c->reference_unit.dimension);
+    for (size_t k = 0; k < c->count; k++)
+        largest = fmax(largest, fabs(c->reference[k]));
+    const imk_dimension dimension = c->reference_unit.dimension;
+    if (code < 0)
+        code = read_quantity("full-scale", o->full_scale, dimension, &c->settings.full_scale);
+    if (c->of_log)
+        c->settings.level_width = 1e-5 * largest;
+    if (code < 0)
+        code = read_quantity("level-width", o->level_width, dimension, &c->settings.level_width);
+    return code;
+}
+
+/* ---- from end to end ------------------------------------------------------------------------- */
+
+static bool all_known(size_t count, const double *sigma)
+{
+    for (size_t k = 0; k < count; k++)
+        if (!isfinite(sigma[k]))
+            return false;
+    return true;
+}
+
+static bool any_direction(const evaluate_channel *c)
+{
+    for (size_t k = 0; k < c->count; k++)
+        if (c->direction[k] != 0)
+            return true;
+    return false;
+}
+
+static int evaluate_channel_table(const evaluate_options *o, evaluate_channel *c)
+{
+    imk_error error;
+    int code = prepare(o, c);
+    if (code >= 0)
+        return code;
+    const imk_evaluation_table table = {.count = c->count,
+                                        .reference = c->reference,
+                                        .reading = c->reading,
+                                        .sigma = all_known(c->count, c->sigma) ? c->sigma : NULL,
+                                        .direction = any_direction(c) ? c->direction : NULL,
+                                        .run = c->run};
+    const size_t size = imk_evaluation_workspace_size(&table);
+    void *workspace = malloc(size);
+    c->level = malloc((c->count > 0 ? c->count : 1) * sizeof *c->level);
+    imk_status status = imk_error_set(&error, IMK_ERROR_MEMORY, "", "", "");
+    if (workspace && c->level)
+        status = imk_evaluate(&table, &c->settings, workspace, size, c->level, c->count, &c->result,
+                              &error);
+    free(workspace);
+    return status == IMK_OK ? -1 : command_error(&error, c->name);
+}
+
+static int show(const evaluation *v)
+{
+    const evaluate_options *o = v->options;
+    const int end =
+        o->strict && (v->missed || command_warning_count() > 0) ? EXIT_FAILED : EXIT_DONE;
+    int code = o->report ? evaluate_report(v, o->report) : -1;
+    if (code >= 0)
+        return code;
+    if (o->json)
+        code = evaluate_json(v, end);
+    else
+        evaluate_print(v);
+    const int drawn = o->plot ? evaluate_draw(v, o->plot) : -1;
+    return drawn >= 0 ? drawn : code >= 0 ? code : end;
+}
+
+static int evaluate(evaluation *v)
+{
+    int code = evaluate_read_limits(v);
+    if (code < 0)
+        code = evaluate_load(v);
+    if (code < 0)
+        code = evaluate_load_rest(v);
+    for (size_t k = 0; code < 0 && k < v->channel_count; k++)
+        code = evaluate_channel_table(v->options, &v->channel[k]);
+    if (code < 0)
+        code = evaluate_check_limits(v);
+    return code < 0 ? show(v) : code;
+}
+
+static void free_evaluation(evaluation *v)
+{
+    for (size_t k = 0; k < v->channel_count; k++) {
+        evaluate_channel *c = &v->channel[k];
+        free(c->reference);
+        free(c->reading);
+        free(c->sigma);
+        free(c->direction);
+        free(c->run);
+        free(c->level);
+    }
+    free(v);
+}
+
+static int run(int count, char **words)
+{
+    const double none = (double)NAN;
+    evaluate_options o = {
+        .confidence = 0.95,
+        .bench = {.minimum = none, .trim = none, .settle = none, .table_axis = -1}};
+    evaluation *v = calloc(1, sizeof *v);
+    if (!v)
+        return command_failed("memory is exhausted");
+    v->options = &o;
+    int code = options_parse(&evaluate_verb, count, words, &o, v->path);
+    if (code < 0)
+        code = command_check_plot(o.plot);
+    while (v->path_count < IMK_EVALUATION_RUNS_MAX && v->path[v->path_count])
+        v->path_count++;
+    if (code < 0 && v->path_count == 0 && !o.rest)
+        code = command_misused("an operand is missing: imukit evaluate FILE..., or --static LOG");
+    if (code < 0)
+        code = evaluate(v);
+    free_evaluation(v);
+    return code;
+}

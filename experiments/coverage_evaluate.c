@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Do the intervals of a laboratory table hold the truth as often as they say? Tables are drawn with
+ * normal noise, up and down, in one or more runs; the truth is what the same table without noise
+ * gives.
+ *
+ *     coverage_evaluate [TABLES] [SEED]
+ *
+ * Share of 95 % intervals that hold the truth, and the bias of the value in standard deviations. */
+#include "../tests/calibrate/evaluation_bench.h"
+
+#include <stdio.h>
+
+static const char *const names[EVALUATION_FIGURES] = {"precision", "sensitivity", "zero",
+                                                      "accuracy",  "coverage",    "linearity",
+                                                      "best",      "hysteresis",  "asymmetry"};
+
+int main(int argc, char **argv)
+{
+    const int tables = argc > 1 ? atoi(argv[1]) : 3000;
+    const uint64_t seed = argc > 2 ? (uint64_t)atoll(argv[2]) : 1;
+    if (tables < 1) {
+        fputs("usage: coverage_evaluate [TABLES] [SEED]\n", stderr);
+        return 2;
+    }
+    for (size_t p = 0; p < EVALUATION_PLANS; p++) {
+        evaluation_score score[EVALUATION_FIGURES] = {{0}};
+        evaluation_cover(&evaluation_plans[p], (uint32_t)p, tables, seed, score);
+        printf("%s\n", evaluation_plans[p].name);
+        for (int k = 0; k < EVALUATION_FIGURES; k++) {
+            const evaluation_score *s = &score[k];
+            const double n = s->stated, mean = s->sum / n;
+            const double sigma = sqrt(s->square / n - mean * mean);
+            if (s->stated > 0)
+                printf("  %-12s held %6.2f %%  (too high %.2f %%, too low %.2f %%)  bias %+.3f "
+                       "sigma\n",
+                       names[k], 100.0 * (n - s->high - s->low) / n, 100.0 * s->high / n,
+                       100.0 * s->low / n, mean / sigma);
+        }
+    }
+    return 0;
+}

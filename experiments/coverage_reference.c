@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Do the stated intervals of the procedures with a reference hold the truth? Simulated bench tests
+ * of raw samples at 100 Hz: rate table in steps and sines, tumble, centrifuge, spin, each unit with
+ * errors of its own, white noise, bias instability, rounded increments and an encoder of 2e-7 rad.
+ *
+ * usage: coverage_reference [BENCHES] [SEED] [PROCEDURE]
+ *
+ * Prints for every parameter how often the 95 % interval holds the truth and the mean and root mean
+ * square of the errors in sigmas; then the same with a tenth of the holds disturbed. Of sines, in
+ * blocks of 50 ms, a tenth of BENCHES are done, of spins a fifth. */
+#include "../tests/calibrate/coverage.h"
+#include "../tests/calibrate/reference_bench.h"
+
+static const struct {
+    const char *name;
+    imk_procedure procedure;
+    void (*programme)(bench *);
+    size_t part; /* of the benches asked for: thousands of observations take their time */
+} programmes[] = {
+    {"rate-table, steps", IMK_PROCEDURE_RATE_TABLE, bench_rate_steps, 1},
+    {"rate-table, sine", IMK_PROCEDURE_RATE_TABLE, bench_rate_sine, 10},
+    {"tumble", IMK_PROCEDURE_TUMBLE, bench_tumble, 1},
+    {"centrifuge", IMK_PROCEDURE_CENTRIFUGE, bench_centrifuge, 1},
+    {"spin", IMK_PROCEDURE_SPIN, bench_spin, 5},
+};
+
+static void run(size_t which, size_t benches, uint64_t seed, double bad)
+{
+    bench *b = malloc(sizeof *b);
+    coverage_count count = {0};
+    if (!b)
+        return;
+    bench_start(b, programmes[which].procedure, programmes[which].programme);
+    if (b->procedure == IMK_PROCEDURE_TUMBLE)
+        b->settings.nonlinear = true;
+    if (b->procedure == IMK_PROCEDURE_RATE_TABLE)
+        b->settings.sine_block = 0.05;
+    for (size_t i = 0; i < benches; i++) {
+        imk_error error;
+        bench_log(b, seed * 1000000 + i, bad);
+        if (bench_solve(b, &error) == IMK_OK) {
+            coverage_add(&count, &b->result, &b->truth, 0.95);
+            continue;
+        }
+        if (count.failed++ == 0)
+            printf("%s: %s %s %g %g\n", imk_status_name(error.status), error.field, error.expected,
+                   error.value, error.limit);
+    }
+    printf("%s, %.0f %% bad: %zu benches, %zu refused, %zu observations, not determined:",
+           programmes[which].name, 100.0 * bad, count.benches, count.failed,
+           b->findings.observations);
+    for (size_t i = 0; i < b->findings.undetermined_count && i < IMK_UNDETERMINED_MAX; i++) {
+        char name[IMK_MODEL_PARAMETER_NAME];
+        if (imk_model_parameter_name(b->findings.undetermined[i], name) == IMK_OK)
+            printf(" %s", name);
+    }
+    printf("\n  factors %.3f %.3f, refused %zu\n", b->result.group[IMK_GROUP_GYRO].factor,
+           b->result.group[IMK_GROUP_ACCEL].factor, b->result.observations_refused);
+    coverage_print(&count, stdout);
+    free(b->workspace);
+    free(b);
+}
+
+int main(int argc, char **argv)
+{
+    const size_t benches = argc > 1 ? (size_t)atol(argv[1]) : 3000;
+    const uint64_t seed = argc > 2 ? (uint64_t)atol(argv[2]) : 1;
+    const int only = argc > 3 ? atoi(argv[3]) : -1;
+    for (size_t i = 0; i < sizeof programmes / sizeof *programmes; i++)
+        for (int bad = 0; bad < 2; bad++)
+            if (only < 0 || (size_t)only == i)
+                run(i, (benches + programmes[i].part - 1) / programmes[i].part, seed, 0.1 * bad);
+    return 0;
+}

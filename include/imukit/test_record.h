@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file test_record.h
+ *  A log of a bench test in memory: what calibration and evaluation start from. */
+#ifndef IMUKIT_TEST_RECORD_H
+#define IMUKIT_TEST_RECORD_H
+
+#include "imukit/distort.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The samples of one log, the caller's arrays. Sample k is the mean over the interval that ends at
+ *  its time. Everything is SI but readings, which are in counts where the unit outputs counts. */
+typedef struct imk_test_record {
+    const char *name; /**< of the log, for messages */
+    size_t count;
+    double dt;          /**< usual sample interval [s] */
+    const double *time; /**< increasing [s]; NULL: k dt. A step above 1.5 dt is a gap */
+    int axis_count[2];  /**< of gyros, of accelerometers; 0: the log has none */
+    const double *reading[2][IMK_AXES_MAX]; /**< NaN: missing */
+    bool counts[2];                         /**< readings are counts */
+    const double *temperature;              /**< [K]; NULL: not known */
+    /** What the body was exposed to, as the table, the dividing head or the programme says: means
+     *  over the samples, nominal body axes; rate in inertial space [rad/s], specific force
+     *  [m/s^2], gravity included. NULL: not known. */
+    const double *reference_rate[3], *reference_force[3];
+    const double *reference_acceleration[3]; /**< angular [rad/s^2]; NULL: zero */
+    const int *section; /**< per sample: index of the label of a section, -1: none; NULL: none */
+    size_t section_count;
+    const char *const *section_name; /**< section_count names */
+} imk_test_record;
+
+#ifdef __cplusplus
+}
+#endif
+#endif
