@@ -13,6 +13,9 @@ static const char *const column_names[2] = {"gyro", "accel"};
  * and the factors asked for are farther apart. */
 static const double factor_tolerance = 0.12;
 
+/* Residuals this far above the noise are not a trembling hand: the model is another one. */
+static const double residual_alarm = 100;
+
 char axis_letter(int axis)
 {
     return axis < 0 ? '?' : axis < 3 ? "xyz"[axis] : (char)('0' + axis);
@@ -167,8 +170,41 @@ static calibrate_sentence one_plane(const bench *b, const bench_log *log,
         known ? "; most would tell " : "", poses);
 }
 
-static calibrate_sentence never_static(const bench_log *log)
+/* Whole numbers in the unit of the file, of some size: counts, whatever the header says. */
+static bool is_whole(const bench_log *log, int sensor)
 {
+    enum { LOOKED_AT = 4096 };
+    const imk_quantity kinds[2] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
+    const int column = imk_log_find(&log->log, kinds[sensor], 0);
+    const double scale = column >= 0 ? log->log.column[column].unit.scale : 0;
+    double largest = 0;
+    for (int axis = 0; axis < log->record.axis_count[sensor]; axis++)
+        for (size_t row = 0; row < log->record.count && row < LOOKED_AT; row++) {
+            const double number = log->record.reading[sensor][axis][row] / scale;
+            if (!isfinite(number))
+                continue;
+            if (fabs(number - round(number)) > 1e-9 * fmax(1, fabs(number)))
+                return false;
+            largest = fmax(largest, fabs(number));
+        }
+    return largest > 20;
+}
+
+static calibrate_sentence never_static(const bench *b, const bench_log *log)
+{
+    for (int sensor = 1; sensor >= 0; sensor--)
+        if (!log->record.counts[sensor] && is_whole(log, sensor))
+            return sentence_make(
+                LEVEL_USELESS, "counts",
+                "no rest is found, and the %s readings are whole numbers: if they are counts, not "
+                "%s, write [count] into the header (or give --%s-unit count)",
+                sensor_names[sensor], unit_of_column(log, sensor), column_names[sensor]);
+    if (!isnan(b->options->minimum))
+        return sentence_make(
+            LEVEL_USELESS, "never_static",
+            "the unit never stands still for %.4g s, which --minimum asks for: shorten it, or rest "
+            "longer in each pose",
+            b->options->minimum);
     return sentence_make(
         LEVEL_USELESS, "never_static",
         "the unit never stands still for long enough: %.2g %% of the log does, by windows "
@@ -217,7 +253,7 @@ static calibrate_sentence on_log(const bench *b, const bench_log *log, const imk
     const char *sensor = d->sensor >= 0 ? sensor_names[d->sensor] : "sensor";
     switch (d->kind) {
     case IMK_DOUBT_NEVER_STATIC:
-        return never_static(log);
+        return never_static(b, log);
     case IMK_DOUBT_NEVER_MOVES:
         return sentence_make(
             LEVEL_USELESS, "never_moves",
@@ -234,9 +270,10 @@ static calibrate_sentence on_log(const bench *b, const bench_log *log, const imk
     case IMK_DOUBT_SATURATED:
         return sentence_make(
             LEVEL_WARNING, "saturated",
-            "%s %c is at the end of its range in %.3g %% of the poses, which are left out: "
-            "choose a larger range in the device, or poses without this axis along gravity",
-            sensor, axis_letter(d->axis), 100 * d->value);
+            "%s %c is at the end of its range in %.3g %% of the log; the %s it spoils are left "
+            "out: choose a larger range in the device, or %s",
+            sensor, axis_letter(d->axis), 100 * d->value, d->sensor == 0 ? "turns" : "poses",
+            d->sensor == 0 ? "turn more slowly" : "poses without this axis along gravity");
     case IMK_DOUBT_COUNTS:
         return sentence_make(
             LEVEL_USELESS, "counts",
@@ -281,6 +318,13 @@ static calibrate_sentence on_solution(const bench *b, const imk_doubt_finding *d
 {
     switch (d->kind) {
     case IMK_DOUBT_RESIDUALS:
+        if (sqrt(d->value) > residual_alarm)
+            return sentence_make(
+                LEVEL_WARNING, "residuals",
+                "the residuals are %.3g times what the noise within the holds explains: the model "
+                "does not describe this log. Check the signs and order of the axes, labels, and "
+                "that the log is of the procedure named",
+                sqrt(d->value));
         return sentence_make(
             LEVEL_NOTE, "residuals",
             "the residuals are %.3g times what the noise within the holds explains "

@@ -67,7 +67,21 @@ static int unit_missing(const bench *b, const bench_log *log, const imk_error *e
         gyro ? "gyro" : "accel", gyro ? "4778 count/(rad/s)" : "415 count/(m/s^2)");
 }
 
-/* Columns without a single number. */
+/* Share of the rows in which a sensor has no number. */
+static double missing_share(const imk_test_record *record)
+{
+    size_t rows = 0;
+    for (size_t row = 0; row < record->count; row++) {
+        bool missing = false;
+        for (int sensor = 0; sensor < 2; sensor++)
+            for (int axis = 0; axis < record->axis_count[sensor]; axis++)
+                missing = missing || !isfinite(record->reading[sensor][axis][row]);
+        rows += missing;
+    }
+    return record->count > 0 ? (double)rows / (double)record->count : 0;
+}
+
+/* Columns without a single number, or rows. */
 static int not_finite(const bench_log *log, const imk_error *error)
 {
     static const char *const names[2] = {"gyro", "accel"};
@@ -82,7 +96,28 @@ static int not_finite(const bench_log *log, const imk_error *error)
                                       log->path, names[sensor],
                                       axis < 3 ? "xyz"[axis] : '0' + axis);
         }
+    const double missing = missing_share(&log->record);
+    if (missing > 0)
+        return command_failed("%s: %.3g %% of its rows have an empty cell, or one that is no "
+                              "number, in a gyro or accelerometer column, and no stretch between "
+                              "them is long enough: log all sensors at one rate, or leave a sensor "
+                              "out by --columns (- skips a column)",
+                              log->path, 100 * missing);
     return command_error(error, log->path);
+}
+
+/* Readings that do not do what the reference does. */
+static int not_following(const bench_log *log, const imk_error *error)
+{
+    const bool of_axis = error->index >= 0 &&
+                         (strcmp(error->field, "gyro") == 0 || strcmp(error->field, "accel") == 0);
+    if (!of_axis)
+        return command_error(error, log->path);
+    return command_failed("%s: %s_%c changes by %.3g times what the reference changes by, where 1 "
+                          "is due: check the unit, the signs and the order of the axes, and that "
+                          "the log and the programme are of the same test and begin together "
+                          "(--motion-offset auto)",
+                          log->path, error->field, axis_letter(error->index), error->value);
 }
 
 int bench_observe_failed(const bench *b, const bench_log *log, const imk_error *error)
@@ -101,6 +136,8 @@ int bench_observe_failed(const bench *b, const bench_log *log, const imk_error *
         return unit_missing(b, log, error);
     case IMK_ERROR_NOT_FINITE:
         return not_finite(log, error);
+    case IMK_ERROR_CONFLICT:
+        return not_following(log, error);
     default:
         return command_error(error, log->path);
     }
@@ -143,6 +180,13 @@ static int undetermined(const bench *b, const imk_error *error)
     char poses[120] = "";
     if (imk_model_parameter_parse(error->field, &parameter) != IMK_OK)
         return command_error(error, NULL);
+    const imk_triad *triad =
+        parameter.sensor == 0 ? &b->calibration->model.gyro : &b->calibration->model.accel;
+    if (triad->axis_count > 3 && !b->options->model && !b->options->into)
+        return command_failed("the log has %d %s axes, and where they point is not known: add "
+                              "--model MODEL that says so, as %s.direction",
+                              triad->axis_count, parameter.sensor == 0 ? "gyro" : "accelerometer",
+                              parameter.sensor == 0 ? "gyro" : "accel");
     const bool known = b->log_count == 1 && b->log[0].procedure == IMK_PROCEDURE_MULTIPOSITION &&
                        bench_advise(b, &b->log[0], poses, sizeof poses);
     return command_failed("the logs do not determine %s: %s%s%s", error->field,

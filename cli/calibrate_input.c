@@ -148,6 +148,25 @@ static int fill_record(const bench *b, bench_log *log)
     return code;
 }
 
+/* Long enough for what was asked. */
+static int check_length(const calibrate_options *o, const bench_log *log)
+{
+    const struct {
+        const char *option;
+        double value;
+    } times[] = {{"initial-rest", o->initial_rest}, {"window", o->window}, {"minimum", o->minimum}};
+    const double length = (double)log->record.count * log->record.dt;
+    if (log->record.count < 2)
+        return command_failed("%s has one row of data; a test takes thousands, some seconds of "
+                              "each pose or step",
+                              log->path);
+    for (size_t k = 0; k < sizeof times / sizeof times[0]; k++)
+        if (times[k].value > length)
+            return command_misused("--%s %.6gs is longer than %s, which has %.4g s",
+                                   times[k].option, times[k].value, log->path, length);
+    return -1;
+}
+
 int bench_load(bench *b, bench_log *log)
 {
     imk_error error;
@@ -160,7 +179,8 @@ int bench_load(bench *b, bench_log *log)
     progress_end(&p);
     if (status != IMK_OK)
         return command_log_error(&error, log->path);
-    return fill_record(b, log);
+    int code = fill_record(b, log);
+    return code < 0 ? check_length(b->options, log) : code;
 }
 
 void bench_log_free(bench_log *log)

@@ -270,11 +270,42 @@ static int choose_frame(bench *b)
     return -1;
 }
 
+/* An option that no procedure looks at was meant for another one. */
+static int check_used(const bench *b)
+{
+    const calibrate_options *o = b->options;
+    bool referenced = false, ferraris = false, thermal = false;
+    for (size_t k = 0; k < b->log_count && !b->repeatability; k++) {
+        const imk_procedure p = b->log[k].procedure;
+        ferraris = ferraris || p == IMK_PROCEDURE_FERRARIS;
+        thermal = thermal || p == IMK_PROCEDURE_THERMAL;
+        referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
+                     p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
+    }
+    const char *none = "--%s is not used by --procedure %s: it is of %s";
+    if (o->motion && !referenced && !thermal)
+        return command_misused(none, "motion", o->procedure,
+                               "rate-table, tumble, centrifuge, spin and thermal");
+    if (o->motion_offset && !o->motion)
+        return command_misused("--motion-offset is of --motion");
+    if (o->table_axis >= 0 && !referenced)
+        return command_misused(none, "table-axis", o->procedure, "rate-table");
+    if (!isnan(o->turn_angle) && !ferraris)
+        return command_misused(none, "turn-angle", o->procedure, "ferraris");
+    if (o->temperature_order > 0 && !thermal)
+        return command_misused(none, "temperature-order", o->procedure, "thermal");
+    if (!isnan(o->reference_temperature) && !thermal)
+        return command_misused(none, "reference-temperature", o->procedure, "thermal");
+    return -1;
+}
+
 int bench_choose(bench *b)
 {
     imk_calibration_default(b->calibration);
     b->calibration->robust = b->options->robust == 0;
     int code = assign_procedures(b);
+    if (code < 0)
+        code = check_used(b);
     if (code < 0)
         code = set_place(b);
     if (code < 0)

@@ -71,6 +71,10 @@ static int take_table(const bench *b, bench_log *log)
 {
     int column;
     int code = find_column(log, "table_rate", "deg/s", &column);
+    if (code < 0 && column < 0 && b->options->table_axis >= 0 &&
+        log->procedure == IMK_PROCEDURE_RATE_TABLE)
+        return command_failed("%s has no column table_rate [deg/s], whose axis --table-axis names",
+                              log->path);
     if (code >= 0 || column < 0)
         return code;
     if (b->options->table_axis < 0)
@@ -206,9 +210,10 @@ static void check_offset(const bench_log *log)
         fabs(shift.offset) < log->record.dt + 5 * shift.sigma)
         return;
     command_warn("motion_offset",
-                 "%s follows the programme best when that begins %.4f s later in the log than it "
-                 "was told (1 sigma %.2g s): add --motion-offset %.4fs, or auto",
-                 log->path, shift.offset, shift.sigma, log->motion_offset + shift.offset);
+                 "%s follows the programme best when that begins %.4f s %s in the log than it "
+                 "was told (1 sigma %.2g s): give --motion-offset %.4fs, or auto",
+                 log->path, fabs(shift.offset), shift.offset > 0 ? "later" : "earlier", shift.sigma,
+                 log->motion_offset + shift.offset);
 }
 
 static int take_motion(const bench *b, bench_log *log)

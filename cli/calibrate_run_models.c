@@ -172,11 +172,10 @@ static void take_axes(bench *b, const imk_model *first)
 int bench_compare_models(bench *b)
 {
     imk_calibration_result *result = calloc(b->log_count, sizeof *result);
-    const imk_calibration_result **run = calloc(b->log_count, sizeof *run);
+    const imk_calibration_result *run[IMK_TEST_RECORDS_MAX];
     imk_model *first = calloc(1, sizeof *first);
     b->runs = calloc(1, sizeof *b->runs);
-    int code =
-        result && run && first && b->runs ? bench_choose(b) : command_failed("memory is exhausted");
+    int code = result && first && b->runs ? bench_choose(b) : command_failed("memory is exhausted");
     for (size_t k = 0; code < 0 && k < b->log_count; k++) {
         run[k] = &result[k];
         code = load(b, k, first, &result[k]);
@@ -188,7 +187,6 @@ int bench_compare_models(bench *b)
     if (code < 0)
         code = compare(b, run);
     free(result);
-    free(run);
     free(first);
     return code;
 }

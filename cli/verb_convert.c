@@ -59,7 +59,8 @@ const verb convert_verb = {
         "A log is .csv (also .gz, .zst) or .npy; - is standard input or output, as CSV. Increments "
         "become rates. Values keep their units unless an option changes them.\n\n"
         "A model (.yaml, .yml, .json) is converted between YAML and JSON. Parameter files of "
-        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and ardupilot "
+        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and "
+        "ardupilot "
         "are recognised by their content; what was assumed about units and densities, and what a "
         "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
     .groups = {{"Options", sizeof convert_option_table / sizeof convert_option_table[0],

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Do the stated intervals hold the truth when the noise is slower than the test? Rate table in
  * steps and tumble as in coverage_reference.c, raw samples at 100 Hz, of units whose gyros have a
- * bias instability of 5 deg/h at 0.15 deg/sqrt(h), and a rate random walk, and whose accelerometers
- * have 30 ug at 50 ug/sqrt(Hz). Once the calibration is told the noise, once not.
+ * bias instability of 5 deg/h at 0.15 deg/sqrt(h), and whose accelerometers
+ * have 30 ug at 50 ug/sqrt(Hz); then with a random walk and a Gauss-Markov process of a
+ * minute besides. Once the calibration is told the noise, once not.
  *
  * usage: coverage_slow_noise [BENCHES] [SEED]
  *
  * Prints for every parameter how often the 95 % interval holds the truth and the mean and root mean
- * square of the errors in sigmas. 3000 benches take about 3 minutes. */
+ * square of the errors in sigmas. Without the noise told a tenth of BENCHES are done. 3000 take
+ * about 2 minutes. */
 #include "../tests/calibrate/coverage.h"
 #include "../tests/calibrate/slow_units.h"
 

@@ -88,10 +88,12 @@ typedef struct imk_observation {
 /** A turn between two observations at unknown attitudes of one record: the gyros must carry the
  *  vertical of `from` to that of `to`. */
 typedef struct imk_turn {
-    int from, to;      /**< observations */
-    size_t begin, end; /**< samples of the record integrated: from the middle of one rest into the
-                            other, or less */
-    double sigma;      /**< of the angle, from the noise of the gyros [rad], > 0 */
+    int from, to;       /**< observations */
+    size_t begin, end;  /**< samples of the record integrated: from the middle of one rest into the
+                             other, or less */
+    double sigma;       /**< of the angle about each axis across the vertical [rad], > 0 */
+    double earth_sigma; /**< the part of it that is the Earth's horizontal rate, whose heading is
+                           not known [rad], 0 (none) or more, < sigma: a root mean square */
     /* Filled by imk_calibration_solve(): */
     double residual[2]; /**< across the vertical [rad] */
     double angle;       /**< turned by [rad] */

@@ -24,6 +24,7 @@ typedef struct imk_firmware_file_settings {
                          _; NULL: "imukit_" and the name of the model */
     uint32_t vectors; /**< in the test's table, default 64; 1 … 1 000 000 */
 } imk_firmware_file_settings;
+/** Names from the model, 64 vectors. */
 IMK_API imk_firmware_file_settings imk_firmware_file_default(void);
 
 /** The name the files will have: as set, or made of the model's. */

@@ -12,7 +12,7 @@ const char *imk_triad_frame_name(imk_triad_frame frame)
 {
     static const char *const names[] = {"upper-triangular", "lower-triangular", "symmetric",
                                         "reference"};
-    return (int)frame >= 0 && (size_t)frame < sizeof names / sizeof *names ? names[frame] : NULL;
+    return (unsigned)frame < sizeof names / sizeof *names ? names[frame] : NULL;
 }
 
 void imk_calibration_default(imk_calibration *calibration)

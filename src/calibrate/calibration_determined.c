@@ -74,7 +74,7 @@ imk_status imki_check_determined(imki_estimator *e, double *weakest, imk_error *
                 largest = i;
         return not_determined(e, largest, value[0], least_eigenvalue, error);
     }
-    if (imki_estimator_covariance(e) != IMK_OK)
+    if (imki_built_covariance(e) != IMK_OK)
         return not_determined(e, 0, 0.0, least_eigenvalue, error);
     size_t worst = 0;
     double sigma = 0.0;

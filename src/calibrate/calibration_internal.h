@@ -24,7 +24,8 @@ void imki_calibration_regressors(const imk_model *model, size_t count,
 /* Integrate the gyros of a record over samples begin … end - 1, corrected by the model, and carry
  * the direction `start` (unit, body axes at the beginning) to the end:
  *
- *     end = C^T start,   C from the corrected rates less the vertical part of the Earth's rate
+ *     end = C^T start,   C from the corrected rates; the vertical part of the Earth's rate turns
+ *                        about the direction carried and does not move it
  *
  * and its derivatives by the free parameters (3 x count, column p of row-major jacobian[3*count])
  * and by a small rotation of `start`: d end = turn * d start (3 x 3). Forces for g-sensitivity are

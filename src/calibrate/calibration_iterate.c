@@ -8,71 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* The turn in use that ends at an observation; -1: none. */
-static int turn_into(const imki_estimator *e, size_t index)
-{
-    for (size_t t = 0; t < e->turns; t++)
-        if (e->problem->turn[t].to == (int)index && e->turn[t].usable && e->turns_known &&
-            e->weight[e->observations + t] > 0.5 &&
-            e->earth_first[e->problem->turn[t].from] >= 0)
-            return (int)t;
-    return -1;
-}
-
-/* A component of the Earth's horizontal rate at a rest, off what is known: it is what the gyros
- * have carried there from the rest before, to some hundredths of it by their heading; where nothing
- * leads there only its size is known. */
-static void horizontal_row(const imki_estimator *e, const imki_point *point, size_t index,
-                           int turn, const double across[3], size_t k, imki_row *row)
-{
-    const size_t local = (size_t)e->earth_first[index];
-    *row = (imki_row){.residual = -dot(across, point->horizontal[index]),
-                      .sigma = sqrt(e->horizontal_variance),
-                      .locals = 1,
-                      .local = {local + k},
-                      .by_local = {1.0}};
-    if (turn < 0)
-        return;
-    const size_t from = (size_t)e->problem->turn[turn].from;
-    const double *d = e->turn[turn].turn;
-    double start[2][3];
-    row->sigma *= 0.03;
-    imki_across(point->attitude[from], start[0], start[1]);
-    for (size_t j = 0; j < 3; j++)
-        row->residual += across[j] * dot(d + 3 * j, point->horizontal[from]);
-    for (size_t l = 0; l < 2; l++) {
-        double by = 0.0;
-        for (size_t j = 0; j < 3; j++)
-            by -= across[j] * dot(d + 3 * j, start[l]);
-        row->local[row->locals] = (size_t)e->earth_first[from] + l;
-        row->by_local[row->locals++] = by;
-    }
-}
-
-static double horizontal_cost(imki_estimator *e, const imki_point *point, size_t index, bool build)
-{
-    if (e->earth_first[index] < 0)
-        return 0.0;
-    const int turn = turn_into(e, index);
-    double across[2][3], cost = 0.0;
-    imki_across(point->attitude[index], across[0], across[1]);
-    for (size_t k = 0; k < 2; k++) {
-        imki_row *row = &e->row[0];
-        horizontal_row(e, point, index, turn, across[k], k, row);
-        const double information = 1.0 / (row->sigma * row->sigma);
-        cost += information * row->residual * row->residual;
-        if (build)
-            imki_normal_add(&e->normal, row, information);
-    }
-    return cost;
-}
-
-/* What is known before: parameters, fixtures, the Earth's vertical rate; sums into the normal
+/* What is known before: parameters, fixtures, the Earth's rate; sums into the normal
  * equations when `build`. */
 static double prior_cost(imki_estimator *e, const imki_point *point, bool build)
 {
@@ -100,8 +36,7 @@ static double prior_cost(imki_estimator *e, const imki_point *point, bool build)
             e->normal.global_gradient[g] += off / sigma;
         }
     }
-    for (size_t i = 0; i < e->observations; i++)
-        cost += horizontal_cost(e, point, i, build);
+    cost += imki_earth_cost(e, point, build);
     for (size_t i = 0; i < e->observations; i++) {
         const imk_observation *o = &problem->observation[i];
         if (o->knowledge != IMK_INPUT_PLACED || e->local_first[i] < 0)
@@ -179,15 +114,8 @@ static void move(imki_estimator *e)
         }
         for (int j = 0; j < 3; j++)
             attitude[j] /= sqrt(square);
-        if (e->earth_first[i] < 0)
-            continue;
-        double *horizontal = e->trial.horizontal[i], along = 0.0;
-        for (int j = 0; j < 3; j++) {
-            horizontal[j] += a[j] * step[2] + b[j] * step[3];
-            along += attitude[j] * horizontal[j];
-        }
-        for (int j = 0; j < 3; j++)
-            horizontal[j] -= along * attitude[j];
+        if (e->earth[i])
+            imki_earth_move(attitude, a, b, step + 2, e->trial.horizontal[i]);
     }
 }
 
@@ -232,6 +160,8 @@ imk_status imki_iterate(imki_estimator *e, int steps, bool *converged)
             damping = damping > 1e-8 ? 0.1 * damping : 0.0;
             e->cost = cost;
         } else if (damping > 1e8) {
+            if (stepped)
+                (void)imki_build(e, &e->now);
             break; /* no step however short helps */
         } else {
             damping = damping > 0.0 ? 10.0 * damping : 1e-6;
@@ -276,7 +206,7 @@ static double left_out(const imki_estimator *e)
             continue;
         moved_by(e, t, moved);
         const double size = sqrt(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2]);
-        largest = fmax(largest, size * (size + 0.01) / e->problem->turn[t].sigma);
+        largest = fmax(largest, size * (size + 0.01) / e->turn[t].sigma);
     }
     return largest;
 }
@@ -313,7 +243,7 @@ double imki_turns_linearise(imki_estimator *e, double tolerance)
             continue;
         }
         for (int j = 0; j < 3; j++) {
-            const double change = fabs(prediction.end[j] - before[j]) / turn->sigma;
+            const double change = fabs(prediction.end[j] - before[j]) / linear->sigma;
             if (!(change <= largest))
                 largest = change;
         }

@@ -131,9 +131,12 @@ imk_status imki_normal_factor(imki_normal *n, double damping)
         n->schur[i * g + i] *= 1.0 + damping;
     for (size_t k = 0; k < n->locals; k++) {
         const double *row = n->half + k * g;
-        for (size_t i = 0; i < g; i++)
-            for (size_t j = 0; row[i] != 0.0 && j <= i; j++)
-                n->schur[i * g + j] -= row[i] * row[j];
+        for (size_t i = 0; i < g; i++) {
+            const double weight = row[i];
+            double *restrict sum = n->schur + i * g;
+            for (size_t j = 0; weight != 0.0 && j <= i; j++)
+                sum[j] -= weight * row[j];
+        }
     }
     return imk_cholesky_factor(g, n->schur);
 }

@@ -164,7 +164,7 @@ static imk_status step(imki_estimator *e)
 {
     bool converged;
     const imk_status status = imki_iterate(e, STEPS, &converged);
-    return status == IMK_OK ? imki_estimator_covariance(e) : status;
+    return status == IMK_OK ? imki_built_covariance(e) : status;
 }
 
 /* Least squares over all items show no bad one; but several might hide each other. Their scatter
@@ -283,7 +283,7 @@ static imk_status try_half(imki_estimator *e, int trial)
         e->factor[g] = 1.0;
     imk_status status = imki_iterate(e, TRIAL_STEPS, &converged);
     if (status == IMK_OK)
-        status = imki_estimator_covariance(e);
+        status = imki_built_covariance(e);
     for (int round = 0; status == IMK_OK && round < TRIAL_ROUNDS; round++)
         status = reweigh_once(e, true, &change);
     return status;

@@ -10,6 +10,8 @@
  *
  *     force = g n,   rate = (Earth's vertical rate) n,   n' = n + a d1 + b d2, normalised.
  *
+ * and where turns join rests, the horizontal rate h besides (calibration_earth.c).
+ *
  * A turn carries the vertical n of one rest to e; across the vertical m of the next, with unit
  * vectors a and b, the residual is minus (angle between e and m) (a.e, b.e)/sin(angle). */
 #include "calibrate/estimator_internal.h"
@@ -97,7 +99,9 @@ static void expose(const imki_estimator *e, const imki_point *point, size_t inde
         for (int j = 0; j < 3; j++) {
             x->vertical[j] = attitude[j];
             x->input.force[j] = e->problem->gravity * attitude[j];
-            x->input.rate[j] = rate * attitude[j] + point->horizontal[index][j];
+            x->input.rate[j] = rate * attitude[j];
+            if (e->earth[index])
+                x->input.rate[j] += point->horizontal[index][j];
         }
         imki_across(attitude, x->a, x->b);
         return;
@@ -190,9 +194,9 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
                 by[j] = y.by_force[j] * problem->gravity + y.by_rate[j] * rate;
             add_local(row, (size_t)first, dot(by, x.a));
             add_local(row, (size_t)first + 1, dot(by, x.b));
-            if (sensor == IMK_GYRO && e->earth_first[index] >= 0) {
-                add_local(row, (size_t)e->earth_first[index], dot(y.by_rate, x.a));
-                add_local(row, (size_t)e->earth_first[index] + 1, dot(y.by_rate, x.b));
+            if (sensor == IMK_GYRO && e->earth[index]) {
+                add_local(row, (size_t)first + 2, dot(y.by_rate, x.a));
+                add_local(row, (size_t)first + 3, dot(y.by_rate, x.b));
             }
             if (e->vertical_global >= 0)
                 add_global(row, e->vertical_global, dot(y.by_rate, x.vertical));
@@ -206,17 +210,21 @@ static int turn_rows(const imki_estimator *e, const imki_point *point, size_t in
     const imki_linear_turn *linear = &e->turn[index];
     const double *jacobian = e->turn_jacobian + index * 3 * e->parameters;
     const double *from = point->attitude[turn->from], *to = point->attitude[turn->to];
-    double end[3], across[2][3], start[2][3], carried[3] = {0.0, 0.0, 0.0};
-    const int earth = e->earth_first[turn->from];
+    double end[3], across[2][3], start[2][3];
+    const bool earth = e->earth[turn->from];
     if (!linear->usable)
         return 0;
-    add_cross(point->horizontal[turn->from], from, carried);
     for (int j = 0; j < 3; j++) {
-        end[j] = dot(linear->turn + 3 * j, from) +
-                 linear->duration * dot(linear->turn + 3 * j, carried);
+        end[j] = dot(linear->turn + 3 * j, from);
         for (size_t p = 0; p < e->parameters; p++)
             end[j] +=
                 jacobian[(size_t)j * e->parameters + p] * (point->global[p] - e->turn_reference[p]);
+    }
+    if (earth) {
+        double moved[3] = {0.0, 0.0, 0.0};
+        add_cross(point->horizontal[turn->from], from, moved);
+        for (int j = 0; j < 3; j++)
+            end[j] += linear->duration * dot(linear->turn + 3 * j, moved);
     }
     imki_across(to, across[0], across[1]);
     imki_across(from, start[0], start[1]);
@@ -229,7 +237,7 @@ static int turn_rows(const imki_estimator *e, const imki_point *point, size_t in
                           .sensor = -1,
                           .axis = i,
                           .residual = -stretch * dot(across[i], end),
-                          .sigma = turn->sigma};
+                          .sigma = linear->sigma};
         const size_t a = (size_t)e->local_first[turn->from], b = (size_t)e->local_first[turn->to];
         for (size_t k = 0; k < 2; k++) {
             double moved[3];
@@ -238,12 +246,12 @@ static int turn_rows(const imki_estimator *e, const imki_point *point, size_t in
             add_local(row, a + k, stretch * dot(across[i], moved));
         }
         add_local(row, b + (size_t)i, -1.0);
-        for (size_t k = 0; earth >= 0 && k < 2; k++) {
+        for (size_t k = 0; earth && k < 2; k++) {
             double by_rate[3] = {0.0, 0.0, 0.0}, moved[3];
             add_cross(start[k], from, by_rate);
             for (int j = 0; j < 3; j++)
                 moved[j] = linear->duration * dot(linear->turn + 3 * j, by_rate);
-            add_local(row, (size_t)earth + k, stretch * dot(across[i], moved));
+            add_local(row, a + 2 + k, stretch * dot(across[i], moved));
         }
         for (size_t p = 0; p < e->parameters; p++) {
             if (e->problem->parameter[p].sensor != IMK_GYRO)

@@ -4,7 +4,6 @@
 
 #include "base/workspace_internal.h"
 #include "imukit/attitude.h"
-#include "imukit/elementary.h"
 #include "model/model_internal.h"
 
 #include <math.h>
@@ -18,26 +17,10 @@ static bool has_locals(const imk_observation *o)
            (o->knowledge == IMK_INPUT_PLACED && o->placement_sigma > 0.0);
 }
 
-/* A turn starts from this rest, and the gyros were read in it: both show the Earth's rate. */
-static bool shares_earth(const imk_calibration *c, size_t index)
+/* `rest`: of a rest under gravity, 2, or 4 with the Earth's horizontal rate. */
+static size_t local_count(const imk_observation *o, size_t rest)
 {
-    const imk_observation *o = &c->observation[index];
-    bool read = false, starts = false;
-    if (o->knowledge != IMK_INPUT_GRAVITY || c->earth_rate == 0.0)
-        return false;
-    for (int axis = 0; c->model.gyro.present && axis < c->model.gyro.axis_count; axis++)
-        read = read || !isnan(o->reading[IMK_GYRO][axis]);
-    for (size_t t = 0; read && t < c->turn_count && !starts; t++)
-        starts = c->turn[t].from == (int)index || c->turn[t].to == (int)index;
-    return starts;
-}
-
-static size_t local_count(const imk_calibration *c, size_t index)
-{
-    const imk_observation *o = &c->observation[index];
-    if (!has_locals(o))
-        return 0;
-    return o->knowledge != IMK_INPUT_GRAVITY ? 3 : shares_earth(c, index) ? 4 : 2;
+    return !has_locals(o) ? 0 : o->knowledge == IMK_INPUT_GRAVITY ? rest : 3;
 }
 
 static bool turn_is_valid(const imk_calibration *c, const imk_turn *turn)
@@ -49,11 +32,11 @@ static bool turn_is_valid(const imk_calibration *c, const imk_turn *turn)
 }
 
 /* Farthest apart that two unknowns of one row are. */
-static size_t band_width(const imk_calibration *c)
+static size_t band_width(const imk_calibration *c, size_t rest)
 {
     size_t widest = 0;
     for (size_t i = 0; i < c->observation_count; i++) {
-        const size_t own = local_count(c, i);
+        const size_t own = local_count(&c->observation[i], rest);
         widest = own > widest + 1 ? own - 1 : widest;
     }
     for (size_t t = 0; t < c->turn_count; t++) {
@@ -62,9 +45,9 @@ static size_t band_width(const imk_calibration *c)
             continue;
         const int first = turn->from < turn->to ? turn->from : turn->to;
         const int last = turn->from < turn->to ? turn->to : turn->from;
-        size_t reach = local_count(c, (size_t)last) - 1;
+        size_t reach = local_count(&c->observation[last], rest) - 1;
         for (int i = first; i < last; i++)
-            reach += local_count(c, (size_t)i);
+            reach += local_count(&c->observation[i], rest);
         widest = reach > widest ? reach : widest;
     }
     return widest;
@@ -85,16 +68,17 @@ static void *take(arena *a, size_t size)
 static void lay_out(imki_estimator *e, const imk_calibration *c, arena *a)
 {
     const size_t n = c->observation_count, m = c->turn_count;
+    const size_t rest = m > 0 && c->earth_rate != 0.0 ? 4 : 2; /* at most */
     size_t locals = 0;
     for (size_t i = 0; i < n; i++)
-        locals += local_count(c, i);
+        locals += local_count(&c->observation[i], rest);
     const size_t globals = c->parameter_count + 3 * c->fixture_count + 1; /* at most */
-    const size_t band = locals * (band_width(c) + 1);
+    const size_t band = locals * (band_width(c, rest) + 1);
     const size_t number = sizeof(double);
     e->problem = take(a, sizeof *e->problem);
     e->result = take(a, sizeof *e->result);
     e->local_first = take(a, n * sizeof *e->local_first);
-    e->earth_first = take(a, n * sizeof *e->earth_first);
+    e->turn_into = take(a, n * sizeof *e->turn_into);
     e->sigma = take(a, n * sizeof *e->sigma);
     e->known_variance = take(a, n * sizeof *e->known_variance);
     e->reading = take(a, n * sizeof *e->reading);
@@ -112,6 +96,7 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, arena *a)
     e->distance = take(a, 3 * (n + m) * number);
     e->sorted = take(a, (n + m) * number);
     e->state = take(a, n + m);
+    e->earth = take(a, n * sizeof *e->earth);
     e->slow.order = take(a, n * sizeof *e->slow.order);
     e->slow.covariance = take(a, globals * globals * number);
     e->slow.axis = take(a, globals * globals * number);
@@ -129,8 +114,6 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, arena *a)
     normal->covariance = take(a, globals * globals * number);
     normal->global_gradient = take(a, globals * number);
     normal->global_step = take(a, globals * number);
-    normal->width = band_width(c);
-    normal->locals = locals;
 }
 
 size_t imki_estimator_size(const imk_calibration *calibration)
@@ -384,33 +367,6 @@ static void start_attitude(imki_estimator *e, size_t index, bool readings_matter
         attitude[j] = norm > 0.0 ? force[j] / norm : j == 2;
 }
 
-/* The Earth at rest in an unknown attitude: its vertical rate is known by the latitude, or is one
- * more unknown, 0 +- Omega/sqrt(3) over a sphere; of its horizontal rate only the size is known,
- * the heading is not: (Omega cos)^2/2 along each direction across the vertical. */
-static void start_earth(imki_estimator *e)
-{
-    const imk_calibration *c = e->problem;
-    const double rate = c->earth_rate;
-    bool needed = false;
-    for (size_t i = 0; i < e->observations; i++)
-        for (int axis = 0; axis < IMK_AXES_MAX; axis++)
-            needed = needed || (c->observation[i].knowledge == IMK_INPUT_GRAVITY &&
-                                !isnan(e->reading[i][IMK_GYRO][axis]));
-    e->vertical_global = -1;
-    e->vertical_rate = e->vertical_sigma = e->horizontal_variance = 0.0;
-    if (!needed || rate == 0.0)
-        return;
-    if (isnan(c->latitude)) {
-        e->vertical_sigma = rate / sqrt(3.0);
-        e->vertical_global = (int)e->globals++;
-        e->horizontal_variance = rate * rate / 3.0;
-        return;
-    }
-    const double horizontal = rate * imk_cos(c->latitude);
-    e->vertical_rate = rate * imk_sin(c->latitude);
-    e->horizontal_variance = 0.5 * horizontal * horizontal;
-}
-
 static void start_readings(imki_estimator *e)
 {
     const imk_calibration *c = e->problem;
@@ -424,21 +380,6 @@ static void start_readings(imki_estimator *e)
                 e->reading[i][sensor][axis] = seen ? si(c, o, sensor, axis, false) : (double)NAN;
                 e->sigma[i][sensor][axis] = seen ? si(c, o, sensor, axis, true) : 0.0;
             }
-}
-
-static void spread_by_earth(imki_estimator *e)
-{
-    for (size_t i = 0; i < e->observations; i++)
-        for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
-            e->known_variance[i][axis] = 0.0;
-            if (e->problem->observation[i].knowledge != IMK_INPUT_GRAVITY ||
-                e->earth_first[i] >= 0 ||
-                isnan(e->reading[i][IMK_GYRO][axis]))
-                continue;
-            const double *n = e->now.attitude[i], *d = e->problem->model.gyro.direction[axis];
-            const double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
-            e->known_variance[i][axis] = e->horizontal_variance * fmax(0.0, 1.0 - along * along);
-        }
 }
 
 static imk_status start_parameters(imki_estimator *e, imk_error *error)
@@ -511,17 +452,17 @@ imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibr
         e->fixture_global[f] = e->problem->fixture_sigma[f] > 0.0 ? (int)e->globals : -1;
         e->globals += e->problem->fixture_sigma[f] > 0.0 ? 3 : 0;
     }
-    start_earth(e);
+    const size_t rest = imki_earth_start(e) ? 4 : 2;
     e->normal.globals = e->globals;
-    for (size_t i = 0, local = 0; i < e->observations; i++) {
-        const size_t own = local_count(calibration, i);
-        e->local_first[i] = own > 0 ? (int)local : -1;
-        e->earth_first[i] = own == 4 && e->horizontal_variance > 0.0 ? (int)local + 2 : -1;
+    e->normal.width = band_width(calibration, rest);
+    e->normal.locals = 0;
+    for (size_t i = 0; i < e->observations; i++) {
+        const size_t own = local_count(&calibration->observation[i], e->earth[i] ? rest : 2);
+        e->local_first[i] = own > 0 ? (int)e->normal.locals : -1;
+        e->normal.locals += own;
         memset(e->now.horizontal[i], 0, sizeof e->now.horizontal[i]);
-        local += own;
         start_attitude(e, i, readings_matter);
     }
-    spread_by_earth(e);
     imki_slow_noise_start(e);
     for (size_t item = 0; item < e->items; item++)
         e->weight[item] = 1.0;
@@ -533,5 +474,6 @@ imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibr
         memset(&e->turn[t], 0, sizeof e->turn[t]);
         e->turn[t].usable = true;
     }
+    imki_earth_spread(e);
     return IMK_OK;
 }

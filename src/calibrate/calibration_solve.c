@@ -137,7 +137,8 @@ static void fill_outputs(imki_estimator *e, imk_calibration_result *result)
     imk_calibration *c = e->problem;
     for (size_t item = 0; item < e->items; item++) {
         const int count = imki_item_rows(e, &e->now, item, e->row);
-        const bool used = e->weight[item] >= 1.0;
+        /* A turn over samples that are no numbers has no rows. */
+        const bool used = e->weight[item] >= 1.0 && (item < e->observations || count > 0);
         double square = 0.0;
         for (int i = 0; i < count; i++) {
             const imki_row *row = &e->row[i];

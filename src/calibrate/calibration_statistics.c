@@ -95,13 +95,18 @@ void imki_item_distances(imki_estimator *e, size_t item, double square[IMK_GROUP
     }
 }
 
-imk_status imki_estimator_covariance(imki_estimator *e)
+imk_status imki_built_covariance(imki_estimator *e)
 {
-    e->cost = imki_build(e, &e->now);
     const imk_status status = imki_normal_factor(&e->normal, 0.0);
     if (status == IMK_OK)
         imki_normal_invert(&e->normal);
     return status;
+}
+
+imk_status imki_estimator_covariance(imki_estimator *e)
+{
+    e->cost = imki_build(e, &e->now);
+    return imki_built_covariance(e);
 }
 
 void imki_fit_groups(imki_estimator *e, imki_fit *fit)
@@ -152,12 +157,12 @@ static imk_status find_factors(imki_estimator *e, double tolerance, bool held[IM
 {
     /* Where the sigmas stated are thousand times too large something else is wrong. */
     const double least_factor = 1e-3;
-    enum { ROUNDS = 12 };
+    enum { ROUNDS = 40 }; /* a dozen on the way to no redundancy, as many after it is held */
     for (int round = 0; round < ROUNDS; round++) {
         bool converged, same = true;
         imk_status status = imki_iterate(e, 30, &converged);
         if (status == IMK_OK)
-            status = imki_estimator_covariance(e);
+            status = imki_built_covariance(e);
         if (status != IMK_OK)
             return status;
         imki_fit_groups(e, fit);
@@ -192,10 +197,10 @@ imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *
 }
 
 /* Degrees of freedom of a factor: a part of the squares that is expected, and taken off, scatters
- * as well as the rest. */
+ * as well as the rest. Where that is more than half, least_white keeps the factor from falling. */
 static double freedom_of_factor(const imki_fit *fit, int g)
 {
-    const double whole = 1.0 + fit->slow_square[g] / fit->shared_redundancy[g];
+    const double whole = 1.0 + fmin(1.0, fit->slow_square[g] / fit->shared_redundancy[g]);
     return fit->freedom[g] / (whole * whole);
 }
 

@@ -25,7 +25,7 @@
  *
  * The Earth turns below the gyros. The vertical part of its rate turns about the direction carried
  * and does not move it; the horizontal part, of unknown heading, belongs to the turn's sigma
- * (multiposition.c). */
+ * (multiposition_sigma.c), or is one of the solver's unknowns (calibration_earth.c). */
 #include "calibrate/calibration_internal.h"
 
 #include "imukit/attitude.h"

@@ -3,10 +3,10 @@
  *
  *   globals  parameters, then three angles of each fixture whose mounting is not exact, then the
  *            vertical part of the Earth's rate when the latitude is not known
- *   locals   two angles of each direction of gravity, three of each placement; where a turn starts
- *            from a rest that the gyros were read in, two components of the Earth's horizontal rate
- *            there, because both show it; turns tie the locals of two observations, so that their
- *            normal matrix is banded
+ *   locals   two angles of each direction of gravity, three of each placement; where turns join
+ *            rests and it matters, two components of the Earth's horizontal rate at a rest
+ *            (calibration_earth.c); turns tie the locals of two observations, so that their normal
+ *            matrix is banded
  *
  * An item is an observation (0 … observations - 1) or a turn (observations …). */
 #ifndef IMUKIT_ESTIMATOR_INTERNAL_H
@@ -54,12 +54,13 @@ typedef struct imki_normal {
 /* A turn, linearised about the parameters it was integrated with. */
 typedef struct imki_linear_turn {
     double turn[9], angle, duration;
+    double sigma; /* without what the chain of the Earth's horizontal rate tells */
     bool usable;
 } imki_linear_turn;
 
 typedef struct imki_point {
     double global[IMKI_GLOBALS_MAX];
-    double (*attitude)[3]; /* per observation: vertical, or rotation of a placement */
+    double (*attitude)[3];   /* per observation: vertical, or rotation of a placement */
     double (*horizontal)[3]; /* per observation: the Earth's horizontal rate, body axes [rad/s] */
 } imki_point;
 
@@ -82,11 +83,12 @@ typedef struct imki_estimator {
     int vertical_global;                  /* -1: the latitude is known, or nothing depends on it */
     double vertical_rate, vertical_sigma, horizontal_variance; /* of the Earth at rest */
     int *local_first;                                          /* per observation; -1: none */
-    int *earth_first; /* per observation: first local of the horizontal rate; -1: none */
-    double (*sigma)[2][IMK_AXES_MAX];                          /* per observation, SI */
-    double (*known_variance)[IMK_AXES_MAX];                    /* per observation, of gyros */
-    double (*reading)[2][IMK_AXES_MAX]; /* per observation, SI; NaN: not observed */
-    double *weight;                     /* per item: 1 … 0 */
+    bool *earth; /* per observation: its third and fourth local are the Earth's horizontal rate */
+    int *turn_into; /* per observation: the turn that carries that rate to it; -1: none */
+    double (*sigma)[2][IMK_AXES_MAX];       /* per observation, SI */
+    double (*known_variance)[IMK_AXES_MAX]; /* per observation, of gyros */
+    double (*reading)[2][IMK_AXES_MAX];     /* per observation, SI; NaN: not observed */
+    double *weight;                         /* per item: 1 … 0 */
     imki_linear_turn *turn;
     double *turn_jacobian; /* per turn 3 x parameters */
     bool turns_known;      /* integrated at least once */
@@ -115,6 +117,18 @@ imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibr
                                 bool readings_matter, void *workspace, size_t workspace_size,
                                 imk_error *error);
 
+/* ---- calibration_earth.c: the Earth's rate at rest in an unknown attitude ---- */
+/* Before the locals are counted. @return whether rests have its horizontal part as unknowns */
+bool imki_earth_start(imki_estimator *e);
+/* What it adds to the variances of readings and takes from those of turns, at the first attitudes.
+ */
+void imki_earth_spread(imki_estimator *e);
+/* Cost of what is known of the horizontal parts; into the normal equations when `build`. */
+double imki_earth_cost(imki_estimator *e, const imki_point *point, bool build);
+/* A step of one across the vertical n, which a and b were across before it moved. */
+void imki_earth_move(const double n[3], const double a[3], const double b[3], const double step[2],
+                     double horizontal[3]);
+
 /* ---- calibration_rows.c ---- */
 int imki_item_rows(imki_estimator *e, const imki_point *point, size_t item, imki_row *row);
 /* Two unit vectors across a unit vector. */
@@ -140,7 +154,8 @@ void imki_rows_covariance(const imki_normal *n, const imki_row *row, int count, 
  * turn */
 double imki_turns_linearise(imki_estimator *e, double tolerance);
 void imki_point_copy(const imki_estimator *e, const imki_point *from, imki_point *to);
-/* Least squares at the present weights and linearised turns. */
+/* Least squares at the present weights and linearised turns. The normal equations then are those of
+ * the point it ends at. */
 imk_status imki_iterate(imki_estimator *e, int steps, bool *converged);
 /* Build the normal equations at a point. @return cost */
 double imki_build(imki_estimator *e, const imki_point *point);
@@ -173,6 +188,8 @@ int imki_whitened_rows(imki_estimator *e, size_t item);
 void imki_item_distances(imki_estimator *e, size_t item, double square[IMK_GROUPS],
                          int degrees[IMK_GROUPS]);
 imk_status imki_estimator_covariance(imki_estimator *e);
+/* The same from normal equations built for the present point. */
+imk_status imki_built_covariance(imki_estimator *e);
 void imki_fit_groups(imki_estimator *e, imki_fit *fit);
 /* Variance factors until they stay; the solution follows. */
 imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *fit);

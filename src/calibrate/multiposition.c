@@ -414,7 +414,8 @@ static imk_status append(gathering *g)
     const int first = (int)findings->first_observation;
     for (size_t t = 0; with_turns(g) && t < g->turn_count; t++) {
         imk_turn turn = g->turn[t];
-        turn.sigma = imki_turn_sigma(&around, &noise, span_of(g->record, turn.begin, turn.end));
+        turn.sigma = imki_turn_sigma(&around, &noise, span_of(g->record, turn.begin, turn.end),
+                                     &turn.earth_sigma);
         turn.from += first;
         turn.to += first;
         calibration->turn[calibration->turn_count++] = turn;

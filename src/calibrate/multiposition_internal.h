@@ -44,8 +44,8 @@ typedef struct imki_turn_surroundings {
     double dt, latitude, earth_rate;
 } imki_turn_surroundings;
 
-/* Of the angle of a turn, about each axis across the vertical [rad]. */
+/* Of the angle of a turn, about each axis across the vertical [rad]; and the Earth's part of it. */
 double imki_turn_sigma(const imki_turn_surroundings *around, const imki_hold_noise *noise,
-                       double duration);
+                       double duration, double *earth_sigma);
 
 #endif

@@ -378,7 +378,7 @@ static imk_status check_settings(const imk_plan_settings *s, const imk_calibrati
         const char *field;
         bool valid;
     } rules[] = {
-        {"procedure", (int)s->procedure >= 0 && s->procedure < IMK_PROCEDURES},
+        {"procedure", (unsigned)s->procedure < IMK_PROCEDURES},
         {"rate", s->rate > 0.0 && isfinite(s->rate)},
         {"hold_minimum", s->hold_minimum > 0.0 && s->hold_minimum <= s->hold_maximum},
         {"hold_maximum", s->hold_maximum > 0.0 && isfinite(s->hold_maximum)},

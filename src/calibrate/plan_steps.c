@@ -115,12 +115,14 @@ static void append_turn(imki_plan *plan, const imk_plan_step *from, const imk_pl
             imki_plan_mean_variance(&c->model.gyro, i, 1.0 / plan->settings->rate, time) / 3.0;
     const double cosine = imk_cos(isnan(c->latitude) ? 0.0 : c->latitude);
     const double square = isnan(c->latitude) ? 2.0 / 3.0 : cosine * cosine;
-    variance += 0.5 * square * c->earth_rate * c->earth_rate;
-    c->turn[c->turn_count++] = (imk_turn){.from = (int)c->observation_count - 2,
-                                          .to = (int)c->observation_count - 1,
-                                          .begin = begin,
-                                          .end = plan->record.count,
-                                          .sigma = time * sqrt(variance)};
+    const double earth = 0.5 * square * c->earth_rate * c->earth_rate;
+    c->turn[c->turn_count++] =
+        (imk_turn){.from = (int)c->observation_count - 2,
+                   .to = (int)c->observation_count - 1,
+                   .begin = begin,
+                   .end = plan->record.count,
+                   .sigma = time * sqrt(variance + earth),
+                   .earth_sigma = time * fmin(sqrt(earth), 0.999999 * sqrt(variance + earth))};
 }
 
 void imki_plan_append(imki_plan *plan, const imk_plan_step *from, const imk_plan_step *step,

@@ -31,7 +31,7 @@ static const procedure_entry procedures[IMK_PROCEDURES] = {
 
 static bool exists(imk_procedure procedure)
 {
-    return (int)procedure >= 0 && (int)procedure < IMK_PROCEDURES;
+    return (unsigned)procedure < IMK_PROCEDURES;
 }
 
 const char *imk_procedure_name(imk_procedure procedure)

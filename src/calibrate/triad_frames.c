@@ -251,7 +251,7 @@ imk_status imk_triad_frame_convert(imk_model *model, imk_triad_frame frame, size
     const imk_triad *accel = &model->accel;
     if (!accel->present || accel->axis_count != 3)
         return IMK_ERROR_CONFLICT;
-    if ((int)frame < 0 || frame >= IMK_FRAME_REFERENCE || count > IMK_CORRELATED_MAX)
+    if ((unsigned)frame >= IMK_FRAME_REFERENCE || count > IMK_CORRELATED_MAX)
         return IMK_ERROR_ARGUMENT;
     for (int i = 0; i < 3; i++)
         response_of(accel, i, r[i]);

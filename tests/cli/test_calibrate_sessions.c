@@ -9,7 +9,7 @@
 #define EXPECTED SHARED_DIRECTORY "/data/reference/ferraris_session_expected.json"
 #define FERRARIS                                                                                   \
     "$I calibrate " SESSION " -p ferraris --gravity 9.81m/s^2 --turn-angle -360deg --rate "        \
-                            "204.8Hz "
+    "204.8Hz "
 
 static const double degree = 0.017453292519943295;
 

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit calibrate, used wrongly: each mistake is answered with what was found, what was expected
+ * and what to do; and a sound test of few holds loses none of them. */
+#include "run_command.h"
+
+#define PLACE "--position '48.1 deg, 11.6 deg, 520 m'"
+#define POSES "-p multiposition " PLACE
+
+static void check_says(const char *line, int code, const char *sentence)
+{
+    const int actual = run(line);
+    if (actual != code)
+        fail_msg("%s: code %d, expected %d\n%s%s", line, actual, code, out, err);
+    check_contains(err, sentence, line);
+}
+
+static void put_unit(void)
+{
+    put("unit.yaml", "imukit: 1\n"
+                     "name: bench unit\n"
+                     "gyro:\n"
+                     "  bias: {fixed: 0.5 -0.8 0.3 deg/s}\n"
+                     "  noise: {angle_random_walk: 0.3 deg/sqrt(h), bias_instability: 5 deg/h}\n"
+                     "accel:\n"
+                     "  bias: {fixed: 20 -35 50 mg}\n"
+                     "  scale_factor: {fixed: -3000 6000 9000 ppm}\n"
+                     "  noise: {velocity_random_walk: 0.05 m/s/sqrt(h), bias_instability: 30 "
+                     "ug}\n");
+}
+
+/* Six faces, a turn in three of them. */
+static void write_turns(void)
+{
+    put_unit();
+    put("turns.yaml", "imukit_motion: 1\n"
+                      "start: {latitude: 48.1 deg, longitude: 11.6 deg, height: 520 m}\n"
+                      "steps:\n"
+                      "  - hold 6 s\n  - rotate z 360 deg at 90 deg/s\n  - hold 5 s\n"
+                      "  - pose 0 90 0 deg in 3 s\n"
+                      "  - hold 6 s\n  - rotate x 360 deg at 90 deg/s\n  - hold 5 s\n"
+                      "  - pose 0 -90 0 deg in 4 s\n  - hold 6 s\n"
+                      "  - pose 90 0 0 deg in 3 s\n"
+                      "  - hold 6 s\n  - rotate y 360 deg at 90 deg/s\n  - hold 5 s\n"
+                      "  - pose -90 0 0 deg in 4 s\n  - hold 6 s\n"
+                      "  - pose 180 0 0 deg in 4 s\n  - hold 6 s\n"
+                      "then: hold\n");
+    assert_int_equal(run("$I simulate unit.yaml --motion turns.yaml --rate 100Hz --duration 95s "
+                         "--seed 3 -o turns.csv"),
+                     0);
+}
+
+/* Three directions of accelerometers are redundant here, and scatter by less than their sigmas:
+ * nothing is refused because the rest fits even better. */
+static void few_holds_are_kept(void **state)
+{
+    (void)state;
+    write_turns();
+    const char *line = "$I calibrate turns.csv -p ferraris " PLACE " --strict";
+    assert_int_equal(run(line), 0);
+    check_contains(out, "Good: accelerometer", line);
+    assert_null(strstr(out, "Left out"));
+    sweep();
+}
+
+static void options_of_other_procedures_are_refused(void **state)
+{
+    (void)state;
+    write_turns();
+    check_says("$I calibrate turns.csv " POSES " --motion turns.yaml", 2,
+               "--motion is not used by --procedure multiposition");
+    check_says("$I calibrate turns.csv " POSES " --turn-angle 360deg", 2,
+               "--turn-angle is not used by --procedure multiposition: it is of ferraris");
+    check_says("$I calibrate turns.csv " POSES " --temperature-order 3", 2, "it is of thermal");
+    check_says("$I calibrate turns.csv " POSES " --motion-offset auto", 2,
+               "--motion-offset is of --motion");
+    check_says("$I calibrate turns.csv -p rate-table --table-axis z", 1,
+               "turns.csv has no column table_rate [deg/s], whose axis --table-axis names");
+    sweep();
+}
+
+static void logs_too_short_for_the_options_are_named(void **state)
+{
+    (void)state;
+    write_turns();
+    check_says("$I calibrate turns.csv " POSES " --initial-rest 500s", 2,
+               "--initial-rest 500s is longer than turns.csv, which has 95 s");
+    check_says("$I calibrate turns.csv " POSES " --window 1e9s", 2, "is longer than turns.csv");
+    check_says("$I calibrate turns.csv " POSES " --minimum 40s", 1,
+               "never stands still for 40 s, which --minimum asks for");
+    assert_int_equal(run("head -2 turns.csv >one.csv"), 0);
+    check_says("$I calibrate one.csv " POSES " --rate 100Hz", 1, "one.csv has one row of data");
+    sweep();
+}
+
+static void rows_without_numbers_are_counted(void **state)
+{
+    (void)state;
+    write_turns();
+    assert_int_equal(run("awk -F, 'BEGIN{OFS=\",\"} NR>1&&NR%5==0{$5=\"\"} {print}' turns.csv "
+                         ">sparse.csv"),
+                     0);
+    check_says("$I calibrate sparse.csv " POSES, 1, "sparse.csv: 20 % of its rows have an empty");
+    sweep();
+}
+
+/* A programme that begins later than was said, and one of another test. */
+static void other_programmes_are_noticed(void **state)
+{
+    (void)state;
+    write_turns();
+    check_says("$I calibrate turns.csv -p rate-table --motion turns.yaml --motion-offset 4s", 1,
+               "s earlier in the log than it was told");
+    sweep();
+}
+
+/* What changes in a model is a screen, not its correlations. */
+static void changes_are_few_lines(void **state)
+{
+    (void)state;
+    write_turns();
+    const char *line = "$I calibrate turns.csv -p ferraris " PLACE " --into unit.yaml";
+    assert_int_equal(run(line), 0);
+    check_contains(err, "Changes to unit.yaml:", line);
+    check_contains(err, "+ correlation: …", line);
+    size_t lines = 0;
+    for (const char *c = err; *c; c++)
+        lines += *c == '\n';
+    assert_in_range(lines, 5, 40);
+    sweep();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(few_holds_are_kept),
+        cmocka_unit_test(options_of_other_procedures_are_refused),
+        cmocka_unit_test(logs_too_short_for_the_options_are_named),
+        cmocka_unit_test(rows_without_numbers_are_counted),
+        cmocka_unit_test(other_programmes_are_noticed),
+        cmocka_unit_test(changes_are_few_lines),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
