@@ -359,3 +359,18 @@ calibrate_sentence doubt_sentence(const bench *b, const bench_log *log,
         found.value *= b->calibration->gravity;
     return on_log(b, &b->log[0], &found);
 }
+
+void doubts_of_named_holds(bench_log *log)
+{
+    enum { FACES = 6 };
+    if ((log->procedure != IMK_PROCEDURE_SIXPOSITION && log->procedure != IMK_PROCEDURE_FERRARIS) ||
+        !log->record.section || log->record.section_count < FACES)
+        return;
+    size_t kept = 0;
+    for (size_t i = 0; i < log->doubt_count; i++)
+        if (log->doubt[i].kind != IMK_DOUBT_NEVER_STATIC &&
+            log->doubt[i].kind != IMK_DOUBT_NEVER_MOVES &&
+            log->doubt[i].kind != IMK_DOUBT_FEW_POSES)
+            log->doubt[kept++] = log->doubt[i];
+    log->doubt_count = kept;
+}

@@ -136,6 +136,9 @@ int bench_solve_failed(const bench *b, const imk_error *error);
 char axis_letter(int axis); /* x, y, z, 3 … 7 */
 calibrate_sentence doubt_sentence(const bench *b, const bench_log *log,
                                   const imk_doubt_finding *doubt);
+/* Take away the doubts whether holds can be found where sections name them: the procedure counts
+ * the faces. */
+void doubts_of_named_holds(bench_log *log);
 /* calibrate_verdict.c */
 calibrate_sentence sentence_make(calibrate_level level, const char *code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -372,6 +372,7 @@ static int detect(const bench *b, bench_log *log)
         log->doubt_count =
             imk_record_doubts(&log->record, &log->stationary, log->interval_count, log->interval,
                               b->calibration->gravity, model, BENCH_DOUBTS_MAX, log->doubt);
+        doubts_of_named_holds(log);
         return -1;
     }
     /* A log too short for holds may still do for a table. */

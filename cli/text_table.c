@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 text_table text_table_make(size_t columns)
 {
@@ -100,6 +101,9 @@ void format_value(double value, double uncertainty, int digits, char *text, size
         snprintf(text, size, "%.*g", digits, value);
     else
         snprintf(text, size, "%.*f", decimals, value);
+    /* What rounds to nothing has no sign. */
+    if (text[0] == '-' && strspn(text + 1, "0.") == strlen(text + 1))
+        memmove(text, text + 1, strlen(text));
 }
 
 void format_duration(double seconds, char *text, size_t size)

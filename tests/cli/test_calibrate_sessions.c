@@ -221,9 +221,35 @@ static void models_of_runs_are_compared(void **state)
     sweep();
 }
 
+/* What rounds to nothing has no sign: six faces that read the same both ways. */
+static void nothing_has_no_sign(void **state)
+{
+    (void)state;
+    const char *line =
+        "$I calibrate six.csv -p sixposition --gravity 9.81m/s^2 --placement 0deg --no-earth";
+    FILE *file = fopen("six.csv", "wb");
+    assert_non_null(file);
+    fprintf(file, "time [s],section,accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2]\n");
+    for (int k = 0; k < 1200; k++) {
+        const double noise = k % 4 == 0 || k % 4 == 3 ? 0.01 : -0.01;
+        fprintf(file, "%.2f,f%d", k * 0.01, k / 200);
+        for (int j = 0; j < 3; j++)
+            fprintf(file, ",%.7f",
+                    (k / 400 == j ? 9.81 * (1 - 2 * (k / 200 % 2)) : 0.0) - 2e-6 +
+                        noise * (1 + 0.1 * j));
+        fputc('\n', file);
+    }
+    fclose(file);
+    assert_int_equal(run(line), 0);
+    check_contains(out, "scale factor error  ppm   0.000 ± ", line);
+    assert_null(strstr(out, " -0.000 ± "));
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_has_no_sign),
         cmocka_unit_test(published_matrices),
         cmocka_unit_test(readings_may_fall_with_the_input),
         cmocka_unit_test(one_axis_the_other_way_round),
