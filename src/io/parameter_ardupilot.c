@@ -41,7 +41,7 @@ static const char axis_letters[] = "XYZ";
 /* "INS_ACCOFFS_", "INS_ACC2OFFS_": the number of the first IMU is left out. */
 static void offset_name(char *name, size_t size, int kind, int imu, const char *what, int axis)
 {
-    char number[4] = "";
+    char number[12] = "";
     if (imu > 0)
         snprintf(number, sizeof number, "%d", imu + 1);
     /* "GYROFFS" of the first, "GYR2OFFS" of others */

@@ -257,9 +257,11 @@ static void test_left_out(void **state)
  *
  * Per parameter the 95 % interval must hold the truth as often as a false alarm of 1e-8 a parameter
  * (1e-6 all of them) leaves at a coverage of 93 %; a bias of 0.2 sigma is allowed, and 5.73 sigma
- * of a mean. */
+ * of a mean. Of fewer than RMS_LEAST benches, each with a Student's distribution of few degrees of
+ * freedom, the root mean square may be anything. */
 static void check_coverage(const coverage_count *c, double rms_limit)
 {
+    enum { RMS_LEAST = 50 };
     const double n = (double)c->benches;
     const size_t least = coverage_least_held(c->benches, 0.93, 1e-8);
     assert_true(c->benches > 0);
@@ -268,7 +270,7 @@ static void check_coverage(const coverage_count *c, double rms_limit)
         CHECK_OK(imk_model_parameter_name(c->parameter[p], name));
         if (c->held[p] < least ||
             !(fabs(coverage_bias(c, p)) <= 0.2 + 5.73 * rms_limit / sqrt(n)) ||
-            !(coverage_rms(c, p) <= rms_limit)) {
+            (c->benches >= RMS_LEAST && !(coverage_rms(c, p) <= rms_limit))) {
             print_error("%s: held %.1f %%, bias %.2f sigma, rms %.2f sigma\n", name,
                         100.0 * coverage_share(c, p), coverage_bias(c, p), coverage_rms(c, p));
             fail();
