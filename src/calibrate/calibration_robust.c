@@ -19,6 +19,7 @@
  * items. So clean data lose nothing in 99 of 100 calibrations, whatever the first stage thought.
  * What a parameter needs to be determined is not refused, however it looks. */
 #include "calibrate/estimator_internal.h"
+#include "calibrate/median_internal.h"
 
 #include "imukit/distributions.h"
 #include "imukit/elementary.h"
@@ -72,34 +73,6 @@ static void find_distances(imki_estimator *e)
     }
 }
 
-/* The element that would stand in the middle of the sorted array [HOARE1961]. */
-static double median(double *x, size_t count)
-{
-    size_t low = 0, high = count - 1;
-    const size_t middle = count / 2;
-    while (low < high) {
-        const double pivot = x[low + (high - low) / 2];
-        size_t i = low, j = high;
-        for (;;) {
-            while (x[i] < pivot)
-                i++;
-            while (x[j] > pivot)
-                j--;
-            if (i >= j)
-                break;
-            const double swapped = x[i];
-            x[i++] = x[j];
-            x[j--] = swapped;
-        }
-        /* x[low … j] <= pivot <= x[j + 1 … high] */
-        if (middle <= j)
-            high = j;
-        else
-            low = j + 1;
-    }
-    return x[middle];
-}
-
 static size_t count_of(const imki_estimator *e, int g)
 {
     size_t count = 0;
@@ -117,7 +90,7 @@ static double middle_of(imki_estimator *e, int g)
         if (!isnan(d))
             e->sorted[count++] = d;
     }
-    return count < SCALED_MIN ? 0.0 : median(e->sorted, count);
+    return count < SCALED_MIN ? 0.0 : imki_median(e->sorted, count);
 }
 
 /* Scale of each group by the median. @return largest relative change */

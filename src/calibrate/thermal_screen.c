@@ -2,6 +2,7 @@
 /* Knocks, a hand on the unit, a power cut: pieces of the log that are away from what is beside them
  * on both sides are put to the level between the sides. The fullest fit is taken out first, so that
  * what remains is flat; it is repeated without them, since large ones bend the first fit. */
+#include "calibrate/median_internal.h"
 #include "calibrate/thermal_internal.h"
 #include "imukit/linear_algebra.h"
 
@@ -41,33 +42,6 @@ static void residuals(const imki_thermal_blocks *blocks, int axis, const bool *d
     }
 }
 
-/* The value with as many below as above it; x is reordered. */
-static double median(size_t n, double *x)
-{
-    size_t low = 0, high = n - 1;
-    const size_t middle = n / 2;
-    while (low < high) { /* Hoare's selection */
-        const double pivot = x[low + (high - low) / 2];
-        size_t i = low, j = high;
-        for (;;) {
-            while (x[i] < pivot)
-                i++;
-            while (x[j] > pivot)
-                j--;
-            if (i >= j)
-                break;
-            const double swap = x[i];
-            x[i++] = x[j];
-            x[j--] = swap;
-        }
-        if (middle <= j)
-            high = j;
-        else
-            low = j + 1;
-    }
-    return x[middle];
-}
-
 /* Median of the next undisturbed pieces in a direction; NaN: there are none. Fifteen of them
  * outvote a disturbance of seven pieces that is not known yet. */
 static double level_beside(size_t n, const double *residual, const bool *disturbed, size_t from,
@@ -79,7 +53,7 @@ static double level_beside(size_t n, const double *residual, const bool *disturb
     for (size_t p = from + (size_t)step; p < n && count < SIDE; p += (size_t)step)
         if (!disturbed[p])
             near[count++] = residual[p];
-    return count > 0 ? median(count, near) : (double)NAN;
+    return count > 0 ? imki_median(near, count) : (double)NAN;
 }
 
 /* How far a piece is beyond the levels on both sides: what goes on from one to the other is no
@@ -105,7 +79,7 @@ static double limit_of(size_t n, const double *residual)
         step[p] = fabs(residual[p + 1] - residual[p]) / sqrt(2.0);
     for (size_t p = 0; p < n; p++)
         size[p] = fabs(residual[p]);
-    return sigma_of_median * fmax(6.0 * median(n - 1, step), 4.0 * median(n, size));
+    return sigma_of_median * fmax(6.0 * imki_median(step, n - 1), 4.0 * imki_median(size, n));
 }
 
 /* Every round judges all pieces anew, by the fit without those of the round before. */
