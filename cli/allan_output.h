@@ -8,19 +8,21 @@
 
 typedef struct allan_options {
     log_input log;
-    int statistic, edf, type;
-    const char *tau, *output, *plot, *report;
+    int edf, type, bias;
+    const char *statistic, *tau, *output, *plot, *report;
     double confidence;
     bool json;
     uint64_t threads;
 } allan_options;
 
-/* What was found: one curve per channel. */
+/* What was found: one curve per channel and statistic. */
 typedef struct allan_result {
     const allan_options *options;
     const char *path;
     log_channels channels;
-    allan_curve curve[IMK_LOG_COLUMNS_MAX];
+    size_t statistic_count;
+    imk_allan_statistic statistic[IMK_ALLAN_STATISTICS];
+    allan_curve curve[IMK_LOG_COLUMNS_MAX][IMK_ALLAN_STATISTICS];
 } allan_result;
 
 /* Each returns -1 or the exit code, the message printed. */

@@ -14,7 +14,7 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
 extern const verb simulate_verb, allan_verb, identify_verb, compensate_verb, devices_verb,
     grade_verb, convert_verb, physics_verb, navigate_verb, merge_verb, drift_verb, calibrate_verb,
-    evaluate_verb;
+    evaluate_verb, spectrum_verb;
 
 /* The verbs in the order of the help. */
 const verb *const *command_verbs(size_t *count);

@@ -14,9 +14,9 @@
 /* Position 0 is what is in force when the option is not given. The names stand in the order of
  * imk_parameter_format and imk_density. */
 static const char formats[] =
-    "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot";
+    "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
 static const char target_formats[] =
-    "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot";
+    "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
 
 const option parameter_option_table[PARAMETER_OPTIONS] = {
     {"from", 0, OPTION_CHOICE, "FORMAT", NULL, formats,
@@ -30,6 +30,15 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
      offsetof(parameter_options, sensor)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print what was assumed and left out as JSON",
      offsetof(parameter_options, json)},
+    {"flicker", 0, OPTION_CHOICE, "CHOICE", NULL,
+     "random-walk|gauss-markov|two-gauss-markov|left-out",
+     "--to filter: what stands for bias instability, which no filter state is",
+     offsetof(parameter_options, flicker)},
+    {"tau-from", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "--to filter: shortest averaging time at which that has to hold; default 1 s",
+     offsetof(parameter_options, tau_from)},
+    {"tau-to", 0, OPTION_QUANTITY, "TIME", "s", NULL, "--to filter: the longest; default 1000 s",
+     offsetof(parameter_options, tau_to)},
 };
 
 /* Files that may hold parameters; logs are not looked into. */
@@ -133,6 +142,14 @@ int convert_parameters(const parameter_options *options, double rate, const char
     settings.rate = rate;
     settings.density = (imk_density)options->density;
     settings.sensor = options->sensor;
+    settings.filter.flicker = (imk_filter_flicker)options->flicker;
+    if (options->tau_from > 0)
+        settings.filter.from = options->tau_from;
+    if (options->tau_to > 0)
+        settings.filter.to = options->tau_to;
+    if (!(settings.filter.from <= settings.filter.to))
+        return command_misused("--tau-from %g s is later than --tau-to %g s", settings.filter.from,
+                               settings.filter.to);
     if (options->json && strcmp(out, "-") == 0)
         return command_misused("--json and the file would both go to standard output");
     imk_model *model = malloc(sizeof *model);

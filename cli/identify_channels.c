@@ -4,13 +4,13 @@
 
 #include "progress.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct channel_work {
     identification *all;
-    imk_identify_settings settings;
     imk_status status[IMK_LOG_COLUMNS_MAX];
     imk_error error[IMK_LOG_COLUMNS_MAX];
     const size_t *factors;
@@ -20,16 +20,43 @@ typedef struct channel_work {
     atomic_size_t done;
 } channel_work;
 
+bool identify_settings_for(identification *i, size_t channel, imk_identify_settings *settings)
+{
+    *settings = imk_identify_default();
+    settings->dt = i->channels.dt;
+    settings->confidence = i->options->confidence;
+    if (i->summarised)
+        settings->summary = i->summary[channel] = calloc(1, imk_spectral_summary_size());
+    return !i->summarised || settings->summary;
+}
+
+void identify_free(identification *i)
+{
+    for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++) {
+        allan_curve_free(&i->curve[c]);
+        allan_curve_free(&i->twin[c]);
+        free(i->summary[c]);
+    }
+    log_channels_free(&i->channels);
+}
+
 static imk_status take_allan_curve(channel_work *work, size_t channel)
 {
     identification *all = work->all;
     size_t n = all->channels.rows;
+    const double *data = log_channel_data(&all->channels, channel);
+    imk_allan_settings settings = imk_allan_default();
+    settings.confidence = all->options->confidence;
+    size_t present = 0;
+    while (present < n && isfinite(data[present]))
+        present++;
+    if (present < n)
+        return allan_curve_with_gaps(&settings, n, data, all->channels.dt, work->factor_count,
+                                     work->factors, NULL, &all->curve[channel]);
     double *sums = malloc((n + 1) * sizeof *sums);
     if (!sums)
         return IMK_ERROR_MEMORY;
-    imk_allan_sums(n, log_channel_data(&all->channels, channel), sums, NULL);
-    imk_allan_settings settings = imk_allan_default();
-    settings.confidence = work->settings.confidence;
+    imk_allan_sums(n, data, sums, NULL);
     imk_status status =
         allan_curve_compute(&settings, n, sums, all->channels.dt, work->factor_count, work->factors,
                             NULL, NULL, &all->curve[channel]);
@@ -44,10 +71,13 @@ static void identify_one(void *context, size_t channel)
     size_t n = all->channels.rows, size = imk_identify_workspace_size(n);
     void *workspace = malloc(size);
     imk_error *error = &work->error[channel];
+    imk_identify_settings settings;
     imk_status status = IMK_ERROR_MEMORY;
     imk_error_set(error, status, NULL, NULL, NULL);
-    if (workspace)
-        status = imk_identify_channel(&work->settings, n, log_channel_data(&all->channels, channel),
+    if (workspace && identify_settings_for(all, channel, &settings))
+        status = identify_screen_channel(all, channel, error);
+    if (status == IMK_OK)
+        status = imk_identify_channel(&settings, n, log_channel_data(&all->channels, channel),
                                       &all->result[channel], workspace, size, error);
     free(workspace);
     if (status == IMK_OK) {
@@ -63,8 +93,8 @@ static void identify_one(void *context, size_t channel)
     }
 }
 
-static int explain(const identification *i, size_t channel, imk_status status,
-                   const imk_error *error)
+int identify_explain(const identification *i, size_t channel, imk_status status,
+                     const imk_error *error)
 {
     const char *name = log_channel_column(&i->channels, channel)->name;
     if (status == IMK_ERROR_CONSTANT)
@@ -96,15 +126,13 @@ int identify_channels(identification *i, const imk_executor *executor)
     work->all = i;
     work->factors = factors;
     work->shown = &shown;
-    work->settings = imk_identify_default();
-    work->settings.dt = i->channels.dt;
-    work->settings.confidence = i->options->confidence;
+    i->screened = true;
     imk_execute(executor, i->channels.count, identify_one, work);
     progress_end(&shown);
     int code = -1;
     for (size_t c = 0; c < i->channels.count && code < 0; c++)
         if (work->status[c] != IMK_OK)
-            code = explain(i, c, work->status[c], &work->error[c]);
+            code = identify_explain(i, c, work->status[c], &work->error[c]);
     free(factors);
     free(work);
     return code;

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The Allan plot of each channel: measured points, the model and its terms, where a record of this
- * length may fall under the model, and the twin. */
+ * length may fall under the model, and the twin; below it how far the points are off the model. */
 #include "identify_parts.h"
 
 #include "imukit/distributions.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MODEL_COLOR = 6, BAND_COLOR = 7, DATA_COLOR = 0, TWIN_COLOR = 4 };
 
@@ -20,6 +21,7 @@ typedef struct panel_data {
     double *octave_tau, *deviation, *lower, *upper; /* octave_count each: measured */
     double *band_middle, *band_lower, *band_upper;  /* octave_count each: expected */
     double *twin;                                   /* octave_count */
+    double *misfit, *zero, *minus, *plus;           /* octave_count */
 } panel_data;
 
 static double *cut(double **memory, size_t count)
@@ -32,6 +34,19 @@ static double *cut(double **memory, size_t count)
 static double deviation_of(const imk_identification *r, double dt, size_t m, int term, double scale)
 {
     return sqrt(imk_identification_allan_variance(r, dt, m, term)) / scale;
+}
+
+/* Beyond this many standard deviations it does not matter how many. */
+static const double misfit_most = 9;
+
+/* The measured variance over the model's as a normal deviate: as improbable as this many standard
+ * deviations, so that short and long averaging times can be seen in one picture. */
+static double misfit_of(double ratio, double edf)
+{
+    const double half = 0.5 * edf, x = half * ratio;
+    const double z = ratio > 1 ? -imk_normal_quantile(imk_gamma_upper(half, x))
+                               : imk_normal_quantile(imk_gamma_lower(half, x));
+    return z < misfit_most ? fmax(z, -misfit_most) : misfit_most;
 }
 
 /* Under the model the measured variance is the model's times chi^2/edf. */
@@ -49,6 +64,10 @@ static void fill_octaves(panel_data *d, const identification *i, size_t channel,
         d->band_middle[k] = middle;
         d->band_lower[k] = middle * sqrt(imk_chi_square_quantile(tail, p->edf) / p->edf);
         d->band_upper[k] = middle * sqrt(imk_chi_square_quantile(1 - tail, p->edf) / p->edf);
+        d->misfit[k] = misfit_of(pow(d->deviation[k] / middle, 2), p->edf);
+        d->zero[k] = 0;
+        d->plus[k] = imk_normal_quantile(1 - tail);
+        d->minus[k] = -d->plus[k];
         if (twin->count == d->octave_count)
             d->twin[k] = twin->point[k].deviation / scale;
     }
@@ -62,7 +81,7 @@ static bool fill(panel_data *d, const identification *i, size_t channel, double 
     size_t *factors = allan_factors_of_grid(IMK_ALLAN_DECADE, i->channels.rows, &d->smooth_count);
     d->octave_count = i->curve[channel].count;
     *memory =
-        malloc(((2 + IMK_NOISE_TERMS) * d->smooth_count + 8 * d->octave_count) * sizeof **memory);
+        malloc(((2 + IMK_NOISE_TERMS) * d->smooth_count + 12 * d->octave_count) * sizeof **memory);
     if (!factors || !*memory) {
         free(factors);
         return false;
@@ -73,7 +92,8 @@ static bool fill(panel_data *d, const identification *i, size_t channel, double 
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
         d->term[term] = cut(&rest, d->smooth_count);
     double **octaves[] = {&d->octave_tau,  &d->deviation,  &d->lower,      &d->upper,
-                          &d->band_middle, &d->band_lower, &d->band_upper, &d->twin};
+                          &d->band_middle, &d->band_lower, &d->band_upper, &d->twin,
+                          &d->misfit,      &d->zero,       &d->minus,      &d->plus};
     for (size_t k = 0; k < sizeof octaves / sizeof octaves[0]; k++)
         *octaves[k] = cut(&rest, d->octave_count);
     for (size_t k = 0; k < d->smooth_count; k++) {
@@ -119,40 +139,90 @@ static size_t make_curves(imk_curve *curve, const panel_data *d, const identific
     return count;
 }
 
-bool identify_figure_make(const identification *i, identify_figure *figure)
+/* In the colours of the panel above, which has the key. */
+static void make_misfit(imk_curve *curve, const panel_data *d)
 {
-    size_t count = i->channels.count;
+    curve[0] = (imk_curve){"",      IMK_CURVE_BAND, BAND_COLOR, d->octave_count, d->octave_tau,
+                           d->zero, d->minus,       d->plus};
+    curve[1] = (imk_curve){"",      IMK_CURVE_LINE, MODEL_COLOR, d->octave_count, d->octave_tau,
+                           d->zero, NULL,           NULL};
+    curve[2] = (imk_curve){
+        "", IMK_CURVE_POINTS, DATA_COLOR, d->octave_count, d->octave_tau, d->misfit, NULL, NULL};
+}
+
+/* So many beside one another that rows are full. */
+static size_t columns_for(size_t channels)
+{
+    return channels % 3 == 0 ? 3 : channels % 2 == 0 ? 2 : 1;
+}
+
+static bool make_panels(const identification *i, identify_figure *figure, size_t channel,
+                        imk_panel *deviation, imk_panel *misfit)
+{
+    const imk_log_column *column = log_channel_column(&i->channels, channel);
+    const allan_curve *measured = &i->curve[channel];
+    const imk_unit unit = channel_readable_unit(column, measured->deviation[measured->count / 2]);
+    panel_data data;
+    if (!fill(&data, i, channel, unit.scale, &figure->memory[channel]))
+        return false;
+    char *label = figure->label[channel];
+    snprintf(label, sizeof figure->label[channel], "Allan deviation [%s]", unit.text);
+    imk_curve *curve = figure->curve[channel];
+    const size_t curves = make_curves(curve, &data, i, channel);
+    *deviation =
+        (imk_panel){column->name, "averaging time [s]", label, true, true, curves, curve, 0,
+                    NULL,         IMK_KEY_UPPER};
+    if (!misfit)
+        return true;
+    make_misfit(figure->misfit[channel], &data);
+    *misfit = (imk_panel){column->name,
+                          "averaging time [s]",
+                          "measured over model [sigma]",
+                          true,
+                          false,
+                          3,
+                          figure->misfit[channel],
+                          0,
+                          NULL,
+                          IMK_KEY_UPPER};
+    return true;
+}
+
+bool identify_figure_make(const identification *i, bool misfit, identify_figure *figure)
+{
+    const size_t count = i->channels.count;
+    const size_t columns = misfit ? columns_for(count) : count < 3 ? count : 3;
+    figure->channels = count;
     for (size_t c = 0; c < count; c++)
         figure->memory[c] = NULL;
     for (size_t c = 0; c < count; c++) {
-        const imk_log_column *column = log_channel_column(&i->channels, c);
-        const allan_curve *measured = &i->curve[c];
-        imk_unit unit = channel_readable_unit(column, measured->deviation[measured->count / 2]);
-        panel_data data;
-        if (!fill(&data, i, c, unit.scale, &figure->memory[c])) {
-            figure->figure.panel_count = c;
+        const size_t place = misfit ? c / columns * 2 * columns + c % columns : c;
+        if (!make_panels(i, figure, c, &figure->panel[place],
+                         misfit ? &figure->panel[place + columns] : NULL)) {
             identify_figure_free(figure);
             return false;
         }
-        snprintf(figure->label[c], sizeof figure->label[c], "Allan deviation [%s]", unit.text);
-        size_t curves = make_curves(figure->curve[c], &data, i, c);
-        figure->panel[c] = (imk_panel){column->name,
-                                       "averaging time [s]",
-                                       figure->label[c],
-                                       true,
-                                       true,
-                                       curves,
-                                       figure->curve[c],
-                                       0,
-                                       NULL,
-                                       IMK_KEY_UPPER};
     }
-    figure->figure = (imk_figure){i->path, count, count < 3 ? count : 3, figure->panel};
+    figure->figure = (imk_figure){i->path, misfit ? 2 * count : count, columns, figure->panel};
     return true;
+}
+
+int identify_draw(const identification *i, const char *plot)
+{
+    imk_error error;
+    imk_status status = imk_error_set(&error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
+    identify_figure *figure = malloc(sizeof *figure);
+    /* Letters have no room for more. */
+    if (figure && identify_figure_make(i, strcmp(plot, "term") != 0, figure)) {
+        status = imk_figure_write(&figure->figure, plot, &error);
+        identify_figure_free(figure);
+    }
+    free(figure);
+    return status == IMK_OK ? -1 : command_error(&error, NULL);
 }
 
 void identify_figure_free(identify_figure *figure)
 {
-    for (size_t c = 0; c < figure->figure.panel_count; c++)
+    for (size_t c = 0; c < figure->channels; c++)
         free(figure->memory[c]);
 }

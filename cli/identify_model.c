@@ -20,6 +20,17 @@ static imk_evidence *evidence_of(imk_model *model, channel_kind kind)
     return kind == CHANNEL_GYRO ? &model->gyro_evidence : &model->accel_evidence;
 }
 
+double identify_duration(const identification *i)
+{
+    return i->duration > 0 ? i->duration : i->channels.dt * (double)i->channels.rows;
+}
+
+const char *identify_base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 static void store_kind(const identification *i, channel_kind kind, imk_model *model)
 {
     imk_triad *triad = triad_of(model, kind);
@@ -40,13 +51,15 @@ static void store_kind(const identification *i, channel_kind kind, imk_model *mo
     triad->axis_count = axes;
     if (fabs(i->options->confidence - 0.95) > 1e-12)
         evidence->interval_count = 0; /* the file's intervals are of 95 % */
-    const char *base = strrchr(i->path, '/');
-    snprintf(evidence->source, sizeof evidence->source, "%s", base ? base + 1 : i->path);
+    snprintf(evidence->source, sizeof evidence->source, "%s", identify_base_name(i->path));
     char length[60];
-    format_duration(i->channels.dt * (double)i->channels.rows, length, sizeof length);
-    snprintf(evidence->method, sizeof evidence->method,
-             "imukit %s identify: maximum likelihood on the cosine spectrum, %s at %.6g Hz",
-             IMK_VERSION, length, 1 / i->channels.dt);
+    format_duration(identify_duration(i), length, sizeof length);
+    snprintf(evidence->method, sizeof evidence->method, "imukit %s identify: %s, %s at %.6g Hz",
+             IMK_VERSION,
+             i->options->method == METHOD_ALLAN || i->options->curve
+                 ? "generalised least squares on Allan deviations"
+                 : "maximum likelihood on the cosine spectrum",
+             length, 1 / i->channels.dt);
 }
 
 imk_model identify_noise_model(const identification *i)
@@ -55,8 +68,7 @@ imk_model identify_noise_model(const identification *i)
     store_kind(i, CHANNEL_GYRO, &model);
     store_kind(i, CHANNEL_ACCEL, &model);
     identify_round_model(&model);
-    const char *base = strrchr(i->path, '/');
-    base = base ? base + 1 : i->path;
+    const char *base = identify_base_name(i->path);
     if (i->options->name)
         snprintf(model.name, sizeof model.name, "%s", i->options->name);
     else

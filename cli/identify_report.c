@@ -69,7 +69,7 @@ static void put_next_steps(imk_page *page, const identification *i)
 int identify_report(const identification *i, const char *path)
 {
     char subtitle[300], length[60];
-    format_duration(i->channels.dt * (double)i->channels.rows, length, sizeof length);
+    format_duration(identify_duration(i), length, sizeof length);
     snprintf(subtitle, sizeof subtitle, "%.120s: %zu samples of %zu channels, %g Hz, %s", i->path,
              i->channels.rows, i->channels.count, 1 / i->channels.dt, length);
     imk_page *page = imk_page_create("Noise of an inertial sensor", subtitle);
@@ -79,11 +79,13 @@ int identify_report(const identification *i, const char *path)
     put_parameters(page, i);
     imk_page_heading(page, "Allan deviation");
     identify_figure *figure = malloc(sizeof *figure);
-    if (figure && identify_figure_make(i, figure)) {
+    if (figure && identify_figure_make(i, true, figure)) {
         imk_page_figure(page, &figure->figure,
                         "Points: the log, with confidence intervals. Line: the model. Dashes: its "
                         "terms. Grey: where the points of a record of this length may fall under "
-                        "the model. Twin: a simulation of the model.");
+                        "the model. Twin: a simulation of the model. Below: how improbable the "
+                        "difference of each point from the model is, as standard deviations of a "
+                        "normal distribution; neighbours share most of their data.");
         identify_figure_free(figure);
     }
     free(figure);
@@ -97,10 +99,10 @@ int identify_report(const identification *i, const char *path)
 
 static json_t *estimate_json(const imk_estimate *e, const char *unit, double scale)
 {
-    return json_pack("{s:b, s:o, s:o, s:o, s:o, s:s}", "present", e->present, "value",
+    return json_pack("{s:b, s:o, s:o, s:o, s:o, s:o, s:s}", "present", e->present, "value",
                      json_number(e->value / scale), "sigma", json_number(e->sigma / scale), "lower",
-                     json_number(e->lower / scale), "upper", json_number(e->upper / scale), "unit",
-                     unit);
+                     json_number(e->lower / scale), "upper", json_number(e->upper / scale),
+                     "free_value", json_number(e->free_value / scale), "unit", unit);
 }
 
 static json_t *gauss_markov_json(const imk_identification *r, const imk_unit *plain)
@@ -138,7 +140,7 @@ static json_t *extras_json(const imk_identification *r, const imk_unit *plain)
                      "sinusoid", lines, "resonance", resonances, "filter", filter);
 }
 
-static json_t *channel_json(const identification *i, size_t channel)
+json_t *identify_channel_json(const identification *i, size_t channel)
 {
     const imk_log_column *column = log_channel_column(&i->channels, channel);
     const imk_identification *r = &i->result[channel];
@@ -149,30 +151,40 @@ static json_t *channel_json(const identification *i, size_t channel)
         double scale = channel_kind_of(column) == CHANNEL_OTHER ? plain.scale : 1;
         json_object_set_new(terms, display.key, estimate_json(&r->term[term], display.si, scale));
     }
-    return json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "name", column->name, "terms", terms,
-        "extras", extras_json(r, &plain), "mean", json_quantity(r->mean / plain.scale, plain.text),
-        "allan_minimum_over_0.664", json_quantity(r->minimum_floor / plain.scale, plain.text),
-        "resolution", json_quantity(r->resolution / plain.scale, plain.text), "valid_from",
-        json_quantity(r->valid_from, "s"), "five_terms_from",
-        json_quantity(r->five_terms_from, "s"), "valid_to", json_quantity(r->valid_to, "s"));
+    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o}", "name",
+                     column->name, "terms", terms, "extras", extras_json(r, &plain), "mean",
+                     json_quantity(r->mean / plain.scale, plain.text), "allan_minimum_over_0.664",
+                     json_quantity(r->minimum_floor / plain.scale, plain.text), "resolution",
+                     json_quantity(r->resolution / plain.scale, plain.text), "valid_from",
+                     json_quantity(r->valid_from, "s"), "five_terms_from",
+                     json_quantity(r->five_terms_from, "s"), "valid_to",
+                     json_quantity(r->valid_to, "s"), "missing", (json_int_t)r->missing,
+                     "largest_gap", json_quantity(r->largest_gap, "s"), "screening",
+                     identify_screen_json(i, channel));
 }
 
-int identify_json(const identification *i, int code)
+json_t *identify_verdict_json(const identification *i)
 {
-    json_t *channels = json_array(), *verdict = json_array();
-    for (size_t c = 0; c < i->channels.count; c++)
-        json_array_append_new(channels, channel_json(i, c));
+    json_t *verdict = json_array();
     for (size_t k = 0; k < i->verdict_count; k++) {
         static const char *const levels[] = {"good", "note", "warning"};
         json_array_append_new(verdict,
                               json_pack("{s:s, s:s, s:s}", "level", levels[i->verdict[k].level],
                                         "code", i->verdict[k].code, "message", i->verdict[k].text));
     }
+    return verdict;
+}
+
+int identify_json(const identification *i, int code)
+{
+    json_t *channels = json_array();
+    for (size_t c = 0; c < i->channels.count; c++)
+        json_array_append_new(channels, identify_channel_json(i, c));
     json_t *inputs =
         json_pack("{s:s, s:I, s:I, s:o, s:f}", "log", i->path, "rows", (json_int_t)i->channels.rows,
                   "bridged", (json_int_t)i->channels.bridged, "interval",
                   json_quantity(i->channels.dt, "s"), "confidence", i->options->confidence);
-    return json_print("identify", inputs,
-                      json_pack("{s:o, s:o}", "channels", channels, "verdict", verdict), code);
+    return json_print(
+        "identify", inputs,
+        json_pack("{s:o, s:o}", "channels", channels, "verdict", identify_verdict_json(i)), code);
 }

@@ -104,6 +104,8 @@ static void term_rows(text_table *table, const identification *i, const size_t *
     const imk_estimate *estimates[IMK_LOG_COLUMNS_MAX];
     double confidence = i->options->confidence;
     for (int term = 0; term < IMK_NOISE_TERMS; term++) {
+        if (i->joint && term == IMK_NOISE_RAMP)
+            continue; /* each log has its own */
         term_display display = identify_term(column, (imk_noise_term)term);
         for (size_t k = 0; k < members; k++)
             estimates[k] = &i->result[member[k]].term[term];
@@ -176,7 +178,8 @@ text_table identify_table(const identification *i, channel_kind kind)
         text_table_set(&table, 2 + k, "%s",
                        channel_axis_name(log_channel_column(&i->channels, member[k])));
     term_rows(&table, i, member, members);
-    record_rows(&table, i, member, members);
+    if (!i->joint && !i->options->curve)
+        record_rows(&table, i, member, members);
     return table;
 }
 
@@ -199,7 +202,7 @@ static void truth_row(text_table *table, const identification *i, size_t channel
     const imk_log_column *column = log_channel_column(&i->channels, channel);
     const imk_estimate *e = &i->result[channel].term[term];
     double truth = true_value(&i->truth, column, term);
-    if (isnan(truth) || (truth == 0 && !e->present))
+    if (isnan(truth) || (truth == 0 && !e->present) || (i->joint && term == IMK_NOISE_RAMP))
         return;
     term_display display = identify_term(column, term);
     double scale = display.unit.scale, width = (e->upper - e->lower) / scale / 4;

@@ -27,10 +27,10 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"axes", 0, OPTION_TEXT, "NAMES", NULL, NULL,
      "where the log's x, y, z point, such as right-forward-up; mapped to forward-right-down",
      offsetof(log_input, axes)},
-    {"gaps", 0, OPTION_CHOICE, "CHOICE", NULL, "refuse|bridge|longest",
-     "rows that are missing, not finite or out of order: refuse the log (the default; gaps of up "
-     "to 0.1 % are bridged with a warning), interpolate over them, or use the longest clean "
-     "stretch",
+    {"gaps", 0, OPTION_CHOICE, "CHOICE", NULL, "refuse|bridge|longest|keep",
+     "rows that are missing, not finite or out of order: keep their places empty (the default of "
+     "allan and identify, which know how), refuse the log (the default elsewhere; gaps of up to "
+     "0.1 % are bridged with a warning), interpolate over them, or use the longest clean stretch",
      offsetof(log_input, gaps)},
 };
 
@@ -48,7 +48,7 @@ imk_log_settings log_input_settings(const log_input *input)
 }
 
 /* Gyros in the order of their axes, then accelerometers; every other column when there are none. */
-static void choose_channels(log_channels *channels)
+void log_choose_channels(log_channels *channels)
 {
     const imk_log *log = &channels->log;
     static const imk_quantity kinds[] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
@@ -71,6 +71,9 @@ int log_input_load(const log_input *input, const char *path, log_channels *chann
 {
     imk_error error;
     memset(channels, 0, sizeof *channels);
+    if (input->gaps == GAPS_KEEP && !input->missing_allowed)
+        return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
+                               "bridge or --gaps longest");
     imk_log_settings settings = log_input_settings(input);
     char label[120];
     snprintf(label, sizeof label, "reading %.100s", path);
@@ -79,7 +82,7 @@ int log_input_load(const log_input *input, const char *path, log_channels *chann
     progress_end(&p);
     if (status != IMK_OK)
         return command_log_error(&error, path);
-    choose_channels(channels);
+    log_choose_channels(channels);
     int code = -1;
     if (channels->log.rows == 0)
         code = command_failed("%s: there is a header but no data row", path);

@@ -4,7 +4,7 @@
  * A row is bad when a value to be analysed is not finite, or when its time is not later than that
  * of the last good row. Between good rows lie round(step/interval) intervals; where that is more
  * than one, samples are missing. They are refused, interpolated on a straight line, or avoided by
- * taking the longest stretch without any, as the policy says. */
+ * taking the longest stretch without any, as the policy says; log_grid.c keeps their places. */
 #include "log_input.h"
 
 #include <math.h>
@@ -40,8 +40,7 @@ static int bad_channel(const log_channels *channels, const double *time, size_t 
     return time && !isfinite(time[row]) ? (int)channels->count : -1;
 }
 
-/* Intervals between two times, at least 1; 0 when the second is not later. */
-static size_t intervals(double earlier, double later, double dt)
+size_t log_intervals(double earlier, double later, double dt)
 {
     double steps = (later - earlier) / dt;
     if (!(steps > 0))
@@ -58,7 +57,7 @@ static spacing inspect(const log_channels *channels)
     for (size_t row = 0; row < channels->log.rows; row++) {
         int bad = bad_channel(channels, time, row);
         size_t steps = !any   ? 1
-                       : time ? intervals(time[last], time[row], channels->dt)
+                       : time ? log_intervals(time[last], time[row], channels->dt)
                               : row - last;
         if (bad >= 0) {
             if (s.not_finite++ == 0) {
@@ -122,7 +121,7 @@ static size_t place_rows(const log_channels *channels, size_t *place)
         if (bad_channel(channels, time, row) >= 0)
             continue;
         size_t steps = last == SIZE_MAX ? 1
-                       : time           ? intervals(time[last], time[row], channels->dt)
+                       : time           ? log_intervals(time[last], time[row], channels->dt)
                                         : row - last;
         if (steps == 0)
             continue;
@@ -223,6 +222,8 @@ int log_space_evenly(const log_input *input, const char *path, log_channels *cha
         return command_failed("%s: the time column does not increase, so the sample rate is not "
                               "known; name it, such as --rate 100Hz",
                               path);
+    if (input->gaps == GAPS_KEEP)
+        return log_keep_grid(input, path, channels);
     spacing s = inspect(channels);
     size_t bad = s.not_finite + s.unordered;
     if (bad == 0 && s.gaps == 0) {

@@ -11,8 +11,8 @@
 
 static const verb *const verbs[] = {
     &identify_verb, &calibrate_verb, &evaluate_verb, &simulate_verb, &compensate_verb,
-    &allan_verb,    &devices_verb,   &grade_verb,    &convert_verb,  &physics_verb,
-    &drift_verb,    &navigate_verb,  &merge_verb};
+    &allan_verb,    &spectrum_verb,  &devices_verb,  &grade_verb,    &convert_verb,
+    &physics_verb,  &drift_verb,     &navigate_verb, &merge_verb};
 enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
 
 const verb *const *command_verbs(size_t *count)

@@ -9,18 +9,25 @@
 #include <string.h>
 
 static const option allan_option_table[] = {
-    {"statistic", 0, OPTION_CHOICE, "CHOICE", NULL, "oadev|adev",
-     "overlapping (the default) or plain Allan deviation", offsetof(allan_options, statistic)},
-    {"tau", 0, OPTION_TEXT, "octave|decade|all|LIST", NULL, NULL,
-     "averaging times: doubling (the default), ten per decade, every one, or a list such as "
-     "1,10,100 in seconds",
+    {"statistic", 0, OPTION_TEXT, "NAME,NAME…|all", NULL, NULL,
+     "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, haar; "
+     "theo1 takes minutes beyond a million samples",
+     offsetof(allan_options, statistic)},
+    {"tau", 0, OPTION_TEXT, "octave|decade|many|all|LIST", NULL, NULL,
+     "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, then 32 "
+     "to the octave), every one, or a list such as 1,10,100 in seconds",
      offsetof(allan_options, tau)},
     {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
      "of the two-sided intervals; default 0.95", offsetof(allan_options, confidence)},
     {"edf", 0, OPTION_CHOICE, "CHOICE", NULL, "exact|greenhall-riley",
      "degrees of freedom behind the intervals: of the sampled process (the default), or by the "
-     "formulas of Greenhall and Riley for the continuous one",
+     "published formulas for the continuous one",
      offsetof(allan_options, edf)},
+    {"bias", 0, OPTION_CHOICE, "CHOICE", NULL, "removed|published|left",
+     "the bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: taken off for the "
+     "noise "
+     "found (the default), the same with the factors in print, or left in",
+     offsetof(allan_options, bias)},
     {"type", 0, OPTION_CHOICE, "CHOICE", NULL, "rate|phase",
      "what the columns hold: rates (the default), or their integral (phase, angle)",
      offsetof(allan_options, type)},
@@ -42,7 +49,7 @@ static int run(int count, char **words);
 
 const verb allan_verb = {
     .name = "allan",
-    .summary = "Allan deviation of a log with confidence intervals",
+    .summary = "Allan family deviations of a log with confidence intervals",
     .operands = "LOG",
     .operands_minimum = 1,
     .operands_maximum = 1,
@@ -53,28 +60,67 @@ const verb allan_verb = {
     .description =
         "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst), or "
         ".npy; - is standard input. Without gyro and accelerometer columns every other column is "
-        "analysed.\n\nRows with values that are not finite and rows out of order are refused, with "
-        "their number and the first one, unless --gaps says what to do.",
+        "analysed.\n\nWhich statistic: oadev to look at a sensor; mdev or pdev to tell "
+        "quantization from "
+        "other fast noise; ohdev when the rate drifts in a straight line; totdev, htot and theo1 "
+        "for tau near the length of the log; tdev (in units of the column times s) for the scatter "
+        "of the integral; haar as published for wavelet methods. \n\nRows that are missing or not "
+        "finite keep their places empty: oadev of rates is then taken of what is there, and the "
+        "share of the record's pairs behind each point is shown. The other statistics, and phase, "
+        "need a complete record: --gaps bridge or --gaps longest.",
     .groups = {{"Options", sizeof allan_option_table / sizeof allan_option_table[0],
                 allan_option_table, 0},
                {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
                 offsetof(allan_options, log)}},
     .run = run};
 
-/* Averaging factors of --tau; NULL after a message, with the exit code. */
-static size_t *parse_tau(const char *text, double dt, size_t n, size_t *count, int *code)
+/* Names of --statistic. @return -1 or the exit code */
+static int parse_statistics(const char *text, allan_result *r)
 {
-    static const char *const grids[] = {"octave", "decade", "all"};
-    for (int i = 0; i < 3; i++)
-        if (!text || strcmp(text, grids[i]) == 0) {
-            size_t *factors = allan_factors_of_grid((imk_allan_grid)i, n, count);
-            *code = factors ? -1 : command_failed("memory is exhausted");
-            return factors;
+    const char *names[IMK_ALLAN_STATISTICS];
+    for (size_t k = 0; k < IMK_ALLAN_STATISTICS; k++)
+        names[k] = imk_allan_name((imk_allan_statistic)k);
+    if (!text)
+        text = names[IMK_ALLAN_OVERLAPPING];
+    r->statistic_count = 0;
+    if (strcmp(text, "all") == 0)
+        for (; r->statistic_count < IMK_ALLAN_STATISTICS; r->statistic_count++)
+            r->statistic[r->statistic_count] = (imk_allan_statistic)r->statistic_count;
+    else
+        for (const char *item = text;; item++) {
+            const size_t length = strcspn(item, ",");
+            char name[16];
+            snprintf(name, sizeof name, "%.*s", (int)(length < 15 ? length : 15), item);
+            size_t k = 0;
+            while (k < IMK_ALLAN_STATISTICS && strcmp(name, names[k]) != 0)
+                k++;
+            const char *nearest = command_nearest(name, IMK_ALLAN_STATISTICS, names);
+            if (k == IMK_ALLAN_STATISTICS && nearest)
+                return command_misused("--statistic %s: there is no \"%.*s\"; did you mean %s?",
+                                       text, (int)length, item, nearest);
+            if (k == IMK_ALLAN_STATISTICS)
+                return command_misused("--statistic %s: there is no \"%.*s\"; expected all, or "
+                                       "some of oadev, adev, mdev, tdev, ohdev, hdev, totdev, "
+                                       "mtot, htot, theo1, pdev, haar",
+                                       text, (int)length, item);
+            for (size_t i = 0; i < r->statistic_count; i++)
+                if (r->statistic[i] == (imk_allan_statistic)k)
+                    return command_misused("--statistic %s: %s is named twice", text, names[k]);
+            r->statistic[r->statistic_count++] = (imk_allan_statistic)k;
+            item += length;
+            if (!*item)
+                break;
         }
-    size_t *factors = malloc((strlen(text) + 1) * sizeof *factors);
+    return -1;
+}
+
+/* The times of a --tau list [s]; NULL after a message, with the exit code. */
+static double *parse_times(const char *text, size_t *count, int *code)
+{
+    double *times = malloc((strlen(text) + 1) * sizeof *times);
     *count = 0;
-    *code = factors ? -1 : command_failed("memory is exhausted");
-    for (const char *item = text; factors && *code < 0;) {
+    *code = times ? -1 : command_failed("memory is exhausted");
+    for (const char *item = text; times && *code < 0;) {
         size_t length = strcspn(item, ",");
         double tau, sigma;
         size_t numbers;
@@ -84,22 +130,49 @@ static size_t *parse_tau(const char *text, double dt, size_t n, size_t *count, i
         if (length == 0 || imk_decimal_parse(item, item + length, &tau) != item + length)
             status = imk_quantity_parse(item, item + length, imk_unit_of("s").dimension, 1, &tau,
                                         &sigma, &numbers, NULL, &error);
-        double m = status == IMK_OK ? floor(tau / dt + 0.5) : 0;
         if (status != IMK_OK)
             *code = command_misused("--tau %s: \"%.*s\" is no averaging time; expected octave, "
-                                    "decade, all or a list such as 1,10,100 in seconds",
+                                    "decade, many, all or a list such as 1,10,100 in seconds",
                                     text, (int)length, item);
-        else if (!(m >= 1 && m <= (double)(n / 2)))
-            *code = command_misused("--tau %s: \"%.*s\" is outside what this record allows, %g s "
-                                    "to %g s",
-                                    text, (int)length, item, dt, dt * (double)(n / 2));
-        else if (*count > 0 && (size_t)m <= factors[*count - 1])
+        else if (*count > 0 && !(tau > times[*count - 1]))
             *code = command_misused("--tau %s: the times must ascend", text);
         else
-            factors[(*count)++] = (size_t)m;
+            times[(*count)++] = tau;
         if (!item[length])
             break;
         item += length + 1;
+    }
+    if (*code >= 0) {
+        free(times);
+        times = NULL;
+    }
+    return times;
+}
+
+/* Factors of a statistic at listed times: those in its range. With one statistic a time outside is
+ * an error; with several it is left out of those that do not reach it. */
+static size_t *factors_of_times(const allan_result *r, imk_allan_statistic statistic, size_t n,
+                                size_t time_count, const double *times, size_t *count, int *code)
+{
+    const double dt = r->channels.dt;
+    size_t lowest, highest, step;
+    imk_allan_range(statistic, n, &lowest, &highest, &step);
+    const double unit = dt * (double)step * imk_allan_averaging(statistic, 1);
+    size_t *factors = malloc((time_count + 1) * sizeof *factors);
+    *count = 0;
+    *code = factors ? -1 : command_failed("memory is exhausted");
+    for (size_t i = 0; i < time_count && *code < 0; i++) {
+        const double place = floor(times[i] / unit + 0.5);
+        const bool inside =
+            place >= 1 && place <= (double)(highest / step) && (size_t)place * step >= lowest;
+        if (!inside && r->statistic_count == 1)
+            *code = command_misused("--tau %s: %g s is outside what this record allows, %g s to "
+                                    "%g s",
+                                    r->options->tau, times[i],
+                                    dt * imk_allan_averaging(statistic, lowest),
+                                    dt * imk_allan_averaging(statistic, highest));
+        else if (inside && (*count == 0 || (size_t)place * step > factors[*count - 1]))
+            factors[(*count)++] = (size_t)place * step;
     }
     if (*code >= 0) {
         free(factors);
@@ -108,13 +181,37 @@ static size_t *parse_tau(const char *text, double dt, size_t n, size_t *count, i
     return factors;
 }
 
+/* Averaging factors of --tau for one statistic; NULL after a message, with the exit code. */
+static size_t *parse_tau(const allan_result *r, imk_allan_statistic statistic, size_t n,
+                         size_t *count, int *code)
+{
+    static const char *const grids[] = {"octave", "decade", "all", "many"};
+    const char *text = r->options->tau;
+    for (int i = 0; i < 4; i++)
+        if (!text || strcmp(text, grids[i]) == 0) {
+            size_t *factors = allan_factors_of(statistic, (imk_allan_grid)i, n, count);
+            *code = factors ? -1 : command_failed("memory is exhausted");
+            return factors;
+        }
+    size_t time_count;
+    double *times = parse_times(text, &time_count, code);
+    if (!times)
+        return NULL;
+    size_t *factors = factors_of_times(r, statistic, n, time_count, times, count, code);
+    free(times);
+    return factors;
+}
+
 /* A column that never changes has no noise to analyse: almost always a wrong column. */
 static int check_constant(const char *path, const log_channels *channels)
 {
     for (size_t c = 0; c < channels->count; c++) {
         const double *data = log_channel_data(channels, c);
-        size_t i = 1;
-        while (i < channels->rows && data[i] == data[0])
+        size_t first = 0, i;
+        while (first < channels->rows && !isfinite(data[first]))
+            first++;
+        i = first;
+        while (i < channels->rows && (data[i] == data[first] || !isfinite(data[i])))
             i++;
         if (i == channels->rows)
             return command_failed("%s: column %s is constant in all %zu rows: there is no noise to "
@@ -126,15 +223,53 @@ static int check_constant(const char *path, const log_channels *channels)
 
 /* The record as running sums, in place of the data. n is the number of rates. */
 static double *running_sums(const allan_options *o, const log_channels *channels, size_t channel,
-                            size_t n)
+                            size_t n, const imk_executor *executor)
 {
     double *data = log_channel_data(channels, channel);
     if (o->type == 0)
-        imk_allan_sums(n, data, data, NULL);
+        imk_allan_sums(n, data, data, executor);
     else
         for (size_t i = 0; i <= n; i++)
             data[i] /= channels->dt;
     return data;
+}
+
+static bool has_missing(const log_channels *channels, size_t channel)
+{
+    const double *data = log_channel_data(channels, channel);
+    size_t i = 0;
+    while (i < channels->rows && isfinite(data[i]))
+        i++;
+    return i < channels->rows;
+}
+
+static int compute_curve(allan_result *r, size_t channel, size_t k, size_t n, const double *data,
+                         bool missing, const imk_executor *executor)
+{
+    const allan_options *o = r->options;
+    const char *name = log_channel_column(&r->channels, channel)->name;
+    imk_allan_settings settings = imk_allan_default();
+    settings.statistic = r->statistic[k];
+    settings.confidence = o->confidence;
+    settings.greenhall_riley = o->edf == 1;
+    settings.bias = (imk_allan_bias_removal)o->bias;
+    size_t count = 0;
+    int code;
+    size_t *factors = parse_tau(r, settings.statistic, n, &count, &code);
+    imk_status status = IMK_OK;
+    if (factors && count == 0 && r->statistic_count == 1)
+        status = IMK_ERROR_TOO_SHORT;
+    else if (factors && count > 0 && missing)
+        status = allan_curve_with_gaps(&settings, n, data, r->channels.dt, count, factors, executor,
+                                       &r->curve[channel][k]);
+    else if (factors && count > 0)
+        status = allan_curve_compute(&settings, n, data, r->channels.dt, count, factors, name,
+                                     executor, &r->curve[channel][k]);
+    free(factors);
+    if (status != IMK_OK)
+        code = command_failed("%s: column %s: %s: %s", r->path, name,
+                              imk_allan_name(settings.statistic), imk_status_text(status));
+    return code;
 }
 
 static int compute(allan_result *r, const imk_executor *executor)
@@ -142,27 +277,24 @@ static int compute(allan_result *r, const imk_executor *executor)
     const allan_options *o = r->options;
     const log_channels *channels = &r->channels;
     size_t n = o->type == 0 ? channels->rows : channels->rows - 1;
-    size_t count = 0;
     int code = check_constant(r->path, channels);
     if (code < 0 && n < 3)
         code = command_failed("%s: %zu rows are too few for an Allan deviation", r->path,
                               channels->rows);
-    if (code >= 0)
-        return code;
-    size_t *factors = parse_tau(o->tau, channels->dt, n, &count, &code);
-    imk_allan_settings settings = imk_allan_default();
-    settings.statistic = o->statistic ? IMK_ALLAN_PLAIN : IMK_ALLAN_OVERLAPPING;
-    settings.confidence = o->confidence;
-    settings.greenhall_riley = o->edf == 1;
-    for (size_t c = 0; factors && code < 0 && c < channels->count; c++) {
+    for (size_t c = 0; code < 0 && c < channels->count; c++) {
+        const bool missing = has_missing(channels, c);
         const char *name = log_channel_column(channels, c)->name;
-        const double *sums = running_sums(o, channels, c, n);
-        imk_status status = allan_curve_compute(&settings, n, sums, channels->dt, count, factors,
-                                                name, executor, &r->curve[c]);
-        if (status != IMK_OK)
-            code = command_failed("%s: column %s: %s", r->path, name, imk_status_text(status));
+        if (missing &&
+            (o->type == 1 || r->statistic_count > 1 || r->statistic[0] != IMK_ALLAN_OVERLAPPING))
+            return command_failed("%s: column %s has missing samples: only oadev of rates is "
+                                  "defined with them; leave out --statistic and --type, or use "
+                                  "--gaps bridge or --gaps longest",
+                                  r->path, name);
+        const double *data =
+            missing ? log_channel_data(channels, c) : running_sums(o, channels, c, n, executor);
+        for (size_t k = 0; code < 0 && k < r->statistic_count; k++)
+            code = compute_curve(r, c, k, n, data, missing, executor);
     }
-    free(factors);
     return code;
 }
 
@@ -185,7 +317,7 @@ static int show(const allan_result *r)
 
 static int run(int count, char **words)
 {
-    allan_options o = {.confidence = 0.95};
+    allan_options o = {.confidence = 0.95, .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&allan_verb, count, words, &o, operands);
     if (code < 0)
@@ -197,7 +329,9 @@ static int run(int count, char **words)
         return command_failed("memory is exhausted");
     r->options = &o;
     r->path = operands[0];
-    code = log_input_load(&o.log, r->path, &r->channels);
+    code = parse_statistics(o.statistic, r);
+    if (code < 0)
+        code = log_input_load(&o.log, r->path, &r->channels);
     if (code < 0) {
         imk_thread_pool *pool = imk_thread_pool_create(o.threads);
         imk_executor executor = imk_thread_pool_executor(pool);
@@ -206,7 +340,8 @@ static int run(int count, char **words)
         if (code < 0)
             code = show(r);
         for (size_t c = 0; c < r->channels.count; c++)
-            allan_curve_free(&r->curve[c]);
+            for (size_t k = 0; k < r->statistic_count; k++)
+                allan_curve_free(&r->curve[c][k]);
         log_channels_free(&r->channels);
     }
     free(r);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit identify: log at rest -> stochastic model with confidence intervals and a verdict. */
-#include "identify_parts.h"
+#include "identify_curve.h"
+#include "identify_plan_parts.h"
+#include "identify_several.h"
 
 #include <stdlib.h>
 
@@ -11,7 +13,8 @@ static const option identify_option_table[] = {
      "write one self-contained page: verdict, parameters, Allan plots, model",
      offsetof(identify_options, report)},
     {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
-     "draw the Allan deviation of each channel with the model", offsetof(identify_options, plot)},
+     "draw the Allan deviation of each channel with the model, and how far it is off",
+     offsetof(identify_options, plot)},
     {"twin", 0, OPTION_FLAG, NULL, NULL, NULL,
      "simulate the model over the length of the log and draw its Allan deviation over the log's",
      offsetof(identify_options, twin)},
@@ -28,6 +31,18 @@ static const option identify_option_table[] = {
      offsetof(identify_options, truth)},
     {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
      "of intervals and bounds; default 0.95", offsetof(identify_options, confidence)},
+    {"keep", 0, OPTION_TEXT, "LIST", NULL, NULL,
+     "leave these in the log: outliers, stuck, saturated (samples), warm-up, temperature, all; "
+     "otherwise what is found of them is taken out, and told",
+     offsetof(identify_options, keep)},
+    {"runs", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "several logs are runs of one sensor: one joint model, do they agree, and how much the mean "
+     "differs from run to run",
+     offsetof(identify_options, runs)},
+    {"devices", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "several logs are of different sensors: mean and spread of each term, and which of them "
+     "differ",
+     offsetof(identify_options, devices)},
     {"strict", 0, OPTION_FLAG, NULL, NULL, NULL, "exit with 1 when the verdict holds a warning",
      offsetof(identify_options, strict)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
@@ -36,14 +51,48 @@ static const option identify_option_table[] = {
      offsetof(identify_options, threads)},
 };
 
+static const option plan_option_table[] = {
+    {"plan", 0, OPTION_FILE, "MODEL", NULL, NULL,
+     "no LOG: how well a record of this noise (a file or a catalogue name) will tell each term; "
+     "with --rate",
+     offsetof(identify_options, plan)},
+    {"want", 0, OPTION_TEXT, "LIST", NULL, NULL,
+     "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected 95%\"",
+     offsetof(identify_options, want)},
+    {"duration", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+     "of the planned record, or of the one behind a curve", offsetof(identify_options, duration)},
+};
+
+static const option allan_option_table[] = {
+    {"method", 0, OPTION_CHOICE, "CHOICE", NULL, "likelihood|allan",
+     "likelihood of the spectrum (default), which loses nothing; or generalised least squares on "
+     "the Allan deviations, for what a plot holds",
+     offsetof(identify_options, method)},
+    {"curve", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "LOG is a table of Allan deviations instead: columns tau [s], gyro_x [deg/s] and so on; with "
+     "--rate and --duration",
+     offsetof(identify_options, curve)},
+    {"plain", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "the clusters of the curve do not overlap; default: they do",
+     offsetof(identify_options, plain)},
+    {"tolerance", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
+     "error of the model admitted in each deviation, beside what chance explains: 2% for a curve "
+     "read from a page",
+     offsetof(identify_options, tolerance)},
+    {"gauss-markov", 0, OPTION_INTEGER, "N", NULL, NULL,
+     "Gauss-Markov terms looked for in the Allan deviations; default 0 (the likelihood looks by "
+     "itself)",
+     offsetof(identify_options, gauss_markov)},
+};
+
 static int run(int count, char **words);
 
 const verb identify_verb = {
     .name = "identify",
     .summary = "log of a sensor at rest -> model of its noise, with a verdict on the log",
-    .operands = "LOG",
-    .operands_minimum = 1,
-    .operands_maximum = 1,
+    .operands = "LOG…",
+    .operands_minimum = 0,
+    .operands_maximum = IMK_JOINT_RECORDS_MAX,
     .examples = {{"imukit identify static.csv -o model.yaml --report report.html",
                   "noise terms of every gyro and accelerometer axis, and a page to look at"},
                  {"imukit identify raw.csv --rate 200Hz --columns gyro_x,gyro_y,gyro_z "
@@ -57,10 +106,18 @@ const verb identify_verb = {
         "bias instability, rate or acceleration random walk and ramp, with spectral lines, "
         "resonances and the output filter modelled apart. A term that the record does not show is "
         "reported as absent with an upper bound.\n\n"
+        "Missing samples stay missing; outliers, stuck and saturated samples are left out, a "
+        "warm-up and what follows a temperature column are subtracted, where the log shows them. "
+        "The verdict tells what was found; --keep leaves it in.\n\n"
+        "Several LOGs need --runs (of one sensor) or --devices (different sensors).\n\n"
         "The mean of the record is printed but not written as a bias: at rest it holds the Earth's "
         "rotation and gravity, which need a known attitude to be told apart.",
     .groups = {{"Options", sizeof identify_option_table / sizeof identify_option_table[0],
                 identify_option_table, 0},
+               {"Planning a record", sizeof plan_option_table / sizeof plan_option_table[0],
+                plan_option_table, 0},
+               {"From Allan deviations", sizeof allan_option_table / sizeof allan_option_table[0],
+                allan_option_table, 0},
                {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
                 offsetof(identify_options, log)}},
     .run = run};
@@ -99,25 +156,14 @@ static void suggest_next(const identification *i)
         printf("Next: add -o model.yaml to keep the model, --report report.html for a page\n");
 }
 
-static int draw(const identification *i)
-{
-    imk_error error;
-    imk_status status = imk_error_set(&error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
-    identify_figure *figure = malloc(sizeof *figure);
-    if (figure && identify_figure_make(i, figure)) {
-        status = imk_figure_write(&figure->figure, i->options->plot, &error);
-        identify_figure_free(figure);
-    }
-    free(figure);
-    return status == IMK_OK ? -1 : command_error(&error, NULL);
-}
-
 /* Everything after the channels are identified. */
 static int present(identification *i, const imk_executor *executor)
 {
     const identify_options *o = i->options;
     int code = -1;
-    identify_judge(i);
+    if (!o->curve)
+        identify_judge(i);
+    identify_warn(i);
     if (o->twin)
         code = identify_twin(i, executor);
     if (code < 0)
@@ -133,49 +179,126 @@ static int present(identification *i, const imk_executor *executor)
         print_text(i);
         suggest_next(i);
     }
-    int drawn = o->plot ? draw(i) : -1;
+    int drawn = o->plot ? identify_draw(i, o->plot) : -1;
     return drawn < 0 ? code : drawn;
 }
 
 static int identify_log(identification *i, const char *path, const imk_executor *executor)
 {
-    int code = log_input_load(&i->options->log, path, &i->channels);
-    if (code >= 0)
-        return code;
-    code = identify_channels(i, executor);
+    bool taken;
+    int code = identify_stream(i, executor, &taken);
+    if (code < 0 && !taken) {
+        code = log_input_load(&i->options->log, path, &i->channels);
+        if (code >= 0)
+            return code;
+        code = identify_channels(i, executor);
+    }
+    if (code < 0 && i->options->method == METHOD_ALLAN)
+        code = identify_by_allan(i);
     if (code < 0)
         code = present(i, executor);
-    for (size_t c = 0; c < i->channels.count; c++) {
-        allan_curve_free(&i->curve[c]);
-        allan_curve_free(&i->twin[c]);
+    identify_free(i);
+    return code;
+}
+
+static int identify_table_of_deviations(identification *i, const imk_executor *executor)
+{
+    const identify_options *o = i->options;
+    const identify_curve_input input = {o->log.rate, o->duration, o->tolerance, o->gauss_markov,
+                                        o->plain};
+    int code = identify_curve(i, &input);
+    if (code < 0)
+        code = present(i, executor);
+    identify_free(i);
+    return code;
+}
+
+static int plan(const identify_options *o)
+{
+    const identify_plan_request request = {.model = o->plan,
+                                           .want = o->want,
+                                           .plot = o->plot,
+                                           .rate = o->log.rate,
+                                           .duration = o->duration,
+                                           .json = o->json,
+                                           .strict = o->strict};
+    return identify_plan_run(&request);
+}
+
+/* Options that do not go together. @return -1 or the exit code */
+static int check_request(const identify_options *o, size_t logs)
+{
+    if (o->plan)
+        return logs == 0 ? -1
+                         : command_misused("--plan is for a record that is not made yet: leave the "
+                                           "log out, or --plan");
+    if (o->want)
+        return command_misused("--want says what a record is to tell: it goes with --plan MODEL");
+    if (logs == 0)
+        return command_misused("an operand is missing: imukit identify LOG…");
+    if (o->runs && o->devices)
+        return command_misused("--runs are of one sensor, --devices are different ones: which?");
+    if (logs > 1 && !o->runs && !o->devices)
+        return command_misused("%zu logs are given: add --runs when they are of one sensor (one "
+                               "joint model), or --devices when they are of different ones (their "
+                               "spread)",
+                               logs);
+    if (logs == 1 && (o->runs || o->devices))
+        return command_misused("%s needs two logs or more", o->runs ? "--runs" : "--devices");
+    if (o->curve && logs > 1)
+        return command_misused("--curve takes one table at a time");
+    if (o->duration > 0 && !o->curve)
+        return command_misused("--duration goes with --plan or --curve: a log has its own");
+    if (o->plain && !o->curve)
+        return command_misused("--plain goes with --curve");
+    if ((o->tolerance > 0 || o->gauss_markov > 0) && !o->curve && o->method != METHOD_ALLAN)
+        return command_misused("%s goes with --method allan or --curve",
+                               o->tolerance > 0 ? "--tolerance" : "--gauss-markov");
+    if (o->gauss_markov > IMK_TERMS_MAX)
+        return command_misused("--gauss-markov: at most %d terms", IMK_TERMS_MAX);
+    if (o->tolerance > 0.5)
+        return command_misused("--tolerance: at most 50%%");
+    return -1;
+}
+
+static int identify_operands(const identify_options *o, size_t logs, const char *const *operands)
+{
+    unsigned take_out = 0;
+    identification *i = calloc(1, sizeof *i);
+    if (!i)
+        return command_failed("memory is exhausted");
+    i->options = o;
+    i->path = operands[0];
+    int code = identify_parse_keep(o->keep, &take_out);
+    i->take_out = take_out;
+    if (code < 0)
+        code = o->truth ? command_model(o->truth, &i->truth, NULL) : -1;
+    if (code < 0) {
+        imk_thread_pool *pool = imk_thread_pool_create(o->threads);
+        imk_executor executor = imk_thread_pool_executor(pool);
+        code = logs > 1   ? identify_several(o, logs, operands, take_out, &i->truth, &executor)
+               : o->curve ? identify_table_of_deviations(i, &executor)
+                          : identify_log(i, operands[0], &executor);
+        imk_thread_pool_destroy(pool);
     }
-    log_channels_free(&i->channels);
+    free(i);
     return code;
 }
 
 static int run(int count, char **words)
 {
-    identify_options o = {.confidence = 0.95, .seed = 1};
-    const char *operands[OPERANDS_MAX];
+    identify_options o = {
+        .confidence = 0.95, .seed = 1, .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
+    const char *operands[IMK_JOINT_RECORDS_MAX];
+    size_t logs = 0;
     int code = options_parse(&identify_verb, count, words, &o, operands);
+    while (code < 0 && logs < IMK_JOINT_RECORDS_MAX && operands[logs])
+        logs++;
+    if (code < 0)
+        code = check_request(&o, logs);
     if (code < 0)
         code = command_check_plot(o.plot);
     if (code >= 0)
         return code;
-    identification *i = calloc(1, sizeof *i);
-    if (!i)
-        return command_failed("memory is exhausted");
-    i->options = &o;
-    i->path = operands[0];
-    code = o.truth ? command_model(o.truth, &i->truth, NULL) : -1;
-    if (code >= 0) {
-        free(i);
-        return code;
-    }
-    imk_thread_pool *pool = imk_thread_pool_create(o.threads);
-    imk_executor executor = imk_thread_pool_executor(pool);
-    code = identify_log(i, operands[0], &executor);
-    imk_thread_pool_destroy(pool);
-    free(i);
-    return code;
+    return o.plan ? plan(&o) : identify_operands(&o, logs, operands);
 }

@@ -10,10 +10,8 @@
  * off by more than 5 % is no specific force at rest. */
 static const double gravity_least = 9.78, gravity_most = 9.83, gravity_slack = 0.05;
 
-static void add(identification *i, verdict_level level, const char *code, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-
-static void add(identification *i, verdict_level level, const char *code, const char *format, ...)
+void identify_add_sentence(identification *i, verdict_level level, const char *code,
+                           const char *format, ...)
 {
     if (i->verdict_count == VERDICTS_MAX)
         return;
@@ -21,8 +19,10 @@ static void add(identification *i, verdict_level level, const char *code, const 
     sentence->level = level;
     snprintf(sentence->code, sizeof sentence->code, "%s", code);
     va_list arguments;
+    const int used =
+        i->label ? snprintf(sentence->text, sizeof sentence->text / 2, "%.200s: ", i->label) : 0;
     va_start(arguments, format);
-    vsnprintf(sentence->text, sizeof sentence->text, format, arguments);
+    vsnprintf(sentence->text + used, sizeof sentence->text - (size_t)used, format, arguments);
     va_end(arguments);
 }
 
@@ -137,12 +137,14 @@ static void judge_bits(identification *i)
             char detail[120];
             if (!(i->result[c].verdict & b->bit))
                 continue;
+            if (b->bit == IMK_VERDICT_SHORT && i->summarised)
+                continue; /* the joint estimate is not of this log alone */
             b->detail(i, c, detail, sizeof detail);
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s%s", used ? ", " : "",
                                      log_channel_column(&i->channels, c)->name, detail);
         }
         if (used > 0)
-            add(i, b->level, b->code, "%s: %s.", list, b->text);
+            identify_add_sentence(i, b->level, b->code, "%s: %s.", list, b->text);
     }
 }
 
@@ -178,12 +180,14 @@ static void judge_gravity(identification *i)
         return;
     const char *unit = likely_unit(magnitude, scale);
     if (unit)
-        add(i, VERDICT_WARNING, "gravity",
+        identify_add_sentence(
+            i, VERDICT_WARNING, "gravity",
             "|accel| is %.4g m/s^2 at rest: the numbers look like %s; write %s into the header, or "
             "add --accel-unit %s where it has none.",
             magnitude, unit, unit, unit);
     else
-        add(i, VERDICT_WARNING, "gravity",
+        identify_add_sentence(
+            i, VERDICT_WARNING, "gravity",
             "|accel| is %.4g m/s^2 at rest, not gravity (9.78 to 9.83), and no usual unit makes it "
             "so: was gravity removed, or did the sensor move?",
             magnitude);
@@ -215,7 +219,8 @@ static void judge_five_terms(identification *i)
                                  r->five_terms_from, why[0] ? why : "cause not known");
     }
     if (used > 0)
-        add(i, VERDICT_NOTE, "five_terms",
+        identify_add_sentence(
+            i, VERDICT_NOTE, "five_terms",
             "white noise, bias instability, random walk, ramp and quantization alone hold only "
             "from "
             "some averaging time on; below it what is named shapes the log, and is in the model: "
@@ -235,20 +240,28 @@ void identify_judge(identification *i)
     }
     format_duration(i->channels.dt * (double)i->channels.rows, length, sizeof length);
     judge_gravity(i);
+    identify_judge_samples(i);
     judge_bits(i);
     judge_five_terms(i);
     bool bad = identify_is_bad(i);
     if (from > 0)
-        add(i, bad ? VERDICT_NOTE : VERDICT_GOOD, "length",
+        identify_add_sentence(
+            i, bad ? VERDICT_NOTE : VERDICT_GOOD, "length",
             "%s at %.6g Hz: the model speaks for averaging times from %.3g s to %.3g s.", length,
             1 / i->channels.dt, from, to);
     else
-        add(i, VERDICT_NOTE, "length", "%s at %.6g Hz.", length, 1 / i->channels.dt);
+        identify_add_sentence(i, VERDICT_NOTE, "length", "%s at %.6g Hz.", length,
+                              1 / i->channels.dt);
     if (i->channels.bridged > 0)
-        add(i, VERDICT_NOTE, "bridged", "%zu of %zu samples were bridged by straight lines.",
-            i->channels.bridged, i->channels.rows);
+        identify_add_sentence(i, VERDICT_NOTE, "bridged",
+                              "%zu of %zu samples were bridged by straight lines.",
+                              i->channels.bridged, i->channels.rows);
     if (!bad)
-        add(i, VERDICT_GOOD, "good", "Nothing speaks against this record.");
+        identify_add_sentence(i, VERDICT_GOOD, "good", "Nothing speaks against this record.");
+}
+
+void identify_warn(const identification *i)
+{
     for (size_t k = 0; k < i->verdict_count; k++)
         if (i->verdict[k].level == VERDICT_WARNING)
             command_warn(i->verdict[k].code, "%s", i->verdict[k].text);

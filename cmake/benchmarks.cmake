@@ -58,6 +58,12 @@ if(TARGET bench_drift)
   endforeach()
 endif()
 
+# The command as a whole process.
+if(TARGET bench_identify AND TARGET imukit-command)
+  target_compile_definitions(bench_identify PRIVATE IMUKIT_COMMAND="$<TARGET_FILE:imukit-command>")
+  add_dependencies(bench_identify imukit-command)
+endif()
+
 file(GLOB yardstick_sources CONFIGURE_DEPENDS bench/*.cpp)
 find_program(IMUKIT_CXX NAMES c++ g++ clang++)
 if(yardstick_sources AND IMUKIT_CXX)

@@ -3,7 +3,7 @@
 # The C code of `imukit compensate --emit-c` on the processors it is for: compiled without a warning
 # for a Cortex-M4F, and in fixed point for a Cortex-M0; run by qemu, where 10 000 samples agree with
 # imk_correct() within the stated bound; counted. The code for the M0 runs on the M4, whose
-# instructions contain the M0's.
+# instructions contain the M0's. The streaming Allan variances of the library run there too.
 set -eu
 cd "$(dirname "$0")/.."
 out=build-check/firmware
@@ -84,6 +84,19 @@ arm-none-eabi-gcc $m4 $board -O2 -I"$out/wrong" -DREADING=int32_t -DVALUE=float 
 if $emulate -kernel "$out/wrong.elf" >"$out/wrong.log" 2>&1; then
     complain "a wrong constant was not noticed"
 fi
+
+# The streaming Allan variances of the library itself: the same bits on the device as here.
+sources="src/identify/allan_stream.c src/identify/allan_stream_join.c"
+gcc -DSTREAM_HOST -std=gnu17 -O2 -ffp-contract=off -Iinclude -Isrc tests/firmware/stream_main.c \
+    $sources -lm -o "$out/stream_host"
+arm-none-eabi-gcc $m4 $board -O2 -ffp-contract=off -Iinclude -Isrc -nostartfiles \
+    -T tests/firmware/board.ld tests/firmware/board.c tests/firmware/stream_main.c $sources \
+    -lm -o "$out/stream.elf"
+"$out/stream_host" >"$out/stream_host.txt" || complain "the streaming Allan variances failed here"
+$emulate -kernel "$out/stream.elf" >"$out/stream_device.txt" 2>&1 || complain "$out/stream.elf failed"
+grep -v instructions "$out/stream_device.txt" | cmp - "$out/stream_host.txt" ||
+    complain "the streaming Allan variances differ on the device"
+echo "streaming Allan variances: $(tail -n 1 "$out/stream_device.txt")"
 
 [ $status = 0 ] && echo "float, third order, six axes on a Cortex-M4F: $single a sample"
 exit $status

@@ -21,10 +21,11 @@ PUBLIC = {
     "base": "attitude decimal distributions elementary executor fourier least_squares "
             "linear_algebra names random status units",
     "model": "correct distort model model_parameter",
-    "noise": "noise",
+    "noise": "filter_noise noise",
     "motion": "earth motion motion_script",
     "simulate": "simulate",
-    "identify": "allan identify",
+    "identify": "allan allan_fit allan_gaps allan_stream identify identify_joint identify_plan "
+                "identify_record record_screen spectrum",
     "physics": "fibre_optic free_gyro instrument mems_accelerometer pendulous_servo rate_gyro "
                "rate_integrating_gyro ring_laser shell_gyro spinning_mass suspended_rotor "
                "tuned_gyro tuning_fork vibrating_beam",

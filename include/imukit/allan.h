@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file allan.h
- *  Allan deviation with confidence intervals. */
+ *  The Allan family of deviations with confidence intervals. */
 #ifndef IMUKIT_ALLAN_H
 #define IMUKIT_ALLAN_H
 
@@ -13,21 +13,53 @@
 extern "C" {
 #endif
 
+/** Which statistic, what it estimates, and the averaging factors m a record of n rate samples
+ * allows (docs/theory/allan-deviation.md says which to use for what; equations of [RILEY2008]). */
 typedef enum imk_allan_statistic {
-    IMK_ALLAN_OVERLAPPING = 0, /**< OADEV */
-    IMK_ALLAN_PLAIN            /**< ADEV: non-overlapping clusters */
+    IMK_ALLAN_OVERLAPPING = 0, /**< OADEV, 1 … n/2 */
+    IMK_ALLAN_PLAIN,           /**< ADEV: non-overlapping clusters, 1 … n/2 */
+    IMK_ALLAN_MODIFIED,        /**< MDEV: tells white from flicker phase noise, 1 … (n+1)/3 */
+    IMK_ALLAN_TIME,            /**< TDEV = tau MDEV/sqrt(3) [unit of the rate times the interval] */
+    IMK_ALLAN_HADAMARD,        /**< OHDEV, overlapping: blind to a ramp of the rate, 1 … n/3 */
+    IMK_ALLAN_HADAMARD_PLAIN,  /**< HDEV: non-overlapping, 1 … n/3 */
+    IMK_ALLAN_TOTAL,           /**< TOTDEV: ADEV of the record reflected at its ends, 1 … n/2 */
+    IMK_ALLAN_MODIFIED_TOTAL,  /**< MTOT: MDEV of reflected stretches, 1 … (n+1)/3 */
+    IMK_ALLAN_HADAMARD_TOTAL,  /**< HTOT: HDEV of reflected stretches, 1 … n/3 */
+    IMK_ALLAN_THEO1,           /**< Theo1: ADEV at tau = 0.75 m dt; m even, 10 … n */
+    IMK_ALLAN_PARABOLIC,       /**< PDEV: of least-squares slopes, 1 … (n+1)/2 [VERNOTTE2016] */
+    IMK_ALLAN_HAAR,            /**< Haar wavelet deviation at scale 2 m: OADEV/sqrt(2), 1 … n/2 */
+    IMK_ALLAN_STATISTICS       /**< how many there are */
 } imk_allan_statistic;
 
-/** Which averaging factors: powers of two, ten per decade, or every one. */
+/** Short name ("oadev") and title ("overlapping Allan deviation") of a statistic; NULL when there
+ * is none. */
+IMK_API const char *imk_allan_name(imk_allan_statistic statistic);
+IMK_API const char *imk_allan_title(imk_allan_statistic statistic);
+
+/** Lowest and highest averaging factor of a statistic, and the step between valid ones (2 for
+ * Theo1, which takes even ones, 1 for all others). highest < lowest: the record is too short. */
+IMK_API void imk_allan_range(imk_allan_statistic statistic, size_t n, size_t *lowest,
+                             size_t *highest, size_t *step);
+
+/** Averaging time in samples: m, and 0.75 m for Theo1. */
+IMK_API double imk_allan_averaging(imk_allan_statistic statistic, size_t m);
+
+/** Which averaging factors: powers of two, ten per decade, every one, or many: all up to 64, then
+ * 32 to the octave. */
 typedef enum imk_allan_grid {
     IMK_ALLAN_OCTAVE = 0,
     IMK_ALLAN_DECADE,
-    IMK_ALLAN_ALL
+    IMK_ALLAN_ALL,
+    IMK_ALLAN_MANY
 } imk_allan_grid;
 /** Averaging factors m (tau = m dt), ascending from 1 to n/2, for n rate samples.
  *  @param factors  NULL to count only
  *  @return how many */
 IMK_API size_t imk_allan_factors(imk_allan_grid grid, size_t n, size_t *factors);
+/** The same in the range of a statistic. Theo1 takes twice the factors of the grid from 5 on, since
+ *  it wants even ones. */
+IMK_API size_t imk_allan_factors_for(imk_allan_statistic statistic, imk_allan_grid grid, size_t n,
+                                     size_t *factors);
 
 /** Running sums of a rate record: sums[i] = sum over j < i of (rate[j] - mean), n + 1 values.
  *
@@ -38,46 +70,97 @@ IMK_API size_t imk_allan_factors(imk_allan_grid grid, size_t n, size_t *factors)
 IMK_API void imk_allan_sums(size_t n, const double *rate, double *sums,
                             const imk_executor *executor);
 
-/** Allan variances from running sums (or phase data divided by dt).
+/** Workspace [bytes] that imk_allan_compute() wants for these factors and threads; 0 for all
+ *  statistics but MTOT and HTOT. About 280 m bytes a thread, m the largest factor, and no more than
+ *  40 n; 0 too when a factor is out of range. */
+IMK_API size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n,
+                                        size_t factor_count, const size_t *factors, size_t threads);
+
+/** Variances of a statistic from running sums (or phase data divided by dt).
  *
- *      OAVAR(m) = 1/(2 m^2 (n - 2m + 1)) sum_j (s[j+2m] - 2 s[j+m] + s[j])^2       [RILEY2008,
- * (11)]
+ *      OAVAR(m) = 1/(2 m^2 (n - 2m + 1)) sum_j (s[j+2m] - 2 s[j+m] + s[j])^2   [RILEY2008, (11)]
  *
+ *  and the others as the file of each says; as defined, no bias taken off. TVAR is in units of the
+ *  rate times the sampling interval: multiply the deviation by dt. Cost a factor: O(n) for all but
+ *  Theo1, which takes O((n - m) m).
  *  @param n        rate samples; sums has n + 1 values
- *  @param factors  averaging factors, 1 … n/2
- *  @param variances,counts  factor_count values; counts: squares averaged
- *  @param executor NULL for serial. Summation order is fixed: the result does not depend on it */
+ *  @param factors  averaging factors in the statistic's range
+ *  @param variances,counts  factor_count values; counts (may be NULL): squares, or stretches,
+ *                  averaged
+ *  @param workspace  imk_allan_workspace_size() bytes for executor->threads threads; any address
+ *  @param executor NULL for serial. Summation order is fixed: the result does not depend on it
+ *  @return IMK_ERROR_RANGE, IMK_ERROR_TOO_SHORT, IMK_ERROR_WORKSPACE */
+IMK_API imk_status imk_allan_compute(imk_allan_statistic statistic, size_t n, const double *sums,
+                                     size_t factor_count, const size_t *factors, double *variances,
+                                     size_t *counts, void *workspace, size_t workspace_size,
+                                     const imk_executor *executor);
+
+/** imk_allan_compute() for the statistics that need no workspace. */
 IMK_API imk_status imk_allan_variances(imk_allan_statistic statistic, size_t n, const double *sums,
                                        size_t factor_count, const size_t *factors,
                                        double *variances, size_t *counts,
                                        const imk_executor *executor);
 
 /** Power-law type of a noise, S_y(f) ~ f^alpha: 2 white phase (quantization), 1 flicker phase,
- *  0 white rate, -1 flicker rate, -2 random-walk rate. */
+ *  0 white rate, -1 flicker rate, -2 random-walk rate; the Hadamard family converges for -3 flicker
+ *  walk and -4 random run too. */
 typedef enum imk_power_law {
     IMK_WHITE_PHASE = 2,
     IMK_FLICKER_PHASE = 1,
     IMK_WHITE_RATE = 0,
     IMK_FLICKER_RATE = -1,
-    IMK_RANDOM_WALK_RATE = -2
+    IMK_RANDOM_WALK_RATE = -2,
+    IMK_FLICKER_WALK_RATE = -3,
+    IMK_RANDOM_RUN_RATE = -4
 } imk_power_law;
 
-/** Noise type at averaging factor m by the lag-1 autocorrelation [RILEY2004]. Needs (n+1)/m >= 30
- * points; IMK_ERROR_TOO_SHORT otherwise. */
+/** Noise type at averaging factor m by the lag-1 autocorrelation [RILEY2004], 2 to -2. Needs n/m >=
+ *  30; IMK_ERROR_TOO_SHORT otherwise. */
 IMK_API imk_status imk_allan_noise_type(size_t n, const double *sums, size_t m,
                                         imk_power_law *type);
 
-/** Equivalent degrees of freedom of OADEV or ADEV at factor m by Greenhall and Riley
- *  [GREENHALL2003] (simplified and full forms as their table says). */
+/** The same down to the lowest type for which a statistic converges: -4 for the Hadamard family. */
+IMK_API imk_status imk_allan_noise_type_for(imk_allan_statistic statistic, size_t n,
+                                            const double *sums, size_t m, imk_power_law *type);
+
+/** Equivalent degrees of freedom at factor m of the continuous process: the general formula of
+ *  Greenhall and Riley [GREENHALL2003] for ADEV, OADEV, MDEV, TDEV, HDEV, OHDEV and Haar, its sum
+ *  for PDEV; the published fits for TOTDEV, MTOT, HTOT [RILEY2008, 5.4] and Theo1 [HOWE2003], which
+ *  are up to 20 % off below n/m = 6 (Theo1 with random-walk rate noise: of no use below n/m = 3).
+ */
 IMK_API double imk_allan_edf_greenhall_riley(imk_allan_statistic statistic, imk_power_law type,
                                              size_t n, size_t m);
 
-/** Exact equivalent degrees of freedom, 2 E^2/var, of the sampled process: independent rate samples
- *  for white rate noise (666.2 at m = 1, n = 1000, where the continuous process gives 782.0),
- *  independent sums for white phase noise. Flicker laws by their continuous form. Beyond m = 256
- *  evaluated at m = 256 with the record in proportion, good to 1e-3. Same arguments as above. */
+/** Equivalent degrees of freedom, 2 E^2/var, at factor m; NaN outside the range of m.
+ *
+ *  ADEV, OADEV, MDEV, TDEV, HDEV, OHDEV, PDEV, Haar: exact ones of the sampled process: independent
+ *  rate samples for white rate noise (666.2 for OADEV at m = 1, n = 1000, where the continuous
+ *  process gives 782.0), independent sums for white phase noise. Flicker laws by their continuous
+ *  form. Beyond m = 256 (PDEV: 32) evaluated there with the record in proportion, good to 1e-3.
+ *
+ *  TOTDEV, MTOT, HTOT, Theo1: from tables of the exact degrees of freedom of their quadratic forms
+ *  over n/m; good to 5 % for types 0 and below, 20 % for phase noises. */
 IMK_API double imk_allan_edf_exact(imk_allan_statistic statistic, imk_power_law type, size_t n,
                                    size_t m);
+
+/** Expected ratio of a variance to the one it stands for (AVAR for TOTDEV and Theo1, MVAR for MTOT,
+ *  HVAR for HTOT): for TOTDEV and Theo1 the exact one of the sampled process, in O(m) up to m =
+ *  4096; for MTOT and HTOT its limit for large m, good to 1 % from m = 8. 1 for the others. */
+IMK_API double imk_allan_bias(imk_allan_statistic statistic, imk_power_law type, size_t n,
+                              size_t m);
+
+/** The same by the published fits [RILEY2008, 5.12 to 5.16], with which tables in print are
+ *  corrected. MTOT's are up to 6 % off: 0.73 with white rate noise, where the ratio is 0.771. */
+IMK_API double imk_allan_bias_published(imk_allan_statistic statistic, imk_power_law type, size_t n,
+                                        size_t m);
+
+/** What is done about the bias of TOTDEV, MTOT, HTOT and Theo1. */
+typedef enum imk_allan_bias_removal {
+    IMK_ALLAN_BIAS_REMOVED = 0, /**< imk_allan_bias() of the noise type found is taken off, and HTOT
+                                     at m = 1 is OHDEV */
+    IMK_ALLAN_BIAS_PUBLISHED,   /**< the same with imk_allan_bias_published() */
+    IMK_ALLAN_BIAS_LEFT         /**< the statistic as defined */
+} imk_allan_bias_removal;
 
 /** Interval of the deviation at two-sided confidence (0.683, 0.95, …) for a variance with edf
  *  degrees of freedom: deviation * sqrt(edf / chi2 quantile). */
@@ -90,6 +173,9 @@ typedef struct imk_allan_settings {
     imk_allan_statistic statistic;
     double confidence;    /**< two-sided, of the intervals; 0.95 */
     bool greenhall_riley; /**< degrees of freedom of the continuous process; false: exact ones */
+    imk_allan_bias_removal bias;
+    void *workspace; /**< MTOT and HTOT only: imk_allan_workspace_size() */
+    size_t workspace_size;
 } imk_allan_settings;
 
 /** 95 % intervals of the overlapping deviation, with the exact degrees of freedom. */
@@ -97,18 +183,18 @@ IMK_API imk_allan_settings imk_allan_default(void);
 
 /** One point of an Allan plot. */
 typedef struct imk_allan_point {
-    size_t m;                       /**< averaging factor, tau = m dt */
-    double deviation, lower, upper; /**< [unit of the rate] */
+    size_t m;                       /**< averaging factor, tau = imk_allan_averaging() dt */
+    double deviation, lower, upper; /**< [unit of the rate]; TDEV: times the interval */
     double edf;                     /**< equivalent degrees of freedom */
     size_t count;                   /**< squares averaged */
     imk_power_law
         type; /**< noise type used for edf; that of the last factor with enough clusters */
 } imk_allan_point;
 
-/** Deviations with intervals at each factor (ascending, 1 … n/2).
+/** Deviations with intervals at each factor (ascending, in the statistic's range).
  *  @param sums    n + 1 running sums, imk_allan_sums()
  *  @param points  factor_count values
- *  @return IMK_ERROR_RANGE, IMK_ERROR_UNINITIALISED, IMK_ERROR_TOO_SHORT */
+ *  @return IMK_ERROR_RANGE, IMK_ERROR_UNINITIALISED, IMK_ERROR_TOO_SHORT, IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_allan_points(const imk_allan_settings *settings, size_t n,
                                     const double *sums, size_t factor_count, const size_t *factors,
                                     imk_allan_point *points, const imk_executor *executor);

@@ -34,6 +34,9 @@ IMK_API imk_status imk_fourier(size_t n, double *data, int inverse, void *worksp
  *
  *  by one complex transform of n/2 points for even n (n for odd). [MAKHOUL1980] */
 IMK_API imk_status imk_cosine(size_t n, double *data, void *workspace, size_t workspace_size);
+/** Its inverse, the orthonormal transform of type III in place: x[j] = sum_k s_k c[k] cos(...). */
+IMK_API imk_status imk_cosine_inverse(size_t n, double *data, void *workspace,
+                                      size_t workspace_size);
 
 #ifdef __cplusplus
 }

@@ -35,6 +35,9 @@ typedef struct imk_estimate {
     bool present;        /**< false: absent; value 0, lower 0, upper the bound at the confidence */
     double value, sigma; /**< [unit of the parameter]; sigma by the likelihood's curvature */
     double lower, upper; /**< profile-likelihood interval */
+    double free_value; /**< likeliest value while white noise, bias instability, random walk and the
+                            term itself are all free, chosen or not: the interval's centre, with
+                            next to no bias in its square */
 } imk_estimate;
 
 /** What the record holds that the five terms do not explain. */
@@ -71,8 +74,14 @@ typedef struct imk_identification {
     double longest;              /**< longest tau [s] compared: a ninth of the record */
     double resolution;           /**< smallest step between values, 0 when none is seen [unit] */
     double log_likelihood;
-    unsigned verdict; /**< IMK_VERDICT_… bits */
+    size_t missing;     /**< samples missing between the first and the last that is there */
+    double largest_gap; /**< longest run of them [s] */
+    int rounds;         /**< in which they and the spectrum were found by turns; 0: none missing */
+    unsigned verdict;   /**< IMK_VERDICT_… bits */
 } imk_identification;
+
+/** What a joint estimate needs of a record (identify_joint.h). */
+typedef struct imk_spectral_summary imk_spectral_summary;
 
 typedef struct imk_identify_settings {
     uint32_t cookie;
@@ -80,17 +89,22 @@ typedef struct imk_identify_settings {
     double confidence;   /**< of intervals and bounds; 0.95 */
     double significance; /**< false-alarm rate at which a term is called present; 0.01 */
     bool shape;          /**< look for lines, resonances and the output filter; true */
+    imk_spectral_summary *summary; /**< filled when not NULL, imk_spectral_summary_size() bytes */
 } imk_identify_settings;
 
 /** 95 % intervals, 1 % significance, shapes looked for; dt must be set. */
 IMK_API imk_identify_settings imk_identify_default(void);
 
-/** Bytes of workspace for n samples (about 32 n). */
+/** Bytes of workspace for n samples: about 62 n, of which 21 n are touched only where samples are
+ *  missing. */
 IMK_API size_t imk_identify_workspace_size(size_t n);
 
 /** Identify one channel.
- *  @param n         samples, at least 256
- *  @param samples   equally spaced, finite; not changed
+ *
+ *  NaN is a missing sample. The estimate is then that of maximum likelihood on the samples that are
+ *  there, and the intervals are as wide as these make them (docs/theory/identification.md).
+ *  @param n         samples, at least 256; of these no more than three quarters may be missing
+ *  @param samples   equally spaced; not changed
  *  @return IMK_ERROR_TOO_SHORT, IMK_ERROR_CONSTANT, IMK_ERROR_NOT_FINITE (error.index: sample),
  *          IMK_ERROR_WORKSPACE, IMK_ERROR_NO_CONVERGENCE (no noise in the record) */
 IMK_API imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,

@@ -9,6 +9,7 @@
 #ifndef IMUKIT_PARAMETER_FILE_H
 #define IMUKIT_PARAMETER_FILE_H
 
+#include "imukit/filter_noise.h"
 #include "imukit/model.h"
 
 #ifdef __cplusplus
@@ -25,11 +26,13 @@ typedef enum imk_parameter_format {
     IMK_PARAMETERS_OPENVINS,     /**< kalibr_imu_chain.yaml */
     IMK_PARAMETERS_VINS,         /**< acc_n, gyr_n, acc_w, gyr_w in an OpenCV yaml */
     IMK_PARAMETERS_PX4,          /**< TC_…, CAL_… in a parameter file */
-    IMK_PARAMETERS_ARDUPILOT     /**< INS_ACC…, INS_GYR…, INS_TCAL… in a parameter file */
+    IMK_PARAMETERS_ARDUPILOT,    /**< INS_ACC…, INS_GYR…, INS_TCAL… in a parameter file */
+    IMK_PARAMETERS_FILTER /**< for Kalman filters: bias states, Q_c, Phi, Q_d (filter_noise.h),
+                               as YAML or JSON */
 } imk_parameter_format;
 
 /** Name of a format ("kalibr", "gazebo", "matlab", "gnss-ins-sim", "navego", "openvins", "vins",
- *  "px4", "ardupilot"); NULL beyond the last. */
+ *  "px4", "ardupilot", "filter"); NULL beyond the last. */
 IMK_API const char *imk_parameter_format_name(imk_parameter_format format);
 /** Format of a name; IMK_PARAMETERS_UNKNOWN when there is none. */
 IMK_API imk_parameter_format imk_parameter_format_find(const char *name);
@@ -59,9 +62,10 @@ typedef struct imk_parameter_settings {
      *  (instead of what imuSensor makes of them). UNSTATED: as the format's program takes it; where
      *  that is not settled, refuse, naming the options. */
     imk_density density;
-    const char *sensor; /**< which of several sensors in the file; NULL: the only one */
+    const char *sensor;         /**< which of several sensors in the file; NULL: the only one */
+    imk_filter_settings filter; /**< writing FILTER: how bias instability is approximated */
 } imk_parameter_settings;
-/** Detect the format; no rate, density not stated. */
+/** Detect the format; no rate, density not stated; imk_filter_noise_default(). */
 IMK_API imk_parameter_settings imk_parameter_settings_default(void);
 
 /** Read. @return IMK_ERROR_FORMAT (none of the formats), _KEY_MISSING (error.expected: the option

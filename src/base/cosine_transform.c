@@ -10,7 +10,8 @@
  *
  *     V[k] = (Z[k] + Z*[h-k])/2 - i e^{-2 pi i k/n} (Z[k] - Z*[h-k])/2,   h = n/2,
  *
- * and V[n-k] is the conjugate of V[k], which gives c[k] and c[n-k] together. */
+ * and V[n-k] is the conjugate of V[k], which gives c[k] and c[n-k] together. The inverse (type III)
+ * takes the same steps backwards. */
 #include "imukit/fourier.h"
 
 #include "base/fourier_internal.h"
@@ -123,5 +124,79 @@ imk_status imk_cosine(size_t n, double *data, void *workspace, size_t workspace_
         from_half_spectrum(n, z, &table, data);
     else
         from_full_spectrum(n, z, &table, data);
+    return IMK_OK;
+}
+
+/* V[k] s_k = e^{i pi k/2n} (c[k] - i c[n-k]). */
+static inline void take_pair(const double *c, size_t n, size_t k, const imki_root_table *table,
+                             double *vr, double *vi)
+{
+    double re, im;
+    imki_root_table_get(table, k, &re, &im);
+    *vr = c[k] * re - c[n - k] * im;
+    *vi = -(c[k] * im + c[n - k] * re);
+}
+
+static void to_full_spectrum(size_t n, const double *c, const imki_root_table *table, double *z)
+{
+    const double scale = sqrt(0.5 * (double)n);
+    z[0] = c[0] * sqrt((double)n);
+    z[1] = 0;
+    for (size_t k = 1; k < n; k++) {
+        double vr, vi;
+        take_pair(c, n, k, table, &vr, &vi);
+        z[2 * k] = scale * vr;
+        z[2 * k + 1] = scale * vi;
+    }
+}
+
+/* The spectrum Z of the pairs from E[k] = (V[k] + V*[h-k])/2 and O[k] = w^{-k} (V[k] - V*[h-k])/2:
+ * Z[k] = E + i O, Z[h-k] = E* + i O*; n even. */
+static void to_half_spectrum(size_t n, const double *c, const imki_root_table *table, double *z)
+{
+    const size_t h = n / 2;
+    const double whole = sqrt((double)n), scale = 0.5 * sqrt(0.5 * (double)n);
+    z[0] = 0.5 * whole * (c[0] + c[h]);
+    z[1] = 0.5 * whole * (c[0] - c[h]);
+    for (size_t k = 1; k <= h / 2; k++) {
+        const size_t mirror = h - k;
+        double ar, ai, br, bi, wr, wi;
+        take_pair(c, n, k, table, &ar, &ai);
+        take_pair(c, n, mirror, table, &br, &bi);
+        imki_root_table_get(table, 4 * (uint64_t)k, &wr, &wi);
+        const double er = scale * (ar + br), ei = scale * (ai - bi);
+        const double tr = scale * (ar - br), ti = scale * (ai + bi);
+        const double or = tr * wr + ti * wi, oi = ti * wr - tr * wi;
+        z[2 * k] = er - oi;
+        z[2 * k + 1] = ei + or ;
+        z[2 * mirror] = er + oi;
+        z[2 * mirror + 1] = or -ei;
+    }
+}
+
+imk_status imk_cosine_inverse(size_t n, double *data, void *workspace, size_t workspace_size)
+{
+    const size_t needed = imk_cosine_workspace_size(n);
+    if (needed == 0 || !data || !workspace)
+        return IMK_ERROR_ARGUMENT;
+    if (workspace_size < needed)
+        return IMK_ERROR_WORKSPACE;
+    const layout part = layout_of(n);
+    const bool even = n % 2 == 0;
+    double *z = imki_align(workspace);
+    const imki_root_table table = imki_root_table_make(4 * (uint64_t)n, z + part.sequence);
+    if (even)
+        to_half_spectrum(n, data, &table, z);
+    else
+        to_full_spectrum(n, data, &table, z);
+    const imk_status status =
+        imk_fourier(even ? n / 2 : n, z, 1, z + part.sequence + part.table, part.transform_size);
+    if (status != IMK_OK)
+        return status;
+    const size_t half = (n + 1) / 2, stride = even ? 1 : 2;
+    for (size_t j = 0; j < half; j++)
+        data[2 * j] = z[stride * j];
+    for (size_t j = half; j < n; j++)
+        data[2 * (n - 1 - j) + 1] = z[stride * j];
     return IMK_OK;
 }

@@ -1,144 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Allan variances from running sums of a rate record.
+/* Variances of the Allan family from running sums of a rate record.
  *
  *     OAVAR(m) = 1/(2 m^2 M) sum_{j=0}^{M-1} (s[j+2m] - 2 s[j+m] + s[j])^2,   M = n - 2m + 1
+ *     OHVAR(m) = 1/(6 m^2 M) sum_{j=0}^{M-1} (s[j+3m] - 3 s[j+2m] + 3 s[j+m] - s[j])^2,
+ *                M = n - 3m + 1
  *
- * [RILEY2008, eq. (11)] with s the sums (phase/dt); the plain variance takes every m-th term only.
+ * [RILEY2008, (11), (18)] with s the sums (phase/dt); the plain variances take every m-th term
+ * only. The Haar wavelet variance at scale 2m is OAVAR/2 [PERCIVAL1994], TVAR is m^2/3 MVAR. The
+ * others have files of their own.
  */
-#include "imukit/allan.h"
-#include "imukit/random.h"
+#include "allan_internal.h"
+#include "base/workspace_internal.h"
 
 #include <math.h>
-#include <string.h>
 
-size_t imk_allan_factors(imk_allan_grid grid, size_t n, size_t *factors)
-{
-    const size_t per_decade = 10;
-    size_t count = 0, last = 0;
-    for (size_t step = 0;; step++) {
-        size_t m = step + 1;
-        if (grid == IMK_ALLAN_OCTAVE)
-            m = step < 63 ? (size_t)1 << step : n;
-        else if (grid == IMK_ALLAN_DECADE)
-            m = (size_t)(pow(10.0, (double)step / (double)per_decade) + 0.5);
-        if (m > n / 2)
-            return count;
-        if (m == last)
-            continue;
-        if (factors)
-            factors[count] = m;
-        count++;
-        last = m;
-    }
-}
-
-/* Sums of blocks in LANES parts, about a shift near the mean so that a large constant costs no
- * digits; the blocks' sums with the rounding error of each addition carried along
- * [KNUTH1998, 4.2.2]. The lanes let the compiler use vectors, several at a time; their order, and
- * so the result, is the same on every machine. */
-enum { LANES = 16, BLOCK = 2048 };
-
-/* Sum of the lanes, which are used up, in a fixed order. */
-static inline double sum_lanes(double *lane)
-{
-    for (size_t half = LANES / 2; half > 0; half /= 2)
-        for (size_t l = 0; l < half; l++)
-            lane[l] += lane[l + half];
-    return lane[0];
-}
-
-static double block_sum(const double *values, size_t count, double shift)
-{
-    double lane[LANES] = {0};
-    size_t i = 0;
-    for (; i + LANES <= count; i += LANES)
-        for (size_t l = 0; l < LANES; l++)
-            lane[l] += values[i + l] - shift;
-    for (; i < count; i++)
-        lane[0] += values[i] - shift;
-    return sum_lanes(lane);
-}
-
-/* sum + step exactly: the rounded sum, and what it lacks. */
-static double add_exactly(double sum, double step, double *error)
-{
-    const double next = sum + step, part = next - sum;
-    *error += (sum - (next - part)) + (step - part);
-    return next;
-}
-
-/* The record is cut into SEGMENTS, which threads take one by one: their sums first, then, when it
- * is known where each begins, the running sums inside. */
-enum { SEGMENTS = 64 };
-
-typedef struct sums_work {
-    size_t n;
-    const double *rate;
-    double *sums;
-    double shift, mean;                      /* a sample of the record; the mean less the shift */
-    double first[SEGMENTS];                  /* sample that the segment before may overwrite */
-    double total[SEGMENTS], error[SEGMENTS]; /* of a segment, later of all before it */
-} sums_work;
-
-static size_t segment_begin(const sums_work *w, size_t segment)
-{
-    return w->n / SEGMENTS * segment + w->n % SEGMENTS * segment / SEGMENTS;
-}
-
-static void segment_total(void *context, size_t segment)
-{
-    sums_work *w = context;
-    const size_t end = segment_begin(w, segment + 1);
-    double sum = 0, error = 0;
-    for (size_t i = segment_begin(w, segment); i < end; i += BLOCK)
-        sum = add_exactly(sum, block_sum(w->rate + i, end - i < BLOCK ? end - i : BLOCK, w->shift),
-                          &error);
-    w->total[segment] = sum;
-    w->error[segment] = error;
-}
-
-/* The error of every addition is carried along: a sum is right to its last digit however long the
- * record. Reading stays ahead of writing, so that sums and record may share memory. */
-static void segment_sums(void *context, size_t segment)
-{
-    const sums_work *w = context;
-    const size_t begin = segment_begin(w, segment), end = segment_begin(w, segment + 1);
-    double sum = w->total[segment], error = w->error[segment], value = w->first[segment];
-    for (size_t i = begin; i < end; i++) {
-        sum = add_exactly(sum, (value - w->shift) - w->mean, &error);
-        if (i + 1 < end)
-            value = w->rate[i + 1];
-        w->sums[i + 1] = sum + error;
-    }
-}
-
-void imk_allan_sums(size_t n, const double *rate, double *sums, const imk_executor *executor)
-{
-    sums_work w = {.n = n, .rate = rate, .sums = sums, .shift = n > 0 ? rate[0] : 0};
-    imk_execute(executor, SEGMENTS, segment_total, &w);
-    double sum = 0, error = 0;
-    for (size_t segment = 0; segment < SEGMENTS; segment++) {
-        sum = add_exactly(sum, w.total[segment], &error);
-        error += w.error[segment];
-    }
-    w.mean = n > 0 ? (sum + error) / (double)n : 0;
-    sum = error = 0;
-    for (size_t segment = 0; segment < SEGMENTS; segment++) {
-        const size_t begin = segment_begin(&w, segment), end = segment_begin(&w, segment + 1);
-        const double total = w.total[segment] - (double)(end - begin) * w.mean;
-        const double rest = w.error[segment];
-        w.first[segment] = begin < n ? rate[begin] : 0;
-        w.total[segment] = sum;
-        w.error[segment] = error;
-        sum = add_exactly(sum, total, &error);
-        error += rest;
-    }
-    sums[0] = 0;
-    imk_execute(executor, SEGMENTS, segment_sums, &w);
-}
+enum { LANES = IMKI_ALLAN_LANES, BLOCK = IMKI_ALLAN_BLOCK };
 
 /* Sum of squared second differences of `count` (<= BLOCK) consecutive terms. */
-static inline double overlapping_block(const double *s, size_t m, size_t count)
+IMKI_INLINED double second_differences(const double *s, size_t m, size_t count)
 {
     const double *a = s, *b = s + m, *c = s + 2 * m;
     double lane[LANES] = {0};
@@ -152,40 +31,64 @@ static inline double overlapping_block(const double *s, size_t m, size_t count)
         const double middle = b[j], d = (c[j] - middle) - (middle - a[j]);
         lane[0] += d * d;
     }
-    return sum_lanes(lane);
+    return imki_sum_lanes(lane);
+}
+
+IMKI_INLINED double third_differences(const double *s, size_t m, size_t count)
+{
+    const double *a = s, *b = s + m, *c = s + 2 * m, *e = s + 3 * m;
+    double lane[LANES] = {0};
+    size_t j = 0;
+    for (; j + LANES <= count; j += LANES)
+        for (size_t l = 0; l < LANES; l++) {
+            const double d = (e[j + l] - a[j + l]) - 3 * (c[j + l] - b[j + l]);
+            lane[l] += d * d;
+        }
+    for (; j < count; j++) {
+        const double d = (e[j] - a[j]) - 3 * (c[j] - b[j]);
+        lane[0] += d * d;
+    }
+    return imki_sum_lanes(lane);
+}
+
+IMKI_INLINED double differences(bool third, const double *s, size_t m, size_t count)
+{
+    return third ? third_differences(s, m, count) : second_differences(s, m, count);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx512f"))) static double block_avx512(const double *s, size_t m,
-                                                              size_t count)
+__attribute__((target("avx512f"))) static double differences_avx512(bool third, const double *s,
+                                                                    size_t m, size_t count)
 {
-    return overlapping_block(s, m, count);
+    return differences(third, s, m, count);
 }
 
-__attribute__((target("avx2"))) static double block_avx2(const double *s, size_t m, size_t count)
+__attribute__((target("avx2"))) static double differences_avx2(bool third, const double *s,
+                                                               size_t m, size_t count)
 {
-    return overlapping_block(s, m, count);
+    return differences(third, s, m, count);
 }
 #endif
 
-static double block_for(imk_kernel kernel, const double *s, size_t m, size_t count)
+static double differences_for(imk_kernel kernel, bool third, const double *s, size_t m,
+                              size_t count)
 {
 #if defined(__x86_64__) && defined(__GNUC__)
     if (kernel == IMK_KERNEL_AVX512)
-        return block_avx512(s, m, count);
+        return differences_avx512(third, s, m, count);
     if (kernel == IMK_KERNEL_AVX2)
-        return block_avx2(s, m, count);
+        return differences_avx2(third, s, m, count);
 #endif
     (void)kernel;
-    return overlapping_block(s, m, count);
+    return differences(third, s, m, count);
 }
 
-static double plain_sum(const double *s, size_t m, size_t count)
+static double plain_sum(bool third, const double *s, size_t m, size_t count)
 {
     double total = 0;
-    for (size_t j = 0; j < count; j++) {
-        const double *a = s + j * m;
-        double d = (a[2 * m] - a[m]) - (a[m] - a[0]);
+    for (const double *a = s; count > 0; a += m, count--) {
+        const double d =
+            third ? (a[3 * m] - a[0]) - 3 * (a[2 * m] - a[m]) : (a[2 * m] - a[m]) - (a[m] - a[0]);
         total += d * d;
     }
     return total;
@@ -205,53 +108,206 @@ typedef struct variance_work {
     const size_t *factors;
     double *variances;
     size_t *counts;
+    double *scratch; /* of the first group */
+    size_t scratch_doubles;
 } variance_work;
 
-static void variance_group(void *context, size_t item)
+/* The statistic whose terms are summed, and how many there are: TDEV and Haar are scaled. */
+static size_t term_count(imk_allan_statistic statistic, size_t n, size_t m)
+{
+    switch (statistic) {
+    case IMK_ALLAN_PLAIN:
+        return n / m - 1;
+    case IMK_ALLAN_HADAMARD_PLAIN:
+        return n / m - 2;
+    case IMK_ALLAN_HADAMARD:
+        return n - 3 * m + 1;
+    case IMK_ALLAN_MODIFIED:
+    case IMK_ALLAN_TIME:
+        return n - 3 * m + 2;
+    case IMK_ALLAN_PARABOLIC:
+        return m == 1 ? n - 1 : n - 2 * m + 2;
+    default:
+        return n - 2 * m + 1;
+    }
+}
+
+static void add_block(const variance_work *w, imki_allan_cursor *c, size_t first)
+{
+    const size_t left = c->count - first, size = left < BLOCK ? left : BLOCK;
+    if (w->statistic == IMK_ALLAN_MODIFIED || w->statistic == IMK_ALLAN_TIME)
+        imki_allan_modified_block(c, w->kernel, w->sums, first, size);
+    else if (w->statistic == IMK_ALLAN_PARABOLIC && c->m > 1)
+        imki_allan_parabolic_block(c, w->kernel, w->sums, first, size);
+    else
+        c->total += differences_for(w->kernel, w->statistic == IMK_ALLAN_HADAMARD, w->sums + first,
+                                    c->m, size);
+}
+
+/* Mean of the squares, scaled as the statistic is defined. */
+static void store(const variance_work *w, size_t place, const imki_allan_cursor *c)
+{
+    const double m = (double)c->m;
+    size_t count = c->count;
+    double total = c->total, scale = 2 * m * m;
+    switch (w->statistic) {
+    case IMK_ALLAN_MODIFIED:
+        scale *= m * m;
+        break;
+    case IMK_ALLAN_TIME:
+        scale *= 3;
+        break;
+    case IMK_ALLAN_HADAMARD:
+    case IMK_ALLAN_HADAMARD_PLAIN:
+        scale *= 3;
+        break;
+    case IMK_ALLAN_PARABOLIC:
+        scale = c->m == 1 ? 2 : m * m * m * m * m * m / 72;
+        break;
+    case IMK_ALLAN_HAAR:
+        scale *= 2;
+        break;
+    case IMK_ALLAN_TOTAL:
+        total += imki_allan_total_ends(w->n, w->sums, c->m);
+        count = w->n - 1;
+        break;
+    default:
+        break;
+    }
+    w->variances[place] = total / (scale * (double)count);
+    if (w->counts)
+        w->counts[place] = count;
+}
+
+static void difference_group(void *context, size_t item)
 {
     const variance_work *w = context;
     const bool dealt = w->factor_count <= DEALT_MAX;
     const size_t first = dealt ? item : item * NEIGHBOURS, stride = dealt ? w->groups : 1;
     const size_t most = dealt ? DEALT_MAX : NEIGHBOURS;
-    double total[DEALT_MAX] = {0};
-    size_t count[DEALT_MAX], size = 0, longest = 0;
+    imki_allan_cursor cursor[DEALT_MAX];
+    size_t size = 0, longest = 0;
     for (size_t i = first; i < w->factor_count && size < most; i += stride, size++) {
         const size_t m = w->factors[i];
-        count[size] = w->statistic == IMK_ALLAN_PLAIN ? w->n / m - 1 : w->n - 2 * m + 1;
-        longest = count[size] > longest ? count[size] : longest;
+        cursor[size] = (imki_allan_cursor){.m = m, .count = term_count(w->statistic, w->n, m)};
+        longest = cursor[size].count > longest ? cursor[size].count : longest;
     }
-    if (w->statistic == IMK_ALLAN_PLAIN)
+    const bool third = w->statistic == IMK_ALLAN_HADAMARD_PLAIN;
+    if (third || w->statistic == IMK_ALLAN_PLAIN)
         for (size_t i = 0; i < size; i++)
-            total[i] = plain_sum(w->sums, w->factors[first + i * stride], count[i]);
+            cursor[i].total = plain_sum(third, w->sums, cursor[i].m, cursor[i].count);
     else
         for (size_t j = 0; j < longest; j += BLOCK)
             for (size_t i = 0; i < size; i++)
-                if (j < count[i])
-                    total[i] += block_for(w->kernel, w->sums + j, w->factors[first + i * stride],
-                                          count[i] - j < BLOCK ? count[i] - j : BLOCK);
-    for (size_t i = 0; i < size; i++) {
-        const size_t place = first + i * stride;
-        const double m = (double)w->factors[place];
-        w->variances[place] = total[i] / (2.0 * m * m * (double)count[i]);
+                if (j < cursor[i].count)
+                    add_block(w, &cursor[i], j);
+    for (size_t i = 0; i < size; i++)
+        store(w, first + i * stride, &cursor[i]);
+}
+
+/* MTOT, HTOT and Theo1: one scratch a group. */
+static void scratch_group(void *context, size_t item)
+{
+    const variance_work *w = context;
+    for (size_t i = item; i < w->factor_count; i += w->groups) {
+        const size_t m = w->factors[i];
+        double *scratch = w->scratch + item * w->scratch_doubles;
+        size_t count;
+        w->variances[i] = w->statistic == IMK_ALLAN_THEO1
+                              ? imki_allan_theo(w->n, w->sums, m, &count, w->kernel, scratch)
+                              : imki_allan_windows(w->statistic == IMK_ALLAN_HADAMARD_TOTAL, w->n,
+                                                   w->sums, m, &count, scratch);
         if (w->counts)
-            w->counts[place] = count[i];
+            w->counts[i] = count;
     }
+}
+
+static bool takes_scratch(imk_allan_statistic statistic)
+{
+    return statistic == IMK_ALLAN_MODIFIED_TOTAL || statistic == IMK_ALLAN_HADAMARD_TOTAL ||
+           statistic == IMK_ALLAN_THEO1;
+}
+
+/* Doubles of one thread's scratch, a whole number of cache lines. */
+static size_t scratch_doubles(imk_allan_statistic statistic, size_t n, size_t factor_count,
+                              const size_t *factors)
+{
+    size_t most = 0;
+    for (size_t i = 0; i < factor_count && takes_scratch(statistic); i++) {
+        const size_t doubles = statistic == IMK_ALLAN_THEO1
+                                   ? imki_allan_theo_doubles(n, factors[i])
+                                   : imki_allan_windows_doubles(n, factors[i]);
+        most = doubles > most ? doubles : most;
+    }
+    return (most + 7) / 8 * 8;
+}
+
+static imk_status check_factors(imk_allan_statistic statistic, size_t n, size_t factor_count,
+                                const size_t *factors)
+{
+    size_t lowest, highest, step;
+    if ((unsigned)statistic >= IMK_ALLAN_STATISTICS)
+        return IMK_ERROR_ARGUMENT;
+    imk_allan_range(statistic, n, &lowest, &highest, &step);
+    for (size_t i = 0; i < factor_count; i++)
+        if (factors[i] < lowest || factors[i] > highest || factors[i] % step != 0)
+            return highest < lowest ? IMK_ERROR_TOO_SHORT : IMK_ERROR_RANGE;
+    return IMK_OK;
+}
+
+static size_t threads_of(const imk_executor *executor)
+{
+    return executor && executor->threads > 0 ? executor->threads : 1;
+}
+
+size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n, size_t factor_count,
+                                const size_t *factors, size_t threads)
+{
+    if (check_factors(statistic, n, factor_count, factors) != IMK_OK)
+        return 0;
+    const size_t slices = threads < factor_count ? threads : factor_count;
+    const size_t doubles = slices * scratch_doubles(statistic, n, factor_count, factors);
+    return doubles > 0 ? doubles * sizeof(double) + IMKI_ALIGNMENT_SLACK : 0;
+}
+
+imk_status imk_allan_compute(imk_allan_statistic statistic, size_t n, const double *sums,
+                             size_t factor_count, const size_t *factors, double *variances,
+                             size_t *counts, void *workspace, size_t workspace_size,
+                             const imk_executor *executor)
+{
+    const imk_status status = check_factors(statistic, n, factor_count, factors);
+    if (status != IMK_OK || factor_count == 0)
+        return status;
+    const size_t threads = threads_of(executor);
+    variance_work work = {.statistic = statistic,
+                          .kernel = imk_random_seeded(0).kernel,
+                          .n = n,
+                          .factor_count = factor_count,
+                          .groups = threads < factor_count ? threads : factor_count,
+                          .sums = sums,
+                          .factors = factors,
+                          .variances = variances,
+                          .counts = counts};
+    if (takes_scratch(statistic)) {
+        const size_t wanted =
+            imk_allan_workspace_size(statistic, n, factor_count, factors, threads);
+        if (wanted > 0 && (!workspace || workspace_size < wanted))
+            return IMK_ERROR_WORKSPACE;
+        work.scratch = wanted > 0 ? imki_align(workspace) : NULL;
+        work.scratch_doubles = scratch_doubles(statistic, n, factor_count, factors);
+        imk_execute(executor, work.groups, scratch_group, &work);
+    } else {
+        if (factor_count > DEALT_MAX)
+            work.groups = (factor_count + NEIGHBOURS - 1) / NEIGHBOURS;
+        imk_execute(executor, work.groups, difference_group, &work);
+    }
+    return IMK_OK;
 }
 
 imk_status imk_allan_variances(imk_allan_statistic statistic, size_t n, const double *sums,
                                size_t factor_count, const size_t *factors, double *variances,
                                size_t *counts, const imk_executor *executor)
 {
-    for (size_t i = 0; i < factor_count; i++)
-        if (factors[i] < 1 || factors[i] > n / 2)
-            return n < 2 ? IMK_ERROR_TOO_SHORT : IMK_ERROR_RANGE;
-    const size_t threads = executor && executor->threads > 0 ? executor->threads : 1;
-    const size_t groups = factor_count > DEALT_MAX ? (factor_count + NEIGHBOURS - 1) / NEIGHBOURS
-                          : threads < factor_count ? threads
-                                                   : factor_count;
-    variance_work work = {
-        statistic, imk_random_seeded(0).kernel, n, factor_count, groups, sums, factors, variances,
-        counts};
-    imk_execute(executor, groups, variance_group, &work);
-    return IMK_OK;
+    return imk_allan_compute(statistic, n, sums, factor_count, factors, variances, counts, NULL, 0,
+                             executor);
 }

@@ -54,35 +54,76 @@ static double ramp_coefficient(size_t n, double dt, size_t k)
     return -sqrt(2.0 / (double)n) * dt * cos(half) / (2 * s * s);
 }
 
-/* @param cumulative  cumulative[k] = sum of c_i^2 dt over 1 <= i < k, n + 1 values */
+/* What the rounding errors before the first sample, e_0, and behind the last, e_n, add to the
+ * coefficients of a quantized record: summed by parts, (e_(j+1) - e_j)/dt transforms to white noise
+ * times 2 sin(w/2) plus sqrt(2/n) cos(w/2)/dt [(-1)^k e_n - e_0]. Within a band the cosine is taken
+ * at its centre: where it changes, at the fast end, the rest is much larger. */
+static void add_end_sums(imki_bands *bands, size_t b, size_t k, size_t end,
+                         const imki_spectrum *spectrum)
+{
+    const double n = (double)spectrum->n,
+                 half = 1.5707963267948966 * 0.5 * (double)(k + end - 1) / n;
+    const double u = sqrt(2 / n) * cos(half) / spectrum->dt;
+    double sum[2] = {0, 0};
+    for (size_t i = k; i < end; i++)
+        sum[i % 2] += spectrum->coefficients[i];
+    for (size_t parity = 0; parity < 2; parity++) {
+        const double terms = (double)((end + 1 - parity) / 2 - (k + 1 - parity) / 2);
+        bands->end_product[parity][b] = u * sum[parity] * spectrum->dt;
+        bands->end_square[parity][b] = u * u * terms * spectrum->dt;
+    }
+}
+
+/* The coefficients k … end - 1 as one band. */
+static void add_band(imki_bands *bands, const imki_spectrum *spectrum, size_t k, size_t end)
+{
+    const size_t b = bands->count++;
+    const double step_hz = 1 / (2 * (double)spectrum->n * spectrum->dt);
+    const double *c = spectrum->coefficients;
+    bands->frequency[b] = 0.5 * (double)(k + end - 1) * step_hz;
+    bands->degrees[b] = (double)(end - k) * spectrum->squares;
+    bands->length[b] = spectrum->length;
+    bands->power[b] = (spectrum->cumulative[end] - spectrum->cumulative[k]) / (double)(end - k);
+    for (size_t parity = 0; parity < 2; parity++)
+        bands->end_product[parity][b] = bands->end_square[parity][b] = 0;
+    if (!c)
+        return;
+    add_end_sums(bands, b, k, end, spectrum);
+    if (b + 1 == k && k < IMKI_SINGLE_BANDS) {
+        const double factor = sqrt(spectrum->dt / bands->dt);
+        bands->power[b] = c[k] * c[k] * spectrum->dt;
+        bands->coefficient[b] = factor * c[k];
+        bands->ramp[b] = factor * ramp_coefficient(spectrum->n, spectrum->dt, k);
+        bands->singles = b + 1;
+    }
+}
+
+void imki_bands_add(imki_bands *bands, const imki_spectrum *spectrum, size_t resonance_count,
+                    const imk_resonance *resonances)
+{
+    const double step_hz = 1 / (2 * (double)spectrum->n * spectrum->dt);
+    for (size_t k = spectrum->first; k < spectrum->end && bands->count < IMKI_BANDS_MAX;) {
+        size_t end = spectrum->coefficients && k < IMKI_SINGLE_BANDS
+                         ? k + 1
+                         : next_edge(k, step_hz, resonance_count, resonances);
+        if (end > spectrum->end || bands->count == IMKI_BANDS_MAX - 1)
+            end = spectrum->end;
+        end = line_change(k, end, spectrum->line_count, spectrum->lines);
+        if (!in_line(k, spectrum->line_count, spectrum->lines))
+            add_band(bands, spectrum, k, end);
+        k = end;
+    }
+}
+
 void imki_bands_build(imki_bands *bands, size_t n, double dt, const double *coefficients,
                       const double *cumulative, size_t line_count, const imki_line *lines,
                       size_t resonance_count, const imk_resonance *resonances)
 {
-    const double step_hz = 1 / (2 * (double)n * dt);
+    const imki_spectrum whole = {n, dt, n, 1, n, 1, coefficients, cumulative, line_count, lines};
     bands->n = n;
     bands->dt = dt;
     bands->count = bands->singles = 0;
-    for (size_t k = 1; k < n && bands->count < IMKI_BANDS_MAX;) {
-        size_t end =
-            k < IMKI_SINGLE_BANDS ? k + 1 : next_edge(k, step_hz, resonance_count, resonances);
-        if (end > n || bands->count == IMKI_BANDS_MAX - 1)
-            end = n;
-        end = line_change(k, end, line_count, lines);
-        if (!in_line(k, line_count, lines)) {
-            const size_t b = bands->count++;
-            bands->frequency[b] = 0.5 * (double)(k + end - 1) * step_hz;
-            bands->degrees[b] = (double)(end - k);
-            bands->power[b] = (cumulative[end] - cumulative[k]) / (double)(end - k);
-            if (b + 1 == k && k < IMKI_SINGLE_BANDS) {
-                bands->power[b] = coefficients[k] * coefficients[k] * dt;
-                bands->coefficient[b] = coefficients[k];
-                bands->ramp[b] = ramp_coefficient(n, dt, k);
-                bands->singles = b + 1;
-            }
-        }
-        k = end;
-    }
+    imki_bands_add(bands, &whole, resonance_count, resonances);
 }
 
 static void arma_shape(const imk_arma *arma, const imki_bands *bands, double *shape)

@@ -26,6 +26,8 @@ static void store(const imk_estimate *estimate, imk_axes *axes, imk_evidence *ev
 {
     axes->value[axis] = estimate->value;
     axes->sigma[axis] = estimate->present ? estimate->sigma : 0;
+    if (!estimate->present && !(estimate->upper > 0))
+        return; /* nothing is known of it, such as of a ramp from several records */
     imk_interval *interval = interval_of(evidence, key, instance);
     if (interval) {
         interval->lower.value[axis] = estimate->lower;

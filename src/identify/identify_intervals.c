@@ -6,31 +6,71 @@
 #include <math.h>
 #include <string.h>
 
-/* Largest distance from the estimate, in one direction, at which the profile likelihood has fallen
- * by `drop`. Works on the amplitude (square root of the amount; the ramp as it is). */
-static double profile_end(const imki_fit *best, imki_fit *trial, const imki_bands *bands, int held,
-                          double start, double step, double drop)
+/* A likelihood held at places of one parameter: a strength (by its square root), the ramp, or the
+ * correlation time of a Gauss-Markov term (by its logarithm). */
+typedef struct profile {
+    imki_fit *fit;
+    const imki_bands *bands;
+    int held, held_time;
+    imki_amounts best;
+    double drop; /* of the log-likelihood, at the interval's end */
+} profile;
+
+/* Signed root of twice the fall of the likelihood, less what it is at the interval's end: nearly
+ * linear in the place. The fit is left at the place, so that the next one starts from there. */
+static double beyond(const profile *p, double place)
 {
-    const bool ramp = held == IMKI_HELD_RAMP;
-    double inside = start, outside = start;
-    for (int i = 0; i < 60; i++) {
-        outside = start + step;
-        if (!ramp && outside <= 0)
-            outside = 0;
-        *trial = *best;
-        const double l = imki_fit_profile(trial, bands, held, ramp ? outside : outside * outside);
-        if (best->log_likelihood - l > drop)
-            break;
-        if (!ramp && outside == 0)
-            return 0;
-        inside = outside;
-        step *= 2;
+    if (p->held_time >= 0) {
+        const size_t term = (size_t)p->held_time;
+        p->fit->correlation_time[term] = exp(place);
+        imki_gauss_markov_shape(p->fit, p->bands, exp(place),
+                                p->fit->shape[IMKI_FIRST_GAUSS_MARKOV + term]);
+    } else if (p->held == IMKI_HELD_RAMP) {
+        p->fit->ramp = place;
+    } else {
+        p->fit->amount[p->held] = place * place;
     }
-    for (int i = 0; i < 24 && fabs(outside - inside) > 1e-4 * fabs(step); i++) {
-        const double middle = 0.5 * (inside + outside);
-        *trial = *best;
-        const double l = imki_fit_profile(trial, bands, held, ramp ? middle : middle * middle);
-        *(best->log_likelihood - l > drop ? &outside : &inside) = middle;
+    const double fall =
+        p->best.log_likelihood - imki_gauss_markov_settle(p->fit, p->bands, p->held, p->held_time);
+    return sqrt(fmax(0, 2 * fall)) - sqrt(2 * p->drop);
+}
+
+/* End of the interval in the direction of `step`, at most at `limit`: bracketed by growing steps,
+ * then by regula falsi, the value of an end that stays halved [DOWELL1971]. */
+static double profile_end(const profile *p, double start, double step, double limit)
+{
+    double inside = start, outside = start, at_inside = -sqrt(2 * p->drop), at_outside = 0;
+    imki_fit_restore(p->fit, p->bands, &p->best);
+    for (int i = 0; i < 60; i++) {
+        outside = step > 0 ? fmin(outside + step, limit) : fmax(outside + step, limit);
+        at_outside = beyond(p, outside);
+        if (at_outside > 0)
+            break;
+        if (outside == limit)
+            return limit;
+        inside = outside;
+        at_inside = at_outside;
+        step *= at_inside < -0.8 * sqrt(2 * p->drop) ? 4 : 1.5;
+    }
+    for (int i = 0, side = 0; i < 30 && fabs(outside - inside) > 1e-4 * fabs(outside - start);
+         i++) {
+        double place = inside - at_inside * (outside - inside) / (at_outside - at_inside);
+        if (!(fabs(place - inside) < fabs(outside - inside)))
+            place = 0.5 * (inside + outside);
+        const double at = beyond(p, place);
+        if (fabs(at) < 1e-4)
+            return place;
+        if (at > 0) {
+            outside = place;
+            at_outside = at;
+            at_inside *= side > 0 ? 0.5 : 1;
+            side = 1;
+        } else {
+            inside = place;
+            at_inside = at;
+            at_outside *= side < 0 ? 0.5 : 1;
+            side = -1;
+        }
     }
     return 0.5 * (inside + outside);
 }
@@ -73,96 +113,148 @@ static double small_sample_factor(double amount, double sd)
     return 1 + 1 / (3 * (degrees > 2 ? degrees : 2));
 }
 
+/* Everything that was chosen, with white noise, bias instability, random walk and the term itself
+ * free as well. */
+static void set_free(imki_work *w, int term)
+{
+    static const bool always[IMK_NOISE_TERMS] = {false, true, true, true, false};
+    imki_fit *fit = w->fit;
+    for (int j = 0; j < IMKI_FIRST_GAUSS_MARKOV; j++)
+        if ((always[j] || j == term) && !fit->active[j]) {
+            fit->active[j] = true;
+            fit->amount[j] = 1e-6 * w->bands->power[0] / fit->shape[j][0];
+        }
+    fit->ramp_active = fit->ramp_active || term == IMK_NOISE_RAMP;
+    imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
+}
+
+/* Centre of the interval of a strength or of the ramp at the fit, and a first step from it; allows
+ * for a strength known from few coefficients in the drop. */
+static double centre_of(const imki_work *w, int held, profile *p, double *step)
+{
+    const imki_fit *fit = w->fit;
+    if (held == IMKI_HELD_RAMP) {
+        *step = 1 / sqrt(imki_fit_ramp_information(fit, w->bands));
+        return fit->ramp;
+    }
+    double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
+    imki_fit_covariance(fit, w->bands, covariance);
+    const double sd = sqrt(covariance[(size_t)held * fit->templates + (size_t)held]);
+    const double centre = sqrt(fit->amount[held]);
+    p->drop *= small_sample_factor(fit->amount[held], sd);
+    *step = 2 * (sqrt(fit->amount[held] + sd) - centre); /* near the end of 95 % */
+    return centre;
+}
+
+/* Interval of a strength or the ramp around the maximum at which the fit is. */
+static void interval_at(const imki_work *w, int held, double drop, imk_estimate *e)
+{
+    profile p = {w->fit, w->bands, held, IMKI_HELD_NONE, imki_fit_keep(w->fit), drop};
+    const bool ramp = held == IMKI_HELD_RAMP;
+    double step;
+    const double centre = centre_of(w, held, &p, &step);
+    e->free_value = centre;
+    e->upper = profile_end(&p, centre, step, HUGE_VAL);
+    e->lower = centre == 0 && !ramp ? 0 : profile_end(&p, centre, -step, ramp ? -HUGE_VAL : 0);
+}
+
+/* Whether quantization was called present, just or just not, moves white noise by more than its
+ * interval is wide. Where the choice was close, the interval covers both: of the other model what
+ * lies within the same drop of the likelihood less penalty; and its centre is the mean of the two,
+ * each with the likelihood less penalty as the logarithm of its weight [AKAIKE1978]. */
+static void widen_for_quantization(imki_work *w, double drop, imk_estimate *e)
+{
+    imki_fit *fit = w->fit;
+    const double needed = 0.5 * imk_chi_square_quantile(1 - 2 * w->settings->significance, 1);
+    const double chosen = fit->log_likelihood;
+    const bool on = !fit->active[IMK_NOISE_QUANTIZATION];
+    fit->active[IMK_NOISE_QUANTIZATION] = on;
+    fit->amount[IMK_NOISE_QUANTIZATION] =
+        on ? 0.1 * fit->amount[IMK_NOISE_WHITE] * w->bands->dt * w->bands->dt : 0;
+    const double other = imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
+    const double ahead = chosen - other + (on ? needed : -needed), left = drop - ahead;
+    imk_estimate too;
+    if (!(left > 0.01 * drop))
+        return;
+    interval_at(w, IMK_NOISE_WHITE, fmin(left, drop), &too);
+    e->lower = fmin(e->lower, too.lower);
+    e->upper = fmax(e->upper, too.upper);
+    const double weight = 1 / (1 + exp(-ahead));
+    e->free_value = sqrt(weight * e->free_value * e->free_value +
+                         (1 - weight) * too.free_value * too.free_value);
+}
+
 /* Intervals are those of the model in which white noise, bias instability, random walk and the term
  * itself are all free, whether they were called present or not: leaving a term out would claim to
  * know that it is zero. */
 static void store_interval(imki_work *w, imk_identification *result, int term, double drop)
 {
-    static const bool always[IMK_NOISE_TERMS] = {false, true, true, true, false};
-    imki_fit *best = w->trial, *scratch = w->fit;
     imk_estimate *e = &result->term[term];
-    *w->chosen = *w->fit;
-    *best = *w->chosen;
-    for (int j = 0; j < IMKI_FIRST_GAUSS_MARKOV; j++)
-        if ((always[j] || j == term) && !best->active[j]) {
-            best->active[j] = true;
-            best->amount[j] = 1e-6 * w->bands->power[0] / best->shape[j][0];
-        }
-    best->ramp_active = best->ramp_active || term == IMK_NOISE_RAMP;
-    imki_fit_maximise(best, w->bands);
-
-    const int held = term == IMK_NOISE_RAMP ? IMKI_HELD_RAMP : term;
-    double centre, step;
-    if (held == IMKI_HELD_RAMP) {
-        centre = best->ramp;
-        step = 1 / sqrt(imki_fit_ramp_information(best, w->bands));
-    } else {
-        double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
-        imki_fit_covariance(best, w->bands, covariance);
-        const double sd = sqrt(covariance[(size_t)term * best->templates + (size_t)term]);
-        centre = sqrt(best->amount[term]);
-        step = sqrt(best->amount[term] + sd) - centre;
-        drop *= small_sample_factor(best->amount[term], sd);
+    const imki_amounts chosen = imki_fit_keep(w->fit);
+    set_free(w, term);
+    const imki_amounts freed = imki_fit_keep(w->fit);
+    interval_at(w, term == IMK_NOISE_RAMP ? IMKI_HELD_RAMP : term, drop, e);
+    if (term == IMK_NOISE_WHITE) {
+        imki_fit_restore(w->fit, w->bands, &freed);
+        widen_for_quantization(w, drop, e);
     }
-    e->upper = profile_end(best, scratch, w->bands, held, centre, step, drop);
-    e->lower = centre == 0 && held != IMKI_HELD_RAMP
-                   ? 0
-                   : profile_end(best, scratch, w->bands, held, centre, -step, drop);
-    if (!e->present && term == IMK_NOISE_RAMP) {
+    if (!e->present && term == IMK_NOISE_RAMP)
         e->upper = fmax(fabs(e->lower), fabs(e->upper));
+    if (!e->present)
         e->lower = 0;
-    } else if (!e->present) {
-        e->lower = 0;
-    }
-    *w->fit = *w->chosen;
+    imki_fit_restore(w->fit, w->bands, &chosen);
 }
 
-/* End of the interval of a correlation time, in one direction: the factor at which the likelihood,
- * all amounts refitted, has fallen by `drop`; at most a hundred. */
-static double time_end(imki_work *w, size_t term, double time, double direction, double drop)
-{
-    const double needed = w->chosen->log_likelihood - drop;
-    double inside = 0, outside = 0.1;
-    for (;; inside = outside, outside *= 2) {
-        *w->trial = *w->chosen;
-        if (imki_gauss_markov_set(w->trial, w->bands, term, time * exp(direction * outside)) <
-            needed)
-            break;
-        if (outside > 4.6)
-            return time * exp(direction * outside);
-    }
-    for (int i = 0; i < 16; i++) {
-        const double middle = 0.5 * (inside + outside);
-        *w->trial = *w->chosen;
-        const double l =
-            imki_gauss_markov_set(w->trial, w->bands, term, time * exp(direction * middle));
-        *(l < needed ? &outside : &inside) = middle;
-    }
-    return time * exp(direction * 0.5 * (inside + outside));
-}
-
+/* Strength and correlation time of a Gauss-Markov term, each with the other, and with white noise,
+ * bias instability and random walk, free. */
 static void store_gauss_markov(imki_work *w, imk_identification *result, size_t term, double drop)
 {
-    const size_t slot = IMKI_FIRST_GAUSS_MARKOV + term, t = w->fit->templates;
-    if (!w->fit->active[slot] || !(w->fit->amount[slot] > 0))
-        return;
-    double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
-    imki_fit_covariance(w->fit, w->bands, covariance);
+    const size_t slot = IMKI_FIRST_GAUSS_MARKOV + term;
     struct imk_gauss_markov_estimate *g = &result->gauss_markov[result->gauss_markov_count++];
-    const double sigma = sqrt(w->fit->amount[slot]), sd = sqrt(covariance[slot * t + slot]);
-    *w->chosen = *w->fit;
-    g->sigma = (imk_estimate){true, sigma, sd / (2 * sigma), 0, 0};
-    const double step = sqrt(w->fit->amount[slot] + sd) - sigma;
-    g->sigma.lower = profile_end(w->chosen, w->fit, w->bands, (int)slot, sigma, -step, drop);
-    g->sigma.upper = profile_end(w->chosen, w->fit, w->bands, (int)slot, sigma, step, drop);
-
-    const double time = w->correlation_times[term];
+    const imki_amounts chosen = imki_fit_keep(w->fit);
+    const double time = chosen.correlation_time[term];
+    g->sigma = (imk_estimate){.present = true, .value = sqrt(chosen.amount[slot])};
     g->correlation_time = (imk_estimate){.present = true, .value = time};
-    g->correlation_time.lower = time_end(w, term, time, -1, drop);
-    g->correlation_time.upper = time_end(w, term, time, 1, drop);
-    g->correlation_time.sigma =
-        (g->correlation_time.upper - g->correlation_time.lower) / (2 * sqrt(2 * drop));
-    *w->fit = *w->chosen;
+    set_free(w, IMK_NOISE_WHITE);
+    profile p = {w->fit, w->bands, (int)slot, IMKI_HELD_NONE, imki_fit_keep(w->fit), drop};
+    double step;
+    const double sigma = centre_of(w, (int)slot, &p, &step);
+    g->sigma.free_value = sigma;
+    g->sigma.lower = sigma > 0 ? profile_end(&p, sigma, -step, 0) : 0;
+    g->sigma.upper = profile_end(&p, sigma, step, HUGE_VAL);
+    g->sigma.sigma = (g->sigma.upper - g->sigma.lower) / (2 * sqrt(2 * drop));
+
+    /* A correlation time beyond a hundred times the estimate is not told. */
+    p.held = IMKI_HELD_NONE;
+    p.held_time = (int)term;
+    p.drop = drop;
+    imk_estimate *t = &g->correlation_time;
+    const double free_time = p.best.correlation_time[term], place = log(free_time);
+    t->free_value = free_time;
+    t->lower = exp(profile_end(&p, place, -0.3, place - 4.6));
+    t->upper = exp(profile_end(&p, place, 0.3, place + 4.6));
+    t->sigma = (t->upper - t->lower) / (2 * sqrt(2 * drop));
+    imki_fit_restore(w->fit, w->bands, &chosen);
+}
+
+/* Shortest correlation time first. */
+static void store_gauss_markovs(imki_work *w, imk_identification *result, double drop)
+{
+    const imki_fit *fit = w->fit;
+    bool stored[IMKI_GAUSS_MARKOV_MAX] = {false};
+    for (;;) {
+        size_t next = IMKI_GAUSS_MARKOV_MAX;
+        for (size_t term = 0; term < IMKI_GAUSS_MARKOV_MAX; term++)
+            if (fit->active[IMKI_FIRST_GAUSS_MARKOV + term] &&
+                fit->amount[IMKI_FIRST_GAUSS_MARKOV + term] > 0 && !stored[term] &&
+                (next == IMKI_GAUSS_MARKOV_MAX ||
+                 fit->correlation_time[term] < fit->correlation_time[next]))
+                next = term;
+        if (next == IMKI_GAUSS_MARKOV_MAX)
+            return;
+        stored[next] = true;
+        store_gauss_markov(w, result, next, drop);
+    }
 }
 
 void imki_identify_intervals(imki_work *w, imk_identification *result)
@@ -171,6 +263,6 @@ void imki_identify_intervals(imki_work *w, imk_identification *result)
     store_values(w, result);
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
         store_interval(w, result, term, drop);
-    for (size_t term = 0; term < IMKI_GAUSS_MARKOV_MAX; term++)
-        store_gauss_markov(w, result, term, drop);
+    store_gauss_markovs(w, result, drop);
+    imki_identify_widen(w, result);
 }

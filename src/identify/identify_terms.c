@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which terms the record holds, and how much of each. */
+/* Which terms the record holds, and how much of each: the fast end of the spectrum first
+ * (quantization, output filter, resonances), then the set of terms (term_search.c). */
 #include "identify_internal.h"
-#include "imukit/distributions.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,15 +12,7 @@ static void set_templates(imki_work *w, const imk_identification *result)
     const imki_bands *bands = w->bands;
     memset(fit, 0, sizeof *fit);
     fit->templates = IMKI_FIRST_RESONANCE + (size_t)result->resonance_count;
-    for (size_t b = 0; b < bands->count; b++) {
-        const double f = bands->frequency[b], dt = bands->dt;
-        fit->shape[IMK_NOISE_QUANTIZATION][b] = imk_quantization_sampled_spectrum(1, dt, f);
-        fit->shape[IMK_NOISE_WHITE][b] = imk_white_sampled_spectrum(1, dt, f);
-        fit->shape[IMK_NOISE_BIAS_INSTABILITY][b] =
-            b < bands->singles ? imk_flicker_cosine_spectrum(1, dt, bands->n, b + 1)
-                               : imk_flicker_sampled_spectrum(1, dt, f);
-        fit->shape[IMK_NOISE_RANDOM_WALK][b] = imk_random_walk_sampled_spectrum(1, dt, f);
-    }
+    imki_templates_set(fit, bands);
     for (int r = 0; r < result->resonance_count; r++)
         imki_resonance_shape(result->resonance[r].frequency, result->resonance[r].q, bands,
                              fit->shape[IMKI_FIRST_RESONANCE + r]);
@@ -38,37 +30,18 @@ static void set_templates(imki_work *w, const imk_identification *result)
     fit->amount[IMK_NOISE_RANDOM_WALK] = low / fit->shape[IMK_NOISE_RANDOM_WALK][1];
 }
 
-static double gain_without(imki_work *w, int term)
+/* Quantization into the fit, or out of it, where that is worth `needed`. */
+static void try_quantization(imki_work *w, double needed)
 {
-    *w->trial = *w->fit;
-    w->trial->active[term] = false;
-    w->trial->amount[term] = 0;
-    return w->fit->log_likelihood - imki_fit_maximise(w->trial, w->bands);
-}
-
-static double gain_with_quantization(imki_work *w)
-{
-    *w->trial = *w->fit;
-    w->trial->active[IMK_NOISE_QUANTIZATION] = true;
-    w->trial->amount[IMK_NOISE_QUANTIZATION] =
-        0.1 * w->fit->amount[IMK_NOISE_WHITE] * w->bands->dt * w->bands->dt;
-    return imki_fit_maximise(w->trial, w->bands) - w->fit->log_likelihood;
-}
-
-static double gain_with_ramp(imki_work *w)
-{
-    *w->trial = *w->fit;
-    w->trial->ramp_active = true;
-    return imki_fit_maximise(w->trial, w->bands) - w->fit->log_likelihood;
-}
-
-/* Frequency and quality of the wide resonances again, now that the rest of the spectrum is known: a
- * filter's slope across a wide resonance shifts it. */
-static void refine_resonances(imki_work *w, imk_identification *result)
-{
-    for (int r = 0; r < result->resonance_count; r++)
-        if (result->resonance[r].q <= IMKI_NARROW)
-            imki_resonance_refine(w->fit, w->bands, (size_t)r, &result->resonance[r]);
+    imki_fit *fit = w->fit;
+    const imki_amounts before = imki_fit_keep(fit);
+    const bool on = !fit->active[IMK_NOISE_QUANTIZATION];
+    fit->active[IMK_NOISE_QUANTIZATION] = on;
+    fit->amount[IMK_NOISE_QUANTIZATION] =
+        on ? 0.1 * fit->amount[IMK_NOISE_WHITE] * w->bands->dt * w->bands->dt : 0;
+    const double gain = imki_fit_maximise(fit, w->bands) - before.log_likelihood;
+    if (!(gain > (on ? needed : -needed)))
+        imki_fit_restore(fit, w->bands, &before);
 }
 
 /* Output filter and quantization shape the same end of the spectrum: quantization is asked for with
@@ -76,81 +49,55 @@ static void refine_resonances(imki_work *w, imk_identification *result)
 static void fit_fast_end(imki_work *w, imk_identification *result, double needed)
 {
     imki_fit_maximise(w->fit, w->bands);
-    if (gain_with_quantization(w) > needed) {
-        *w->fit = *w->trial;
-        w->fit->active[IMK_NOISE_QUANTIZATION] = true;
-    }
+    try_quantization(w, needed);
     if (w->settings->shape) {
         result->filter = imki_filter_find(w->fit, w->bands);
-        refine_resonances(w, result);
-        if (result->resonance_count > 0 && result->filter.bandwidth > 0)
-            result->filter = imki_filter_find(w->fit, w->bands);
+        imki_fast_shape_refine(w, result);
     }
-    if (result->filter.bandwidth > 0 && w->fit->active[IMK_NOISE_QUANTIZATION] &&
-        gain_without(w, IMK_NOISE_QUANTIZATION) < needed)
-        *w->fit = *w->trial;
+    if (result->filter.bandwidth > 0 && w->fit->active[IMK_NOISE_QUANTIZATION])
+        try_quantization(w, needed);
 }
 
-/* Backward elimination of the random terms, each by its likelihood ratio; the threshold is that of
- * a parameter on its boundary, where the ratio is half a chi-square [SELF1987]. */
-static void choose_terms(imki_work *w, double needed)
+/* A low-pass far inside the band looks like a Gauss-Markov term above white noise, and the other
+ * way round: both are tried to the end. The filter costs what it had to earn. */
+static double choose_without_filter(imki_work *w, const imki_penalties *penalties)
 {
-    for (;;) {
-        int weakest = -1;
-        double least = needed;
-        for (int term = IMK_NOISE_QUANTIZATION; term <= IMK_NOISE_RANDOM_WALK; term++)
-            if (w->fit->active[term]) {
-                const double gain = gain_without(w, term);
-                weakest = gain < least ? term : weakest;
-                least = gain < least ? gain : least;
-            }
-        if (weakest < 0)
-            break;
-        gain_without(w, weakest);
-        *w->fit = *w->trial;
-    }
-    for (size_t term = 0; term < IMKI_GAUSS_MARKOV_MAX; term++)
-        if (w->fit->active[IMKI_FIRST_GAUSS_MARKOV + term])
-            w->correlation_times[term] =
-                imki_gauss_markov_refine(w->fit, w->bands, term, w->correlation_times[term], 1.5);
+    imki_fit *fit = w->fit;
+    imki_filter_shape((imk_low_pass){0, 0}, w->bands, fit->shape[IMK_NOISE_WHITE]);
+    fit->active[IMK_NOISE_BIAS_INSTABILITY] = fit->active[IMK_NOISE_RANDOM_WALK] = true;
+    fit->amount[IMK_NOISE_WHITE] = w->bands->power[w->bands->count * 3 / 4];
+    imki_gauss_markov_add(fit, w->bands, 0);
+    imki_gauss_markov_settle(fit, w->bands, IMKI_HELD_NONE, IMKI_HELD_NONE);
+    try_quantization(w, penalties->term);
+    return imki_terms_choose(fit, w->bands, penalties);
 }
 
-/* Gain in log-likelihood that a ramp must bring. Its estimate is judged against slow noise that is
- * itself known from a few coefficients, so that the ratio follows Student's t with v degrees, where
- * v = 2 S^2/var S for the fitted spectrum at the lowest frequency. With Wallace's normal
- * approximation of t [WALLACE1959], z ~ (8v + 1)/(8v + 3) sqrt(v log(1 + t^2/v)):
- *
- *     2 gain = (v + 1) log(1 + t^2/v) ~ (v + 1)/v [(8v + 3)/(8v + 1)]^2 z^2 */
-static double needed_for_ramp(const imki_work *w, double significance)
+static void choose_terms(imki_work *w, imk_identification *result)
 {
-    const imki_fit *fit = w->fit;
-    const size_t t = fit->templates;
-    double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], variance = 0;
-    imki_fit_covariance(fit, w->bands, covariance);
-    for (size_t i = 0; i < t; i++)
-        for (size_t j = 0; j < t; j++)
-            variance += covariance[i * t + j] * fit->shape[i][0] * fit->shape[j][0];
-    const double spectrum = imki_fit_spectrum(fit, 0);
-    const double v = fmax(1, 2 * spectrum * spectrum / variance);
-    const double z = imk_normal_quantile(1 - 0.5 * significance);
-    const double ratio = (8 * v + 3) / (8 * v + 1);
-    return 0.5 * (v + 1) / v * ratio * ratio * z * z;
+    /* What imki_filter_find() asks for its two parameters, or three. */
+    const double filter_penalty = result->filter.damping > 0 ? 13 : 10;
+    const imki_penalties penalties = imki_penalties_of(w->bands, w->settings->significance);
+    const bool deep = result->filter.bandwidth > 0 && result->filter.bandwidth * w->bands->dt < 0.1;
+    if (deep)
+        imki_fit_copy(w->trial, w->fit, w->bands);
+    const double filtered = imki_terms_choose(w->fit, w->bands, &penalties) - filter_penalty;
+    if (!deep)
+        return;
+    imki_fit *chosen = w->fit;
+    w->fit = w->trial;
+    w->trial = chosen;
+    if (choose_without_filter(w, &penalties) > filtered) {
+        result->filter = (imk_low_pass){0, 0};
+    } else {
+        w->trial = w->fit;
+        w->fit = chosen;
+    }
 }
 
 void imki_identify_terms(imki_work *w, imk_identification *result)
 {
-    const double significance = w->settings->significance;
-    imki_bands_build(w->bands, w->n, w->settings->dt, w->coefficients, w->cumulative, w->line_count,
-                     w->lines, (size_t)result->resonance_count, result->resonance);
+    imki_identify_bands(w, result);
     set_templates(w, result);
-    const double needed = 0.5 * imk_chi_square_quantile(1 - 2 * significance, 1);
-    fit_fast_end(w, result, needed);
-    imki_gauss_markov_find(w->fit, w->trial, w->bands, w->correlation_times);
-    choose_terms(w, needed);
-    /* In one record a ramp and a random walk look much alike, and a ramp that is not there takes
-     * the walk's place: it must be ten times less likely by chance than the other terms. */
-    if (gain_with_ramp(w) > needed_for_ramp(w, 0.1 * significance)) {
-        *w->fit = *w->trial;
-        choose_terms(w, needed);
-    }
+    fit_fast_end(w, result, imki_penalties_of(w->bands, w->settings->significance).term);
+    choose_terms(w, result);
 }

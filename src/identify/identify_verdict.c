@@ -57,13 +57,12 @@ static void agreement(const imk_identification *result, double dt, size_t count,
     *to = length > 0 ? (double)points[first + length - 1].m * dt : 0;
 }
 
-static void compare_with_allan(imki_work *w, imk_identification *result)
+/* Allan deviations of the samples at 99.9 % confidence; 0 when there is no room for them. */
+static size_t measure(imki_work *w, imk_allan_point *points)
 {
-    const double dt = w->settings->dt;
     size_t factors[FACTORS_MAX], count = imk_allan_factors(IMK_ALLAN_DECADE, w->n, NULL);
-    imk_allan_point points[FACTORS_MAX];
     if (count > FACTORS_MAX)
-        return;
+        return 0;
     imk_allan_factors(IMK_ALLAN_DECADE, w->n, factors);
     while (count > 1 && factors[count - 1] > w->n / 9)
         count--;
@@ -71,12 +70,22 @@ static void compare_with_allan(imki_work *w, imk_identification *result)
     settings.confidence = 0.999;
     imk_allan_sums(w->n, w->samples, w->cumulative, NULL);
     imk_allan_points(&settings, w->n, w->cumulative, count, factors, points, NULL);
+    return count;
+}
 
+static void compare_with_allan(imki_work *w, imk_identification *result)
+{
+    const double dt = w->settings->dt;
+    imk_allan_point measured[FACTORS_MAX];
+    const imk_allan_point *points = w->point_count > 0 ? w->points : measured;
+    const size_t count = w->point_count > 0 ? w->point_count : measure(w, measured);
+    if (count == 0)
+        return;
     double least = points[0].deviation;
     for (size_t i = 0; i < count; i++)
         least = fmin(least, points[i].deviation);
     result->minimum_floor = least / sqrt(imk_flicker_allan_variance(1, 1));
-    result->longest = (double)factors[count - 1] * dt;
+    result->longest = (double)points[count - 1].m * dt;
     agreement(result, dt, count, points, &result->valid_from, &result->valid_to);
 
     imk_identification five = *result;

@@ -6,13 +6,32 @@
  *     l = -1/2 sum_b v_b [ log S_b + P_b/S_b ],   S_b = sum_j amount_j shape_jb,   amount >= 0
  *
  * [WHITTLE1953]; the terms are linear in S, so Fisher scoring with the information
- * H_ij = 1/2 sum_b v_b shape_ib shape_jb / S_b^2 converges in a few steps. A ramp enters the mean
- * of the lowest coefficients: P = (c - ramp d)^2 dt. */
+ * H_ij = 1/2 sum_b v_b shape_ib shape_jb / S_b^2 converges in a few steps. Two things enter the
+ * mean of the coefficients c:
+ *
+ * - a ramp, in the lowest: P = (c - ramp d)^2 dt;
+ * - the rounding errors at the ends of a quantized record, a u with a ~ N(0, q), q = 2 Q^2, one a
+ *   for odd coefficients, one for even ones. With W = sum u^2 dt/S, X = sum u c dt/S over them,
+ *   integration over a adds to the likelihood
+ *
+ *       -1/2 log(1 + q W) + 1/2 q X^2/(1 + q W)
+ *
+ *   Its gradient in S is that of the likelihood without a, with the expected square E (c - a u)^2
+ *   for c^2: a has the mean m = V X and the variance V = q/(1 + q W). */
 #include "identify_internal.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
 #include <string.h>
+
+/* Spectrum and powers of a fit at the bands. */
+typedef struct evaluation {
+    double spectrum[IMKI_BANDS_MAX];
+    double power[IMKI_BANDS_MAX]; /* without ramp and ends */
+    double end_slope;             /* of the likelihood in Q^2 by the ends' variance alone */
+    double end_information;
+    double log_likelihood;
+} evaluation;
 
 double imki_fit_spectrum(const imki_fit *fit, size_t band)
 {
@@ -23,45 +42,111 @@ double imki_fit_spectrum(const imki_fit *fit, size_t band)
     return s;
 }
 
-static double band_power(const imki_fit *fit, const imki_bands *bands, size_t b)
+/* Row by row, which the compiler vectorises. */
+static void add_spectrum(const imki_fit *fit, size_t count, double *restrict spectrum)
 {
-    if (b >= bands->singles || fit->ramp == 0)
-        return bands->power[b];
-    const double c = bands->coefficient[b] - fit->ramp * bands->ramp[b];
-    return c * c * bands->dt;
+    memset(spectrum, 0, count * sizeof *spectrum);
+    for (size_t j = 0; j < fit->templates; j++)
+        if (fit->active[j] && fit->amount[j] > 0) {
+            const double *restrict shape = fit->shape[j], amount = fit->amount[j];
+            for (size_t b = 0; b < count; b++)
+                spectrum[b] += amount * shape[b];
+        }
 }
 
-static double likelihood(const imki_fit *fit, const imki_bands *bands)
+/* Product of u and the coefficients less the ramp, times dt, summed over a band. */
+static double end_product(const imki_fit *fit, const imki_bands *bands, size_t parity, size_t b)
 {
-    double sum = 0;
-    for (size_t b = 0; b < bands->count; b++) {
-        const double s = imki_fit_spectrum(fit, b);
-        if (!(s > 0))
-            return -INFINITY;
-        sum += bands->degrees[b] * (log(s) + band_power(fit, bands, b) / s);
+    double product = bands->end_product[parity][b];
+    if (parity == 1 && fit->ramp != 0 && b < bands->singles)
+        product -= fit->ramp * bands->ramp[b] * sqrt(bands->end_square[1][b] * bands->dt);
+    return product;
+}
+
+/* What the ends add to the likelihood; takes them from the powers. */
+static double take_ends(const imki_fit *fit, const imki_bands *bands, evaluation *e)
+{
+    const double q = 2 * fit->amount[IMK_NOISE_QUANTIZATION];
+    double gain = 0;
+    e->end_slope = e->end_information = 0;
+    if (!fit->active[IMK_NOISE_QUANTIZATION] || !(q > 0))
+        return 0;
+    for (size_t parity = 0; parity < 2; parity++) {
+        const double *square = bands->end_square[parity];
+        double w = 0, x = 0;
+        for (size_t b = 0; b < bands->count; b++) {
+            w += square[b] / e->spectrum[b];
+            x += end_product(fit, bands, parity, b) / e->spectrum[b];
+        }
+        const double part = 1 / (1 + q * w), variance = q * part, mean = variance * x;
+        gain += 0.5 * log(part) + 0.5 * mean * x;
+        e->end_slope += part * (x * x * part - w);
+        e->end_information += 2 * w * w * part * part;
+        for (size_t b = 0; b < bands->count; b++)
+            e->power[b] += ((mean * mean + variance) * square[b] -
+                            2 * mean * end_product(fit, bands, parity, b)) /
+                           bands->degrees[b];
     }
-    return -0.5 * sum;
+    return gain;
 }
 
-/* Gradient and information over the templates in `index`. */
-static void slope(const imki_fit *fit, const imki_bands *bands, size_t count, const size_t *index,
-                  double *gradient, double *information)
+static double evaluate(const imki_fit *fit, const imki_bands *bands, evaluation *e)
 {
-    memset(gradient, 0, count * sizeof *gradient);
-    memset(information, 0, count * count * sizeof *information);
-    for (size_t b = 0; b < bands->count; b++) {
-        const double s = imki_fit_spectrum(fit, b), weight = 0.5 * bands->degrees[b] / (s * s);
-        const double excess = weight * (band_power(fit, bands, b) - s);
-        for (size_t i = 0; i < count; i++) {
-            const double shape = fit->shape[index[i]][b];
-            gradient[i] += excess * shape;
-            for (size_t j = 0; j <= i; j++)
-                information[i * count + j] += weight * shape * fit->shape[index[j]][b];
+    const size_t count = bands->count;
+    double sum = 0, least = HUGE_VAL;
+    add_spectrum(fit, count, e->spectrum);
+    memcpy(e->power, bands->power, count * sizeof(double));
+    for (size_t b = 0; fit->ramp != 0 && b < bands->singles; b++) {
+        const double c = bands->coefficient[b] - fit->ramp * bands->ramp[b];
+        e->power[b] = c * c * bands->dt;
+    }
+    for (size_t b = 0; b < count; b++) {
+        least = fmin(least, e->spectrum[b]);
+        sum += bands->degrees[b] * (log(e->spectrum[b]) + e->power[b] / e->spectrum[b]);
+    }
+    e->log_likelihood = -HUGE_VAL;
+    if (least > 0 && sum == sum)
+        e->log_likelihood = -0.5 * sum + take_ends(fit, bands, e);
+    return e->log_likelihood;
+}
+
+/* Gradient and information over columns dS/d parameter, at an evaluation. */
+static void slope(const evaluation *e, const imki_bands *bands, size_t count,
+                  const double *const *columns, double *gradient, double *information)
+{
+    const size_t bands_count = bands->count;
+    double weight[IMKI_BANDS_MAX], excess[IMKI_BANDS_MAX], product[IMKI_BANDS_MAX];
+    for (size_t b = 0; b < bands_count; b++) {
+        weight[b] = 0.5 * bands->degrees[b] / (e->spectrum[b] * e->spectrum[b]);
+        excess[b] = e->power[b] - e->spectrum[b];
+    }
+    for (size_t i = 0; i < count; i++) {
+        double sum = 0;
+        for (size_t b = 0; b < bands_count; b++) {
+            product[b] = weight[b] * columns[i][b];
+            sum += product[b] * excess[b];
+        }
+        gradient[i] = sum;
+        for (size_t j = 0; j <= i; j++) {
+            double part[4] = {0, 0, 0, 0}; /* four sums side by side */
+            size_t b = 0;
+            for (; b + 4 <= bands_count; b += 4)
+                for (size_t lane = 0; lane < 4; lane++)
+                    part[lane] += product[b + lane] * columns[j][b + lane];
+            for (; b < bands_count; b++)
+                part[0] += product[b] * columns[j][b];
+            information[i * count + j] = information[j * count + i] =
+                part[0] + part[1] + (part[2] + part[3]);
         }
     }
-    for (size_t i = 0; i < count; i++)
-        for (size_t j = 0; j < i; j++)
-            information[j * count + i] = information[i * count + j];
+}
+
+void imki_fit_slope(const imki_fit *fit, const imki_bands *bands, size_t count,
+                    const double *const *columns, double *gradient, double *information)
+{
+    evaluation e;
+    evaluate(fit, bands, &e);
+    slope(&e, bands, count, columns, gradient, information);
 }
 
 /* Covariance of the active amounts: inverse of the scaled information. */
@@ -69,23 +154,27 @@ void imki_fit_covariance(const imki_fit *fit, const imki_bands *bands, double *c
 {
     const size_t t = fit->templates;
     double h[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], scale[IMKI_TEMPLATES_MAX];
-    double gradient[IMKI_TEMPLATES_MAX];
-    size_t index[IMKI_TEMPLATES_MAX] = {0};
+    double gradient[IMKI_TEMPLATES_MAX], inverse[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
+    const double *columns[IMKI_TEMPLATES_MAX] = {0};
+    size_t index[IMKI_TEMPLATES_MAX] = {0}, count = 0;
     for (size_t i = 0; i < t; i++)
-        index[i] = i;
-    slope(fit, bands, t, index, gradient, h);
-    for (size_t i = 0; i < t; i++)
-        scale[i] = fit->active[i] && h[i * t + i] > 0 ? 1 / sqrt(h[i * t + i]) : 0;
-    for (size_t i = 0; i < t; i++)
-        for (size_t j = 0; j < t; j++)
-            h[i * t + j] = i == j ? 1 + 1e-12 : h[i * t + j] * scale[i] * scale[j];
+        if (fit->active[i]) {
+            columns[count] = fit->shape[i];
+            index[count++] = i;
+        }
     memset(covariance, 0, t * t * sizeof *covariance);
-    if (imk_cholesky_factor(t, h) != IMK_OK)
+    imki_fit_slope(fit, bands, count, columns, gradient, h);
+    for (size_t i = 0; i < count; i++)
+        scale[i] = h[i * count + i] > 0 ? 1 / sqrt(h[i * count + i]) : 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = 0; j < count; j++)
+            h[i * count + j] = i == j ? 1 + 1e-12 : h[i * count + j] * scale[i] * scale[j];
+    if (imk_cholesky_factor(count, h) != IMK_OK)
         return;
-    imk_cholesky_inverse(t, h, covariance);
-    for (size_t i = 0; i < t; i++)
-        for (size_t j = 0; j < t; j++)
-            covariance[i * t + j] *= scale[i] * scale[j];
+    imk_cholesky_inverse(count, h, inverse);
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = 0; j < count; j++)
+            covariance[index[i] * t + index[j]] = inverse[i * count + j] * scale[i] * scale[j];
 }
 
 double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands)
@@ -97,84 +186,130 @@ double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands)
 }
 
 /* Best ramp for the present spectrum: weighted mean of c/d. */
-static void fit_ramp(imki_fit *fit, const imki_bands *bands)
+static double best_ramp(const imki_bands *bands, const evaluation *e)
 {
-    double product = 0;
-    for (size_t b = 0; b < bands->singles; b++)
-        product += bands->ramp[b] * bands->coefficient[b] * bands->dt / imki_fit_spectrum(fit, b);
-    fit->ramp = product / imki_fit_ramp_information(fit, bands);
+    double product = 0, information = 0;
+    for (size_t b = 0; b < bands->singles; b++) {
+        product += bands->ramp[b] * bands->coefficient[b] / e->spectrum[b];
+        information += bands->ramp[b] * bands->ramp[b] / e->spectrum[b];
+    }
+    return information > 0 ? product / information : 0;
 }
 
-/* Newton step over the free amounts; those that would turn negative are held at zero one by one,
- * and a zero amount is freed when the likelihood rises with it. */
-static bool scoring_step(const imki_fit *fit, const imki_bands *bands, int held, double *step)
+/* Solves the scaled h x = g for the parameters in `index`, of `count` in all; x in `solution`,
+ * scaled. */
+static bool solve(size_t count, const double *h, const double *g, size_t chosen,
+                  const size_t *index, const double *scale, double *solution)
 {
-    size_t index[IMKI_TEMPLATES_MAX], count = 0;
-    double gradient[IMKI_TEMPLATES_MAX], h[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
-    for (size_t j = 0; j < fit->templates; j++)
-        if (fit->active[j] && (int)j != held)
-            index[count++] = j;
-    memset(step, 0, IMKI_TEMPLATES_MAX * sizeof *step);
-    while (count > 0) {
-        slope(fit, bands, count, index, gradient, h);
-        double scale[IMKI_TEMPLATES_MAX];
-        for (size_t i = 0; i < count; i++)
-            scale[i] = h[i * count + i] > 0 ? 1 / sqrt(h[i * count + i]) : 0;
-        for (size_t i = 0; i < count; i++) {
-            for (size_t j = 0; j < count; j++)
-                h[i * count + j] *= scale[i] * scale[j];
-            h[i * count + i] +=
-                1e-12; /* templates may coincide where the record cannot tell them */
-            gradient[i] *= scale[i];
-        }
-        if (imk_cholesky_factor(count, h) != IMK_OK)
-            return false;
-        imk_cholesky_solve(count, h, gradient);
-        size_t worst = count;
-        for (size_t i = 0; i < count; i++) {
-            gradient[i] *= scale[i];
-            if (fit->amount[index[i]] <= 0 && gradient[i] < 0 &&
-                (worst == count || gradient[i] / scale[i] < gradient[worst] / scale[worst]))
-                worst = i;
-        }
-        if (worst == count) {
-            for (size_t i = 0; i < count; i++)
-                step[index[i]] = gradient[i];
-            return true;
-        }
-        for (size_t i = worst; i + 1 < count; i++)
-            index[i] = index[i + 1];
-        count--;
+    double matrix[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
+    for (size_t i = 0; i < chosen; i++) {
+        for (size_t j = 0; j < chosen; j++)
+            matrix[i * chosen + j] =
+                h[index[i] * count + index[j]] * scale[index[i]] * scale[index[j]];
+        matrix[i * chosen + i] += 1e-12; /* templates may coincide where the record cannot tell */
+        solution[i] = g[index[i]] * scale[index[i]];
     }
+    if (imk_cholesky_factor(chosen, matrix) != IMK_OK)
+        return false;
+    imk_cholesky_solve(chosen, matrix, solution);
     return true;
+}
+
+/* Newton step over the free amounts; those that would turn negative are taken to zero one by one,
+ * and the step of the others solved again. Returns twice the likelihood that
+ * the step promises, negative when there is none. */
+static double scoring_step(const imki_fit *fit, const imki_bands *bands, const evaluation *e,
+                           int held, double *step)
+{
+    size_t slot[IMKI_TEMPLATES_MAX] = {0}, index[IMKI_TEMPLATES_MAX], count = 0;
+    const double *columns[IMKI_TEMPLATES_MAX] = {0};
+    double gradient[IMKI_TEMPLATES_MAX], h[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
+    double scale[IMKI_TEMPLATES_MAX], solution[IMKI_TEMPLATES_MAX];
+    for (size_t j = 0; j < fit->templates; j++)
+        if (fit->active[j] && (int)j != held) {
+            columns[count] = fit->shape[j];
+            slot[count++] = j;
+        }
+    memset(step, 0, IMKI_TEMPLATES_MAX * sizeof *step);
+    slope(e, bands, count, columns, gradient, h);
+    if (count > 0 && slot[0] == IMK_NOISE_QUANTIZATION) {
+        gradient[0] += e->end_slope;
+        h[0] += e->end_information;
+    }
+    for (size_t i = 0; i < count; i++) {
+        scale[i] = h[i * count + i] > 0 ? 1 / sqrt(h[i * count + i]) : 0;
+        index[i] = i;
+    }
+    double moved[IMKI_TEMPLATES_MAX]; /* gradient after the steps that are fixed */
+    memcpy(moved, gradient, sizeof moved);
+    size_t chosen = count;
+    while (chosen > 0) {
+        if (!solve(count, h, moved, chosen, index, scale, solution))
+            return -1;
+        size_t worst = chosen;
+        double least = 0;
+        for (size_t i = 0; i < chosen; i++) {
+            const double left = scale[index[i]] > 0
+                                    ? fit->amount[slot[index[i]]] / scale[index[i]] + solution[i]
+                                    : 0;
+            worst = left < least ? i : worst;
+            least = fmin(least, left);
+        }
+        if (worst == chosen)
+            break;
+        const size_t fixed = index[worst];
+        step[slot[fixed]] = -fit->amount[slot[fixed]];
+        for (size_t j = 0; j < count; j++)
+            moved[j] -= h[j * count + fixed] * step[slot[fixed]];
+        for (size_t i = worst; i + 1 < chosen; i++)
+            index[i] = index[i + 1];
+        chosen--;
+    }
+    for (size_t i = 0; i < chosen; i++)
+        step[slot[index[i]]] = solution[i] * scale[index[i]];
+    double promised = 0;
+    for (size_t i = 0; i < count; i++)
+        promised += step[slot[i]] * gradient[i];
+    return promised;
+}
+
+static bool take_step(imki_fit *fit, const imki_bands *bands, const double *step, double best,
+                      evaluation *e)
+{
+    double start[IMKI_TEMPLATES_MAX];
+    memcpy(start, fit->amount, sizeof start);
+    for (double part = 1; part > 1e-10; part *= 0.5) {
+        for (size_t j = 0; j < fit->templates; j++)
+            fit->amount[j] = fmax(0, start[j] + part * step[j]);
+        if (evaluate(fit, bands, e) >= best)
+            return true;
+    }
+    memcpy(fit->amount, start, sizeof start);
+    return false;
 }
 
 static double maximise(imki_fit *fit, const imki_bands *bands, int held)
 {
-    double best = likelihood(fit, bands);
+    evaluation e;
+    double best = evaluate(fit, bands, &e);
     for (int iteration = 0; iteration < 200; iteration++) {
-        const double before = best, ramp = fit->ramp;
-        double step[IMKI_TEMPLATES_MAX], start[IMKI_TEMPLATES_MAX];
-        memcpy(start, fit->amount, sizeof start);
-        if (!scoring_step(fit, bands, held, step))
-            break;
-        for (double part = 1; part > 1e-10; part *= 0.5) {
-            for (size_t j = 0; j < fit->templates; j++)
-                fit->amount[j] = fmax(0, start[j] + part * step[j]);
-            const double trial = likelihood(fit, bands);
-            if (trial >= best) {
-                best = trial;
-                break;
-            }
-            memcpy(fit->amount, start, sizeof start);
-        }
+        const double before = best;
+        double step[IMKI_TEMPLATES_MAX];
+        const double promised = scoring_step(fit, bands, &e, held, step);
+        const bool moved = promised > 1e-8;
+        if (moved && !take_step(fit, bands, step, best, &e))
+            evaluate(fit, bands, &e);
+        best = moved ? e.log_likelihood : best;
         if (fit->ramp_active && held != IMKI_HELD_RAMP) {
-            fit_ramp(fit, bands);
-            const double trial = likelihood(fit, bands);
-            fit->ramp = trial >= best ? fit->ramp : ramp;
-            best = trial >= best ? trial : best;
+            const double ramp = fit->ramp;
+            fit->ramp = best_ramp(bands, &e);
+            if (!(evaluate(fit, bands, &e) >= best)) {
+                fit->ramp = ramp;
+                evaluate(fit, bands, &e);
+            }
+            best = e.log_likelihood;
         }
-        if (best - before <= 1e-9)
+        if (!(best - before > 1e-7))
             break;
     }
     fit->log_likelihood = best;
@@ -193,4 +328,42 @@ double imki_fit_profile(imki_fit *fit, const imki_bands *bands, int held, double
     else
         fit->amount[held] = value;
     return maximise(fit, bands, held);
+}
+
+imki_amounts imki_fit_keep(const imki_fit *fit)
+{
+    imki_amounts kept = {
+        .ramp_active = fit->ramp_active, .ramp = fit->ramp, .log_likelihood = fit->log_likelihood};
+    memcpy(kept.active, fit->active, sizeof kept.active);
+    memcpy(kept.amount, fit->amount, sizeof kept.amount);
+    memcpy(kept.correlation_time, fit->correlation_time, sizeof kept.correlation_time);
+    return kept;
+}
+
+void imki_fit_restore(imki_fit *fit, const imki_bands *bands, const imki_amounts *kept)
+{
+    memcpy(fit->active, kept->active, sizeof kept->active);
+    memcpy(fit->amount, kept->amount, sizeof kept->amount);
+    for (size_t i = 0; i < IMKI_GAUSS_MARKOV_MAX; i++) {
+        const size_t slot = IMKI_FIRST_GAUSS_MARKOV + i;
+        const double time = kept->active[slot] ? kept->correlation_time[i] : 0;
+        if (time > 0 && fit->correlation_time[i] != time)
+            imki_gauss_markov_shape(fit, bands, time, fit->shape[slot]);
+        fit->correlation_time[i] = time;
+    }
+    fit->ramp_active = kept->ramp_active;
+    fit->ramp = kept->ramp;
+    fit->log_likelihood = kept->log_likelihood;
+}
+
+void imki_fit_copy(imki_fit *to, const imki_fit *from, const imki_bands *bands)
+{
+    const imki_amounts kept = imki_fit_keep(from);
+    to->templates = from->templates;
+    memcpy(to->sine_square, from->sine_square, bands->count * sizeof(double));
+    memcpy(to->correlation_time, from->correlation_time, sizeof to->correlation_time);
+    for (size_t j = 0; j < from->templates; j++)
+        if (from->active[j] || j < IMKI_FIRST_GAUSS_MARKOV)
+            memcpy(to->shape[j], from->shape[j], bands->count * sizeof(double));
+    imki_fit_restore(to, bands, &kept);
 }

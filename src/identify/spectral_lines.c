@@ -4,8 +4,10 @@
  * A window of w coefficients is compared with two flanks. If both held the same noise, the ratio r
  * of their means would be that of chi-squares; the log-likelihood a line of that width is worth is
  *
- *     gain = w/2 (r - 1 - log r)
+ *     gain = w s/2 (r - 1 - log r)
  *
+ * where every coefficient is the mean of s squares: 1 for the transform of a whole record, the
+ * number of segments where their powers are averaged.
  * Windows of all widths compete, and the largest gains win. Sums come from cumulative powers, so
  * that any window costs the same. */
 #include "identify_internal.h"
@@ -23,18 +25,18 @@ static double mean_power(const double *cumulative, size_t from, size_t to)
     return (cumulative[to] - cumulative[from]) / (double)(to - from);
 }
 
-static double gain_of(size_t w, double ratio)
+static double gain_of(double degrees, double ratio)
 {
-    return 0.5 * (double)w * (ratio - 1 - log(ratio));
+    return 0.5 * degrees * (ratio - 1 - log(ratio));
 }
 
-/* Ratio at which a window of w coefficients gains GAIN_MIN, at least RATIO_MIN. */
-static double least_ratio(size_t w)
+/* Ratio at which a window of so many degrees gains GAIN_MIN, at least RATIO_MIN. */
+static double least_ratio(double degrees)
 {
-    double low = 1, high = 2 + 4 * GAIN_MIN / (double)w;
+    double low = 1, high = 2 + 4 * GAIN_MIN / degrees;
     for (int i = 0; i < 40; i++) {
         const double middle = 0.5 * (low + high);
-        *(gain_of(w, middle) > GAIN_MIN ? &high : &low) = middle;
+        *(gain_of(degrees, middle) > GAIN_MIN ? &high : &low) = middle;
     }
     return high > RATIO_MIN ? high : RATIO_MIN;
 }
@@ -67,16 +69,18 @@ static void add_candidate(imki_line *list, size_t *count, imki_line line)
         list[least] = line;
 }
 
-static void scan_width(size_t n, const double *cumulative, size_t w, imki_line *list, size_t *count)
+static void scan_width(size_t n, const double *cumulative, double squares, size_t w,
+                       imki_line *list, size_t *count)
 {
     const size_t step = w >= 4 ? w / 4 : 1;
     const size_t start = 8 * w > FIRST_COEFFICIENT ? 8 * w : FIRST_COEFFICIENT;
-    const double needed = least_ratio(w) * least_ratio(w);
+    const double degrees = (double)w * squares, least = least_ratio(degrees);
+    const double needed = least * least;
     imki_line best = {0};
     for (size_t first = start; first + w < n; first += step) {
         const double squared = squared_ratio(n, cumulative, first, w);
         if (squared > needed && (best.gain == 0 || first <= best.last)) {
-            const double r = sqrt(squared), gain = gain_of(w, r);
+            const double r = sqrt(squared), gain = gain_of(degrees, r);
             if (gain > best.gain)
                 best = (imki_line){first, first + w - 1, r, gain};
         } else if (best.gain > 0 && first > best.last) {
@@ -95,12 +99,12 @@ static bool near(const imki_line *a, const imki_line *b)
     return a->first <= b->last + margin && b->first <= a->last + margin;
 }
 
-size_t imki_lines_find(size_t n, const double *cumulative, imki_line *lines)
+size_t imki_lines_find(size_t n, const double *cumulative, double squares, imki_line *lines)
 {
     imki_line list[CANDIDATES];
     size_t candidates = 0, count = 0;
     for (size_t w = 1; 16 * w < n; w *= 2)
-        scan_width(n, cumulative, w, list, &candidates);
+        scan_width(n, cumulative, squares, w, list, &candidates);
     while (count < IMKI_LINES_MAX) {
         size_t best = candidates;
         for (size_t i = 0; i < candidates; i++)

@@ -20,7 +20,7 @@ typedef struct local_spectrum {
 static double local_likelihood(const local_spectrum *w, double frequency, double q,
                                double *variance)
 {
-    double shape[WINDOW_BANDS], level = INFINITY, amount = 0;
+    double shape[WINDOW_BANDS], level = HUGE_VAL, amount = 0;
     imk_arma unit;
     if (imk_resonance_arma((imk_resonance){1, frequency, q}, w->dt, &unit) != IMK_OK)
         return -HUGE_VAL;
@@ -139,38 +139,4 @@ bool imki_shape_resonance(imk_resonance *resonance, double line_variance, size_t
     /* Forced on a line of another shape, the fit gets the power wrong. */
     const bool same_power = variance > 0.75 * line_variance && variance < 1.5 * line_variance;
     return same_power && has_skirts(&window, resonance);
-}
-
-typedef struct global_search {
-    imki_fit *fit;
-    const imki_bands *bands;
-    size_t slot;
-    imk_resonance *resonance;
-    double *field;
-} global_search;
-
-static double global_height(void *context, double logarithm)
-{
-    global_search *s = context;
-    *s->field = exp(logarithm);
-    imki_resonance_shape(s->resonance->frequency, s->resonance->q, s->bands,
-                         s->fit->shape[s->slot]);
-    return imki_fit_maximise(s->fit, s->bands);
-}
-
-void imki_resonance_refine(imki_fit *fit, const imki_bands *bands, size_t index,
-                           imk_resonance *resonance)
-{
-    const size_t slot = IMKI_FIRST_RESONANCE + index;
-    global_search search = {fit, bands, slot, resonance, NULL};
-    double reach[2] = {0.5 / resonance->q, 0.5};
-    for (int turn = 0; turn < 4; turn++) {
-        const int which = turn % 2;
-        search.field = which == 0 ? &resonance->frequency : &resonance->q;
-        const double start = log(*search.field);
-        global_height(&search, imki_peak(global_height, &search, start - reach[which],
-                                         start + reach[which], SECTIONS));
-        reach[which] *= 0.3;
-    }
-    resonance->sigma = sqrt(fit->amount[slot]);
 }

@@ -30,6 +30,7 @@ static const struct format {
     [IMK_PARAMETERS_VINS] = {"vins", imki_vins_read, imki_vins_write},
     [IMK_PARAMETERS_PX4] = {"px4", imki_px4_read, imki_px4_write},
     [IMK_PARAMETERS_ARDUPILOT] = {"ardupilot", imki_ardupilot_read, imki_ardupilot_write},
+    [IMK_PARAMETERS_FILTER] = {"filter", imki_filter_read, imki_filter_write},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
@@ -50,7 +51,8 @@ static const uint32_t settings_cookie = 0x70617231; /* "par1" */
 
 imk_parameter_settings imk_parameter_settings_default(void)
 {
-    return (imk_parameter_settings){.cookie = settings_cookie};
+    return (imk_parameter_settings){.cookie = settings_cookie,
+                                    .filter = imk_filter_noise_default()};
 }
 
 /* ---- recognition ----------------------------------------------------------------------------- */
@@ -71,6 +73,9 @@ static imk_parameter_format recognise_keys(const imk_document *document, int nod
     static const char *const matlab[] = {"Gyroscope", "Accelerometer"};
     static const char *const openvins[] = {"Tw", "Ta", "Tg", "R_IMUtoGYRO", "R_IMUtoACC"};
     static const char *const kalibr[] = {"gyroscopes", "accelerometers"};
+    static const char *const filter[] = {"imukit_filter"};
+    if (has_any(document, node, 1, filter))
+        return IMK_PARAMETERS_FILTER;
     if (has_any(document, node, 4, vins))
         return IMK_PARAMETERS_VINS;
     if (has_any(document, node, 4, gnss))
@@ -91,7 +96,8 @@ static imk_parameter_format recognise_words(const char *text)
     static const struct {
         const char *word;
         imk_parameter_format format;
-    } words[] = {{"acc_n:", IMK_PARAMETERS_VINS},
+    } words[] = {{"imukit_filter", IMK_PARAMETERS_FILTER},
+                 {"acc_n:", IMK_PARAMETERS_VINS},
                  {"gyr_n:", IMK_PARAMETERS_VINS},
                  {"gyro_arw", IMK_PARAMETERS_GNSS_INS_SIM},
                  {"\"Gyroscope\"", IMK_PARAMETERS_MATLAB},
@@ -256,7 +262,7 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
     if (format == IMK_PARAMETERS_UNKNOWN)
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "",
                              "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, "
-                             "openvins, vins, px4 or ardupilot (--from says which)");
+                             "openvins, vins, px4, ardupilot or filter (--from says which)");
     imk_status status = check_density(settings, format, error);
     if (status == IMK_OK)
         status = formats[format].read(&p);

@@ -42,7 +42,8 @@ typedef imk_status imki_parameter_function(imki_parameters *p);
 imki_parameter_function imki_kalibr_read, imki_kalibr_write, imki_gazebo_read, imki_gazebo_write,
     imki_matlab_read, imki_matlab_write, imki_gnss_ins_sim_read, imki_gnss_ins_sim_write,
     imki_navego_read, imki_navego_write, imki_openvins_read, imki_openvins_write, imki_vins_read,
-    imki_vins_write, imki_px4_read, imki_px4_write, imki_ardupilot_read, imki_ardupilot_write;
+    imki_vins_write, imki_px4_read, imki_px4_write, imki_ardupilot_read, imki_ardupilot_write,
+    imki_filter_read, imki_filter_write;
 
 /* Read back what was written and note what is not there (parameter_compare.c). `format` is the name
  * for the notes.

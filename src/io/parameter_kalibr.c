@@ -21,6 +21,24 @@ const char *const imki_kalibr_noise_keys[IMKI_KALIBR_NOISE_KEYS] = {
 static const imki_unit noise_units[IMKI_KALIBR_NOISE_KEYS] = {
     {"rad/s/sqrt(Hz)", 1}, {"rad/s^2/sqrt(Hz)", 1}, {"m/s^2/sqrt(Hz)", 1}, {"m/s^3/sqrt(Hz)", 1}};
 
+static const char explanation[] =
+    "# kalibr: noise densities are continuous-time, two-sided.\n"
+    "#\n"
+    "# The sqrt(dt) trap: these are not standard deviations per sample. kalibr itself makes "
+    "those,\n"
+    "# with dt = 1/update_rate:\n"
+    "#     white noise of a reading:  sigma_d  = noise_density / sqrt(dt)\n"
+    "#     step of the bias:          sigma_bd = random_walk * sqrt(dt)\n"
+    "# Never enter sigma_d or sigma_bd here; and when the log is thinned out, change update_rate\n"
+    "# only.\n"
+    "#\n"
+    "# noise_density is N, the Allan deviation at 1 s of its slope -1/2; random_walk is K, "
+    "sqrt(3)\n"
+    "# times the Allan deviation at 1 s of its slope +1/2. The flat part, bias instability B, has "
+    "no\n"
+    "# key: a filter that has to bridge a time tau covers it with\n"
+    "# random_walk = sqrt(K^2 + 6 ln 2/pi B^2/tau).\n";
+
 /* ---- the parts OpenVINS shares --------------------------------------------------------------- */
 
 static bool describes_imu(const imk_document *document, int node)
@@ -337,8 +355,7 @@ imk_status imki_kalibr_write(imki_parameters *p)
     bool lever_arms = accel->present && any_row(&accel->lever_arm);
     bool intrinsics = lever_arms || (gyro->present && any_row(&gyro->g_sensitivity)) ||
                       !imki_is_identity(response[0]) || !imki_is_identity(response[1]);
-    imki_text_add(&p->out, "# kalibr: noise densities are continuous-time, two-sided\n%s",
-                  intrinsics ? "imu0:\n" : "");
+    imki_text_add(&p->out, "%s%s", explanation, intrinsics ? "imu0:\n" : "");
     imki_kalibr_noise_write(p, intrinsics ? "  " : "");
     imk_status status = intrinsics && gyro->present ? write_gyroscopes(p) : IMK_OK;
     if (intrinsics && accel->present)

@@ -20,18 +20,6 @@ static const struct bad_log {
     {"sed 1d good.csv >b.csv", "b.csv", "add --columns "},
     {"sed '1s/deg.s/g/' good.csv >b.csv", "b.csv", "expected an angular rate, such as deg/h"},
     {"sed '1s/deg.s/dge\\/s/' good.csv >b.csv", "b.csv", "dge"},
-    {"sed '500s/,.*/,nan/' good.csv >b.csv", "b.csv",
-     "b.csv: 1 row with a value that is not a finite number, first in row 499, column "
-     "gyro_x; " REMEDY},
-    {"sed '500s/,.*/,/' good.csv >b.csv", "b.csv",
-     "b.csv: 1 row with a value that is not a finite number, first in row 499, column "
-     "gyro_x; " REMEDY},
-    {"sed '500{h;d};501G' good.csv >b.csv", "b.csv",
-     "b.csv: time runs backwards in 1 row, first in row 500 (by 0.01 s); " REMEDY},
-    {"sed '500p' good.csv >b.csv", "b.csv",
-     "b.csv: time stands still in 1 row, first in row 500; " REMEDY},
-    {"sed '101,300d' good.csv >b.csv", "b.csv",
-     "b.csv: 200 samples are missing in 1 gap, first before row 100; " REMEDY},
     {"sed '2,$s/,.*/,5/' good.csv >b.csv", "b.csv",
      "b.csv: column gyro_x is constant in all 1000 rows: there is no noise to "},
     {"sed '500s/,.*/,abc/' good.csv >b.csv", "b.csv",
@@ -65,6 +53,115 @@ static void test_bad_logs(void **state)
             sweep();
         }
     }
+}
+
+/* What --gaps refuse says; what the default does instead is in test_gaps_kept. */
+static const struct bad_log refused_logs[] = {
+    {"sed '500s/,.*/,nan/' good.csv >b.csv", "b.csv",
+     "b.csv: 1 row with a value that is not a finite number, first in row 499, column "
+     "gyro_x; " REMEDY},
+    {"sed '500s/,.*/,/' good.csv >b.csv", "b.csv",
+     "b.csv: 1 row with a value that is not a finite number, first in row 499, column "
+     "gyro_x; " REMEDY},
+    {"sed '500{h;d};501G' good.csv >b.csv", "b.csv",
+     "b.csv: time runs backwards in 1 row, first in row 500 (by 0.01 s); " REMEDY},
+    {"sed '500p' good.csv >b.csv", "b.csv",
+     "b.csv: time stands still in 1 row, first in row 500; " REMEDY},
+    {"sed '101,300d' good.csv >b.csv", "b.csv",
+     "b.csv: 200 samples are missing in 1 gap, first before row 100; " REMEDY},
+};
+
+static void test_refused_logs(void **state)
+{
+    (void)state;
+    static const char *const analyses[] = {"identify", "allan"};
+    char line[600];
+    for (size_t i = 0; i < sizeof refused_logs / sizeof refused_logs[0]; i++) {
+        for (size_t k = 0; k < 2; k++) {
+            const struct bad_log *bad = &refused_logs[i];
+            write_good();
+            assert_int_equal(run(bad->make), 0);
+            snprintf(line, sizeof line, "$I %s %s --gaps refuse -o result", analyses[k], bad->file);
+            assert_int_equal(run(line), 1);
+            check_contains(err, bad->says, bad->make);
+            assert_string_equal(out, "");
+            assert_int_equal(access("result", F_OK), -1);
+            sweep();
+        }
+    }
+}
+
+/* The default keeps the places of what is missing, and says what that is. */
+static void test_gaps_kept(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *make, *says;
+        int rows;
+    } cases[] = {
+        {"cp good.csv b.csv", "", 1000},
+        {"sed 500d good.csv >b.csv",
+         "imukit allan: warning: 1 of 1000 samples are missing, in 1 hole, the longest of 0.01 s: "
+         "their places are kept empty\n",
+         1000},
+        {"sed '500s/,.*/,nan/' good.csv >b.csv",
+         "imukit allan: warning: 1 row with a value that is not a finite number, first in row 499: "
+         "counted as missing\n",
+         1000},
+        {"sed '101,300d;500d' good.csv >b.csv",
+         "201 of 1000 samples are missing, in 2 holes, the longest of 2 s", 1000},
+        {"sed '500{h;d};501G' good.csv >b.csv",
+         "1 row whose time stands still or runs backwards: left out", 1000},
+        {"sed '500p' good.csv >b.csv",
+         "imukit allan: warning: 1 row whose time stands still or runs backwards: left out\n",
+         1000},
+        {"awk -F, 'NR > 600 {$1 = \"nan\"} {print $1 \",\" $2}' good.csv >b.csv",
+         "401 rows with a value that is not a finite number, first in row 600", 599},
+    };
+    char rows[40];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        write_good();
+        assert_int_equal(run(cases[i].make), 0);
+        assert_int_equal(run("$I allan b.csv --tau 0.1s --json"), 0);
+        check_contains(err, cases[i].says, cases[i].make);
+        assert_true(cases[i].says[0] || !err[0]);
+        snprintf(rows, sizeof rows, "\"rows\": %d,", cases[i].rows);
+        check_contains(out, rows, cases[i].make);
+        check_contains(out, "\"interval\": {\"value\": 0.01, ", cases[i].make);
+        sweep();
+    }
+}
+
+/* Only the channel that lacks a value lacks it; times that are no grid are refused. */
+static void test_grids(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        run("awk 'BEGIN{srand(1); print \"time [s],x,y\"; for (i = 0; i < 900; i++) "
+            "print i / 100 \",\" rand() \",\" (i % 9 == 4 ? \"nan\" : rand())}' >b.csv"),
+        0);
+    assert_int_equal(run("$I allan b.csv --tau 0.1s -o - | cut -d, -f1,2"), 0);
+    check_contains(out, "x,0.1\ny,0.1\n", "two channels");
+    assert_int_equal(run("awk 'BEGIN{srand(1); print \"time [s],x\"; for (i = 0; i < 900; i++) "
+                         "print i / 100 + 0.002 * rand() \",\" rand()}' >b.csv"),
+                     0);
+    assert_int_equal(run("$I allan b.csv --tau 0.1s"), 0);
+    check_contains(err, "samples are taken as evenly spaced", "jitter");
+    assert_int_equal(run("awk 'BEGIN{srand(1); print \"time [s],x\"; for (i = 0; i < 900; i++) "
+                         "print t += -log(1 - rand()) / 100, \",\" rand()}' >b.csv"),
+                     0);
+    assert_int_equal(run("$I allan b.csv --tau 0.1s"), 1);
+    check_contains(err, "the times are no even grid", "Poisson times");
+    assert_int_equal(run("sed '500,$s/^/1000000/' good.csv >b.csv; "
+                         "awk 'BEGIN{print \"time [s],x\"; for (i = 0; i < 900; i++) "
+                         "print i / 100 + (i > 500 ? 1e9 : 0) \",\" sin(i)}' >b.csv"),
+                     0);
+    assert_int_equal(run("$I allan b.csv --tau 0.1s"), 1);
+    check_contains(err, "is there a jump of the clock", "a leap");
+    check_message("$I spectrum b.csv --gaps keep", 2,
+                  "imukit spectrum: error: --gaps keep: what this verb does needs every sample; "
+                  "use --gaps bridge or --gaps longest\n" TRY("spectrum"));
+    sweep();
 }
 
 /* The command the message shows is the one to run. */
@@ -180,9 +277,10 @@ static void test_unwritable_outputs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bad_logs),           cmocka_unit_test(test_next_command),
-        cmocka_unit_test(test_gap_policies),       cmocka_unit_test(test_bridging_is_linear),
-        cmocka_unit_test(test_unwritable_outputs),
+        cmocka_unit_test(test_bad_logs),           cmocka_unit_test(test_refused_logs),
+        cmocka_unit_test(test_gaps_kept),          cmocka_unit_test(test_grids),
+        cmocka_unit_test(test_next_command),       cmocka_unit_test(test_gap_policies),
+        cmocka_unit_test(test_bridging_is_linear), cmocka_unit_test(test_unwritable_outputs),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

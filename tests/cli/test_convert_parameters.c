@@ -48,7 +48,7 @@ static void test_from_model(void **state)
     check_message(
         "$I convert model.yaml out.x --to kalibra", 2,
         "imukit convert: error: --to kalibra: expected one of "
-        "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot\n" TRY(
+        "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter\n" TRY(
             "convert"));
     check_message("$I convert model.yaml /nowhere/out.yaml --to kalibr", 1,
                   "imukit convert: error: /nowhere/out.yaml: the file cannot be opened: No such "

@@ -2,6 +2,8 @@
 /* Each verb on good input: exact output, published values, the closed loop. */
 #include "run_command.h"
 
+#include "imukit/allan.h"
+
 /* The same bytes whatever the threads and the way out; another seed or run makes others. */
 static void test_simulate_is_reproducible(void **state)
 {
@@ -82,7 +84,8 @@ static void check_nist_line(const char *line, double tau, double expected)
 
 static void check_nist_table(void)
 {
-    const char *header = "channel,tau [s],deviation [unit],lower,upper,edf,count,unit\n";
+    const char *header = "channel,tau [s],deviation [unit],lower,upper,edf,count,unit,"
+                         "statistic,noise,used\n";
     assert_int_equal(strncmp(out, header, strlen(header)), 0);
     const char *line = strchr(out, '\n') + 1;
     check_nist_line(line, 1, .2922318781);
@@ -131,6 +134,44 @@ static void test_allan_of_any_column(void **state)
     sweep();
 }
 
+/* The rest of the family: published values (golden.md), and what is refused. */
+static void test_allan_statistics(void **state)
+{
+    (void)state;
+    write_nist("x.txt", false);
+    setenv("A", "--columns gyro_x --gyro-unit rad/s --rate 1Hz", 1);
+    assert_int_equal(run("$I allan x.txt $A --tau 10 --statistic mdev,tdev,mtot,htot --bias "
+                         "published -o - | cut -d, -f3,8,9"),
+                     0);
+    double mdev, tdev, mtot, htot;
+    assert_int_equal(sscanf(out,
+                            "deviation [unit],unit,statistic\n%lf,rad/s,mdev\n%lf,rad/s*s,tdev\n"
+                            "%lf,rad/s,mtot\n%lf,rad/s,htot\n",
+                            &mdev, &tdev, &mtot, &htot),
+                     4);
+    CHECK_CLOSE(mdev, .0617237638, 1e-10);
+    CHECK_CLOSE(tdev, .3563623166, 1e-10);
+    CHECK_CLOSE(mtot, .06499161, 1e-8); /* printed to eight decimals, cut */
+    CHECK_CLOSE(htot, .09614787, 1e-8);
+    assert_int_equal(
+        run("$I allan x.txt $A --tau 7.5 --statistic theo1 --bias left -o - | tail -1"), 0);
+    check_nist_line(out, 7.5, .1075739889);
+    assert_int_equal(run("$I allan x.txt $A --statistic all"), 0);
+    for (imk_allan_statistic k = 0; k < IMK_ALLAN_STATISTICS; k++)
+        check_contains(out, imk_allan_title(k), "statistic");
+    assert_int_equal(run("$I allan x.txt $A --statistic all --tau many --json"), 0);
+    check_contains(out, "\"statistic\": \"haar\"", "json");
+    check_message("$I allan x.txt $A --statistic mdevv", 2,
+                  "imukit allan: error: --statistic mdevv: there is no \"mdevv\"; did you mean "
+                  "mdev?\n" TRY("allan"));
+    check_message("$I allan x.txt $A --statistic mdev,mdev", 2,
+                  "imukit allan: error: --statistic mdev,mdev: mdev is named twice\n" TRY("allan"));
+    check_message("$I allan x.txt $A --statistic theo1 --tau 1", 2,
+                  "imukit allan: error: --tau 1: 1 s is outside what this record allows, 7.5 s to "
+                  "750 s\n" TRY("allan"));
+    sweep();
+}
+
 static void test_allan_taus(void **state)
 {
     (void)state;
@@ -144,9 +185,9 @@ static void test_allan_taus(void **state)
     assert_string_equal(out, "501\n");
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1,2m", 2,
                   "imukit allan: error: --tau 1,2m: \"2m\" is no averaging time; expected octave, "
-                  "decade, all or a list such as 1,10,100 in seconds\n" TRY("allan"));
+                  "decade, many, all or a list such as 1,10,100 in seconds\n" TRY("allan"));
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1s,501s", 2,
-                  "imukit allan: error: --tau 1s,501s: \"501s\" is outside what this record "
+                  "imukit allan: error: --tau 1s,501s: 501 s is outside what this record "
                   "allows, 1 s to 500 s\n" TRY("allan"));
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 10s,1s", 2,
                   "imukit allan: error: --tau 10s,1s: the times must ascend\n" TRY("allan"));
@@ -362,6 +403,7 @@ int main(void)
         cmocka_unit_test(test_simulate_units_and_decimals),
         cmocka_unit_test(test_allan_published_values),
         cmocka_unit_test(test_allan_of_any_column),
+        cmocka_unit_test(test_allan_statistics),
         cmocka_unit_test(test_allan_taus),
         cmocka_unit_test(test_identify_recovers_the_model),
         cmocka_unit_test(test_identify_json),

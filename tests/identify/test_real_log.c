@@ -6,6 +6,7 @@
 #include "imukit/imukit.h"
 #include "imukit/io.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,6 +65,23 @@ static void test_published_variances(void **state)
     imk_log_free(&log);
 }
 
+/* The hump of gyro z at 20.3 Hz, with a half-power width of a sixteenth of that, is of several
+ * resonances, since its frequency drifts: mean frequency and deviation of those around it, weighted
+ * by power. */
+static void check_hump(const imk_identification *r)
+{
+    double power = 0, moment = 0;
+    for (int i = 0; i < r->resonance_count; i++)
+        if (fabs(r->resonance[i].frequency - 20.3) < 1.5) {
+            const double variance = r->resonance[i].sigma * r->resonance[i].sigma;
+            power += variance;
+            moment += variance * r->resonance[i].frequency;
+        }
+    CHECK_CLOSE(moment / power, 20.3, 0.3);
+    /* 0.28 deg/s for a single resonance of Q 16. */
+    CHECK_CLOSE(sqrt(power) / 0.017453292519943295, 0.28, 0.03);
+}
+
 /* What the log is known to hold: an output filter near 61 Hz on gyros x and y, a resonance at 20.3
  * Hz with Q about 16 on gyro z, a line at 0.564 Hz on the accelerometers, no quantization noise. */
 static void test_known_contents(void **state)
@@ -90,16 +108,14 @@ static void test_known_contents(void **state)
                      IMK_OK);
         assert_false(r.term[IMK_NOISE_QUANTIZATION].present);
         assert_true(r.term[IMK_NOISE_WHITE].present);
-        assert_true(r.term[IMK_NOISE_BIAS_INSTABILITY].present);
+        /* Slow noise, whichever terms describe it. */
+        assert_true(r.term[IMK_NOISE_BIAS_INSTABILITY].present || r.gauss_markov_count > 0);
         assert_true(r.verdict & IMK_VERDICT_FILTERED);
         CHECK_RELATIVE(r.resolution, gyro ? 0.05 * 0.017453292519943295 : 0.00333 * 9.80665, 1e-3);
         if (channel < 2)
             CHECK_CLOSE(r.filter.bandwidth, 61, 5);
-        if (channel == 2) {
-            assert_int_equal(r.resonance_count, 1);
-            CHECK_CLOSE(r.resonance[0].frequency, 20.3, 0.1);
-            CHECK_CLOSE(r.resonance[0].q, 16, 2);
-        }
+        if (channel == 2)
+            check_hump(&r);
         bool line = false;
         for (int i = 0; i < r.resonance_count; i++)
             line = line || fabs(r.resonance[i].frequency - 0.564) < 0.002;

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parts of the screening of one channel. Samples that are not finite are missing: every function
+ * skips them. */
+#ifndef IMUKIT_SCREEN_INTERNAL_H
+#define IMUKIT_SCREEN_INTERNAL_H
+
+#include "imukit/record_screen.h"
+
+static inline bool imki_is_there(double value)
+{
+    return value - value == 0;
+}
+
+/* record_checks.c */
+/* Heap sort, ascending. */
+void imki_sort(double *a, size_t count);
+/* Smallest step between different values in a sample of the record, when the values lie on a grid
+ * of that step; else 0. */
+double imki_record_resolution(size_t n, const double *samples, double *scratch,
+                              size_t scratch_count);
+unsigned imki_record_verdict(size_t n, const double *samples, double resolution, double deviation);
+/* True when samples pile up at this extreme value (toward: the inside, -1 or 1). */
+bool imki_record_sticks(size_t n, const double *samples, double extreme, double toward,
+                        double step);
+
+/* screen_outliers.c */
+typedef struct imki_outlier_rule {
+    double threshold; /* distance from the median of the 31 samples around */
+    double noise;     /* standard deviation of these distances, by their median */
+} imki_outlier_rule;
+/* From up to scratch_count samples spread over the record. */
+imki_outlier_rule imki_outlier_rule_find(size_t n, const double *samples, double false_alarm,
+                                         double resolution, size_t scratch_count, double *scratch);
+/* Outliers by the rule; they become NaN in `marked` unless that is NULL. It may be `samples`. */
+imk_screen_count imki_outliers_find(size_t n, const double *samples, const imki_outlier_rule *rule,
+                                    double *marked, double *largest);
+
+/* screen_stuck.c: runs of one value longer than `longest`, and samples at the limits of range. */
+size_t imki_stuck_limit(size_t n, const double *samples, double false_alarm, double *repeated);
+imk_screen_count imki_stuck_find(size_t n, const double *samples, size_t limit, double *marked,
+                                 size_t *longest);
+
+/* screen_steps.c: sudden lasting changes of the level, from medians of blocks. */
+void imki_steps_find(size_t n, const double *samples, double significance, imk_screen *found,
+                     double *scratch);
+
+/* screen_trend.c: warm-up and temperature against slow noise. */
+void imki_trend_find(const imk_screen_settings *settings, size_t n, const double *samples,
+                     imk_screen *found);
+
+#endif

@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Several logs: runs of one sensor become one model, sensors a population; and what a record will
+ * tell before it is made, and a table of Allan deviations instead of one. */
+#include "run_command.h"
+
+#include <math.h>
+
+#define DEGREE (3.14159265358979323846 / 180)
+static const double white = 0.3 * DEGREE / 60;
+
+static const char *const texts[] = {
+    "imukit: 1\nname: bench\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h), "
+    "bias_instability: 8 deg/h}}\n",
+    "imukit: 1\nname: noisy\ngyro: {noise: {angle_random_walk: 0.33 deg/sqrt(h), "
+    "bias_instability: 8 deg/h}}\n"};
+
+/* run1 … run3 of one sensor and `noisy`, with 10 % more white noise; five minutes at 100 Hz. */
+static int make_logs(void **state)
+{
+    if (set_up(state) != 0)
+        return -1;
+    put("model.yaml", texts[0]);
+    put("noisy.yaml", texts[1]);
+    const int code = run(
+        "for k in 1 2 3; do $I simulate model.yaml --rate 100Hz --duration 5min --seed $k "
+        "-o run$k.npy >&2 || exit 1; done; $I simulate noisy.yaml --rate 100Hz --duration 5min "
+        "--seed 4 -o noisy.npy");
+    if (code != 0)
+        print_error("%s", err);
+    return code;
+}
+
+static int drop_logs(void **state)
+{
+    sweep();
+    return tear_down(state);
+}
+
+static json_t *identify(const char *options, int code)
+{
+    char line[300];
+    snprintf(line, sizeof line, "$I identify --json %s", options);
+    const int actual = run(line);
+    if (actual != code) {
+        print_error("%s\n  code %d: %s\n", line, actual, err);
+        fail();
+    }
+    json_t *root = json_loads(out, 0, NULL);
+    assert_non_null(root);
+    return root;
+}
+
+static json_t *result_of(json_t *root, const char *name)
+{
+    return json_object_get(json_object_get(root, "result"), name);
+}
+
+static json_t *term_of(json_t *channel)
+{
+    return json_object_get(json_object_get(channel, "terms"), "angle_random_walk");
+}
+
+static double number(json_t *object, const char *name)
+{
+    return json_number_value(json_object_get(object, name));
+}
+
+/* Sentences of a code; the last of them in `text`. */
+static size_t sentences(json_t *verdict, const char *code, const char **text)
+{
+    size_t count = 0;
+    *text = "";
+    for (size_t k = 0; k < json_array_size(verdict); k++) {
+        json_t *sentence = json_array_get(verdict, k);
+        if (strcmp(json_string_value(json_object_get(sentence, "code")), code) == 0) {
+            count++;
+            *text = json_string_value(json_object_get(sentence, "message"));
+        }
+    }
+    return count;
+}
+
+static void test_which(void **state)
+{
+    (void)state;
+    check_message(
+        "$I identify run1.npy run2.npy", 2,
+        "imukit identify: error: 2 logs are given: add --runs when they are of one sensor "
+        "(one joint model), or --devices when they are of different ones (their "
+        "spread)\n" TRY("identify"));
+    check_message("$I identify run1.npy --runs", 2,
+                  "imukit identify: error: --runs needs two logs or more\n" TRY("identify"));
+    check_message("$I identify run1.npy run2.npy --runs --devices", 2,
+                  "imukit identify: error: --runs are of one sensor, --devices are different ones: "
+                  "which?\n" TRY("identify"));
+    check_message("$I identify run1.npy nothing.npy --runs", 1,
+                  "imukit identify: error: nothing.npy cannot be read\n");
+    check_message(
+        "$I identify run1.npy run2.npy --devices -o model2.yaml", 2,
+        "imukit identify: error: --devices compares sensors and makes no model: leave out "
+        "--output, or identify each log alone\n" TRY("identify"));
+    assert_int_equal(run("$I simulate model.yaml --rate 50Hz --duration 1min -o slow.npy"), 0);
+    check_message("$I identify run1.npy slow.npy --runs", 1,
+                  "imukit identify: error: run1.npy was sampled at 100 Hz, slow.npy at 50 Hz: runs "
+                  "of one sensor have one sample rate; identify them apart, or with --devices\n");
+}
+
+static void test_runs(void **state)
+{
+    (void)state;
+    json_t *root = identify("run1.npy run2.npy run3.npy --runs -o joint.yaml --threads 1", 0);
+    json_t *channels = result_of(root, "channels"), *logs = result_of(root, "logs");
+    const char *text;
+    assert_int_equal(json_array_size(channels), 3);
+    assert_int_equal(json_array_size(logs), 3);
+    for (size_t c = 0; c < 3; c++) {
+        json_t *joint = term_of(json_array_get(channels, c));
+        double information = 0;
+        for (size_t r = 0; r < 3; r++) {
+            json_t *of_log = json_object_get(json_array_get(logs, r), "channels");
+            information += pow(number(term_of(json_array_get(of_log, c)), "sigma"), -2);
+        }
+        /* Wrong in 2e-9 of cases. */
+        CHECK_CLOSE(number(joint, "value"), white, 6 * number(joint, "sigma"));
+        /* The information adds up; a log in which quantization is taken for present knows white
+         * noise half as well, so this is no equality. */
+        assert_true(number(joint, "sigma") * sqrt(information) < 1.1);
+        json_t *agreement = json_object_get(json_array_get(channels, c), "agreement");
+        assert_true(number(agreement, "probability") > 1e-7);
+        assert_true(number(agreement, "degrees") >= 2);
+    }
+    assert_int_equal(sentences(result_of(root, "verdict"), "runs_differ", &text), 0);
+    json_decref(root);
+    char *serial = strdup(out);
+    assert_int_equal(run("$I identify run1.npy run2.npy run3.npy --runs --json -o joint.yaml "
+                         "--threads 2"),
+                     0);
+    assert_string_equal(out, serial);
+    free(serial);
+    assert_int_equal(run("cat joint.yaml"), 0);
+    check_contains(out, "source: \"run1.npy, run2.npy, run3.npy\"", "joint.yaml");
+    check_contains(out, "15 min at 100 Hz", "joint.yaml");
+    assert_null(strstr(out, "rate_ramp"));
+    assert_int_equal(run("$I identify run1.npy run2.npy run3.npy --runs --truth model.yaml"), 0);
+    check_contains(out, "The 3 logs agree", "runs");
+    check_contains(out, "mean from run to run", "runs");
+    check_contains(out, "intervals cover the truth", "runs");
+}
+
+/* Ten per cent more white noise is 23 standard deviations. */
+static void test_run_that_differs(void **state)
+{
+    (void)state;
+    json_t *root = identify("run1.npy run2.npy noisy.npy --runs --strict", 1);
+    const char *text;
+    assert_int_equal(sentences(result_of(root, "verdict"), "runs_differ", &text), 3);
+    check_contains(text, "most of all in angle random walk", "a run that differs");
+    check_contains(text, "in noisy.npy", "a run that differs");
+    check_contains(err, "do not have the same noise", "a run that differs");
+    json_decref(root);
+}
+
+static void test_devices(void **state)
+{
+    (void)state;
+    const char *text;
+    json_t *root = identify("run1.npy run2.npy run3.npy --devices --confidence 0.9999", 0);
+    assert_int_equal(sentences(result_of(root, "verdict"), "devices_differ", &text), 0);
+    assert_int_equal(sentences(result_of(root, "verdict"), "devices_agree", &text), 1);
+    json_decref(root);
+    root = identify("run1.npy noisy.npy --devices", 0);
+    assert_true(sentences(result_of(root, "verdict"), "devices_differ", &text) >= 3);
+    check_contains(text, "gyro_z: angle random walk differs: 0.3", "two devices");
+    check_contains(text, "in noisy.npy", "two devices");
+    assert_int_equal(sentences(result_of(root, "verdict"), "two_devices", &text), 1);
+    for (size_t c = 0; c < 3; c++) {
+        json_t *term = json_object_get(
+            json_object_get(json_array_get(result_of(root, "channels"), c), "population"),
+            "angle_random_walk");
+        /* Half of 0.33^2 + 0.3^2, whose root is 0.3154; the sigmas are 0.4 %. */
+        CHECK_CLOSE(number(term, "mean"), white * sqrt((1 + 1.21) / 2), 0.01 * white);
+        /* Two values apart by d have the standard deviation d/sqrt(2). */
+        CHECK_CLOSE(number(term, "spread"), white * 0.1 / sqrt(2), 0.02 * white);
+        assert_true(number(term, "probability") < 1e-12);
+    }
+    json_decref(root);
+}
+
+static void test_report(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "$I identify run1.npy run2.npy --runs --report page.html --plot plot.svg",
+        "$I identify run1.npy run2.npy --devices --report page.html"};
+    for (size_t k = 0; k < 2; k++) {
+        if (run(lines[k]) != 0 && !imk_plot_available())
+            skip();
+        check_contains(out, "Report: page.html", lines[k]);
+        assert_int_equal(run("cat page.html"), 0);
+        check_contains(out, k ? "Sensor by sensor" : "Run by run", lines[k]);
+        check_contains(out, "run2.npy", lines[k]);
+    }
+}
+
+static void test_plan(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I identify --plan model.yaml --rate 100Hz --want 'bias_instability 5%'"),
+                     0);
+    check_contains(out, "bias_instability 5%", "plan");
+    check_contains(out, "as planned", "plan");
+    check_message("$I identify run1.npy --plan model.yaml --rate 100Hz", 2,
+                  "imukit identify: error: --plan is for a record that is not made yet: leave the "
+                  "log out, or --plan\n" TRY("identify"));
+    check_message("$I identify --want 'bias_instability 5%'", 2,
+                  "imukit identify: error: --want says what a record is to tell: it goes with "
+                  "--plan MODEL\n" TRY("identify"));
+    check_message("$I identify", 2,
+                  "imukit identify: error: an operand is missing: imukit identify "
+                  "LOG…\n" TRY("identify"));
+    check_message("$I identify run1.npy --duration 3h", 2,
+                  "imukit identify: error: --duration goes with --plan or --curve: a log has its "
+                  "own\n" TRY("identify"));
+}
+
+/* A curve of N = 0.3 deg/sqrt(h) alone: 0.3/60/sqrt(tau) deg/s; of the log, by either method. */
+static void test_allan(void **state)
+{
+    (void)state;
+    FILE *file = fopen("curve.csv", "w");
+    assert_non_null(file);
+    fputs("tau [s],gyro_x [deg/s]\n", file);
+    for (int k = 0; k < 12; k++)
+        fprintf(file, "%.2f,%.9f\n", 0.01 * (1 << k), 0.3 / 60 / sqrt(0.01 * (1 << k)));
+    assert_int_equal(fclose(file), 0);
+    json_t *root = identify("curve.csv --curve --rate 100Hz --duration 1h", 0);
+    json_t *term = term_of(json_array_get(result_of(root, "channels"), 0));
+    CHECK_CLOSE(number(term, "value"), white, 1e-6 * white); /* nine decimals of the table */
+    json_decref(root);
+    check_message("$I identify curve.csv --curve", 2,
+                  "imukit identify: error: a curve does not say how long and how fast was "
+                  "recorded: give --rate and --duration, such as --rate 100Hz --duration "
+                  "3h\n" TRY("identify"));
+    root = identify("run1.npy --method allan", 0);
+    term = term_of(json_array_get(result_of(root, "channels"), 0));
+    CHECK_CLOSE(number(term, "value"), white, 6 * number(term, "sigma"));
+    json_decref(root);
+    assert_int_equal(run("$I allan run1.npy -o long.csv"), 0);
+    assert_int_equal(run("$I identify long.csv --curve --rate 100Hz --duration 5min"), 1);
+    check_contains(err, "looks like the long table of imukit allan", "a long table");
+    check_message("$I identify run1.npy --tolerance 2%", 2,
+                  "imukit identify: error: --tolerance goes with --method allan or "
+                  "--curve\n" TRY("identify"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_which),
+        cmocka_unit_test(test_runs),
+        cmocka_unit_test(test_run_that_differs),
+        cmocka_unit_test(test_devices),
+        cmocka_unit_test(test_report),
+        cmocka_unit_test(test_plan),
+        cmocka_unit_test(test_allan),
+    };
+    return cmocka_run_group_tests(tests, make_logs, drop_logs);
+}
