@@ -87,8 +87,8 @@ static bool find_outliers(const identification *i, size_t channel, char *text, s
 static bool find_stuck(const identification *i, size_t channel, char *text, size_t size)
 {
     const imk_screen *s = &i->screen[channel];
-    snprintf(text, size, "%zu samples in %zu runs, the longest of %zu", s->stuck.count,
-             s->stuck.runs, s->longest_stuck);
+    snprintf(text, size, "%zu samples in %zu %s, the longest of %zu", s->stuck.count, s->stuck.runs,
+             s->stuck.runs == 1 ? "run" : "runs", s->longest_stuck);
     return s->stuck.count > 0;
 }
 
@@ -118,8 +118,11 @@ static bool find_temperature(const identification *i, size_t channel, char *text
 {
     const imk_screen *s = &i->screen[channel];
     const imk_unit unit = unit_for(i, channel, s->temperature_slope);
-    snprintf(text, size, "%.3g ± %.1g %s/degC%s", s->temperature_slope / unit.scale,
-             s->temperature_slope_sigma / unit.scale, unit.text,
+    const double width = s->temperature_slope_sigma / unit.scale;
+    char slope[40], sigma[40];
+    format_value(s->temperature_slope / unit.scale, width, 3, slope, sizeof slope);
+    format_value(width, width, 2, sigma, sizeof sigma);
+    snprintf(text, size, "%s ± %s %s/degC%s", slope, sigma, unit.text,
              s->temperature_degree > 1 ? " and a curvature" : "");
     return s->temperature_degree > 0;
 }

@@ -246,7 +246,9 @@ void several_print(const several_logs *s)
     if (o->report)
         printf("Report: %s\n", o->report);
     if (o->output)
-        printf("Model: %s\nNext: imukit grade %s\n", o->output, o->output);
+        printf("Model: %s\nNext: imukit grade %s, or imukit convert %s imu.yaml --to kalibr for a "
+               "filter\n",
+               o->output, o->output, o->output);
 }
 
 static void put_sentences(imk_page *page, const identification *i)

@@ -11,7 +11,7 @@
 static const option allan_option_table[] = {
     {"statistic", 0, OPTION_TEXT, "NAME,NAME…|all", NULL, NULL,
      "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, haar; "
-     "theo1 takes minutes beyond a million samples",
+     "theo1 takes seconds a million samples",
      offsetof(allan_options, statistic)},
     {"tau", 0, OPTION_TEXT, "octave|decade|many|all|LIST", NULL, NULL,
      "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, then 32 "

@@ -90,7 +90,7 @@ static int run(int count, char **words);
 const verb identify_verb = {
     .name = "identify",
     .summary = "log of a sensor at rest -> model of its noise, with a verdict on the log",
-    .operands = "LOG…",
+    .operands = "LOG... | --plan MODEL",
     .operands_minimum = 0,
     .operands_maximum = IMK_JOINT_RECORDS_MAX,
     .examples = {{"imukit identify static.csv -o model.yaml --report report.html",
@@ -151,7 +151,9 @@ static void suggest_next(const identification *i)
     if (o->report)
         printf("Report: %s\n", o->report);
     if (o->output)
-        printf("Model: %s\nNext: imukit grade %s\n", o->output, o->output);
+        printf("Model: %s\nNext: imukit grade %s, or imukit convert %s imu.yaml --to kalibr for a "
+               "filter\n",
+               o->output, o->output, o->output);
     else if (i->model.gyro.present || i->model.accel.present)
         printf("Next: add -o model.yaml to keep the model, --report report.html for a page\n");
 }
@@ -225,28 +227,12 @@ static int plan(const identify_options *o)
     return identify_plan_run(&request);
 }
 
-/* Options that do not go together. @return -1 or the exit code */
-static int check_request(const identify_options *o, size_t logs)
+/* Options that go with Allan deviations only. @return -1 or the exit code */
+static int check_allan(const identify_options *o)
 {
-    if (o->plan)
-        return logs == 0 ? -1
-                         : command_misused("--plan is for a record that is not made yet: leave the "
-                                           "log out, or --plan");
-    if (o->want)
-        return command_misused("--want says what a record is to tell: it goes with --plan MODEL");
-    if (logs == 0)
-        return command_misused("an operand is missing: imukit identify LOG…");
-    if (o->runs && o->devices)
-        return command_misused("--runs are of one sensor, --devices are different ones: which?");
-    if (logs > 1 && !o->runs && !o->devices)
-        return command_misused("%zu logs are given: add --runs when they are of one sensor (one "
-                               "joint model), or --devices when they are of different ones (their "
-                               "spread)",
-                               logs);
-    if (logs == 1 && (o->runs || o->devices))
-        return command_misused("%s needs two logs or more", o->runs ? "--runs" : "--devices");
-    if (o->curve && logs > 1)
-        return command_misused("--curve takes one table at a time");
+    if (o->curve && (o->keep || o->twin))
+        return command_misused("%s is about the samples of a log; a curve has none",
+                               o->keep ? "--keep" : "--twin");
     if (o->duration > 0 && !o->curve)
         return command_misused("--duration goes with --plan or --curve: a log has its own");
     if (o->plain && !o->curve)
@@ -259,6 +245,35 @@ static int check_request(const identify_options *o, size_t logs)
     if (o->tolerance > 0.5)
         return command_misused("--tolerance: at most 50%%");
     return -1;
+}
+
+/* Options that do not go together. @return -1 or the exit code */
+static int check_request(const identify_options *o, size_t logs)
+{
+    if (o->plan && (o->output || o->into || o->report || o->truth || o->keep || o->twin ||
+                    o->runs || o->devices || o->curve))
+        return command_misused("--plan goes with --want, --rate, --duration, --plot, --json and "
+                               "--strict; the other options are about a log");
+    if (o->plan)
+        return logs == 0 ? -1
+                         : command_misused("--plan is for a record that is not made yet: leave the "
+                                           "log out, or --plan");
+    if (o->want)
+        return command_misused("--want says what a record is to tell: it goes with --plan MODEL");
+    if (logs == 0)
+        return command_misused("an operand is missing: imukit identify LOG..., or --plan MODEL");
+    if (o->runs && o->devices)
+        return command_misused("--runs are of one sensor, --devices are different ones: which?");
+    if (logs > 1 && !o->runs && !o->devices)
+        return command_misused("%zu logs are given: add --runs when they are of one sensor (one "
+                               "joint model), or --devices when they are of different ones (their "
+                               "spread)",
+                               logs);
+    if (logs == 1 && (o->runs || o->devices))
+        return command_misused("%s needs two logs or more", o->runs ? "--runs" : "--devices");
+    if (o->curve && logs > 1)
+        return command_misused("--curve takes one table at a time");
+    return check_allan(o);
 }
 
 static int identify_operands(const identify_options *o, size_t logs, const char *const *operands)

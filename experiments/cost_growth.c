@@ -8,6 +8,7 @@
  * (which holds the record and is left out beyond 16 GB), and the whole identification, from samples
  * to a model, gathered block by block beyond the length that imk_identify_channel() is for. Prints
  * nanoseconds a sample; a linear cost is a constant. */
+#define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "imukit/imukit.h"
 #include "imukit/io.h"
 

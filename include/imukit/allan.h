@@ -71,8 +71,9 @@ IMK_API void imk_allan_sums(size_t n, const double *rate, double *sums,
                             const imk_executor *executor);
 
 /** Workspace [bytes] that imk_allan_compute() wants for these factors and threads; 0 for all
- *  statistics but MTOT and HTOT. About 280 m bytes a thread, m the largest factor, and no more than
- *  40 n; 0 too when a factor is out of range. */
+ *  statistics but MTOT, HTOT and Theo1. About 280 m bytes a thread, m the largest factor, and no
+ *  more than 40 n; for Theo1 600 m and 75 n at most, 0 if no m is above 800. 0 too when a factor is
+ *  out of range. */
 IMK_API size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n,
                                         size_t factor_count, const size_t *factors, size_t threads);
 
@@ -82,7 +83,7 @@ IMK_API size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n,
  *
  *  and the others as the file of each says; as defined, no bias taken off. TVAR is in units of the
  *  rate times the sampling interval: multiply the deviation by dt. Cost a factor: O(n) for all but
- *  Theo1, which takes O((n - m) m).
+ *  Theo1, which takes O(n log^2 m).
  *  @param n        rate samples; sums has n + 1 values
  *  @param factors  averaging factors in the statistic's range
  *  @param variances,counts  factor_count values; counts (may be NULL): squares, or stretches,
@@ -174,7 +175,7 @@ typedef struct imk_allan_settings {
     double confidence;    /**< two-sided, of the intervals; 0.95 */
     bool greenhall_riley; /**< degrees of freedom of the continuous process; false: exact ones */
     imk_allan_bias_removal bias;
-    void *workspace; /**< MTOT and HTOT only: imk_allan_workspace_size() */
+    void *workspace; /**< MTOT, HTOT and Theo1 only: imk_allan_workspace_size() */
     size_t workspace_size;
 } imk_allan_settings;
 

@@ -51,16 +51,14 @@ size_t imki_allan_windows_doubles(size_t n, size_t m);
 double imki_allan_windows(bool hadamard, size_t n, const double *sums, size_t m, size_t *count,
                           double *scratch);
 
-/* allan_theo.c: the variance; and the sum over i < count and k of squares over k by definition. */
+/* allan_theo.c */
 double imki_allan_theo(size_t n, const double *sums, size_t m, size_t *count, imk_kernel kernel,
                        double *scratch);
-double imki_allan_theo_squares(imk_kernel kernel, const double *sums, size_t m, size_t count);
 
-/* allan_theo_fast.c: the sum for i <= n - m by correlations, in a scratch of so many doubles; none
+/* allan_theo_fast.c: its sum of squares by correlations, in a scratch of so many doubles; none
  * where the definition is as fast. */
 size_t imki_allan_theo_doubles(size_t n, size_t m);
-double imki_allan_theo_fast(size_t n, const double *sums, size_t m, imk_kernel kernel,
-                            double *scratch);
+double imki_allan_theo_fast(size_t n, const double *sums, size_t m, double *scratch);
 
 /* allan_edf.c: the sum over lags for difference statistics and PDEV, and the generalised
  * autocovariance of the sums of sampled noise it rests on. */

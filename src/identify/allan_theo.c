@@ -58,7 +58,7 @@ static double block_for(imk_kernel kernel, const double *s, size_t m, size_t cou
     return block_squares(s, m, count);
 }
 
-double imki_allan_theo_squares(imk_kernel kernel, const double *sums, size_t m, size_t count)
+static double by_definition(imk_kernel kernel, const double *sums, size_t m, size_t count)
 {
     double total = 0;
     for (size_t i = 0; i < count; i += IMKI_ALLAN_BLOCK)
@@ -72,7 +72,7 @@ double imki_allan_theo(size_t n, const double *sums, size_t m, size_t *count, im
 {
     *count = n + 1 - m;
     const double total = imki_allan_theo_doubles(n, m) > 0
-                             ? imki_allan_theo_fast(n, sums, m, kernel, scratch)
-                             : imki_allan_theo_squares(kernel, sums, m, *count);
+                             ? imki_allan_theo_fast(n, sums, m, scratch)
+                             : by_definition(kernel, sums, m, *count);
     return total / (0.75 * (double)*count * (double)m * (double)m);
 }

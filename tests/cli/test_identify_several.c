@@ -21,10 +21,10 @@ static int make_logs(void **state)
         return -1;
     put("model.yaml", texts[0]);
     put("noisy.yaml", texts[1]);
-    const int code = run(
-        "for k in 1 2 3; do $I simulate model.yaml --rate 100Hz --duration 5min --seed $k "
-        "-o run$k.npy >&2 || exit 1; done; $I simulate noisy.yaml --rate 100Hz --duration 5min "
-        "--seed 4 -o noisy.npy");
+    const int code =
+        run("for k in 1 2 3; do $I simulate model.yaml --rate 100Hz --duration 5min --seed $k "
+            "-o run$k.npy >&2 || exit 1; done; $I simulate noisy.yaml --rate 100Hz --duration 5min "
+            "--seed 4 -o noisy.npy");
     if (code != 0)
         print_error("%s", err);
     return code;
@@ -216,8 +216,8 @@ static void test_plan(void **state)
                   "imukit identify: error: --want says what a record is to tell: it goes with "
                   "--plan MODEL\n" TRY("identify"));
     check_message("$I identify", 2,
-                  "imukit identify: error: an operand is missing: imukit identify "
-                  "LOG…\n" TRY("identify"));
+                  "imukit identify: error: an operand is missing: imukit identify LOG..., "
+                  "or --plan MODEL\n" TRY("identify"));
     check_message("$I identify run1.npy --duration 3h", 2,
                   "imukit identify: error: --duration goes with --plan or --curve: a log has its "
                   "own\n" TRY("identify"));

@@ -181,6 +181,29 @@ static void test_definitions(void **state)
     assert_true(compared > 2000);
 }
 
+/* Theo1 beyond the factors at which it is summed as defined: several blocks, one, and fewer terms
+ * than m/2; white rates, and a walk on a ramp. The comment of allan_theo_fast.c bounds its error by
+ * 1e-11 of the variance. */
+static void test_theo_by_correlation(void **state)
+{
+    (void)state;
+    enum { N = 12000 };
+    static double rate[N], s[N + 1];
+    static long double x[N + 1];
+    static const size_t factors[] = {1026, 3000, 5998, 9000, 11000};
+    for (int kind = 1; kind < 4; kind += 2) {
+        draw(kind, (uint64_t)kind, N, rate);
+        imk_allan_sums(N, rate, s, NULL);
+        for (size_t i = 0; i <= N; i++)
+            x[i] = (long double)s[i];
+        for (size_t i = 0; i < 5; i++) {
+            assert_true(imk_allan_workspace_size(IMK_ALLAN_THEO1, N, 1, &factors[i], 1) > 0);
+            CHECK_RELATIVE(deviation(IMK_ALLAN_THEO1, N, s, factors[i]),
+                           sqrt((double)oracle_theo(N, x, factors[i])), 0.5e-11);
+        }
+    }
+}
+
 /* Gravity on an accelerometer of 1 ug noise: the record as read, 9.8 plus noise, is rounded to
  * 1.8e-15, 1.8e-10 of the noise. The same sums, taken in long double, give the same deviations to
  * 1e-12: what is added to the rounding of the record itself is nothing. */
@@ -350,7 +373,7 @@ static void run_backwards(void *context, size_t count, imk_work work, void *work
 static void test_executors_and_refusals(void **state)
 {
     (void)state;
-    enum { N = 3000 };
+    enum { N = 4000 };
     static double rate[N], s[N + 1];
     imk_random_normals(imk_random_seeded(1), 1, 0, N, rate);
     imk_allan_sums(N, rate, s, NULL);
@@ -396,6 +419,7 @@ int main(void)
         cmocka_unit_test(test_published_thousand),
         cmocka_unit_test(test_published_without_bias),
         cmocka_unit_test(test_definitions),
+        cmocka_unit_test(test_theo_by_correlation),
         cmocka_unit_test(test_gravity),
         cmocka_unit_test(test_degrees_and_bias_by_draws),
         cmocka_unit_test(test_noise_types_of_hadamard),
