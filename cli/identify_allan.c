@@ -15,6 +15,7 @@ static imk_allan_fit_settings settings_of(const identification *i, const imk_ide
 {
     imk_allan_fit_settings settings = imk_allan_fit_default();
     settings.confidence = i->options->confidence;
+    settings.significance = i->options->significance;
     settings.tolerance = i->options->tolerance;
     settings.gauss_markov_max = (int)i->options->gauss_markov;
     settings.filter = r->filter;

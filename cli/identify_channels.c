@@ -25,6 +25,7 @@ bool identify_settings_for(identification *i, size_t channel, imk_identify_setti
     *settings = imk_identify_default();
     settings->dt = i->channels.dt;
     settings->confidence = i->options->confidence;
+    settings->significance = i->options->significance;
     if (i->summarised)
         settings->summary = i->summary[channel] = calloc(1, imk_spectral_summary_size());
     return !i->summarised || settings->summary;

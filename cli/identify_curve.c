@@ -207,6 +207,7 @@ static int fit_curves(identification *i, const identify_curve_input *input,
                              .lengths = &length};
     imk_allan_fit_settings settings = imk_allan_fit_default();
     settings.confidence = i->options->confidence;
+    settings.significance = i->options->significance;
     settings.tolerance = input->tolerance;
     settings.gauss_markov_max = (int)input->gauss_markov;
     i->channels.dt = table.dt;

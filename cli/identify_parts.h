@@ -21,7 +21,7 @@ typedef enum identify_method { METHOD_LIKELIHOOD = 0, METHOD_ALLAN } identify_me
 typedef struct identify_options {
     log_input log;
     const char *output, *into, *name, *report, *plot, *truth, *keep, *plan, *want;
-    double confidence, duration, tolerance;
+    double confidence, significance, duration, tolerance;
     uint64_t seed, threads, gauss_markov;
     int method; /* identify_method */
     bool twin, json, strict, runs, devices, curve, plain;

@@ -23,6 +23,7 @@ static int join_channel(several_logs *s, size_t channel, void *workspace,
     imk_identify_settings settings = imk_identify_default();
     settings.dt = s->joint->channels.dt;
     settings.confidence = s->options->confidence;
+    settings.significance = s->options->significance;
     imk_error error;
     const imk_status status = imk_identify_joint(
         &settings, s->count, summaries, single, &s->joint->result[channel], &s->agreement[channel],

@@ -31,6 +31,9 @@ static const option identify_option_table[] = {
      offsetof(identify_options, truth)},
     {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
      "of intervals and bounds; default 0.95", offsetof(identify_options, confidence)},
+    {"significance", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
+     "chance that a term which is not there is called present; default 0.01",
+     offsetof(identify_options, significance)},
     {"keep", 0, OPTION_TEXT, "LIST", NULL, NULL,
      "leave these in the log: outliers, stuck, saturated (samples), warm-up, temperature, all; "
      "otherwise what is found of them is taken out, and told",
@@ -219,6 +222,7 @@ static int plan(const identify_options *o)
 {
     const identify_plan_request request = {.model = o->plan,
                                            .want = o->want,
+                                           .significance = o->significance,
                                            .plot = o->plot,
                                            .rate = o->log.rate,
                                            .duration = o->duration,
@@ -250,6 +254,8 @@ static int check_allan(const identify_options *o)
 /* Options that do not go together. @return -1 or the exit code */
 static int check_request(const identify_options *o, size_t logs)
 {
+    if (!(o->significance < 0.5))
+        return command_misused("--significance: below 50%%; it is a false-alarm rate");
     if (o->plan && (o->output || o->into || o->report || o->truth || o->keep || o->twin ||
                     o->runs || o->devices || o->curve))
         return command_misused("--plan goes with --want, --rate, --duration, --plot, --json and "
@@ -302,8 +308,10 @@ static int identify_operands(const identify_options *o, size_t logs, const char 
 
 static int run(int count, char **words)
 {
-    identify_options o = {
-        .confidence = 0.95, .seed = 1, .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
+    identify_options o = {.confidence = 0.95,
+                          .significance = 0.01,
+                          .seed = 1,
+                          .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
     const char *operands[IMK_JOINT_RECORDS_MAX];
     size_t logs = 0;
     int code = options_parse(&identify_verb, count, words, &o, operands);

@@ -54,7 +54,7 @@ typedef struct imki_fit {
     double ramp;                                    /* [unit/s] */
     double correlation_time[IMKI_GAUSS_MARKOV_MAX]; /* [s], of the shapes; 0: no shape yet */
     double log_likelihood;
-    double sine_square[IMKI_BANDS_MAX]; /* sin^2(pi f dt) at the bands */
+    double sine_square[IMKI_BANDS_MAX];                   /* sin^2(pi f dt) at the bands */
     double change[IMKI_GAUSS_MARKOV_MAX][IMKI_BANDS_MAX]; /* scratch: d S/d log correlation time */
 } imki_fit;
 
@@ -149,9 +149,9 @@ bool imki_gauss_markov_range(const imki_bands *bands, double *shortest, double *
 
 /* term_search.c: the set of terms with the largest likelihood less its penalties. */
 typedef struct imki_penalties {
-    double term;          /* a strength */
-    double gauss_markov;  /* a strength and a correlation time */
-    double significance;  /* of a ramp */
+    double term;         /* a strength */
+    double gauss_markov; /* a strength and a correlation time */
+    double significance; /* of a ramp */
 } imki_penalties;
 imki_penalties imki_penalties_of(const imki_bands *bands, double significance);
 /* Returns the likelihood less the penalties of the set, which is left in the fit. */
@@ -201,8 +201,8 @@ void imki_identify_terms(imki_work *w, imk_identification *result);
 void imki_identify_intervals(imki_work *w, imk_identification *result);
 void imki_identify_judge(imki_work *w, imk_identification *result);
 
-/* identify_lines.c: enter a line that is no subtracted tone as a resonance or, where it is not shaped
- * like one, as a sinusoid at `frequency`; true when it is to be left out of the fit.
+/* identify_lines.c: enter a line that is no subtracted tone as a resonance or, where it is not
+ * shaped like one, as a sinusoid at `frequency`; true when it is to be left out of the fit.
  * @param narrowest  half-power width [Hz] that the transform tells from a tone */
 bool imki_line_describe(const imki_line *line, size_t n, double dt, const double *cumulative,
                         double frequency, double narrowest, imk_identification *result);

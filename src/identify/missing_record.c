@@ -190,23 +190,30 @@ static imki_fill fill_of(imki_work *w, imki_missing *m)
                        .transform_size = w->transform_size};
 }
 
-/* Share of each band's variance that is missing, from draws; all together they are the missing
- * samples. */
+/* Share of each band's variance that is missing, from draws. Over all coefficients, those of lines
+ * included, the shares add up to the missing samples. */
 static void find_lost(imki_fill *fill, imki_missing *m, uint64_t draws)
 {
-    double mean[IMKI_BANDS_MAX], count[IMKI_BANDS_MAX], raw[IMKI_BANDS_MAX] = {0}, sum = 0;
+    double mean[IMKI_BANDS_MAX], count[IMKI_BANDS_MAX], raw[IMKI_BANDS_MAX] = {0};
+    double all = 0, between_lines = 0, smoothed = 0;
     for (uint64_t draw = 0; draw < draws; draw++) {
         imki_fill_draw(fill, imk_random_seeded(SEED), draw);
         imki_fill_coefficients(fill);
         imki_missing_means(m, fill->scratch, fill->variance, mean, count);
-        for (size_t b = 0; b < m->bands; b++)
+        for (size_t k = 1; k < fill->n; k++)
+            all += fill->scratch[k] * fill->scratch[k] / fill->variance[k];
+        for (size_t b = 0; b < m->bands; b++) {
             raw[b] += mean[b] / (double)draws;
+            between_lines += count[b] * mean[b];
+        }
     }
     imki_missing_smooth(m->bands, raw, count, LOST_DEGREES / (double)draws, m->lost);
     for (size_t b = 0; b < m->bands; b++)
-        sum += count[b] * m->lost[b];
+        smoothed += count[b] * m->lost[b];
+    const double factor =
+        smoothed > 0 && all > 0 ? (double)m->count * between_lines / all / smoothed : 0;
     for (size_t b = 0; b < m->bands; b++)
-        m->lost[b] = sum > 0 ? fmin(0.98, m->lost[b] * (double)m->count / sum) : 0;
+        m->lost[b] = fmin(0.98, m->lost[b] * factor);
 }
 
 /* One round; returns how far the bands moved. */

@@ -106,7 +106,8 @@ static void spread_levels(const imki_missing *m, size_t n, double *variance)
     }
 }
 
-/* Lines keep their own power, averaged over a quarter of the distance from their middle. */
+/* Lines keep their own power, averaged over a quarter of the distance from their middle, where it
+ * stands out: to take every chance excess for a line would fill in too much. */
 static void spread_lines(const imki_missing *m, size_t n, const double *coefficients,
                          double *variance)
 {
@@ -119,7 +120,8 @@ static void spread_lines(const imki_missing *m, size_t n, const double *coeffici
             double sum = 0;
             for (size_t j = from; j <= to; j++)
                 sum += coefficients[j] * coefficients[j];
-            variance[k] = fmax(variance[k], sum / (double)(to - from + 1));
+            const double power = sum / (double)(to - from + 1);
+            variance[k] = power > STRONG * variance[k] ? power : variance[k];
         }
     }
 }

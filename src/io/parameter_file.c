@@ -335,7 +335,9 @@ static imk_status check_model(const imk_parameter_settings *settings, const imk_
 
 static bool ends_with(const char *path, const char *ending)
 {
-    size_t length = path ? strlen(path) : 0, ending_length = strlen(ending);
+    if (!path)
+        return false;
+    size_t length = strlen(path), ending_length = strlen(ending);
     return length >= ending_length && strcmp(path + length - ending_length, ending) == 0;
 }
 

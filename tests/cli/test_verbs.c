@@ -209,8 +209,11 @@ static void test_identify_recovers_the_model(void **state)
                          "--report r.html"),
                      0);
     check_contains(out, "\n18 of 18 intervals cover the truth; 99.99 % are expected to.\n", out);
-    check_contains(out, "Report: r.html\nModel: m.yaml\nNext: imukit grade m.yaml, or imukit convert m.yaml imu.yaml "
-                        "--to kalibr for a filter\n", out);
+    check_contains(out,
+                   "Report: r.html\nModel: m.yaml\nNext: imukit grade m.yaml, or imukit convert "
+                   "m.yaml imu.yaml "
+                   "--to kalibr for a filter\n",
+                   out);
     assert_int_equal(run("$I grade m.yaml"), 0);
     assert_int_equal(run("$I simulate m.yaml --rate 20Hz --duration 1min -o twin.csv"), 0);
     read_text("r.html", out);
