@@ -131,7 +131,8 @@ double imki_quality_resolved(const imki_bands *bands, double frequency)
 static double moved(const imki_joint_fit *j, size_t i, double value, double step)
 {
     const imki_bands *bands = j->w->bands;
-    const imk_resonance *r = &j->result->resonance[j->parameter[i].index];
+    const imk_resonance *resonances = j->result->resonance;
+    const size_t index = j->parameter[i].index; /* of a resonance, for its two kinds */
     double reach = 0.7, low = 0, high = HUGE_VAL;
     switch (j->parameter[i].kind) {
     case IMKI_SHAPE_BANDWIDTH:
@@ -143,13 +144,13 @@ static double moved(const imki_joint_fit *j, size_t i, double value, double step
         high = 50;
         break;
     case IMKI_SHAPE_FREQUENCY:
-        reach = 0.5 / r->q;
+        reach = 0.5 / resonances[index].q;
         low = fmin(value, LOWEST / bands->dt);
         high = 0.5 / bands->dt;
         break;
     case IMKI_SHAPE_QUALITY:
         low = fmin(value, IMKI_WIDEST);
-        high = fmax(value, imki_quality_resolved(bands, r->frequency));
+        high = fmax(value, imki_quality_resolved(bands, resonances[index].frequency));
         break;
     case IMKI_SHAPE_AMOUNT:
         break;
