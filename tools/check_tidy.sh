@@ -26,7 +26,7 @@ check_file() {
             ;;
     esac
     local key
-    key=$({ clang $flags -E "$file" 2>&1; cat .clang-tidy; } | sha256sum | cut -d' ' -f1)
+    key=$({ clang $flags -E "$file" 2>&1; cat .clang-tidy; echo "$flags $shallow"; } | sha256sum | cut -d' ' -f1)
     [ -e "$passed/$key" ] && return 0
     clang-tidy --quiet "$file" -- $flags $shallow 2>/dev/null && touch "$passed/$key"
 }

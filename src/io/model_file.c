@@ -182,7 +182,9 @@ imk_status imk_model_print_json(const imk_model *model, const imk_document *docu
 
 static bool ends_with(const char *path, const char *ending)
 {
-    size_t length = path ? strlen(path) : 0, ending_length = strlen(ending);
+    if (!path)
+        return false;
+    size_t length = strlen(path), ending_length = strlen(ending);
     return length >= ending_length && strcmp(path + length - ending_length, ending) == 0;
 }
 
