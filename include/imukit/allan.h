@@ -31,9 +31,9 @@ typedef enum imk_allan_statistic {
     IMK_ALLAN_STATISTICS       /**< how many there are */
 } imk_allan_statistic;
 
-/** Short name ("oadev") and title ("overlapping Allan deviation") of a statistic; NULL when there
- * is none. */
+/** Short name of a statistic, "oadev"; NULL when there is none. */
 IMK_API const char *imk_allan_name(imk_allan_statistic statistic);
+/** Its title, "overlapping Allan deviation"; NULL when there is none. */
 IMK_API const char *imk_allan_title(imk_allan_statistic statistic);
 
 /** Lowest and highest averaging factor of a statistic, and the step between valid ones (2 for
