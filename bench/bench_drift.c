@@ -126,7 +126,8 @@ static void set_other_terms(imk_noise *noise, double size)
 
 static imk_model make_model(bool every_term)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_triad *triads[2] = {&model.gyro, &model.accel};
     for (int i = 0; i < 2; i++) {
         const double size = i == 0 ? 5e-6 : 1e-2;

@@ -111,7 +111,8 @@ static void set_triad(imk_triad *triad, double unit)
 
 static imk_model complete_model(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     set_triad(&model.gyro, 1);
     set_triad(&model.accel, 10);
     set_rows(&model.gyro.g_sensitivity, 1e-6, true);

@@ -239,7 +239,8 @@ static const double per_row = 1e9 / ROWS;
 
 static void bench_against_loop(const char *isa)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     each_triad(&model, set_white);
     each_triad(&model, set_walk);
     job work = {start_at_rest(&model), NULL, false};
@@ -268,7 +269,8 @@ static void bench_against_loop(const char *isa)
 static void bench_against_normals(const char *name, void (*set)(imk_triad *triad), int hundredths,
                                   const char *isa)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     each_triad(&model, set);
     job work = {start_at_rest(&model), NULL, false};
     draws normals = {imk_random_seeded(1), hundredths};
@@ -292,7 +294,8 @@ static void run_moving(void *context)
 static void bench_complete(const char *isa)
 {
     const imk_recorded_motion motion = make_motion();
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     set_everything(&model);
     /* white, walk, two Gauss-Markov, and flicker's 2 + 1/3 */
     draws normals = {imk_random_seeded(1), 633};

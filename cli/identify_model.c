@@ -62,19 +62,18 @@ static void store_kind(const identification *i, channel_kind kind, imk_model *mo
              length, 1 / i->channels.dt);
 }
 
-imk_model identify_noise_model(const identification *i)
+void identify_noise_model(const identification *i, imk_model *model)
 {
-    imk_model model = imk_model_default();
-    store_kind(i, CHANNEL_GYRO, &model);
-    store_kind(i, CHANNEL_ACCEL, &model);
-    identify_round_model(&model);
+    imk_model_default(model);
+    store_kind(i, CHANNEL_GYRO, model);
+    store_kind(i, CHANNEL_ACCEL, model);
+    identify_round_model(model);
     const char *base = identify_base_name(i->path);
     if (i->options->name)
-        snprintf(model.name, sizeof model.name, "%s", i->options->name);
+        snprintf(model->name, sizeof model->name, "%s", i->options->name);
     else
-        snprintf(model.name, sizeof model.name, "%.*s",
+        snprintf(model->name, sizeof model->name, "%.*s",
                  (int)(strcspn(base, ".") < 90 ? strcspn(base, ".") : 90), base);
-    return model;
 }
 
 /* Replace the noise, the output filter and the evidence of a triad, and nothing else. */
@@ -128,7 +127,7 @@ int identify_write_model(identification *i)
     imk_model *noise = malloc(sizeof *noise);
     if (!noise)
         return command_failed("memory is exhausted");
-    *noise = identify_noise_model(i);
+    identify_noise_model(i, noise);
     int code = -1;
     if (!noise->gyro.present && !noise->accel.present) {
         if (i->options->output || i->options->into)
@@ -199,7 +198,7 @@ int identify_twin(identification *i, const imk_executor *executor)
     imk_model *noise = malloc(sizeof *noise);
     if (!noise)
         return command_failed("memory is exhausted");
-    *noise = identify_noise_model(i);
+    identify_noise_model(i, noise);
     imk_status status = IMK_OK;
     if (noise->gyro.present || noise->accel.present)
         status = simulate_twin(i, noise, executor, &error);

@@ -101,7 +101,7 @@ double identify_duration(const identification *i);
 /* The last part of a path. */
 const char *identify_base_name(const char *path);
 /* Noise model of the log: nothing but what was identified. */
-imk_model identify_noise_model(const identification *i);
+void identify_noise_model(const identification *i, imk_model *model);
 /* identify_rounding.c: to the digits the values have, in the units of the model file. */
 void identify_round_model(imk_model *model);
 /* Fill i->model, print what --into changes, and write it to -o. @return -1 or the exit code */

@@ -29,7 +29,7 @@ static int describe_errors(navigation *n)
     imk_zero_velocity_settings *s = &n->settings;
     const navigate_options *o = n->options;
     imk_error error;
-    *s = imk_zero_velocity_default();
+    imk_zero_velocity_default(s);
     s->hold_height = o->vertical == 0;
     s->samples = (int)o->samples;
     s->velocity_sigma = o->still_velocity;

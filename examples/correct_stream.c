@@ -27,16 +27,15 @@ static int fail(const char *what, const imk_error *error)
 }
 
 /* What a calibration may have found. */
-static imk_model make_unit(void)
+static void make_unit(imk_model *unit)
 {
-    imk_model unit = imk_model_default();
+    imk_model_default(unit);
     for (int i = 0; i < 3; i++) {
-        unit.gyro.bias.fixed.value[i] = 0.05; /* [rad/s] */
-        unit.gyro.scale_factor.fixed.value[i] = 2e-3;
-        unit.accel.bias.fixed.value[i] = 0.1;              /* [m/s^2] */
-        unit.accel.lever_arm.value[i][(i + 1) % 3] = 0.02; /* [m] */
+        unit->gyro.bias.fixed.value[i] = 0.05; /* [rad/s] */
+        unit->gyro.scale_factor.fixed.value[i] = 2e-3;
+        unit->accel.bias.fixed.value[i] = 0.1;              /* [m/s^2] */
+        unit->accel.lever_arm.value[i][(i + 1) % 3] = 0.02; /* [m] */
     }
-    return unit;
 }
 
 static imk_status simulate(const imk_model *model, const imk_trajectory *trajectory, record *r,
@@ -94,12 +93,15 @@ static void use(const imk_compensator_sample *sample, const record *truth, size_
 
 int main(void)
 {
-    static record readings, truth; /* large: keep them off the stack */
+    /* Large: keep them off the stack. */
+    static record readings, truth;
+    static imk_model unit, perfect;
     static imk_compensator compensator;
     imk_error error;
     imk_trajectory motion;
     imk_trajectory_piece *piece = NULL;
-    const imk_model unit = make_unit(), perfect = imk_model_default();
+    make_unit(&unit);
+    imk_model_default(&perfect);
     if (make_motion(&piece, &motion, &error) != IMK_OK)
         return fail("motion", &error);
     if (simulate(&unit, &motion, &readings, &error) != IMK_OK ||

@@ -197,7 +197,7 @@ typedef struct imk_model {
 } imk_model;
 
 /** A perfect unit: orthogonal triads of gyros and accelerometers without any error. */
-IMK_API imk_model imk_model_default(void);
+IMK_API void imk_model_default(imk_model *model);
 
 /** Check every field: finite numbers, sizes, signs, unit directions, correlation times, polynomial
  *  ranges, terms that exclude each other or belong to the other kind of sensor. What lies beyond

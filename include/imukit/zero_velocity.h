@@ -66,7 +66,7 @@ typedef struct imk_zero_velocity_settings {
 
 /** Perfect sensors, free vertical, three samples, steps of 0.5 s, 10 mm/s, no rotation, false alarm
  * 1e-4. */
-IMK_API imk_zero_velocity_settings imk_zero_velocity_default(void);
+IMK_API void imk_zero_velocity_default(imk_zero_velocity_settings *settings);
 
 /** Fill gyro and accel from a model with three axes of each.
  *

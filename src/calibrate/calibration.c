@@ -19,7 +19,7 @@ void imk_calibration_default(imk_calibration *calibration)
 {
     memset(calibration, 0, sizeof *calibration);
     calibration->cookie = IMKI_CALIBRATION_COOKIE;
-    calibration->model = imk_model_default();
+    imk_model_default(&calibration->model);
     calibration->frame = IMK_FRAME_UPPER;
     calibration->gravity = imk_normal_gravity(0.7853981633974483, 0.0);
     calibration->latitude = (double)NAN;

@@ -296,7 +296,7 @@ static void static_record(const imk_laboratory *laboratory, char *state, double 
 /* A model of one axis with no errors, and what reduce says of the axes. */
 static void begin_model(const imk_triad *stated, int sensor, imk_model *model)
 {
-    *model = imk_model_default();
+    imk_model_default(model);
     imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
     (sensor == IMK_GYRO ? &model->accel : &model->gyro)->present = false;
     triad->axis_count = 1;

@@ -47,7 +47,8 @@ imk_status imk_plan_script(const imk_plan_settings *settings, size_t step_count,
     if (!settings || settings->cookie != IMKI_PLAN_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "plan_settings", NULL,
                              "imk_plan_default()");
-    const imk_model perfect = imk_model_default();
+    imk_model perfect;
+    imk_model_default(&perfect);
     const double level[3] = {0.0, 0.0, 0.0};
     const double *last = level;
     size_t count = 0;

@@ -316,7 +316,7 @@ static imk_status check_top_keys(const imk_document *document, imk_error *error)
 imk_status imki_document_read_model(const imk_document *document, imk_model *model,
                                     imk_error *error)
 {
-    *model = imk_model_default();
+    imk_model_default(model);
     imki_reader r = {document, error, &model->gyro, IMKI_GYRO, 0, IMK_DENSITY_UNSTATED};
     imk_status status = check_top_keys(document, error);
     if (status == IMK_OK)

@@ -145,7 +145,7 @@ imk_status imki_parameters_compare(imki_parameters *p, imki_parameter_function *
     if (!models)
         return imk_error_set(p->error, IMK_ERROR_MEMORY, "", "", "");
     imk_model *back = &models[0], *source = &models[1];
-    *back = imk_model_default();
+    imk_model_default(back);
     *source = *p->source;
     imk_parameter_settings settings = *p->settings;
     settings.sensor = NULL;

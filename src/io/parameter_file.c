@@ -254,7 +254,7 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
                          .size = size,
                          .model = made};
     imk_parameter_format format = settings->format;
-    *made = imk_model_default();
+    imk_model_default(made);
     if (memchr(text, '\0', size))
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "", "a text file");
     if (format == IMK_PARAMETERS_UNKNOWN)

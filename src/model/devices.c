@@ -148,7 +148,7 @@ void imk_device_model(const imk_device *device, imk_model *model)
                                      .bias = imk_unit_of("mg").scale,
                                      .bias_divisor = 1000};
     const imki_device_entry *entry = (const imki_device_entry *)(const void *)device;
-    *model = imk_model_default();
+    imk_model_default(model);
     copy_text(model->name, sizeof model->name, device->name);
     copy_text(model->description, sizeof model->description, device->grade);
     set_triad(&model->gyro, &entry->gyro, gyro_units);

@@ -14,12 +14,10 @@ static void set_triad(imk_triad *triad)
         triad->direction[i][i] = 1;
 }
 
-imk_model imk_model_default(void)
+void imk_model_default(imk_model *model)
 {
-    imk_model model;
-    memset(&model, 0, sizeof model);
-    model.cookie = IMKI_MODEL_COOKIE;
-    set_triad(&model.gyro);
-    set_triad(&model.accel);
-    return model;
+    memset(model, 0, sizeof *model);
+    model->cookie = IMKI_MODEL_COOKIE;
+    set_triad(&model->gyro);
+    set_triad(&model->accel);
 }

@@ -8,10 +8,14 @@
 
 enum { COOKIE = 0x5A0FEED1, ERRORS = IMK_NAVIGATION_ERRORS };
 
-imk_zero_velocity_settings imk_zero_velocity_default(void)
+void imk_zero_velocity_default(imk_zero_velocity_settings *settings)
 {
-    return (imk_zero_velocity_settings){
-        .cookie = COOKIE, .samples = 3, .step = 0.5, .velocity_sigma = 0.01, .false_alarm = 1e-4};
+    memset(settings, 0, sizeof *settings);
+    settings->cookie = COOKIE;
+    settings->samples = 3;
+    settings->step = 0.5;
+    settings->velocity_sigma = 0.01;
+    settings->false_alarm = 1e-4;
 }
 
 static size_t state_count(const imk_zero_velocity_settings *settings)

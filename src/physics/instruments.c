@@ -206,7 +206,7 @@ static void copy_text(char *to, size_t size, const char *from)
 
 imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrument)
 {
-    *model = imk_model_default();
+    imk_model_default(model);
     const bool gyro = instrument->sensor == IMK_GYRO;
     imk_triad *triad = gyro ? &model->gyro : &model->accel;
     imk_evidence *evidence = gyro ? &model->gyro_evidence : &model->accel_evidence;

@@ -40,7 +40,8 @@ static inline imk_model bench_truth(void)
 {
     static const double scale[2][3] = {{.004, -.007, .002}, {.003, -.002, .004}};
     static const double bias[2][3] = {{.01, -.02, .005}, {.1, -.05, .2}};
-    imk_model m = imk_model_default();
+    imk_model m;
+    imk_model_default(&m);
     for (int i = 0; i < 3; i++) {
         m.gyro.bias.fixed.value[i] = bias[0][i];
         m.accel.bias.fixed.value[i] = bias[1][i];

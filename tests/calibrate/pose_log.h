@@ -41,7 +41,8 @@ static inline void pose_log_free(pose_log *log)
 /* A consumer MEMS unit, SI. */
 static inline imk_model pose_log_model(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         model.gyro.noise.white.value[i] = 1e-4;
         model.gyro.noise.bias_instability.value[i] = 4e-5;

@@ -173,7 +173,8 @@ static inline void bench_rows(double row[IMK_AXES_MAX][3], bool diagonal, double
  * estimate is not there. */
 static inline imk_model bench_unit(imk_procedure procedure, uint64_t seed)
 {
-    imk_model m = imk_model_default();
+    imk_model m;
+    imk_model_default(&m);
     const bool gyro = procedure != IMK_PROCEDURE_SPIN;
     const bool accel = procedure != IMK_PROCEDURE_RATE_TABLE && procedure != IMK_PROCEDURE_SPIN;
     for (int axis = 0; axis < 3; axis++) {
@@ -248,7 +249,8 @@ static inline void bench_run(const bench *b, const imk_model *model, uint64_t se
 /* The bias a unit has in this log: its own, and the mean of its slow noise. */
 static inline void bench_true_bias(bench *b, uint64_t seed, uint32_t run)
 {
-    imk_model slow = imk_model_default();
+    imk_model slow;
+    imk_model_default(&slow);
     imk_triad *const triads[2] = {&slow.gyro, &slow.accel};
     const imk_triad *const own[2] = {&b->truth.gyro, &b->truth.accel};
     for (int sensor = 0; sensor < 2; sensor++) {

@@ -57,7 +57,8 @@ static inline imk_model bench_truth(void)
 {
     static const double bias[2][3] = {{0.02, -0.03, 0.01}, {0.3, -0.2, 0.25}};
     static const double scale[2][3] = {{0.01, -0.02, 0.015}, {0.006, -0.004, 0.008}};
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int s = 0; s < 2; s++) {
         imk_triad *triad = s == 0 ? &model.gyro : &model.accel;
         for (int i = 0; i < 3; i++) {

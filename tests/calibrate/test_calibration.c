@@ -20,7 +20,8 @@ static imk_model crowded_model(bench *b)
 {
     static const double size[IMK_MODEL_TERMS] = {.1,   .01,  .01,  .01, 1e-3, 1e-3, 1e-4, .01,
                                                  1e-3, 1e-3, 1e-4, .05, 1e-3, 1e-4, .1};
-    imk_model m = imk_model_default();
+    imk_model m;
+    imk_model_default(&m);
     imk_temperature_polynomial *const polynomials[4] = {
         &m.gyro.bias.temperature, &m.gyro.scale_factor.temperature, &m.accel.bias.temperature,
         &m.accel.scale_factor.temperature};

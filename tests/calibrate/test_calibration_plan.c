@@ -19,7 +19,8 @@ typedef struct bench {
 
 static imk_model noisy(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         model.gyro.noise.white.value[i] = 1e-4;
         model.gyro.noise.bias_instability.value[i] = 2e-5;

@@ -114,7 +114,8 @@ static void test_published(void **state)
         skip();
     imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_FERRARIS);
     settings.trim = 0.0;
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_ferraris_stretch stretch[CAPACITY];
     const size_t count = stretches(&s.record, &settings, &model, stretch);
     assert_int_equal(count, 9);
@@ -147,7 +148,8 @@ static void test_unlabelled(void **state)
         skip();
     imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_FERRARIS);
     settings.trim = 0.0;
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_ferraris_stretch named[CAPACITY], found[CAPACITY];
     const size_t count = stretches(&s.record, &settings, &model, named);
     for (size_t i = 0; i < s.record.section_count; i++)
@@ -245,7 +247,8 @@ static void test_model_and_back(void **state)
 {
     (void)state;
     imk_ferraris back;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; pass == 1 && i < 3; i++) {
             model.gyro.sensitivity.value[i] = -930.0;
@@ -369,7 +372,8 @@ static made *make(const imk_model *truth, double latitude, double turned, uint64
 
 static imk_model imperfect(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     static const double bias[2][3] = {{0.01, -0.02, 0.015}, {0.2, -0.1, 0.15}};
     static const double scale[2][3] = {{0.012, -0.02, 0.015}, {0.01, -0.006, 0.004}};
     static const double rows[2][3][3] = {

@@ -128,7 +128,8 @@ static void covariances_follow(void **state)
                     parameter[n++] = (imk_model_parameter){(uint8_t)sensor, IMK_MODEL_MISALIGNMENT,
                                                            (uint8_t)i, (uint8_t)j};
     for (int frame = 0; frame < 3; frame++) {
-        imk_model m = imk_model_default();
+        imk_model m;
+        imk_model_default(&m);
         for (int p = 0; p < N; p++)
             *imk_model_parameter_at(&m, parameter[p], NULL) = 1e-4 * bench_normal(b);
         double root[N][N], v[N * N], t[N][N];
@@ -316,11 +317,12 @@ static void comparison_keeps_real_differences(void **state)
 static void frames_need_a_triad(void **state)
 {
     (void)state;
-    imk_model m = imk_model_default();
+    imk_model m;
+    imk_model_default(&m);
     m.accel.present = false;
     CHECK_STATUS(imk_triad_frame_convert(&m, IMK_FRAME_UPPER, 0, NULL, NULL, NULL),
                  IMK_ERROR_CONFLICT);
-    m = imk_model_default();
+    imk_model_default(&m);
     CHECK_STATUS(imk_triad_frame_convert(&m, IMK_FRAME_REFERENCE, 0, NULL, NULL, NULL),
                  IMK_ERROR_ARGUMENT);
     memcpy(m.accel.direction[1], m.accel.direction[0], sizeof m.accel.direction[0]);

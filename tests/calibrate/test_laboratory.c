@@ -82,7 +82,7 @@ static void accel_step(void *state, const imk_exposure *exposure, double *output
 static void reduce_as(const void *design, int sensor, imk_model *model)
 {
     const errors *e = design;
-    *model = imk_model_default();
+    imk_model_default(model);
     (sensor == IMK_GYRO ? &model->accel : &model->gyro)->present = false;
     imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
     triad->axis_count = 1;

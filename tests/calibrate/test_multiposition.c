@@ -81,7 +81,7 @@ static void test_counts_without_sensitivity(void **state)
     CHECK_OK(bench_solve(b));
     const imk_model known = b->result.model;
     const imk_model nominal = b->nominal;
-    b->nominal = imk_model_default();
+    imk_model_default(&b->nominal);
     CHECK_OK(bench_observe(b));
     for (int i = 0; i < 3; i++) {
         const imk_triad *gyro = &b->calibration.model.gyro, *accel = &b->calibration.model.accel;

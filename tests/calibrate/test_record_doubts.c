@@ -70,7 +70,8 @@ static void sound_logs_raise_none(void **state)
 {
     (void)state;
     for (uint64_t seed = 1; seed <= 12; seed++) {
-        imk_model model = pose_log_model(), nominal = imk_model_default();
+        imk_model model = pose_log_model(), nominal;
+        imk_model_default(&nominal);
         double error[32];
         imk_random_normals(imk_random_seeded(seed), 99, 0, 32, error);
         for (int i = 0; i < 3; i++) {
@@ -105,7 +106,8 @@ static void real_logs_raise_none(void **state)
     }
     none(log, NULL);
     /* With the factory's sensitivities the turns are looked at too. */
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     const double accel[3] = {415, 413, 415}, gyro[3] = {4778, 4758, 4766};
     const double accel_zero[3] = {33124, 33275, 32364}, gyro_zero[3] = {32777, 32460, 32512};
     for (int i = 0; i < 3; i++) {

@@ -188,7 +188,8 @@ static void test_holds(void **state)
                               .section = section,
                               .section_count = 1,
                               .section_name = names};
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         record.reading[IMK_GYRO][i] = reading[i];
         record.reading[IMK_ACCEL][i] = reading[3 + i];
@@ -271,7 +272,8 @@ static void test_calibrations(void **state)
     CHECK_CLOSE(result.bias[IMK_GYRO][2].upper, alone.upper, 0.0);
     assert_int_equal(result.bias[IMK_GYRO][0].runs, 0);
     assert_int_equal(result.scale_factor[IMK_ACCEL][0].runs, 0);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_repeatability_to_model(&result, &model);
     CHECK_OK(imk_model_validate(&model, NULL));
     CHECK_CLOSE(model.accel.scale_factor.repeatability.value[1], alone.value, 0.0);

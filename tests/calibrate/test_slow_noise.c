@@ -280,7 +280,7 @@ static void poses(holds *h, uint64_t seed, imk_model *truth)
     size_t used = 0;
     const double step = 3e-4, white = 2e-4, length = 3.0, pause = 1.0;
     imk_random_normals(imk_random_seeded(seed), imk_stream(0, 900, 0, 0), 0, 16384, normal);
-    *truth = imk_model_default();
+    imk_model_default(truth);
     begin_holds(100 * 4 * POSES, NULL);
     h->calibration.parameter_count = 0;
     h->calibration.frame = IMK_FRAME_UPPER;

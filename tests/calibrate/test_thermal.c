@@ -24,7 +24,7 @@ typedef struct made {
 /* 2 Hz, 3000 s: from 6 to 60 degC and back, rounded at the turn. */
 static void make(made *m)
 {
-    m->model = imk_model_default();
+    imk_model_default(&m->model);
     for (int k = 0; k < ROWS; k++) {
         const double u = 2.0 * (k + 0.5) / ROWS - 1.0; /* -1 … 1 */
         m->temperature[k] = 333.15 - 60.0 * (sqrt(u * u + 0.01) - 0.1);
@@ -188,7 +188,7 @@ static void findings_go_into_a_model(void **state)
             m.value[i][k] = 0.01 * (i + 1) * m.temperature[k] + 1e-3 * m.value[i][k];
     const imk_thermal_settings settings = imk_thermal_default();
     CHECK_OK(analyse(&m, &settings));
-    model = imk_model_default();
+    imk_model_default(&model);
     CHECK_OK(imk_thermal_apply(&m.findings, true, &model, &m.error));
     CHECK_OK(imk_model_validate(&model, &m.error));
     assert_int_equal(model.accel.bias.temperature.order, 1);
@@ -411,7 +411,8 @@ static void pose_readings(const imk_model *truth, double *temperature, double *v
 static void poses_tell_bias_from_scale(void **state)
 {
     (void)state;
-    imk_model truth = imk_model_default();
+    imk_model truth;
+    imk_model_default(&truth);
     for (int i = 0; i < 3; i++) {
         imk_triad *const a = &truth.accel;
         a->bias.fixed.value[i] = 0.05 * (i - 1);
@@ -505,7 +506,7 @@ static void a_real_sweep(void **state)
     }
     static imk_model model;
     static imk_thermal_findings found;
-    model = imk_model_default();
+    imk_model_default(&model);
     imk_thermal_settings thermal = imk_thermal_default();
     void *workspace = malloc(imk_thermal_workspace_size());
     thermal.order = 3;

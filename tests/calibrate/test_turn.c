@@ -109,7 +109,8 @@ static bench *make_bench(const imk_model *truth)
 
 static imk_model linear_errors(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         model.gyro.bias.fixed.value[i] = 0.02 * (i - 1.4);
         model.gyro.scale_factor.fixed.value[i] = 0.01 * (1.3 - i);
@@ -172,7 +173,8 @@ static void test_exact_motion(void **state)
 static void test_angle(void **state)
 {
     (void)state;
-    const imk_model truth = imk_model_default();
+    imk_model truth;
+    imk_model_default(&truth);
     bench *b = make_bench(&truth);
     for (int k = 0; k < SAMPLES; k++) {
         b->reading[0][k] = b->reading[1][k] = 0.0;
@@ -341,7 +343,8 @@ static void test_nonlinear(void **state)
 static void test_redundant(void **state)
 {
     (void)state;
-    imk_model truth = imk_model_default();
+    imk_model truth;
+    imk_model_default(&truth);
     const double s = 1.0 / sqrt(3.0);
     const double direction[4][3] = {{s, s, s}, {s, -s, -s}, {-s, s, -s}, {-s, -s, s}};
     truth.gyro.axis_count = 4;

@@ -40,7 +40,7 @@ static inline void thermal_truth(thermal_bench *b)
 {
     const double degree = 0.017453292519943295, g = 9.80665;
     imk_model *m = &b->truth;
-    b->nominal = imk_model_default();
+    imk_model_default(&b->nominal);
     for (int i = 0; i < 3; i++) {
         b->nominal.gyro.sensitivity.value[i] = 131.0 / degree;
         b->nominal.accel.sensitivity.value[i] = 16384.0 / g;

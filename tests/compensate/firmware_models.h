@@ -87,7 +87,8 @@ static inline void draw_triad(uint64_t *state, imk_triad *t, double range, bool 
 
 static inline imk_model practical_model(uint64_t *state, bool linear)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.present = !one_in(state, 8);
     model.accel.present = !model.gyro.present || !one_in(state, 8);
     if (model.gyro.present)

@@ -38,7 +38,8 @@ static void move(record *r)
 /* A unit of many terms, all of them moderate. Temperatures in kelvin. */
 static imk_model unit(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_triad *triads[2] = {&model.gyro, &model.accel};
     for (int s = 0; s < 2; s++)
         for (int i = 0; i < AXES; i++) {
@@ -378,7 +379,8 @@ static void test_saturation_edges(void **state)
 {
     (void)state;
     imk_compensator *c = malloc(sizeof *c);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.present = false;
     for (int i = 0; i < AXES; i++) {
         model.gyro.range.value[i] = 10;
@@ -421,7 +423,8 @@ static void test_single_axis(void **state)
 {
     (void)state;
     imk_compensator *c = malloc(sizeof *c);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.present = false;
     model.gyro.axis_count = 1;
     model.gyro.direction[0][0] = 0;
@@ -446,7 +449,8 @@ static void test_temperature_rate(void **state)
 {
     (void)state;
     imk_compensator *c = malloc(sizeof *c);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     const double coefficient = 2.0, slope = 0.1;
     for (int i = 0; i < AXES; i++)
         model.gyro.bias.temperature_rate.value[i] = coefficient;
@@ -477,7 +481,8 @@ static void test_warm_up(void **state)
 {
     (void)state;
     imk_compensator *c = malloc(sizeof *c);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.bias.warm_up_time.value = 60;
     for (int i = 0; i < AXES; i++)
         model.accel.bias.warm_up_amplitude.value[i] = 0.5;
@@ -498,14 +503,15 @@ static void test_bad_arguments(void **state)
     static const double bad[] = {0, -1, 1e-13, 1e10, (double)NAN, (double)INFINITY};
     imk_compensator *c = malloc(sizeof *c);
     imk_error error;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         CHECK_STATUS(imk_compensator_start(c, &model, bad[i], NULL, &error), IMK_ERROR_RANGE);
         assert_string_equal(error.field, "dt");
     }
     model.gyro.bias.fixed.value[0] = (double)NAN;
     CHECK_STATUS(imk_compensator_start(c, &model, dt, NULL, &error), IMK_ERROR_NOT_FINITE);
-    model = imk_model_default();
+    imk_model_default(&model);
     /* The third accelerometer in the plane of the others, when the gyros need all of the force. */
     model.accel.direction[2][2] = 0;
     model.accel.direction[2][0] = 1;

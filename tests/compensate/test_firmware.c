@@ -82,7 +82,8 @@ static void test_bound_fixed(void **state)
  * steps, 18 weights of the rates, 9 of the forces, 1 for t. */
 static imk_model third_order(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_triad *triads[2] = {&model.gyro, &model.accel};
     for (int sensor = 0; sensor < 2; sensor++) {
         imk_temperature_polynomial *p = &triads[sensor]->bias.temperature;
@@ -129,7 +130,8 @@ static void test_cost(void **state)
     assert_int_equal(plan.cost.additions, 18 + 1 + 6 + 15 + 6);
     assert_int_equal(plan.iterations, 1);
     /* A perfect unit costs nothing but looking at its readings. */
-    const imk_model perfect = imk_model_default();
+    imk_model perfect;
+    imk_model_default(&perfect);
     make_plan(&perfect, IMK_FIRMWARE_FLOAT);
     assert_int_equal(plan.cost.multiplications + plan.cost.additions + plan.cost.comparisons, 0);
 }
@@ -240,7 +242,8 @@ static void test_left_out(void **state)
 static void test_refusals(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_firmware_settings settings = {.cookie = 0};
     imk_error error;
     CHECK_STATUS(imk_firmware_plan(&plan, &model, &settings, &error), IMK_ERROR_UNINITIALISED);

@@ -393,7 +393,7 @@ static void test_odd_records(void **state)
         if (status != IMK_ERROR_NO_CONVERGENCE || (trial % KINDS != 3 && trial % KINDS != 8))
             CHECK_STATUS(status, IMK_OK);
         if (status == IMK_OK) {
-            model = imk_model_default();
+            imk_model_default(&model);
             imk_identification_store(&r, &model, false, 0);
             CHECK_STATUS(imk_model_validate(&model, &error), IMK_OK);
         }
@@ -408,7 +408,7 @@ static void test_store(void **state)
     const truth t = {.white = 1e-3, .bias_instability = 1e-3, .resonance = {0.05, 20, 10}};
     const imk_identification r = identify_truth(&t, 100000, 0.01, 2, 1);
     static imk_model model;
-    model = imk_model_default();
+    imk_model_default(&model);
     for (int axis = 0; axis < 3; axis++) {
         imk_identification_store(&r, &model, false, axis);
         imk_identification_store(&r, &model, true, axis);

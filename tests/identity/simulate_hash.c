@@ -100,7 +100,7 @@ static const imk_trajectory *make_motion(void)
 int main(void)
 {
     static imk_model model;
-    model = imk_model_default();
+    imk_model_default(&model);
     set_triad(&model.gyro, degree);
     set_triad(&model.accel, 9.80665);
     set_rows(&model.gyro.g_sensitivity, 1e-7);

@@ -229,7 +229,8 @@ static inline void random_correlation(uint64_t *state, imk_model *model)
 /* A valid model in which each field is there with a probability of 1/`sparsity`. */
 static inline imk_model random_model(uint64_t *state, int sparsity, bool other_axes)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_triad *triads[2] = {&model.gyro, &model.accel};
     imk_evidence *evidence[2] = {&model.gyro_evidence, &model.accel_evidence};
     snprintf(model.name, sizeof model.name, "random %d", random_below(state, 1000));

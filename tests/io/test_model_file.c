@@ -313,7 +313,9 @@ static void errors_point_to_their_place(void **state)
         const refusal *r = &refusals[i];
         char text[512];
         imk_error error;
-        imk_model model = imk_model_default(), before = model;
+        imk_model model, before;
+        imk_model_default(&model);
+        imk_model_default(&before);
         snprintf(text, sizeof text, "imukit: 1\n%s\n", r->text);
         imk_status status = imk_model_parse(text, strlen(text), &model, NULL, &error);
         if (status != r->status || error.status != status || error.line != r->line ||
@@ -537,7 +539,8 @@ static void canonical_text_is_readable(void **state)
 static void perfect_unit_is_short(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     char *text = printed(&model, NULL);
     assert_string_equal(text, "imukit: 1\ngyro: {}\naccel: {}\n");
     free(text);
@@ -550,13 +553,14 @@ static void perfect_unit_is_short(void **state)
 static void invalid_model_is_not_written(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_error error;
     char *text = NULL;
     size_t size = 0;
     model.gyro.range.value[0] = (double)NAN;
     CHECK_STATUS(imk_model_print(&model, NULL, &text, &size, &error), IMK_ERROR_NOT_FINITE);
-    model = imk_model_default();
+    imk_model_default(&model);
     strcpy(model.name, "\xC3(");
     CHECK_STATUS(imk_model_print(&model, NULL, &text, &size, &error), IMK_ERROR_ARGUMENT);
     assert_string_equal(error.field, "name");
@@ -591,7 +595,8 @@ static void strange_texts_survive(void **state)
                                         "@",
                                         "Off"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         strcpy(model.name, texts[i]);
         char *text = printed(&model, NULL), *json = NULL;
         size_t size;
@@ -675,7 +680,8 @@ static void examples_of_the_manual_are_models(void **state)
     fclose(file);
     manual[size] = '\0';
     int count = 0;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (char *at = strstr(manual, "```yaml\nimukit: 1"); at;
          at = strstr(at, "```yaml\nimukit: 1"), count++) {
         char *begin = strchr(at, '\n') + 1, *end = strstr(begin, "```");

@@ -123,7 +123,7 @@ static void write_and_read(int order)
     char *text = NULL;
     size_t size = 0;
     double power = 1;
-    back = imk_model_default();
+    imk_model_default(&back);
     for (int sensor = 0; sensor < 2; sensor++) {
         imk_temperature_polynomial *t = &triads[sensor]->bias.temperature;
         *t = (imk_temperature_polynomial){

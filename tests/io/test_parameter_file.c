@@ -499,7 +499,8 @@ static void test_lost(void **state)
 {
     (void)state;
     imk_parameter_settings settings = imk_parameter_settings_default();
-    imk_model full = imk_model_default();
+    imk_model full;
+    imk_model_default(&full);
     char *text = NULL;
     size_t size;
     full.gyro.noise.white = (imk_axes){.value = {1e-4, 2e-4, 1e-4}};
@@ -523,7 +524,8 @@ static void test_lost(void **state)
     free(text);
 
     imk_error error;
-    imk_model nothing = imk_model_default();
+    imk_model nothing;
+    imk_model_default(&nothing);
     nothing.gyro.noise.ramp.value[0] = 1e-9;
     CHECK_STATUS(imk_parameters_print(NULL, &settings, &nothing, &text, &size, NULL, &error),
                  IMK_ERROR_UNSUPPORTED);

@@ -23,7 +23,7 @@ static imk_parameter_settings settings_at(double rate)
 
 static void fill_model(void)
 {
-    model = imk_model_default();
+    imk_model_default(&model);
     for (int axis = 0; axis < 3; axis++) {
         model.gyro.noise.white.value[axis] = 1e-4 * (axis + 1);
         model.gyro.noise.random_walk.value[axis] = 2e-7;

@@ -140,7 +140,8 @@ static inline void set_common(uint64_t *state, imk_triad *triad, double range, b
 /* A valid model. Linear ones have no term that is not linear in the motion, and no lever arms. */
 static inline imk_model draw_unit(uint64_t *state, bool is_linear)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     set_common(state, &model.gyro, RATE_RANGE, is_linear);
     set_common(state, &model.accel, FORCE_RANGE, is_linear);
     if (!draw_chance(state, 3))

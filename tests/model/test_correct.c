@@ -185,7 +185,8 @@ static void lever_arms_alone_take_two_steps(void **state)
 {
     (void)state;
     static imk_correction c;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         model.gyro.range.value[i] = 10;
         model.accel.range.value[i] = 100;
@@ -203,7 +204,8 @@ static void contraction_of_a_cubic(void **state)
     (void)state;
     static imk_correction c;
     imk_correction_settings settings = imk_correction_default();
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.present = false;
     for (int i = 0; i < 3; i++)
         model.gyro.nonlinearity.k3.value[i] = 0.3;
@@ -225,7 +227,8 @@ static void glitches_stay_finite(void **state)
 {
     (void)state;
     static imk_correction c;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.present = false;
     for (int i = 0; i < 3; i++) {
         model.gyro.range.value[i] = 10;
@@ -279,7 +282,8 @@ static void single_axes_give_their_inputs(void **state)
 {
     (void)state;
     static imk_correction c;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.present = false;
     model.accel.axis_count = 2;
     model.accel.direction[1][0] = 0.6; /* not at right angles, in the x-y plane */
@@ -316,7 +320,8 @@ static void single_gyro_beside_accelerometers(void **state)
 {
     (void)state;
     static imk_correction c;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.axis_count = 1;
     const double g[3] = {1e-3, 2e-3, -1e-3}, f[3] = {5, -2, 9.5};
     memcpy(model.gyro.g_sensitivity.value[0], g, sizeof g);
@@ -335,7 +340,8 @@ static void counts_become_units(void **state)
 {
     (void)state;
     static imk_correction c;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.present = false;
     for (int i = 0; i < 3; i++) {
         model.gyro.sensitivity.value[i] = 1000;
@@ -359,7 +365,8 @@ static void redundant_axes_are_least_squares(void **state)
 {
     (void)state;
     static imk_correction c;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.present = false;
     model.gyro.axis_count = 4;
     for (int j = 0; j < 3; j++)
@@ -397,7 +404,8 @@ static void readings_that_turn_back(void **state)
 {
     (void)state;
     imk_error error;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++)
         model.gyro.range.value[i] = 10;
     model.gyro.nonlinearity.k3.value[1] = -1.0 / 300;
@@ -422,7 +430,8 @@ static void scale_factor_that_vanishes(void **state)
 {
     (void)state;
     imk_error error;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_temperature_polynomial *p = &model.accel.scale_factor.temperature;
     p->order = 1;
     p->reference = 300;
@@ -440,7 +449,8 @@ static void coupling_both_ways(void **state)
 {
     (void)state;
     imk_error error;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         model.gyro.range.value[i] = 30;
         model.accel.range.value[i] = 100;
@@ -462,19 +472,20 @@ static void what_is_missing_is_named(void **state)
     imk_error error;
     static imk_correction c;
     imk_correction_settings settings = imk_correction_default();
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.nonlinearity.k2.value[0] = 1e-4;
     refused(&model, IMK_ERROR_KEY_MISSING, "gyro.range", &error);
     settings.rate_limit = 10;
     CHECK_OK(imk_correction_start(&c, &model, &settings, &error));
     /* Products in one direction are found in two steps whatever the range is; not in both. */
-    model = imk_model_default();
+    imk_model_default(&model);
     model.accel.lever_arm.value[0][0] = 0.1;
     CHECK_OK(imk_correction_start(&c, &model, NULL, &error));
     assert_int_equal(c.iterations, 2);
     model.gyro.g_sensitivity.value[0][0] = 1e-5;
     refused(&model, IMK_ERROR_KEY_MISSING, "gyro.range", &error);
-    model = imk_model_default();
+    imk_model_default(&model);
     model.gyro.g2_sensitivity.value[0][0] = 1e-7;
     CHECK_OK(imk_correction_start(&c, &model, NULL, &error));
     assert_int_equal(c.iterations, 2);
@@ -484,7 +495,7 @@ static void what_is_missing_is_named(void **state)
     refused(&model, IMK_ERROR_CONFLICT, "gyro.g2_sensitivity", &error);
     model.gyro.g_sensitivity.value[0][0] = 1e-7;
     refused(&model, IMK_ERROR_CONFLICT, "gyro.g_sensitivity", &error);
-    model = imk_model_default();
+    imk_model_default(&model);
     model.gyro.present = false;
     model.accel.lever_arm.value[0][0] = 0.1;
     refused(&model, IMK_ERROR_CONFLICT, "accel.lever_arm", &error);
@@ -494,16 +505,17 @@ static void singular_directions(void **state)
 {
     (void)state;
     imk_error error;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.axis_count = 2;
     model.gyro.g_sensitivity.value[0][0] = 1e-5;
     refused(&model, IMK_ERROR_SINGULAR, "accel.direction", &error);
-    model = imk_model_default();
+    imk_model_default(&model);
     model.gyro.axis_count = 2;
     model.accel.lever_arm.value[0][0] = 0.1;
     refused(&model, IMK_ERROR_SINGULAR, "gyro.direction", &error);
     /* Directions that span space, with errors that turn one axis into another. */
-    model = imk_model_default();
+    imk_model_default(&model);
     model.gyro.misalignment.value[0][1] = 1;
     model.gyro.misalignment.value[1][0] = 1;
     refused(&model, IMK_ERROR_SINGULAR, "gyro.misalignment", &error);
@@ -514,7 +526,8 @@ static void settings_are_checked(void **state)
     (void)state;
     static imk_correction c;
     imk_error error;
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_correction_settings settings = {0};
     CHECK_STATUS(imk_correction_start(&c, &model, &settings, &error), IMK_ERROR_UNINITIALISED);
     settings = imk_correction_default();

@@ -190,7 +190,11 @@ static void constants_and_zeros(void **state)
     for (int k = 0; k < SAMPLES_MAX; k++)
         minus[k] = -0.0;
     for (int trial = 0; trial < 30; trial++) {
-        const imk_model model = trial ? draw_unit(&random, false) : imk_model_default();
+        imk_model model;
+        if (trial)
+            model = draw_unit(&random, false);
+        else
+            imk_model_default(&model);
         start(&distortion, &model, imk_random_seeded(0).kernel);
         draw_motion(&random, 1, &m);
         for (int c = 0; c < COMPONENTS; c++)
@@ -232,7 +236,8 @@ static double read_one(const imk_model *model, int sensor, int axis, const imk_s
 static void lever_arm_pulls_inwards(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     const double w[3] = {1, 2, 3}, a[3] = {5, 7, 11}, r[3] = {0.5, 0.25, 0.125}, f = 4;
     imk_stimulus s = {.specific_force = {&f},
                       .angular_rate = {&w[0], &w[1], &w[2]},
@@ -251,7 +256,8 @@ static void pendulous_axes(void **state)
     const imk_stimulus s = {.specific_force = {&f[0], &f[1], &f[2]}};
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
-            imk_model model = imk_model_default();
+            imk_model model;
+            imk_model_default(&model);
             model.accel.nonlinearity.cross_products.value[i][k] = 0x1p-7;
             const double input = f[i], pendulous = f[(i + 2) % 3], output = f[(i + 1) % 3];
             const double product[3] = {input * pendulous, input * output, pendulous * output};
@@ -261,7 +267,8 @@ static void pendulous_axes(void **state)
             CHECK_CLOSE(read_one(&model, IMK_ACCEL, i, &s), -f[i] + turned[k] * product[k] / 128,
                         0);
         }
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_error error;
     static imk_distortion distortion;
     model.accel.direction[1][1] = 0.6;
@@ -380,7 +387,8 @@ static void units_alike(void **state)
 static void constants_of_the_run(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_run_constants constants = {.bias = {{0.5}}, .scale_factor = {{0.25}}};
     static imk_distortion distortion;
     const double w = 2;
@@ -397,7 +405,8 @@ static void constants_of_the_run(void **state)
 static void temperature_is_clipped(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_temperature_polynomial *p = &model.gyro.bias.temperature;
     p->order = 2;
     p->reference = 300;

@@ -26,7 +26,8 @@ static void table_is_the_published_one(void **state)
 
 static imk_grade_result grade(double gyro_deg_per_hour, double accel_ug)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.bias.repeatability.value[1] = gyro_deg_per_hour * degree_per_hour;
     model.accel.bias.repeatability.value[2] = accel_ug * micro_g;
     return imk_grade_model(&model);
@@ -59,7 +60,8 @@ static void worse_sensor_decides(void **state)
 static void parts_add_as_squares(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.bias.repeatability.value[0] = 3e-6;
     model.gyro.noise.bias_instability.value[0] = 4e-6;
     model.gyro.bias.fixed.sigma[0] = 12e-6;
@@ -70,7 +72,8 @@ static void parts_add_as_squares(void **state)
 static void silence_is_not_a_grade(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_grade_result result = imk_grade_model(&model);
     assert_true(isnan(result.gyro_bias) && isnan(result.accel_bias));
     assert_int_equal(result.overall, IMK_GRADE_NONE);

@@ -11,7 +11,8 @@
 static void default_is_a_perfect_unit(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     CHECK_OK(imk_model_validate(&model, NULL));
     assert_true(model.gyro.present && model.accel.present);
     assert_int_equal(model.gyro.axis_count, 3);
@@ -35,7 +36,8 @@ static void uninitialised_model_is_caught(void **state)
 /* A model with something in every field. */
 static imk_model full_model(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_triad *gyro = &model.gyro, *accel = &model.accel;
     for (int i = 0; i < 3; i++) {
         gyro->bias.fixed.value[i] = 1e-6;

@@ -30,7 +30,8 @@ static size_t for_each(imk_model *model, visit *what)
 
 static imk_model four_gyros(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.axis_count = 4;
     model.gyro.direction[3][0] = 1;
     return model;
@@ -147,7 +148,8 @@ static void what_is_no_number_is_refused(void **state)
         assert_int_equal(imk_model_parameter_parse(names[i], &parameter), IMK_ERROR_NAME_UNKNOWN);
     assert_int_equal(parameter.sensor, 3);
 
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     const imk_model_parameter bias = {0, IMK_MODEL_BIAS, 0, 0};
     const imk_model_parameter diagonal = {1, IMK_MODEL_MISALIGNMENT, 2, 2};
     const imk_model_parameter fourth = {1, IMK_MODEL_BIAS, 3, 0};
@@ -169,7 +171,8 @@ static void what_is_no_number_is_refused(void **state)
 
 static imk_model correlated(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.correlation.count = 3;
     model.correlation.parameter[0] = (imk_model_parameter){1, IMK_MODEL_BIAS, 0, 0};
     model.correlation.parameter[1] = (imk_model_parameter){1, IMK_MODEL_SCALE_FACTOR, 0, 0};
@@ -217,7 +220,9 @@ static void correlation_is_validated(void **state)
 static void correlation_changes_no_simulation(void **state)
 {
     (void)state;
-    const imk_model with = correlated(), without = imk_model_default();
+    const imk_model with = correlated();
+    imk_model without;
+    imk_model_default(&without);
     assert_true(imk_model_equal(&with, &without));
 }
 

@@ -47,7 +47,8 @@ enum { GROVES_GRADES = sizeof groves_grades / sizeof *groves_grades };
 /* A grade as a model: the diagonal of a matrix is the scale factor, the rest misalignment. */
 static inline imk_model groves_model(const groves_grade *grade)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     const double per_hour = groves_degree / 3600.0;
     for (int i = 0; i < 3; i++) {
         model.accel.bias.fixed.value[i] = grade->accel_bias[i] * 1e-6 * groves_g;

@@ -201,7 +201,8 @@ static void test_terms_of_means(void **state)
     const double along = earth.v[0] * sqrt(0.5), x = 3.14159265358979324 * 0.013 * t;
     const double sine = imk_sin(x) / x;
     for (int i = 0; i < CASES; i++) {
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         imk_triad *gyro = &model.gyro;
         double expected = s * s;
         switch (i) {
@@ -270,7 +271,8 @@ static void test_first_order_processes(void **state)
             walk += u * (1 - u) * (1 - 2 * u) * v * (1 - v) * (1 - 2 * v) * fmin(u, v);
         }
     for (size_t i = 0; i < sizeof ratios / sizeof *ratios; i++) {
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         model.gyro.noise.gauss_markov_count = 1;
         for (int k = 0; k < 3; k++) {
             model.gyro.noise.gauss_markov[0].sigma.value[k] = 1.0;
@@ -332,7 +334,8 @@ enum { SAMPLES = 1000, RATE = 10 };
 /* A navigation-grade unit. */
 static imk_model navigation_model(bool biases)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         model.gyro.noise.white.value[i] = 0.002 * degree / 60.0;
         model.accel.noise.white.value[i] = 20e-6 * standard_g;
@@ -717,12 +720,13 @@ static void test_refusals(void **state)
     s.method = IMK_ALIGNMENT_FINE;
     CHECK_STATUS(imk_alignment_start(memory, imk_alignment_size(&s) - 1, &s, &alignment, NULL),
                  IMK_ERROR_WORKSPACE);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.noise.white.value[1] = -1.0;
     s.model = &model;
     CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, &error),
                  IMK_ERROR_RANGE);
-    model = imk_model_default();
+    imk_model_default(&model);
     model.accel.axis_count = 2;
     CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, &error),
                  IMK_ERROR_UNSUPPORTED);

@@ -17,11 +17,6 @@ static const double degree_per_hour = 3.14159265358979323846 / 180 / 3600;
 static const double micro_g = 9.80665e-6;
 static const imki_drift_earth sphere = {6371e3, 9.80665}, wgs84 = {0, 0};
 
-static imk_model perfect(void)
-{
-    return imk_model_default();
-}
-
 static void set_all(imk_axes *axes, double value)
 {
     for (int i = 0; i < 3; i++)
@@ -82,7 +77,8 @@ static void grades_have_the_known_figures(void **state)
         {1, 1000, 86400, 689, 1022, 1852},
     };
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        imk_model model = perfect();
+        imk_model model;
+        imk_model_default(&model);
         set_all(&model.gyro.bias.repeatability, known[i].gyro * degree_per_hour);
         set_all(&model.accel.bias.repeatability, known[i].accel * micro_g);
         const imk_drift_moments m = total_at(wgs84, &model, imk_drift_default(), known[i].t);
@@ -97,7 +93,8 @@ static void grades_have_the_known_figures(void **state)
 
 static imk_drift_moments of_gyro(imki_drift_earth earth, int axis, double size, double t)
 {
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.bias.repeatability.value[axis] = size * degree_per_hour;
     return total_at(earth, &model, imk_drift_default(), t);
 }
@@ -105,7 +102,8 @@ static imk_drift_moments of_gyro(imki_drift_earth earth, int axis, double size, 
 static imk_drift_moments of_accel(imki_drift_earth earth, int axis, double size, double t,
                                   imk_vertical vertical)
 {
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.bias.repeatability.value[axis] = size * micro_g;
     imk_drift_settings settings = imk_drift_default();
     settings.vertical = vertical;
@@ -142,11 +140,12 @@ static void single_sources_have_the_known_figures(void **state)
     static const double times[3] = {60, 3600, 86400};
     static const double arw_known[3] = {0.0503, 440, 1890}, vrw_known[3] = {0.0372, 4.61, 23.2};
     for (int i = 0; i < 3; i++) {
-        imk_model model = perfect();
+        imk_model model;
+        imk_model_default(&model);
         set_all(&model.gyro.noise.white, 0.002 * pi / 180 / 60);
         imk_drift_moments m = total_at(sphere, &model, imk_drift_default(), times[i]);
         CHECK_RELATIVE(horizontal(&m), arw_known[i], 2e-3);
-        model = perfect();
+        imk_model_default(&model);
         set_all(&model.accel.noise.white, 10 * micro_g);
         m = total_at(sphere, &model, imk_drift_default(), times[i]);
         CHECK_RELATIVE(horizontal(&m), vrw_known[i], 2e-3);
@@ -159,7 +158,8 @@ static void single_sources_have_the_known_figures(void **state)
 static void schuler_and_the_vertical(void **state)
 {
     (void)state;
-    const imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     const double w = sqrt(sphere.gravity / sphere.radius), t = 100;
     imk_drift_settings settings = imk_drift_default();
     settings.initial_sigma[3] = 1;
@@ -216,7 +216,8 @@ static void periods_of_schuler_and_foucault(void **state)
     static double time[COUNT];
     for (int i = 0; i < COUNT; i++)
         time[i] = step * (i + 1);
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.bias.fixed.value[0] = 50 * micro_g;
     imk_drift_settings settings = imk_drift_default();
     settings.time = time;
@@ -255,7 +256,8 @@ static void noise_agrees_with_impulse_responses(void **state)
     for (int which = 0; which < 5; which++)
         for (int sensor = 0; sensor < 2; sensor++)
             for (int i = 0; i < 3; i++) {
-                imk_model model = perfect();
+                imk_model model;
+                imk_model_default(&model);
                 imk_triad *triad = sensor == 0 ? &model.gyro : &model.accel;
                 imk_axes *const terms[5] = {
                     &triad->noise.white, &triad->noise.random_walk, &triad->noise.bias_instability,
@@ -330,7 +332,8 @@ static void sources_add_up_to_one_joint_covariance(void **state)
 {
     (void)state;
     const double white_gyro = 2e-5, white_accel = 3e-4, markov = 4e-6, correlation_time = 700;
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     set_all(&model.gyro.noise.white, white_gyro);
     set_all(&model.accel.noise.white, white_accel);
     model.gyro.noise.gauss_markov_count = 1;
@@ -398,26 +401,27 @@ static double after_an_hour(const imk_model *model, int state)
 static void drivers_have_their_limits(void **state)
 {
     (void)state;
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.bias.repeatability.value[0] = 1e-8;
     const double constant = after_an_hour(&model, 1);
-    model = perfect();
+    imk_model_default(&model);
     model.gyro.noise.gauss_markov_count = 1;
     model.gyro.noise.gauss_markov[0].sigma.value[0] = 1e-8;
     model.gyro.noise.gauss_markov[0].correlation_time.value[0] = 1e10;
     CHECK_RELATIVE(after_an_hour(&model, 1), constant, 1e-6); /* t/T */
     static const double frequency[2] = {1e-9, 100};
     for (int i = 0; i < 2; i++) {
-        model = perfect();
+        imk_model_default(&model);
         model.gyro.noise.sinusoid_count = 1;
         model.gyro.noise.sinusoid[0].amplitude.value[0] = 1e-8 * sqrt(2);
         model.gyro.noise.sinusoid[0].frequency.value[0] = frequency[i];
         CHECK_RELATIVE(after_an_hour(&model, 1), constant, 1e-8); /* (2 pi f t)^2 */
     }
-    model = perfect();
+    imk_model_default(&model);
     model.gyro.noise.white.value[0] = 1e-6;
     const double white = after_an_hour(&model, 1);
-    model = perfect();
+    imk_model_default(&model);
     model.gyro.noise.resonance_count = 1;
     const double w = 2 * pi * 5, q = 3;
     model.gyro.noise.resonance[0].sigma.value[0] = 1e-6 / sqrt(2 / (w * q));
@@ -433,7 +437,8 @@ static void drivers_have_their_limits(void **state)
 static void quantization_stays_what_is_carried(void **state)
 {
     (void)state;
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     set_all(&model.gyro.noise.quantization, 1e-5);
     set_all(&model.accel.noise.quantization, 1e-3);
     const imk_drift_moments m = total_at(wgs84, &model, imk_drift_default(), 1);
@@ -458,7 +463,8 @@ static void self_alignment_in_closed_form(void **state)
     settings.alignment_time = 400;
     settings.latitude = 0.5;
     const double across = earth_rate * cos(0.5), g = imk_normal_gravity(0.5, 0), b = 1e-3;
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     set_all(&model.accel.bias.repeatability, b);
     imk_drift_moments m = total_at(wgs84, &model, settings, 1e-3);
     CHECK_RELATIVE(sigma(&m, 6), b / g, 1e-6);
@@ -468,7 +474,7 @@ static void self_alignment_in_closed_form(void **state)
     m = total_at(wgs84, &model, settings, 60);
     CHECK_BELOW(sigma(&m, 0), 2e-3 * b * 1800); /* of b t^2/2 */
 
-    model = perfect();
+    imk_model_default(&model);
     set_all(&model.gyro.bias.repeatability, 1e-8);
     m = total_at(wgs84, &model, settings, 1e-3);
     CHECK_RELATIVE(sigma(&m, 8), 1e-8 / across, 1e-6);
@@ -478,7 +484,7 @@ static void self_alignment_in_closed_form(void **state)
     m = total_at(wgs84, &model, settings, 600);
     CHECK_BELOW(sigma(&m, 0), 0.2 * sigma(&given, 0));
 
-    model = perfect();
+    imk_model_default(&model);
     set_all(&model.gyro.noise.white, 1e-6);
     set_all(&model.accel.noise.white, 1e-3);
     m = total_at(wgs84, &model, settings, 1e-6);
@@ -486,7 +492,7 @@ static void self_alignment_in_closed_form(void **state)
     CHECK_RELATIVE(sigma(&m, 6), tilt, 1e-4);
     CHECK_RELATIVE(sigma(&m, 8), sqrt(turn * turn + heading * heading), 1e-4);
 
-    model = perfect(); /* of a mean of what is carried: (e_N - e_0)/T, and e_N itself */
+    imk_model_default(&model); /* of a mean of what is carried: (e_N - e_0)/T, and e_N itself */
     set_all(&model.accel.noise.quantization, 0.1);
     m = total_at(wgs84, &model, settings, 1e-6);
     CHECK_RELATIVE(sigma(&m, 6), 0.1 * sqrt(2) / 400 / g, 1e-4);
@@ -499,7 +505,8 @@ static void self_alignment_at_a_wrong_place(void **state)
     imk_drift_settings settings = imk_drift_default();
     settings.alignment = IMK_ALIGNED_SELF;
     settings.initial_sigma[0] = 1000;
-    const imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     const imk_drift_moments m = total_at(wgs84, &model, settings, 1);
     double meridian, prime_vertical;
     imk_curvature_radii(settings.latitude, &meridian, &prime_vertical);
@@ -606,7 +613,8 @@ static void names_are_those_of_the_model(void **state)
 static void compensation_turns_values_into_sigmas(void **state)
 {
     (void)state;
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.bias.fixed.value[0] = 1e-6;
     model.gyro.bias.fixed.sigma[0] = 1e-7;
     const double time = 600;
@@ -626,7 +634,8 @@ static void poles_and_perfection(void **state)
 {
     (void)state;
     imk_drift_settings settings = imk_drift_default();
-    imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_moments m = total_at(wgs84, &model, settings, 3600);
     assert_true(m.covariance[0][0] == 0 && m.mean[0] == 0);
     settings.latitude = pi / 2;
@@ -653,7 +662,8 @@ static void what_is_not_valid_is_refused(void **state)
 {
     (void)state;
     const double time[2] = {1, 2}, backwards[2] = {2, 1};
-    const imk_model model = perfect();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_settings good = imk_drift_default(), s;
     expect(IMK_ERROR_EMPTY, &model, &good);
     good.time = time;

@@ -95,7 +95,8 @@ static double allan_variance(const imk_model *model, double rate, double duratio
 static void flicker_is_that_of_the_samples(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.noise.bias_instability.value[1] = 1e-6;
     for (size_t n = 10; n <= 1000; n *= 10)
         CHECK_RELATIVE(allan_variance(&model, 10.0, (double)n / 10.0),
@@ -106,7 +107,8 @@ static void flicker_is_that_of_the_samples(void **state)
 static void gauss_markov_is_that_of_the_samples(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_noise *noise = &model.gyro.noise;
     noise->gauss_markov_count = 1;
     noise->gauss_markov[0].sigma.value[1] = 1e-6;
@@ -122,7 +124,8 @@ static void gauss_markov_is_that_of_the_samples(void **state)
 static void resonances_are_those_of_the_samples(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_noise *noise = &model.gyro.noise;
     noise->resonance_count = 1;
     noise->resonance[0].sigma.value[1] = 1e-6;
@@ -148,7 +151,8 @@ static void resonances_are_those_of_the_samples(void **state)
 static void sinusoids_add_up_like_samples(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_noise *noise = &model.gyro.noise;
     noise->sinusoid_count = 1;
     noise->sinusoid[0].amplitude.value[1] = 1e-6;
@@ -176,7 +180,8 @@ static void rounding_is_a_twelfth(void **state)
     settings.time_count = 1;
     const double step = 1e-4, noise = 0.5 * step * sqrt(0.01);
     for (int which = 0; which < 2; which++) {
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         for (int i = 0; i < 3; i++) {
             model.gyro.noise.white.value[i] = 1.001 * noise;
             if (which == 0)
@@ -222,7 +227,8 @@ static void jitter_acts_on_changes_and_at_the_end(void **state)
     const double sigma = 1e-4, dt = 0.01;
     imk_motion_file *file = motion_of(turntable);
     imk_drift_settings settings = on(file);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.timing.jitter.value = sigma;
     settings.rate = 1.0 / dt;
     static const double times[4] = {5.2, 10.0, 22.0, 33.0};
@@ -273,7 +279,8 @@ static void filters_delay(void **state)
     static const double damping[3] = {0.0, 0.3, 2.0};
     for (int i = 0; i < 3; i++) {
         const double zeta = damping[i];
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         for (int axis = 0; axis < 3; axis++) {
             model.gyro.bandwidth.value[axis] = 20.0;
             model.gyro.damping.value[axis] = zeta;
@@ -307,7 +314,9 @@ static void clocks_are_compensated(void **state)
     (void)state;
     imk_motion_file *file = motion_of(turntable);
     imk_drift_settings settings = on(file);
-    imk_model known = imk_model_default(), calibrated = imk_model_default();
+    imk_model known, calibrated;
+    imk_model_default(&known);
+    imk_model_default(&calibrated);
     known.timing.skew.value = 2e-3;
     known.timing.rate_error.value = 3e-5;
     calibrated.timing.skew = (imk_scalar){7e-3, 2e-3};
@@ -345,7 +354,8 @@ static void quick_turns_are_seen(void **state)
                                       "  - hold 2.013 s\n"
                                       "  - rotate z 90 deg at 200 deg/s\n"
                                       "  - hold 5 s\n");
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.scale_factor.fixed.value[2] = 1e-5;
     const imk_drift_moments m = total_at(&model, on(file), 5.0);
     CHECK_RELATIVE(m.mean[HEADING], 1e-5 * pi / 2.0, 1e-4);
@@ -359,7 +369,7 @@ static void quick_turns_are_seen(void **state)
                      "  - rotate z 70 deg at 100 deg/s\n"
                      "  - rotate z -70 deg at 100 deg/s\n"
                      "  - hold 30 s\n");
-    model = imk_model_default();
+    imk_model_default(&model);
     model.gyro.nonlinearity.asymmetry.value[2] = 1e-5;
     const imk_drift_moments n = total_at(&model, on(file), 90.0);
     CHECK_RELATIVE(n.mean[HEADING], 0.5e-5 * 140.0 / 180.0 * pi, 1e-4);
@@ -385,7 +395,8 @@ static void slaved_velocity_leans(void **state)
         imk_motion_file *file = motion_of(text);
         imk_drift_settings settings = on(file);
         settings.initial_sigma[direction] = 10.0;
-        const imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         const imk_drift_moments m = total_at(&model, settings, 0.5);
         double radius[2];
         imk_curvature_radii(0.0, &radius[0], &radius[1]);
@@ -410,7 +421,8 @@ static void alignment_is_that_of_the_believed_place(void **state)
     const double time = 1e-3;
     settings.time = &time;
     settings.time_count = 1;
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_analysis *analysis = analyse(&model, &settings);
     double meridian, prime_vertical;
     imk_curvature_radii(-0.8, &meridian, &prime_vertical);
@@ -426,7 +438,8 @@ static void alignment_is_that_of_the_believed_place(void **state)
 static void alignment_may_last_a_step(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         model.gyro.noise.random_walk.value[i] = 1e-9;
         model.accel.noise.random_walk.value[i] = 1e-6;
@@ -452,7 +465,8 @@ static void what_is_left_out_is_named(void **state)
     char text[512];
     snprintf(text, sizeof text, "%svibration: [sine z 5 m/s^2 at 20 Hz]\n", turntable);
     imk_motion_file *rough = motion_of(text);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int i = 0; i < 3; i++) {
         model.gyro.scale_factor.fixed.value[i] = 1e-4;
         model.accel.nonlinearity.k2.value[i] = 1e-4;
@@ -481,7 +495,8 @@ static void what_is_left_out_is_named(void **state)
 static void what_cannot_be_is_refused(void **state)
 {
     (void)state;
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     static const double twice[2] = {5.0, 5.0};
     imk_drift_settings settings = imk_drift_default();
     settings.time = twice;

@@ -124,7 +124,8 @@ static imk_drift_analysis *analyse(const imk_model *model, const imk_drift_setti
  * is then 1e-6 of it. */
 static imk_model known(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_triad *gyro = &model.gyro, *accel = &model.accel;
     gyro->bias.warm_up_time.value = 100;
     accel->bias.warm_up_time.value = 40;
@@ -268,7 +269,9 @@ static void noise_has_its_limits_on_the_drive(void **state)
     (void)state;
     drive d;
     start_drive(&d);
-    imk_model constant = imk_model_default(), slow = constant, white = constant, fast = constant;
+    imk_model constant, slow, white, fast;
+    imk_model_default(&constant);
+    slow = white = fast = constant;
     slow.gyro.noise.gauss_markov_count = slow.accel.noise.gauss_markov_count = 1;
     fast.gyro.noise.gauss_markov_count = fast.accel.noise.gauss_markov_count = 1;
     for (int i = 0; i < 3; i++) {

@@ -70,7 +70,8 @@ static void set_all(imk_axes *axes, double value, double sigma)
 /* A MEMS unit with something of everything that a navigator feels. */
 static imk_model lively_model(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_triad *gyro = &model.gyro, *accel = &model.accel;
     set_all(&gyro->bias.fixed, 1e-5, 4e-6);
     set_all(&gyro->bias.repeatability, 2e-5, 0.0);
@@ -333,7 +334,8 @@ static void test_perfect(void **state)
     (void)state;
     car c;
     drive(&c);
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_settings settings = imk_drift_default();
     const double time = CAR_PROFILE_DURATION;
     double errors[2][STATES];
@@ -360,7 +362,8 @@ static void test_biases(void **state)
     (void)state;
     enum { RUNS = 1200 };
     const double b = 0.01, c = 1e-5, t = 60.0, g = imk_normal_gravity(0.25 * 3.14159265358979, 0);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_settings settings = imk_drift_default();
     for (int i = 0; i < 3; i++) {
         model.accel.bias.repeatability.value[i] = b;
@@ -404,7 +407,8 @@ static void test_compensated_biases(void **state)
     (void)state;
     enum { RUNS = 40 };
     const double t = 20.0;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_settings settings = imk_drift_default();
     for (int i = 0; i < 3; i++) {
         model.accel.bias.fixed.value[i] = 5.0; /* gone */
@@ -435,7 +439,7 @@ static void test_residual_numbers(void **state)
 {
     (void)state;
     static imk_model known, drawn;
-    known = imk_model_default();
+    imk_model_default(&known);
     imk_triad *triads[2] = {&known.gyro, &known.accel};
     double *bytes = (double *)(void *)&drawn;
     const uint32_t run = 77;
@@ -497,7 +501,7 @@ static void test_residual_distribution(void **state)
     (void)state;
     enum { RUNS = 3000 };
     static imk_model known, drawn;
-    known = imk_model_default();
+    imk_model_default(&known);
     known.timing.rate_error = (imk_scalar){5e-5, 2e-5};
     known.timing.skew = (imk_scalar){1e-3, 1e-4};
     const imk_random random = imk_random_seeded(12);
@@ -527,7 +531,8 @@ static void test_residual_distribution(void **state)
 static void test_initial(void **state)
 {
     (void)state;
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_settings settings = imk_drift_default();
     const double time = 1e-3; /* before the first sample ends */
     settings.time = &time;
@@ -644,7 +649,8 @@ static void test_other_draws(void **state)
 static void test_leaving(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_settings settings = imk_drift_default();
     static const double times[TIMES] = {10.0, 900.0, 6000.0};
     double errors[LANES][TIMES][STATES], alone[TIMES][STATES];
@@ -678,7 +684,8 @@ static void test_leaving(void **state)
 static void test_no_north(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_settings settings = imk_drift_default();
     const double time = 10.0;
     double errors[STATES];
@@ -695,7 +702,8 @@ static void test_no_north(void **state)
 static void test_refusals(void **state)
 {
     (void)state;
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_drift_settings settings = imk_drift_default();
     const double time = 1.0;
     double errors[LANES][STATES] = {{7.0}};

@@ -206,7 +206,8 @@ static void set3(double v[3], double value)
  * `gyros`; accelerometers of 500 ug. */
 static imk_zero_velocity_settings tactical(double gyros)
 {
-    imk_zero_velocity_settings s = imk_zero_velocity_default();
+    imk_zero_velocity_settings s;
+    imk_zero_velocity_default(&s);
     const double deg_h = gyros * degree / 3600.0, ug = 9.80665e-6;
     set3(s.gyro.white, 6.0 * deg_h);
     s.gyro.part_count = 2;
@@ -335,7 +336,8 @@ static void test_consistency(void **state)
 static imk_model tactical_model(double gyros)
 {
     const double deg_h = gyros * degree / 3600.0, ug = 9.80665e-6;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     set3(model.gyro.noise.white.value, 6.0 * deg_h);
     set3(model.gyro.bias.repeatability.value, 3.0 * deg_h);
     set3(model.gyro.noise.random_walk.value, 1.0 * deg_h / 60.0);
@@ -429,7 +431,8 @@ static void test_schuler(void **state)
 {
     (void)state;
     static memory m;
-    imk_zero_velocity_settings s = imk_zero_velocity_default();
+    imk_zero_velocity_settings s;
+    imk_zero_velocity_default(&s);
     const double b = 1e-4;
     s.hold_height = true;
     s.step = 1.0;
@@ -460,7 +463,8 @@ static void test_random_walk(void **state)
     static memory m;
     static const double steps[] = {0.01, 0.5, 2.0};
     for (int i = 0; i < 3; i++) {
-        imk_zero_velocity_settings s = imk_zero_velocity_default();
+        imk_zero_velocity_settings s;
+        imk_zero_velocity_default(&s);
         const double n = 1e-5, t = 20.0;
         set3(s.gyro.white, n);
         s.hold_height = true;
@@ -487,11 +491,13 @@ static void test_random_walk(void **state)
 static void test_flicker(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_error error;
     const double b = 2e-7;
     set3(model.gyro.noise.bias_instability.value, b);
-    imk_zero_velocity_settings s = imk_zero_velocity_default();
+    imk_zero_velocity_settings s;
+    imk_zero_velocity_default(&s);
     CHECK_OK(
         imk_zero_velocity_describe(&model, (imk_vector3){{0}}, (imk_vector3){{0}}, &s, &error));
     assert_int_equal(s.gyro.part_count, 5);
@@ -512,14 +518,16 @@ static void test_flicker(void **state)
 static void test_description(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_error error;
     set3(model.gyro.bias.repeatability.value, 3e-6);
     model.gyro.bias.fixed.sigma[2] = 4e-6;
     model.gyro.g_sensitivity.sigma[0][2] = 4e-7;
     model.accel.scale_factor.repeatability.value[2] = 1e-3;
     model.accel.misalignment.sigma[1][2] = 2e-4;
-    imk_zero_velocity_settings s = imk_zero_velocity_default();
+    imk_zero_velocity_settings s;
+    imk_zero_velocity_default(&s);
     const imk_vector3 force = {{0.0, 0.0, -10.0}};
     CHECK_OK(imk_zero_velocity_describe(&model, (imk_vector3){{0}}, force, &s, &error));
     CHECK_RELATIVE(s.gyro.part[0].sigma[0], 5e-6, 1e-14);

@@ -98,7 +98,8 @@ static void test_rotation(void **state)
     (void)state;
     static memory m;
     imk_zero_velocity_estimate end;
-    imk_zero_velocity_settings s = imk_zero_velocity_default();
+    imk_zero_velocity_settings s;
+    imk_zero_velocity_default(&s);
     s.hold_height = true;
     s.velocity_sigma = 10.0; /* of no weight */
     s.rotation_sigma = 1e-12;
@@ -128,7 +129,7 @@ static void test_rotation(void **state)
     CHECK_RELATIVE(end.covariance[8][8], 0.5e-4, 1e-3);
 
     /* A bias that was found is forgotten as its process is. */
-    s = imk_zero_velocity_default();
+    imk_zero_velocity_default(&s);
     s.velocity_sigma = 10.0;
     s.rotation_sigma = 1e-12;
     s.gyro.part_count = 1;
@@ -152,7 +153,8 @@ static void test_velocity_noise(void **state)
     (void)state;
     static memory m;
     const double no = (double)INFINITY;
-    imk_zero_velocity_settings s = imk_zero_velocity_default();
+    imk_zero_velocity_settings s;
+    imk_zero_velocity_default(&s);
     s.hold_height = true;
     s.velocity_sigma = 1e-3;
     set3(s.accel.quantization, 0.05);
@@ -174,7 +176,8 @@ static void test_rest(void **state)
     const imk_geodetic place = {0.6, -1.0, 200.0};
     const imk_matrix3 c = imk_matrix3_from_euler(0.1, -0.2, 1.0);
     const imk_navigation_state start = imk_navigation_state_ned(0.0, place, (imk_vector3){{0}}, c);
-    imk_zero_velocity_settings s = imk_zero_velocity_default();
+    imk_zero_velocity_settings s;
+    imk_zero_velocity_default(&s);
     const double sigma[3] = {1e-3, 2e-3, 0.1}, g = imk_normal_gravity(0.6, 200.0);
     memcpy(s.initial_sigma + 6, sigma, sizeof sigma);
     s.gyro.part_count = s.accel.part_count = 1;
@@ -199,7 +202,8 @@ static void test_coriolis(void **state)
     (void)state;
     static memory m[2];
     const imk_geodetic place = {1.0, 0.2, 0.0};
-    imk_zero_velocity_settings s = imk_zero_velocity_default();
+    imk_zero_velocity_settings s;
+    imk_zero_velocity_default(&s);
     s.hold_height = true;
     s.initial_sigma[3] = 1.0;
     imk_zero_velocity *filter[2];
@@ -230,7 +234,8 @@ static void test_short_correlation(void **state)
     static memory m;
     static const double times[] = {1.0, 3.0, 30.0}; /* T [s] */
     for (int k = 0; k < 3; k++) {
-        imk_zero_velocity_settings s = imk_zero_velocity_default();
+        imk_zero_velocity_settings s;
+        imk_zero_velocity_default(&s);
         s.step = 1.0;
         s.accel.part_count = 1;
         s.accel.part[0].correlation_time = times[k];

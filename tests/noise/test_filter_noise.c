@@ -22,7 +22,8 @@ static imk_filter_noise filter_of(const imk_model *model, imk_filter_flicker fli
 /* White noise, a random walk and two Gauss-Markov terms. */
 static imk_model several_terms(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.noise.white.value[0] = 1e-4;
     model.gyro.noise.random_walk.value[0] = 2e-6;
     model.gyro.noise.gauss_markov_count = 2;
@@ -109,7 +110,8 @@ static void test_semigroup(void **state)
 static void test_limits(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.noise.gauss_markov_count = 1;
     model.gyro.noise.gauss_markov[0].sigma.value[0] = 1;
     model.gyro.noise.gauss_markov[0].correlation_time.value[0] = 1;
@@ -132,7 +134,8 @@ static void test_limits(void **state)
 static void test_flicker_as_walk(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.noise.bias_instability.value[0] = 4e-5;
     imk_filter_noise noise = filter_of(&model, IMK_FILTER_FLICKER_RANDOM_WALK);
     const double tau = sqrt(1000.0), k = sqrt(6 * LN2 / 3.141592653589793 / tau) * 4e-5;
@@ -156,7 +159,8 @@ static void test_flicker_as_walk(void **state)
 static void test_flicker_as_markov(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.noise.white.value[0] = 1e-4;
     model.gyro.noise.random_walk.value[0] = 1e-7;
     model.gyro.noise.bias_instability.value[0] = 4e-5;
@@ -190,7 +194,8 @@ static void test_flicker_as_markov(void **state)
 static void test_rest(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_filter_settings settings = imk_filter_noise_default();
     imk_filter_noise noise;
     imk_error error;

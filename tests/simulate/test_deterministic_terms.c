@@ -393,7 +393,8 @@ static void test_term(void **state)
     imk_simulation simulation = imk_simulation_default();
     simulation.motion.recorded = &motion;
     simulation.temperature = &profile;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     double *perfect = simulate_rows(&model, &simulation, ROWS);
     term->set(&model);
     CHECK_OK(imk_model_validate(&model, NULL));
@@ -421,7 +422,8 @@ static void test_quantization(void **state)
     imk_recorded_motion motion = lively_motion();
     imk_simulation simulation = imk_simulation_default();
     simulation.motion.recorded = &motion;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     const double lsb = 0.05; /* rad, coarse: a sample is at most 0.025 rad */
     model.gyro.noise.quantization = axes(lsb / sqrt(12.0), lsb / sqrt(12.0), 0.0);
     double *log = simulate_rows(&model, &simulation, ROWS);
@@ -453,7 +455,8 @@ static void test_redundant_directions(void **state)
     imk_recorded_motion motion = lively_motion();
     imk_simulation simulation = imk_simulation_default();
     simulation.motion.recorded = &motion;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.axis_count = 5;
     memcpy(model.gyro.direction, direction, sizeof direction);
     model.gyro.scale_factor.fixed.value[4] = 0.01;
@@ -478,7 +481,8 @@ static void test_recorded_slope(void **state)
         motion.angular_acceleration[i] = NULL;
     imk_simulation simulation = imk_simulation_default();
     simulation.motion.recorded = &motion;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     set_lever_arm(&model);
     double *log = simulate_rows(&model, &simulation, ROWS);
     for (int k = 0; k < ROWS; k++) {

@@ -64,7 +64,8 @@ static void test_means(void **state)
     (void)state;
     shaken s;
     shake(&s, false, 2, slow_lines);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_simulation simulation = simulation_of(&s);
     static const size_t substeps[] = {0, 1, 3, 64};
     for (size_t i = 0; i < 4; i++) {
@@ -107,7 +108,8 @@ static void test_bandwidth(void **state)
     shake(&s, false, 1, slow_lines);
     imk_simulation simulation = simulation_of(&s);
     for (size_t i = 0; i < 5; i++) {
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         model.gyro.bandwidth = axes(filters[i].bandwidth, 0.0, 0.0);
         model.gyro.damping = axes(filters[i].damping, 0.0, 0.0);
         double *log = simulate_rows(&model, &simulation, ROWS);
@@ -134,7 +136,8 @@ static void test_rate_error(void **state)
     shaken s;
     shake(&s, false, 1, slow_lines);
     imk_simulation simulation = simulation_of(&s);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.timing.rate_error.value = 0.002; /* a clock 2000 ppm fast */
     double *log = simulate_rows(&model, &simulation, ROWS);
     for (int k = 0; k < ROWS; k++) {
@@ -152,7 +155,8 @@ static void test_skew(void **state)
     shaken s;
     shake(&s, false, 1, &line);
     imk_simulation simulation = simulation_of(&s);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.timing.skew.value = 0.0033;
     double *log = simulate_rows(&model, &simulation, ROWS);
     for (int k = 0; k < ROWS; k++) {
@@ -169,7 +173,8 @@ static void test_jitter(void **state)
     shaken s;
     shake(&s, false, 1, slow_lines);
     imk_simulation simulation = simulation_of(&s);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     const double sigma = 3e-4;
     model.timing.jitter.value = sigma;
     imk_simulator *simulator = start_simulator(&model, &simulation);
@@ -200,7 +205,8 @@ static void test_drops(void **state)
 {
     (void)state;
     enum { MANY = 20000 };
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_simulation simulation = imk_simulation_default();
     imk_simulator *none = start_simulator(&model, &simulation);
     model.timing.drops.value = 0.03;
@@ -235,7 +241,8 @@ static void test_vibration_rectification(void **state)
     shaken s;
     shake(&s, false, 1, &line);
     imk_simulation simulation = simulation_of(&s);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.nonlinearity.k2 = axes(1e-4, 1e-4, 1e-4);
     for (int i = 0; i < 2; i++) {
         simulation.substeps = substeps[i];
@@ -255,7 +262,8 @@ static void test_vibration_rectification(void **state)
 
 static imk_model lively_model(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     for (int sensor = 0; sensor < 2; sensor++) {
         imk_triad *triad = sensor == 0 ? &model.gyro : &model.accel;
         triad->bias.fixed = axes(0.1, -0.2, 0.3);
@@ -376,7 +384,8 @@ static void test_errors(void **state)
         recorded.angular_rate[i] = recorded.specific_force[i] = zero;
     shaken s;
     shake(&s, true, 0, NULL);
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_simulation simulation = simulation_of(&s);
     simulation.motion.recorded = &recorded;
     expect(&model, &simulation, IMK_ERROR_CONFLICT, "motion");

@@ -85,7 +85,8 @@ static void add_noise(imk_triad *triad, double unit)
 
 static imk_model full_model(void)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     add_noise(&model.gyro, 1e-4);
     add_noise(&model.accel, 1e-2);
     return model;
@@ -106,7 +107,8 @@ static void first_row(const imk_model *model, const imk_simulation *simulation,
 static void test_truth(void **state)
 {
     (void)state;
-    const imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_simulation simulation = imk_simulation_default();
     double row[CHANNELS];
     first_row(&model, &simulation, row);
@@ -141,7 +143,8 @@ static void test_perfect_unit(void **state)
 {
     (void)state;
     static log6 log;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_simulation simulation = imk_simulation_default();
     double first[CHANNELS];
     simulate(&model, &simulation, &log);
@@ -156,7 +159,8 @@ static void test_repeatability(void **state)
 {
     (void)state;
     enum { RUNS = 1000 };
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.bias.repeatability = axes(2.0, 2.0, 2.0);
     model.accel.scale_factor.repeatability = axes(0.1, 0.1, 0.1);
     imk_simulation simulation = imk_simulation_default();
@@ -185,7 +189,8 @@ static void test_streams(void **state)
     (void)state;
     static log6 log;
     static double expected[ROWS];
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.noise.white = axes(0.0, 1.0, 0.0);
     model.accel.noise.random_walk = axes(0.0, 2.0, 0.0);
     model.accel.noise.gauss_markov_count = 2;
@@ -338,7 +343,8 @@ static void test_range_resolution_counts(void **state)
 {
     (void)state;
     static log6 log;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.noise.white = axes(0.1, 0.1, 0.1); /* 1 rad/s a sample at 100 Hz */
     model.gyro.range = axes(1.0, 0.0, 0.0);
     model.gyro.resolution = axes(0.0, 0.25, 0.0);
@@ -376,7 +382,8 @@ static void test_quantization(void **state)
 {
     (void)state;
     static log6 plain, quantised;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.accel.noise.white = axes(0.01, 0.01, 0.01);
     imk_simulation simulation = imk_simulation_default();
     simulate(&model, &simulation, &plain);
@@ -397,7 +404,8 @@ static void test_ramp(void **state)
 {
     (void)state;
     static log6 log;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.noise.ramp = axes(0.0, 0.25, 0.0);
     imk_simulation simulation = imk_simulation_default();
     simulation.rate = 64.0;
@@ -426,7 +434,8 @@ static void expect(const imk_model *model, const imk_simulation *simulation, imk
 static void test_errors(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     imk_simulation simulation = imk_simulation_default();
     simulation.rate = 0.0;
     expect(&model, &simulation, IMK_ERROR_RANGE, "rate");
@@ -442,7 +451,7 @@ static void test_errors(void **state)
     model.gyro.bandwidth.value[0] = 1e-6; /* 1e-8 of the rate */
     expect(&model, &simulation, IMK_ERROR_RANGE, "gyro.bandwidth");
 
-    model = imk_model_default();
+    imk_model_default(&model);
     size_t size = imk_simulator_size(&model, &simulation);
     unsigned char *memory = aligned_alloc(64, (size + 127) / 64 * 64);
     assert_non_null(memory);

@@ -147,7 +147,8 @@ static double allan_variance(const double *y, size_t rows, size_t n)
 
 static void check_rate(const term *t, double rate)
 {
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     t->set(&model.gyro.noise);
     model.accel.present = false;
     imk_simulation simulation = imk_simulation_default();
@@ -188,7 +189,8 @@ static void test_random_walk_increments(void **state)
 {
     (void)state;
     for (size_t i = 0; i < RATES; i++) {
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         set_walk(&model.gyro.noise);
         imk_simulation simulation = imk_simulation_default();
         simulation.earth = false;
@@ -213,7 +215,8 @@ static void test_gauss_markov_first_sample(void **state)
     static const double ratio[] = {0.01, 0.1, 0.5, 1.0, 2.0};
     enum { DRAWS = 1500 };
     for (size_t i = 0; i < sizeof ratio / sizeof ratio[0]; i++) {
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         set_gauss_markov(&model.gyro.noise, 0.01 / ratio[i]);
         model.accel.present = false;
         imk_simulation simulation = imk_simulation_default();
@@ -255,7 +258,8 @@ static void test_repeatability_stays(void **state)
 {
     (void)state;
     enum { LONG = 40000, DRAWS = 400 };
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     model.gyro.bias.repeatability = axes(0.5, 1.0, 0.0);
     imk_simulation simulation = imk_simulation_default();
     simulation.earth = false;
@@ -279,7 +283,8 @@ static void test_repeatability_stays(void **state)
 static void test_runs_are_independent(void **state)
 {
     (void)state;
-    imk_model model = imk_model_default();
+    imk_model model;
+    imk_model_default(&model);
     set_white(&model.gyro.noise);
     imk_simulation simulation = imk_simulation_default();
     simulation.earth = false;
@@ -310,7 +315,8 @@ static void test_zero_axis(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++) {
-        imk_model model = imk_model_default();
+        imk_model model;
+        imk_model_default(&model);
         imk_noise *noise = &model.gyro.noise;
         terms[i].set(noise);
         noise->white.value[0] = noise->random_walk.value[0] = noise->bias_instability.value[0] =
