@@ -14,6 +14,7 @@
 #include "imukit/status.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 static inline void check_close(double actual, double expected, double tolerance, const char *text,
@@ -67,6 +68,12 @@ static inline uint32_t check_runs(uint32_t full)
     const long divisor = text ? strtol(text, NULL, 10) : 1;
     const uint32_t runs = divisor > 1 ? full / (uint32_t)divisor : full;
     return runs > 8 ? runs : 8;
+}
+
+/** Whether a part will do of what is costly, because the statistics are others' (see above). */
+static inline bool check_quick(void)
+{
+    return getenv("IMUKIT_TEST_RUNS") != NULL;
 }
 
 /** |actual - expected| <= tolerance */

@@ -7,7 +7,8 @@ cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 cmake -S . -B "$build" -DIMUKIT_TESTS=ON >/dev/null
 cmake --build "$build" -j "$(nproc)" >/dev/null
-export IMUKIT_TEST_DRAWS=${IMUKIT_TEST_DRAWS:-10000000}
+export IMUKIT_TEST_DRAWS=${IMUKIT_TEST_DRAWS:-1000000}
+export IMUKIT_TEST_RUNS=${IMUKIT_TEST_RUNS:-8}
 for isa in scalar avx2; do
     echo "IMUKIT_ISA=$isa"
     IMUKIT_ISA=$isa ctest --test-dir "$build" --output-on-failure -j "$(nproc)" --no-tests=error \

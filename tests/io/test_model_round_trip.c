@@ -37,7 +37,7 @@ static void written_model_reads_back(void **state)
 {
     (void)state;
     uint64_t seed = 1;
-    for (int i = 0; i < MODELS; i++) {
+    for (int i = 0; i < (int)check_runs(MODELS); i++) {
         imk_model model = random_model(&seed, 1 + i % 5, true), back;
         imk_error error;
         char *text = NULL, *again = NULL;
@@ -62,7 +62,7 @@ static void edited_document_says_the_other_model(void **state)
 {
     (void)state;
     uint64_t seed = 2;
-    for (int i = 0; i < EDITS; i++) {
+    for (int i = 0; i < (int)check_runs(EDITS); i++) {
         imk_model model = random_model(&seed, 1 + i % 8, i % 3 == 0), back;
         imk_model other = random_model(&seed, 1 + i % 8, i % 3 == 0);
         imk_document *document = NULL;
@@ -85,7 +85,7 @@ static void one_change_leaves_the_other_lines(void **state)
 {
     (void)state;
     uint64_t seed = 3;
-    for (int i = 0; i < EDITS; i++) {
+    for (int i = 0; i < (int)check_runs(EDITS); i++) {
         imk_model model = random_model(&seed, 2, false), back;
         model.gyro.present = true;
         imk_document *document = NULL;
@@ -129,7 +129,7 @@ static void mutated_text_does_no_harm(void **state)
     CHECK_OK(imk_model_print(&model, NULL, &text, &size, NULL));
     char *mutated = malloc(size + 1);
     assert_non_null(mutated);
-    for (int i = 0; i < MUTATIONS; i++) {
+    for (int i = 0; i < (int)check_runs(MUTATIONS); i++) {
         memcpy(mutated, text, size);
         for (int j = random_below(&seed, 3); j >= 0; j--)
             mutated[random_below(&seed, (int)size)] = pool[random_below(&seed, sizeof pool - 1)];
@@ -147,7 +147,7 @@ static void mutated_text_does_no_harm(void **state)
         free(written);
         imk_document_free(document);
     }
-    assert_true(accepted > MUTATIONS / 50); /* digits and comments may change */
+    assert_true(accepted > (int)check_runs(MUTATIONS) / 50); /* digits and comments may change */
     free(mutated);
     free(text);
 }
