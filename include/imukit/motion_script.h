@@ -59,7 +59,7 @@ typedef struct imk_motion_step {
     int axis;         /**< 0 x, 1 y, 2 z, of the body */
     double amount;    /**< speeds up to 1e5 m/s, angles to 1e6 rad, of swing and coning to pi */
     double rate;      /**< > 0, up to 1e6 */
-    double duration;  /**< [s], > 0, up to 1e9 */
+    double duration;  /**< [s], 1e-6 … 1e9 */
     double frequency; /**< [Hz], > 0, up to 1e6 */
     double angle[3];  /**< roll, pitch, yaw [rad] */
     bool banked;      /**< a turn leans into the curve: roll = atan(v heading rate/g), rolling in

@@ -27,22 +27,27 @@ typedef struct column_set {
     struct {
         const char *name[SPELLINGS]; /* in lower case */
         const char *si;
+        double limit; /* of its magnitude, in degrees or as `si` says; 0: judged otherwise */
     } column[SET_MAX];
 } column_set;
 
 static const column_set sets[SETS] = {
     [GEODETIC] = {"position",
                   3,
-                  {{{"latitude", "lat"}, "rad"},
-                   {{"longitude", "lon"}, "rad"},
-                   {{"height", "altitude", "alt", "h"}, "m"}}},
+                  {{{"latitude", "lat"}, "rad", 90.0},
+                   {{"longitude", "lon"}, "rad", 360.0},
+                   {{"height", "altitude", "alt", "h"}, "m", 1e7}}},
     [EARTH_FIXED] = {"position",
                      3,
-                     {{{"ecef_x", "x_ecef"}, "m"},
-                      {{"ecef_y", "y_ecef"}, "m"},
-                      {{"ecef_z", "z_ecef"}, "m"}}},
-    [LOCAL] = {"position", 3, {{{"x", "north"}, "m"}, {{"y", "east"}, "m"}, {{"z", "down"}, "m"}}},
-    [EULER] = {"attitude", 3, {{{"roll"}, "rad"}, {{"pitch"}, "rad"}, {{"yaw", "heading"}, "rad"}}},
+                     {{{"ecef_x", "x_ecef"}, "m", 1.64e7},
+                      {{"ecef_y", "y_ecef"}, "m", 1.64e7},
+                      {{"ecef_z", "z_ecef"}, "m", 1.64e7}}},
+    [LOCAL] = {"position",
+               3,
+               {{{"x", "north"}, "m", 1e7}, {{"y", "east"}, "m", 1e7}, {{"z", "down"}, "m", 1e7}}},
+    [EULER] = {"attitude",
+               3,
+               {{{"roll"}, "rad", 1e7}, {{"pitch"}, "rad", 1e7}, {{"yaw", "heading"}, "rad", 1e7}}},
     [QUATERNION] =
         {"attitude",
          4,
@@ -228,16 +233,26 @@ static imk_status check_turn(const pose_table *t, size_t row, imk_error *error)
                                 "at most 120 deg from row to row, so that the way is known", error);
 }
 
-static imk_status check_latitudes(const pose_table *t, imk_error *error)
+/* Numbers that no motion near the Earth has: an angle so large has lost its digits. */
+static imk_status check_limits(size_t rows, const column_set *set, const double *const *column,
+                               imk_error *error)
 {
-    for (size_t row = 0; t->position == GEODETIC && row < t->rows; row++) {
-        const double latitude = t->p[0][row];
-        if (fabs(latitude) <= 90.0 * degree)
-            continue;
-        char found[64];
-        snprintf(found, sizeof found, "\"%.10g deg\" is beyond a pole", latitude / degree);
-        return imki_table_row_error("latitude", IMK_ERROR_RANGE, row + 1, found,
-                                    "between -90 deg and 90 deg", error);
+    for (size_t i = 0; i < set->count; i++) {
+        const double limit = set->column[i].limit;
+        const bool is_angle = strcmp(set->column[i].si, "rad") == 0;
+        const double unit = is_angle ? degree : 1.0;
+        const char *const name = is_angle ? "deg" : set->column[i].si;
+        for (size_t row = 0; limit > 0.0 && row < rows; row++) {
+            if (fabs(column[i][row]) <= limit * unit)
+                continue;
+            char found[64], expected[64];
+            snprintf(found, sizeof found, "\"%.10g %s\" is beyond %s", column[i][row] / unit, name,
+                     limit == 90.0 ? "a pole" : "the limit");
+            snprintf(expected, sizeof expected, "between -%.10g %s and %.10g %s", limit, name,
+                     limit, name);
+            return imki_table_row_error(set->column[i].name[0], IMK_ERROR_RANGE, row + 1, found,
+                                        expected, error);
+        }
     }
     return IMK_OK;
 }
@@ -285,6 +300,17 @@ static void note(const imk_log *log, const pose_table *t, imk_motion_file *file)
              ignored);
 }
 
+/* What the library says of step `index` of time, as it is said of rows. */
+static imk_status refuse_step(imk_status status, imk_error *error)
+{
+    if (!error || status != IMK_ERROR_RANGE || strcmp(error->field, "time") != 0)
+        return status;
+    char found[64];
+    snprintf(found, sizeof found, "\"%g s\" is the step from the row before", error->value);
+    return imki_table_row_error("time", status, (size_t)error->index + 1, found,
+                                "a step of time from 1 ns to 1e9 s", error);
+}
+
 /* One allocation for the positions, the quaternions and the workspace. */
 static imk_status build(pose_table *t, const double *time, imk_motion_file *file, imk_error *error)
 {
@@ -304,6 +330,7 @@ static imk_status build(pose_table *t, const double *time, imk_motion_file *file
         const double *const position[3] = {t->relative[0], t->relative[1], t->relative[2]};
         status = imk_trajectory_from_poses(t->rows, time, position, t->turn, memory + 3 * t->rows,
                                            file->piece, error);
+        status = refuse_step(status, error);
     }
     free(memory);
     free(t->turn);
@@ -322,8 +349,10 @@ imk_status imki_poses_open(const imk_log *log, const double *time, const imk_geo
         status = take_set(log, &sets[t.position], t.p, error);
     if (status == IMK_OK && t.attitude != SETS)
         status = take_set(log, &sets[t.attitude], t.a, error);
-    if (status == IMK_OK)
-        status = check_latitudes(&t, error);
+    if (status == IMK_OK && t.position != SETS)
+        status = check_limits(t.rows, &sets[t.position], t.p, error);
+    if (status == IMK_OK && t.attitude != SETS)
+        status = check_limits(t.rows, &sets[t.attitude], t.a, error);
     if (status != IMK_OK)
         return status;
     t.origin = imk_ecef_from_geodetic(where);

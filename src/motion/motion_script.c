@@ -70,8 +70,9 @@ static imk_status check_place(const compiler *c)
 
 static imk_status too_many(const compiler *c)
 {
-    return imki_step_refuse(c->error, "step", c->index, (double)c->count, IMK_MOTION_PIECES_MAX,
-                            "a script of fewer pieces");
+    return imki_step_refuse(
+        c->error, "step", c->index, (double)c->count, IMK_MOTION_PIECES_MAX,
+        "at most 1e7 pieces in all: fewer turns and cycles, or less time on the way");
 }
 
 static imk_status keep(compiler *c, const imk_trajectory_piece *piece)
@@ -170,7 +171,7 @@ static imk_status compile_stretch(compiler *c, const imki_step_run *run, int num
             time = parts > 1.0 ? begin + rest / parts : end;
             motion = parts == 1.0 && last_stretch ? imki_vehicle_motion(&run->end)
                                                   : imki_step_motion(run, time - c->start);
-            if (stretch->even || !(limit > smallest_part * stretch->spacing) ||
+            if (stretch->even || !(time > begin) || !(limit > smallest_part * stretch->spacing) ||
                 imki_piece_is_good(run, &c->motion, begin - c->start, &motion, time - c->start))
                 break;
             limit *= shrink;

@@ -47,6 +47,9 @@ static double product(imk_quaternion a, imk_quaternion b)
     return (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z);
 }
 
+/* Steps of time between poses [s]: the powers of shorter and longer ones overflow. */
+static const double shortest_step = 1e-9, longest_step = 1e9;
+
 /* A turn of 120 deg is one of 60 deg between the quaternions. */
 static imk_status check_row(const double *time, const double *const position[3],
                             const imk_quaternion *attitude, size_t row, imk_error *error)
@@ -56,6 +59,11 @@ static imk_status check_row(const double *time, const double *const position[3],
     if (row > 0 && !(time[row] > time[row - 1]))
         return refuse(error, IMK_ERROR_TIME_ORDER, "time", row, time[row], time[row - 1],
                       "times that increase");
+    if (row > 0 &&
+        !(time[row] - time[row - 1] >= shortest_step && time[row] - time[row - 1] <= longest_step))
+        return refuse(error, IMK_ERROR_RANGE, "time", row, time[row] - time[row - 1],
+                      time[row] - time[row - 1] < 1.0 ? shortest_step : longest_step,
+                      "a step of time from 1 ns to 1e9 s");
     for (int axis = 0; axis < 3; axis++)
         if (!isfinite(position[axis][row]))
             return refuse(error, IMK_ERROR_NOT_FINITE, "position", row, position[axis][row], 0.0,

@@ -8,9 +8,10 @@
 
 #define HALF_TURN 3.14159265358979323846
 
-/* Angles beyond this lose digits to their size; times beyond this are 30 years. */
+/* Angles beyond this lose digits to their size; times beyond this are 30 years. A step shorter than
+ * a cycle of the highest rate has derivatives that overflow, or is lost beside the time so far. */
 static const double angle_limit = 1e6;
-static const double duration_limit = 1e9;
+static const double shortest_duration = 1e-6, duration_limit = 1e9;
 static const double rate_limit = 1e6;
 
 imk_status imki_step_refuse(imk_error *error, const char *field, size_t index, double value,
@@ -52,12 +53,13 @@ static imk_status check_start(const imk_motion_script *s, imk_error *error)
         {s->place.longitude, -2.0 * HALF_TURN, 2.0 * HALF_TURN, "place.longitude",
          "a longitude within 360 deg"},
         {s->place.height, -1e4, 1e7, "place.height", "a height between -10 km and 10000 km"},
-        {s->heading, -angle_limit, angle_limit, "heading", "an angle"},
+        {s->heading, -angle_limit, angle_limit, "heading", "an angle of at most 1e6 rad"},
         {s->climb, -0.5 * HALF_TURN, 0.5 * HALF_TURN, "climb", "a climb angle within 90 deg"},
         {s->speed, 0.0, IMKI_SPEED_LIMIT, "speed", "a speed between 0 and 100 km/s"},
-        {s->mounting[0], -angle_limit, angle_limit, "mounting.roll", "an angle"},
-        {s->mounting[1], -angle_limit, angle_limit, "mounting.pitch", "an angle"},
-        {s->mounting[2], -angle_limit, angle_limit, "mounting.yaw", "an angle"},
+        {s->mounting[0], -angle_limit, angle_limit, "mounting.roll", "an angle of at most 1e6 rad"},
+        {s->mounting[1], -angle_limit, angle_limit, "mounting.pitch",
+         "an angle of at most 1e6 rad"},
+        {s->mounting[2], -angle_limit, angle_limit, "mounting.yaw", "an angle of at most 1e6 rad"},
     };
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         const imk_status status = check(numbers[i].value, numbers[i].lower, numbers[i].upper,
@@ -72,7 +74,10 @@ static imk_status check_start(const imk_motion_script *s, imk_error *error)
 typedef struct needs {
     bool axis, amount, rate, duration, frequency, angles;
     double amount_limit;
+    const char *amount_expected;
 } needs;
+
+static const char amounts_of_speed[] = "at most 100 km/s", amounts_of_angle[] = "at most 1e6 rad";
 
 static needs needs_of(imk_step_kind kind)
 {
@@ -80,12 +85,22 @@ static needs needs_of(imk_step_kind kind)
     case IMK_STEP_HOLD:
         return (needs){.duration = true};
     case IMK_STEP_ACCELERATE:
-        return (needs){.amount = true, .rate = true, .amount_limit = IMKI_SPEED_LIMIT};
+        return (needs){.amount = true,
+                       .rate = true,
+                       .amount_limit = IMKI_SPEED_LIMIT,
+                       .amount_expected = amounts_of_speed};
     case IMK_STEP_TURN:
     case IMK_STEP_CLIMB:
-        return (needs){.amount = true, .rate = true, .amount_limit = angle_limit};
+        return (needs){.amount = true,
+                       .rate = true,
+                       .amount_limit = angle_limit,
+                       .amount_expected = amounts_of_angle};
     case IMK_STEP_ROTATE:
-        return (needs){.axis = true, .amount = true, .rate = true, .amount_limit = angle_limit};
+        return (needs){.axis = true,
+                       .amount = true,
+                       .rate = true,
+                       .amount_limit = angle_limit,
+                       .amount_expected = amounts_of_angle};
     case IMK_STEP_POSE:
         return (needs){.duration = true, .angles = true};
     case IMK_STEP_SWING:
@@ -94,7 +109,8 @@ static needs needs_of(imk_step_kind kind)
                        .amount = true,
                        .duration = true,
                        .frequency = true,
-                       .amount_limit = HALF_TURN};
+                       .amount_limit = HALF_TURN,
+                       .amount_expected = "at most 180 deg"};
     }
     return (needs){.axis = false};
 }
@@ -109,16 +125,19 @@ static imk_status check_step(const imk_motion_step *step, size_t index, imk_erro
         return imki_step_refuse(error, "step.axis", index, step->axis, 2.0, "0, 1 or 2: x, y, z");
     if (need.amount && !(fabs(step->amount) <= need.amount_limit))
         return imki_step_refuse(error, "step.amount", index, step->amount, need.amount_limit,
-                                "an amount within the limit");
+                                need.amount_expected);
     if (need.rate && !(step->rate > 0.0 && step->rate <= rate_limit))
         return imki_step_refuse(error, "step.rate", index, step->rate,
-                                step->rate > 0.0 ? rate_limit : 0.0, "a positive rate");
-    if (need.duration && !(step->duration > 0.0 && step->duration <= duration_limit))
+                                step->rate > 0.0 ? rate_limit : 0.0,
+                                "a positive rate, at most 1e6 rad/s or m/s^2");
+    if (need.duration && !(step->duration >= shortest_duration && step->duration <= duration_limit))
         return imki_step_refuse(error, "step.duration", index, step->duration,
-                                step->duration > 0.0 ? duration_limit : 0.0, "a positive duration");
+                                step->duration >= 1.0 ? duration_limit : shortest_duration,
+                                "a duration from 1 us to 1e9 s");
     if (need.frequency && !(step->frequency > 0.0 && step->frequency <= rate_limit))
         return imki_step_refuse(error, "step.frequency", index, step->frequency,
-                                step->frequency > 0.0 ? rate_limit : 0.0, "a positive frequency");
+                                step->frequency > 0.0 ? rate_limit : 0.0,
+                                "a positive frequency, at most 1e6 Hz");
     /* A cycle to grow, and one to die away; rounding of their product is not a cycle. */
     if (need.frequency && !(step->duration * step->frequency >= 2.0 * (1.0 - 1e-12)))
         return imki_step_refuse(error, "step.duration", index, step->duration,
@@ -126,7 +145,7 @@ static imk_status check_step(const imk_motion_step *step, size_t index, imk_erro
     for (int i = 0; i < 3 && need.angles; i++)
         if (!(fabs(step->angle[i]) <= angle_limit))
             return imki_step_refuse(error, "step.angle", index, step->angle[i], angle_limit,
-                                    "an angle");
+                                    "an angle of at most 1e6 rad");
     return IMK_OK;
 }
 

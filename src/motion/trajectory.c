@@ -188,7 +188,7 @@ static imk_status check_lines(const imk_trajectory *trajectory, imk_error *error
                           "an axis from 0 to 5");
         if (!(line->frequency > 0.0 && line->frequency <= 1e9))
             return refuse(error, IMK_ERROR_RANGE, "vibration.frequency", i, line->frequency, 1e9,
-                          "a positive frequency");
+                          "a positive frequency, up to 1e9 Hz");
         if (!(fabs(line->phase) <= 1e9))
             return refuse(error, IMK_ERROR_RANGE, "vibration.phase", i, line->phase, 1e9,
                           "a phase in cycles");

@@ -83,10 +83,11 @@ static imk_status check_density(int axis, size_t corners, const double *frequenc
             return refuse(error, IMK_ERROR_NOT_FINITE, "density", i, density[i],
                           "a frequency and a density");
         if (!(density[i] >= 1e-100 && density[i] <= 1e100))
-            return refuse(error, IMK_ERROR_RANGE, "density", i, density[i], "a positive density");
+            return refuse(error, IMK_ERROR_RANGE, "density", i, density[i],
+                          "a positive density, up to 1e100 (m/s^2)^2/Hz");
         if (!(frequency[i] > (i > 0 ? frequency[i - 1] : 1e-6) && frequency[i] <= 1e9))
             return refuse(error, IMK_ERROR_RANGE, "frequency", i, frequency[i],
-                          "positive frequencies that increase");
+                          "frequencies that increase, from 1e-6 Hz to 1e9 Hz");
     }
     return IMK_OK;
 }

@@ -482,7 +482,13 @@ static const struct {
                                        "read; write swing x 5 deg at 1 Hz for 20 s"},
     {"steps: [coning x 200 deg at 1 Hz for 5 s]",
      "m.yaml:2:9: steps[0]: \"coning x 200 deg at 1 Hz for 5 s\" is outside its valid range; "
-     "expected an amount within the limit"},
+     "expected at most 180 deg"},
+    {"steps: [hold 4 s, pose 180 45 0 deg in 1e-320 s, hold 4 s]",
+     "m.yaml:2:19: steps[1]: \"pose 180 45 0 deg in 1e-320 s\" is outside its valid range; "
+     "expected a duration from 1 us to 1e9 s"},
+    {"steps: [hold 1e9 s, pose 180 45 0 deg in 1 us]",
+     "m.yaml:2:21: steps[1]: \"pose 180 45 0 deg in 1 us\" is outside its valid range; expected a "
+     "step that is not lost beside the time so far"},
     {"steps: []",
      "m.yaml:2:8: steps: \"[]\" cannot be read; expected at least one step, such as hold 10 s"},
     {"steps: hold 10 s",

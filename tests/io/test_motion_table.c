@@ -283,6 +283,19 @@ static const struct {
      "--columns with -"},
     {"time [s]," PLACES "\n0,1,2,3\n1,91,2,3\n",
      "m.csv: latitude, row 2: \"91 deg\" is beyond a pole; expected between -90 deg and 90 deg"},
+    {"time [s]," PLACES "\n0,1,2,3\n1,1,2,1e160\n",
+     "m.csv: height, row 2: \"1e+160 m\" is beyond the limit; expected between -10000000 m and "
+     "10000000 m"},
+    {"time [s]," ANGLES "\n0,1,1e20,3\n1,1,2,3\n",
+     "m.csv: pitch, row 1: \"1e+20 deg\" is beyond the limit; expected between -10000000 deg and "
+     "10000000 deg"},
+    {"time [s],x [m],y [m],z [m]\n0,1,2,3\n1,1,-2e7,3\n",
+     "m.csv: y, row 2: \"-20000000 m\" is beyond the limit; expected between -10000000 m and "
+     "10000000 m"},
+    {"time [s]," ANGLES "\n0,1,2,3\n1e-320,1,2,3\n1,1,2,3\n",
+     "m.csv: time, row 2: \"9.99989e-321 s\" is the step from the row before; expected a step of "
+     "time "
+     "from 1 ns to 1e9 s"},
     {"time [s],lat [deg],lon [deg]\n0,1,2\n1,1,2\n",
      "m.csv: height: this column is missing; the columns latitude, longitude and height go "
      "together"},

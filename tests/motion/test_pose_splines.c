@@ -160,6 +160,23 @@ static void test_odd_tables_are_refused(void **state)
     CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, workspace, piece, &error),
                  IMK_ERROR_TIME_ORDER);
     assert_int_equal(error.index, 4);
+    /* Steps of time whose powers overflow; the shortest and the longest that do not. */
+    static const struct {
+        double step;
+        imk_status status;
+    } steps[] = {{1e-320, IMK_ERROR_RANGE}, {0.9e-9, IMK_ERROR_RANGE}, {1.1e-9, IMK_OK},
+                 {0.9e9, IMK_OK},           {1.1e9, IMK_ERROR_RANGE},  {1e300, IMK_ERROR_RANGE}};
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        make_circle(10, 1.0);
+        times[0] = 0.0;
+        for (size_t k = 1; k < 10; k++)
+            times[k] = steps[i].step + (double)(k - 1);
+        CHECK_STATUS(
+            imk_trajectory_from_poses(10, times, position, attitude, workspace, piece, &error),
+            steps[i].status);
+        if (steps[i].status != IMK_OK)
+            assert_int_equal(error.index, 1);
+    }
     make_circle(10, 1.0);
     y[7] = (double)NAN;
     CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, workspace, piece, &error),

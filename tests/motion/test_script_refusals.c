@@ -48,6 +48,10 @@ static void test_refused_steps(void **unused)
         {{.kind = IMK_STEP_HOLD, .duration = -1.0}, IMK_ERROR_RANGE, "step.duration"},
         {{.kind = IMK_STEP_HOLD, .duration = (double)NAN}, IMK_ERROR_NOT_FINITE, "step.duration"},
         {{.kind = IMK_STEP_HOLD, .duration = 2e9}, IMK_ERROR_RANGE, "step.duration"},
+        {{.kind = IMK_STEP_HOLD, .duration = 0.9e-6}, IMK_ERROR_RANGE, "step.duration"},
+        {{.kind = IMK_STEP_POSE, .duration = 1e-320, .angle = {3.0, 1.0, 0.0}},
+         IMK_ERROR_RANGE,
+         "step.duration"},
         {{.kind = IMK_STEP_ACCELERATE, .amount = 1.0}, IMK_ERROR_RANGE, "step.rate"},
         {{.kind = IMK_STEP_ACCELERATE, .amount = 1.0, .rate = -1.0}, IMK_ERROR_RANGE, "step.rate"},
         {{.kind = IMK_STEP_ACCELERATE, .amount = (double)INFINITY, .rate = 1.0},
@@ -156,6 +160,25 @@ static void test_refused_ways(void **unused)
     assert_int_equal(count, 2);
 }
 
+/* The shortest step, early and so late that its pieces are below the resolution of the time: the
+ * search for good pieces ends either way. */
+static void test_shortest_step(void **unused)
+{
+    (void)unused;
+    const imk_motion_step steps[] = {
+        {.kind = IMK_STEP_HOLD, .duration = 4.0},
+        {.kind = IMK_STEP_POSE, .duration = 1e-6, .angle = {3.0, 1.0, 0.0}},
+        {.kind = IMK_STEP_HOLD, .duration = 4.0},
+    };
+    imk_motion_script script = plain(3, steps);
+    size_t count = 0;
+    CHECK_OK(imk_motion_script_pieces(&script, &count, NULL));
+    assert_in_range(count, 3, 1000);
+    const imk_motion_step late[] = {{.kind = IMK_STEP_HOLD, .duration = 1e9}, steps[1]};
+    script = plain(2, late);
+    check_refusal(&script, IMK_ERROR_RANGE, "step", 1);
+}
+
 /* More pieces than there may be are refused at once, not after minutes. */
 static void test_too_many_pieces(void **unused)
 {
@@ -189,9 +212,9 @@ static void test_too_small_an_array(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_refused_steps),      cmocka_unit_test(test_refused_scripts),
-        cmocka_unit_test(test_refused_ways),       cmocka_unit_test(test_too_many_pieces),
-        cmocka_unit_test(test_too_small_an_array),
+        cmocka_unit_test(test_refused_steps),   cmocka_unit_test(test_refused_scripts),
+        cmocka_unit_test(test_refused_ways),    cmocka_unit_test(test_shortest_step),
+        cmocka_unit_test(test_too_many_pieces), cmocka_unit_test(test_too_small_an_array),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
