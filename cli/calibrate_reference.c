@@ -5,6 +5,7 @@
 
 #include "imukit/random.h"
 #include "imukit/reference_alignment.h"
+#include "imukit/samples.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -134,7 +135,7 @@ static bool fill_from_trajectory(const imk_trajectory *trajectory, bench_log *lo
         boundary[1] = now - log->motion_offset;
         for (end = begin + 1; end < record->count; end++) {
             const double next = time_of(record, end);
-            if (next - now > 1.5 * record->dt)
+            if (imk_step_is_gap(next - now, record->dt))
                 break;
             now = next;
             boundary[end - begin + 1] = now - log->motion_offset;

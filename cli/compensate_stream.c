@@ -7,6 +7,8 @@
 
 #include "progress.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,7 +110,7 @@ static int create(stream *s)
 static bool is_break(const stream *s, double time)
 {
     double step = time - s->last_time;
-    return step <= 0 || step > 1.5 * s->compensation->compensator.dt;
+    return step <= 0 || imk_step_intervals(step, s->compensation->compensator.dt) > 1;
 }
 
 /* Rows `from` to `to` of the buffers, a piece without a break, into the compensator.

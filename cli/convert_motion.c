@@ -16,6 +16,7 @@
 
 #include "imukit/elementary.h"
 #include "imukit/navigate.h"
+#include "imukit/samples.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -211,7 +212,7 @@ static void move_rows(convert_motion *m)
         bool finite = rates_of(m, row, &here), has_before = m->has_before, goes_on = false;
         if (row + 1 < m->stored) {
             double step = time_of(m, row + 1) - time_of(m, row);
-            goes_on = !(step <= 0) && !(step > 1.5 * m->interval);
+            goes_on = !(step <= 0) && imk_step_intervals(step, m->interval) <= 1;
         }
         bool has_after = goes_on && rates_of(m, row + 1, &after);
         double span = has_before && has_after ? 2 * m->interval : m->interval;

@@ -8,6 +8,7 @@
 #include "progress.h"
 
 #include "imukit/identify_record.h"
+#include "imukit/samples.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -92,7 +93,8 @@ static size_t steps_to(log_stream *s, double time)
         channels->not_finite++;
         return 0;
     }
-    const size_t steps = s->samples == 0 ? 1 : log_intervals(s->last_time, time, channels->dt);
+    const size_t steps =
+        s->samples == 0 ? 1 : imk_step_intervals(time - s->last_time, channels->dt);
     channels->unordered += steps == 0;
     return steps;
 }

@@ -5,6 +5,8 @@
  * not later is left out. A value that is not finite is missing in its own channel only. */
 #include "log_input.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -32,7 +34,7 @@ static size_t place_on_grid(log_channels *channels, const double *time, size_t *
         if (!isfinite(time[row]))
             continue;
         const size_t steps =
-            *last == SIZE_MAX ? 1 : log_intervals(time[*last], time[row], channels->dt);
+            *last == SIZE_MAX ? 1 : imk_step_intervals(time[row] - time[*last], channels->dt);
         if (steps == 0) {
             channels->unordered++;
             continue;

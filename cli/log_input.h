@@ -60,7 +60,5 @@ int log_grid_jitter(const char *path, const log_channels *channels);
 void log_grid_tell(const log_channels *channels, size_t first_not_finite);
 /* More empty places than this for every row are a jump of the clock, not missing samples. */
 enum { LOG_EMPTY_MOST = 20 };
-/* Intervals between two times, at least 1; 0 when the second is not later. */
-size_t log_intervals(double earlier, double later, double dt);
 
 #endif

@@ -7,6 +7,8 @@
  * taking the longest stretch without any, as the policy says; log_grid.c keeps their places. */
 #include "log_input.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,14 +42,6 @@ static int bad_channel(const log_channels *channels, const double *time, size_t 
     return time && !isfinite(time[row]) ? (int)channels->count : -1;
 }
 
-size_t log_intervals(double earlier, double later, double dt)
-{
-    double steps = (later - earlier) / dt;
-    if (!(steps > 0))
-        return 0;
-    return steps < 1.5 ? 1 : steps < 1e15 ? (size_t)llround(steps) : (size_t)1e15;
-}
-
 static spacing inspect(const log_channels *channels)
 {
     const double *time = time_column(channels);
@@ -57,7 +51,7 @@ static spacing inspect(const log_channels *channels)
     for (size_t row = 0; row < channels->log.rows; row++) {
         int bad = bad_channel(channels, time, row);
         size_t steps = !any   ? 1
-                       : time ? log_intervals(time[last], time[row], channels->dt)
+                       : time ? imk_step_intervals(time[row] - time[last], channels->dt)
                               : row - last;
         if (bad >= 0) {
             if (s.not_finite++ == 0) {
@@ -121,7 +115,7 @@ static size_t place_rows(const log_channels *channels, size_t *place)
         if (bad_channel(channels, time, row) >= 0)
             continue;
         size_t steps = last == SIZE_MAX ? 1
-                       : time           ? log_intervals(time[last], time[row], channels->dt)
+                       : time           ? imk_step_intervals(time[row] - time[last], channels->dt)
                                         : row - last;
         if (steps == 0)
             continue;

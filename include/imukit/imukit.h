@@ -53,6 +53,7 @@
 #include "imukit/reference_alignment.h"
 #include "imukit/repeatability.h"
 #include "imukit/ring_laser.h"
+#include "imukit/samples.h"
 #include "imukit/shell_gyro.h"
 #include "imukit/simulate.h"
 #include "imukit/spectrum.h"

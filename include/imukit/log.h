@@ -67,7 +67,7 @@ typedef struct imk_log_findings {
     size_t not_finite, first_not_finite; /**< rows with a NaN, an infinity or an empty cell */
     size_t reversals, first_reversal;    /**< time steps < 0 */
     size_t repeats, first_repeat;        /**< time steps = 0 */
-    size_t gaps, first_gap, missing;     /**< steps > 1.5 intervals; samples missing in them */
+    size_t gaps, first_gap, missing;     /**< imk_step_is_gap(); samples missing in them */
     double interval;                     /**< median time step, or 1/rate [s] */
     double jitter;                       /**< rms deviation of the steps from it [s] */
     double first_time, last_time;        /**< [s] */

@@ -5,14 +5,14 @@
  * integrate to whole turns about one axis and to nothing about the others. */
 #include "calibrate/six_position_internal.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <string.h>
 
 /* Share of the angle that a turn may lack by the nominal sensitivity, and that may fall on other
  * axes: misalignment and tilt of a hand-made turn are less, a mere move from face to face more. */
 static const double slack = 0.3;
-/* A step in time this much longer than the others is a gap. */
-static const double gap_steps = 1.5;
 
 imki_turn_means imki_turn_mean(const imk_test_record *record, size_t begin, size_t end)
 {
@@ -23,7 +23,7 @@ imki_turn_means imki_turn_mean(const imk_test_record *record, size_t begin, size
         double step = record->dt;
         if (record->time && k > begin) {
             step = record->time[k] - record->time[k - 1];
-            gap = gap || step > gap_steps * record->dt;
+            gap = gap || imk_step_is_gap(step, record->dt);
         }
         means.duration += step;
         for (int s = 0; s < 2; s++)

@@ -10,6 +10,7 @@
 #include "calibrate/procedure_internal.h"
 
 #include "imukit/linear_algebra.h"
+#include "imukit/samples.h"
 
 #include "base/workspace_internal.h"
 
@@ -117,7 +118,7 @@ static const imk_triad *triad_of(const gathering *g, int sensor)
 static bool without_gap(const imk_test_record *record, size_t begin, size_t end)
 {
     for (size_t k = begin > 0 ? begin : 1; record->time && k < end; k++)
-        if (!(record->time[k] - record->time[k - 1] <= 1.5 * record->dt))
+        if (imk_step_is_gap(record->time[k] - record->time[k - 1], record->dt))
             return false;
     return true;
 }

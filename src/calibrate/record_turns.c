@@ -17,6 +17,7 @@
 
 #include "imukit/attitude.h"
 #include "imukit/elementary.h"
+#include "imukit/samples.h"
 
 #include <math.h>
 
@@ -89,7 +90,7 @@ static double angle_between(const double a[3], const double b[3])
 static bool is_complete(const imk_test_record *r, size_t begin, size_t end)
 {
     for (size_t k = begin; k < end; k++) {
-        if (r->time && !(r->time[k] - r->time[k - 1] <= 1.5 * r->dt))
+        if (r->time && imk_step_is_gap(r->time[k] - r->time[k - 1], r->dt))
             return false;
         if (r->section && r->section[k] != r->section[k - 1])
             return false;

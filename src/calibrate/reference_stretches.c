@@ -18,6 +18,8 @@
 
 #include "base/workspace_internal.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 
 enum {
@@ -45,7 +47,8 @@ size_t imk_reference_stretches_workspace_size(const imk_test_record *record)
 
 static bool is_gap(const imk_test_record *record, size_t k)
 {
-    return record->time && k > 0 && !(record->time[k] - record->time[k - 1] <= 1.5 * record->dt);
+    return record->time && k > 0 &&
+           imk_step_is_gap(record->time[k] - record->time[k - 1], record->dt);
 }
 
 /* ---- noise of a channel ----------------------------------------------------------------------

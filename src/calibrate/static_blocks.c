@@ -4,6 +4,8 @@
  * pairs, q = q1 + q2 + n/4 (m1 - m2)^2 for n samples in both [CHAN1983], windows from four. */
 #include "static_internal.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -157,7 +159,7 @@ static void flag_breaks(const imki_static_job *job)
         return;
     const size_t samples = b->count * b->length;
     for (size_t k = 1; k < samples; k++) {
-        const bool gap = r->time && !(r->time[k] - r->time[k - 1] <= 1.5 * r->dt);
+        const bool gap = r->time && imk_step_is_gap(r->time[k] - r->time[k - 1], r->dt);
         if (!gap && !(r->section && r->section[k] != r->section[k - 1]))
             continue;
         b->flag[k / b->length] |= k % b->length == 0 ? IMKI_BLOCK_BREAK : IMKI_BLOCK_INVALID;

@@ -5,11 +5,13 @@
  *
  *     interval = 1/rate, or the median of the first group; from the second group on the median of
  *                the groups' medians (of 4096 groups' medians each, beyond 4096 groups)
- *     gap:      step > 1.5 interval;  missing in it: round(step / interval) - 1
+ *     gap:      step >= 1.5 intervals;  missing in it: round(step / interval) - 1
  *     jitter  = sqrt(mean((step - interval)^2)) over the positive steps that are no gap
  *
  * A time that is not finite makes no step, neither to it nor from it. */
 #include "io/log_findings_internal.h"
+
+#include "imukit/samples.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -74,11 +76,11 @@ static judgement judge(const imki_log_times *times, double interval, double refe
     judgement j = {0};
     for (size_t i = 0; i < times->pending; i++) {
         const imki_log_step step = times->step[i];
-        if (step.size > 1.5 * interval) {
+        const size_t intervals = imk_step_intervals(step.size, interval);
+        if (intervals > 1) {
             if (j.gaps++ == 0)
                 j.first_gap = step.row;
-            const double missing = floor(step.size / interval + 0.5) - 1.0;
-            j.missing += missing < 1e15 ? (size_t)missing : (size_t)1e15;
+            j.missing += intervals - 1;
         } else {
             const double deviation = step.size - reference;
             j.regular++;

@@ -507,6 +507,12 @@ static void findings_count_what_is_wrong(void **state)
     CHECK_CLOSE(f->last_time, 10.6, 0.0);
     assert_true(isnan(t.data[1][2]) && isnan(t.data[1][5]) && isinf(t.data[1][8]));
     free_table(&t);
+    /* What is a gap, samples.h: 1.49 intervals are none, 1.51 are. */
+    t = read_text("time [s],gyro_x [rad/s]\n0,1\n1,1\n2,1\n3.49,1\n4.49,1\n6,1\n7,1\n8,1\n", NULL);
+    assert_int_equal(t.findings.gaps, 1);
+    assert_int_equal(t.findings.first_gap, 6);
+    assert_int_equal(t.findings.missing, 1);
+    free_table(&t);
     imk_log_settings settings = imk_log_settings_default();
     settings.rate = 50.0;
     t = read_text("gyro_x [rad/s]\n1\n2\n3\n", &settings);
