@@ -179,6 +179,7 @@ int bench_load(bench *b, bench_log *log)
     progress_end(&p);
     if (status != IMK_OK)
         return command_log_error(&error, log->path);
+    log_forget_faults(&log->log);
     int code = fill_record(b, log);
     return code < 0 ? check_length(b->options, log) : code;
 }

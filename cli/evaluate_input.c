@@ -2,6 +2,8 @@
 /* Tables of references and readings, and which file is one. */
 #include "evaluate_parts.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -139,9 +141,10 @@ static int take_row(evaluate_channel *c, const char *path, const imk_log *log, c
     const int run = run_number(runs, at->run >= 0 ? log->data[at->run][row] : 0.0);
     if (run < 0)
         return command_failed("%s: more than %d runs", path, IMK_EVALUATION_RUNS_MAX);
-    if (!isfinite(reference) || !isfinite(value))
-        return command_failed("%s: row %zu: %s is no number; leave the row out", path, row + 1,
-                              isfinite(reference) ? log->column[reading].name : "reference");
+    const bool referred = fabs(reference) <= IMK_READING_MAX;
+    if (!referred || !(fabs(value) <= IMK_READING_MAX))
+        return command_failed("%s: row %zu: %s is no number, or beyond 1e60; leave the row out",
+                              path, row + 1, referred ? log->column[reading].name : "reference");
     if (at->sigma >= 0 && !(sigma > 0))
         return command_failed("%s: row %zu: sigma should be above 0", path, row + 1);
     if (!evaluate_add(c, reference, value, sigma, direction, run))

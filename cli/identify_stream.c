@@ -130,12 +130,12 @@ static void cut_block(log_stream *s, const row_block *block)
     }
 }
 
-static bool all_finite(size_t count, const double *values)
+static bool all_readings(size_t count, const double *values)
 {
-    double sum = 0; /* not a number as soon as one of them is none, or infinite */
+    bool all = true;
     for (size_t i = 0; i < count; i++)
-        sum += 0 * values[i];
-    return sum == 0;
+        all &= fabs(values[i]) <= IMK_READING_MAX;
+    return all;
 }
 
 static imk_status add_piece(imk_identify_record *record, const piece *p, const double *data,
@@ -163,9 +163,9 @@ static void pass_block(void *context, size_t item)
     const size_t channel = item - 1;
     const row_block *block = &s->block[s->current];
     double *data = block->column[s->all->channels.column[channel]];
-    s->dirty[channel] = !all_finite(block->rows, data);
+    s->dirty[channel] = !all_readings(block->rows, data);
     for (size_t row = 0; row < block->rows && s->dirty[channel]; row++)
-        data[row] = isfinite(data[row]) ? data[row] : (double)NAN;
+        data[row] = fabs(data[row]) <= IMK_READING_MAX ? data[row] : (double)NAN;
     for (size_t p = 0; p < s->piece_count && s->status[channel] == IMK_OK; p++)
         s->status[channel] = add_piece(s->record[channel], &s->pieces[p], data, &s->error[channel]);
 }

@@ -2,7 +2,7 @@
 /* Rows of a log on the even grid of their times, NaN where something is missing.
  *
  * A row has its place round(step/interval) behind the row before; one whose time is not finite or
- * not later is left out. A value that is not finite is missing in its own channel only. */
+ * not later is left out. A value that is no reading is missing in its own channel only. */
 #include "log_input.h"
 
 #include "imukit/samples.h"
@@ -102,8 +102,8 @@ void log_grid_tell(const log_channels *channels, size_t first_not_finite)
 {
     if (channels->not_finite > 0)
         command_warn("not_finite",
-                     "%zu row%s with a value that is not a finite number, first in "
-                     "row %zu: counted as missing",
+                     "%zu row%s with a value that is not a finite number or beyond 1e60, first "
+                     "in row %zu: counted as missing",
                      channels->not_finite, channels->not_finite == 1 ? "" : "s", first_not_finite);
     if (channels->unordered > 0)
         command_warn("unordered", "%zu row%s whose time stands still or runs backwards: left out",

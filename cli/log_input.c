@@ -4,6 +4,9 @@
 
 #include "progress.h"
 
+#include "imukit/samples.h"
+
+#include <math.h>
 #include <string.h>
 
 const option log_input_options[LOG_INPUT_OPTIONS] = {
@@ -67,6 +70,17 @@ void log_choose_channels(log_channels *channels)
             channels->column[channels->count++] = (int)c;
 }
 
+void log_forget_faults(imk_log *log)
+{
+    for (size_t c = 0; c < log->column_count; c++) {
+        if (log->column[c].quantity == IMK_QUANTITY_TIME || log->column[c].label)
+            continue;
+        for (size_t row = 0; row < log->rows; row++)
+            if (!(fabs(log->data[c][row]) <= IMK_READING_MAX))
+                log->data[c][row] = (double)NAN;
+    }
+}
+
 int log_input_load(const log_input *input, const char *path, log_channels *channels)
 {
     imk_error error;
@@ -83,6 +97,7 @@ int log_input_load(const log_input *input, const char *path, log_channels *chann
     if (status != IMK_OK)
         return command_log_error(&error, path);
     log_choose_channels(channels);
+    log_forget_faults(&channels->log);
     int code = -1;
     if (channels->log.rows == 0)
         code = command_failed("%s: there is a header but no data row", path);

@@ -44,6 +44,8 @@ int log_input_load(const log_input *input, const char *path, log_channels *chann
 void log_channels_free(log_channels *channels);
 /* The channels among the columns of channels->log. */
 void log_choose_channels(log_channels *channels);
+/* Numbers that are no readings become NaN: missing. Times stay. */
+void log_forget_faults(imk_log *log);
 
 const imk_log_column *log_channel_column(const log_channels *channels, size_t channel);
 double *log_channel_data(const log_channels *channels, size_t channel);

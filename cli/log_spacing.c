@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Equally spaced samples out of the rows of a log.
  *
- * A row is bad when a value to be analysed is not finite, or when its time is not later than that
+ * A row is bad when a value to be analysed is no reading, or when its time is not later than that
  * of the last good row. Between good rows lie round(step/interval) intervals; where that is more
  * than one, samples are missing. They are refused, interpolated on a straight line, or avoided by
  * taking the longest stretch without any, as the policy says; log_grid.c keeps their places. */
@@ -186,8 +186,8 @@ static int refuse(const char *path, const spacing *s)
     const char *remedy = "use --gaps longest (the longest clean stretch) or --gaps bridge "
                          "(interpolate)";
     if (s->not_finite)
-        return command_failed("%s: %zu row%s with a value that is not a finite number, first in "
-                              "row %zu, column %s; %s",
+        return command_failed("%s: %zu row%s with a value that is not a finite number or beyond "
+                              "1e60, first in row %zu, column %s; %s",
                               path, s->not_finite, s->not_finite == 1 ? "" : "s",
                               s->first_not_finite, s->not_finite_column, remedy);
     if (s->unordered) {

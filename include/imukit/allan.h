@@ -116,7 +116,7 @@ typedef enum imk_power_law {
 } imk_power_law;
 
 /** Noise type at averaging factor m by the lag-1 autocorrelation [RILEY2004], 2 to -2. Needs n/m >=
- *  30; IMK_ERROR_TOO_SHORT otherwise. */
+ *  30; IMK_ERROR_TOO_SHORT otherwise. IMK_ERROR_NOT_FINITE: squares of the samples overflow. */
 IMK_API imk_status imk_allan_noise_type(size_t n, const double *sums, size_t m,
                                         imk_power_law *type);
 
@@ -195,7 +195,8 @@ typedef struct imk_allan_point {
 /** Deviations with intervals at each factor (ascending, in the statistic's range).
  *  @param sums    n + 1 running sums, imk_allan_sums()
  *  @param points  factor_count values
- *  @return IMK_ERROR_RANGE, IMK_ERROR_UNINITIALISED, IMK_ERROR_TOO_SHORT, IMK_ERROR_WORKSPACE */
+ *  @return IMK_ERROR_RANGE, IMK_ERROR_UNINITIALISED, IMK_ERROR_TOO_SHORT, IMK_ERROR_WORKSPACE,
+ *          IMK_ERROR_NOT_FINITE (a sample is not, or squares overflow) */
 IMK_API imk_status imk_allan_points(const imk_allan_settings *settings, size_t n,
                                     const double *sums, size_t factor_count, const size_t *factors,
                                     imk_allan_point *points, const imk_executor *executor);

@@ -57,7 +57,7 @@ IMK_API size_t imk_allan_gaps_workspace_size(size_t n);
  *  Cost: about 40 ns per sample and factor, three times that when robust; much less when nothing
  *  is missing.
  *  @return IMK_ERROR_UNINITIALISED, IMK_ERROR_RANGE, IMK_ERROR_TOO_SHORT (fewer than two samples
- * are there), IMK_ERROR_WORKSPACE */
+ *          are there), IMK_ERROR_WORKSPACE, IMK_ERROR_NOT_FINITE (squares overflow) */
 IMK_API imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t n,
                                          const double *rate, size_t factor_count,
                                          const size_t *factors, imk_allan_gap_point *points,

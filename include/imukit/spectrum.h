@@ -89,7 +89,8 @@ IMK_API size_t imk_spectrum_workspace_size(const imk_spectrum_settings *settings
  *  @param density,degrees  imk_spectrum_count() values each
  *  @param harmonic  the same, or NULL; filled by the multitaper estimator with two tapers or more
  *  @return IMK_ERROR_UNINITIALISED, _RANGE (error.field: the setting), _TOO_SHORT, _GAP (no segment
- *          is complete: ask for a coarser resolution), _CONSTANT, _WORKSPACE */
+ *          is complete: ask for a coarser resolution), _CONSTANT, _NOT_FINITE (squares
+ *          overflow), _WORKSPACE */
 IMK_API imk_status imk_spectrum_estimate(const imk_spectrum_settings *settings, size_t n,
                                          const double *samples, imk_spectrum *spectrum,
                                          double *density, double *degrees, double *harmonic,

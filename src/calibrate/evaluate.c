@@ -5,6 +5,7 @@
 
 #include "imukit/distributions.h"
 #include "imukit/random.h"
+#include "imukit/samples.h"
 
 #include <string.h>
 
@@ -31,10 +32,10 @@ static imk_status bad_row(imk_status status, size_t row, const char *field, cons
 static imk_status check_rows(const imk_evaluation_table *table, imk_error *error)
 {
     for (size_t row = 0; row < table->count; row++) {
-        if (!isfinite(table->reference[row]))
-            return bad_row(IMK_ERROR_NOT_FINITE, row, "reference", "a finite reference", error);
-        if (!isfinite(table->reading[row]))
-            return bad_row(IMK_ERROR_NOT_FINITE, row, "reading", "a finite reading", error);
+        if (!(fabs(table->reference[row]) <= IMK_READING_MAX))
+            return bad_row(IMK_ERROR_NOT_FINITE, row, "reference", "a number up to 1e60", error);
+        if (!(fabs(table->reading[row]) <= IMK_READING_MAX))
+            return bad_row(IMK_ERROR_NOT_FINITE, row, "reading", "a number up to 1e60", error);
         if (table->sigma && !(table->sigma[row] > 0.0 && table->sigma[row] < HUGE_VAL))
             return bad_row(IMK_ERROR_RANGE, row, "sigma", "above 0", error);
         if (table->direction && (table->direction[row] < -1 || table->direction[row] > 1))

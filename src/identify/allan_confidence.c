@@ -92,6 +92,8 @@ static imk_status noise_type(size_t n, const double *sums, size_t m, imk_power_l
         if (delta < 0.25 || d == most)
             break;
     }
+    if (isnan(delta))
+        return IMK_ERROR_NOT_FINITE;
     const double alpha = floor(-2 * (delta + d) + 0.5);
     *type = (imk_power_law)(alpha > 2 ? 2 : alpha < (double)lowest ? (double)lowest : alpha);
     return IMK_OK;
@@ -136,9 +138,12 @@ static imk_status portion(const imk_allan_settings *settings, size_t n, const do
     const imk_status status =
         imk_allan_compute(settings->statistic, n, sums, count, factors, variances, counts,
                           settings->workspace, settings->workspace_size, executor);
-    for (size_t i = 0; i < count && status == IMK_OK; i++)
+    for (size_t i = 0; i < count && status == IMK_OK; i++) {
+        if (!(variances[i] < HUGE_VAL))
+            return IMK_ERROR_NOT_FINITE;
         points[i] =
             (imk_allan_point){.m = factors[i], .deviation = sqrt(variances[i]), .count = counts[i]};
+    }
     return status;
 }
 

@@ -201,6 +201,9 @@ imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t
         imki_gap_take_lags(&record);
     gap_work work = {&record, settings->robust, factors, points};
     imk_execute(executor, factor_count, gap_item, &work);
+    for (size_t i = 0; i < factor_count; i++)
+        if (points[i].point.count > 0 && !(points[i].point.deviation < HUGE_VAL))
+            return IMK_ERROR_NOT_FINITE;
     finish(settings, n, factor_count, points);
     return IMK_OK;
 }

@@ -64,7 +64,8 @@ static size_t lag_one(const imki_gap_record *r, size_t m, size_t least, int orde
     return neighbours;
 }
 
-/* Differences until delta = r/(1 + r) < 1/4; then alpha = -2 (delta + d). */
+/* Differences until delta = r/(1 + r) < 1/4; then alpha = -2 (delta + d). No type where squares
+ * overflow. */
 bool imki_gap_noise_type(const imki_gap_record *record, size_t m, size_t least, imk_power_law *type)
 {
     double delta = 0, r = 0;
@@ -76,6 +77,8 @@ bool imki_gap_noise_type(const imki_gap_record *record, size_t m, size_t least, 
         if (delta < 0.25 || d == 2)
             break;
     }
+    if (isnan(delta))
+        return false;
     const double alpha = floor(-2 * (delta + d) + 0.5);
     *type = (imk_power_law)(alpha > 2 ? 2 : alpha < -2 ? -2 : alpha);
     return true;

@@ -32,8 +32,29 @@ void imki_sort(double *a, size_t count)
     }
 }
 
-/* Smallest step between different values in a sample of the record, when the values lie on a grid
- * of that step (to 1 %, so that a unit conversion's rounding does not hide it); else 0. */
+/* Smallest step between different ones of some sorted values that lie on a grid of that step (to
+ * 1 %, so that a unit conversion's rounding does not hide it); else 0. */
+static double step_among(size_t count, const double *sorted)
+{
+    const double span = sorted[count - 1] - sorted[0];
+    double step = HUGE_VAL;
+    for (size_t i = 1; i < count; i++) {
+        const double d = sorted[i] - sorted[i - 1];
+        if (d > 1e-9 * span && d < step)
+            step = d;
+    }
+    /* An outlier may stretch the span: the steps must be few for the inner nine tenths. */
+    const double inner = sorted[count - 1 - count / 20] - sorted[count / 20];
+    if (!(step < HUGE_VAL) || !(inner / step < (double)count / 4))
+        return 0;
+    for (size_t i = 1; i < count; i++) {
+        const double steps = (sorted[i] - sorted[i - 1]) / step;
+        if (fabs(steps - floor(steps + 0.5)) > 0.05)
+            return 0;
+    }
+    return step;
+}
+
 double imki_record_resolution(size_t n, const double *samples, double *scratch,
                               size_t scratch_count)
 {
@@ -44,23 +65,14 @@ double imki_record_resolution(size_t n, const double *samples, double *scratch,
     if (count < 2)
         return 0;
     imki_sort(scratch, count);
-    const double span = scratch[count - 1] - scratch[0];
-    double step = HUGE_VAL;
-    for (size_t i = 1; i < count; i++) {
-        const double d = scratch[i] - scratch[i - 1];
-        if (d > 1e-9 * span && d < step)
-            step = d;
-    }
-    /* An outlier may stretch the span: the steps must be few for the inner nine tenths. */
-    const double inner = scratch[count - 1 - count / 20] - scratch[count / 20];
-    if (!(step < HUGE_VAL) || !(inner / step < (double)count / 4))
-        return 0;
-    for (size_t i = 1; i < count; i++) {
-        const double steps = (scratch[i] - scratch[i - 1]) / step;
-        if (fabs(steps - floor(steps + 0.5)) > 0.05)
-            return 0;
-    }
-    return step;
+    /* Beside an outlier far enough away all others would be one value; they are different when it
+     * is by more than rounding. */
+    const size_t tail = count / 20;
+    const double low = scratch[tail], high = scratch[count - 1 - tail];
+    if (high - low < 1e-9 * (scratch[count - 1] - scratch[0]) &&
+        high - low > 1e-12 * fmax(fabs(low), fabs(high)))
+        return step_among(count - 2 * tail, scratch + tail);
+    return step_among(count, scratch);
 }
 
 /* An extreme value that piles up: more than three times as many samples on it as on the next value

@@ -34,19 +34,36 @@ static imk_status check(const imk_screen_settings *s, size_t workspace_size, siz
     return IMK_OK;
 }
 
+/* Of those that are there, 0 when they are all the same. The distances from the first one are
+ * scaled: their squares neither overflow nor vanish. */
+static double deviation_of(size_t n, const double *samples, size_t present)
+{
+    double shift = (double)NAN, span = 0, sum = 0, squares = 0;
+    int exponent;
+    for (size_t i = 0; i < n; i++) {
+        shift = isnan(shift) ? samples[i] : shift;
+        span = fmax(span, fabs(samples[i] - shift)); /* the number, when one of them is none */
+    }
+    frexp(span, &exponent);
+    for (size_t i = 0; i < n; i++) {
+        const double distance = isnan(samples[i]) ? 0 : ldexp(samples[i] - shift, -exponent);
+        sum += distance;
+        squares += distance * distance;
+    }
+    const double count = (double)present, variance = (squares - sum * sum / count) / count;
+    return variance > 0 ? ldexp(sqrt(variance), exponent) : 0;
+}
+
 /* Copy what is there, and count what is not. */
 static void take_samples(size_t n, const double *samples, double *copy, imk_screen *found)
 {
-    double shift = 0, sum = 0, squares = 0;
     size_t hole = 0;
     found->missing.first = n;
     for (size_t i = 0; i < n; i++) {
         const bool there = imki_is_there(samples[i]);
         copy[i] = there ? samples[i] : (double)NAN;
         if (there) {
-            shift = found->present++ == 0 ? samples[i] : shift;
-            sum += samples[i] - shift;
-            squares += (samples[i] - shift) * (samples[i] - shift);
+            found->present++;
             hole = 0;
             continue;
         }
@@ -54,8 +71,7 @@ static void take_samples(size_t n, const double *samples, double *copy, imk_scre
         found->missing.runs += hole++ == 0;
         found->longest_hole = hole > found->longest_hole ? hole : found->longest_hole;
     }
-    const double count = (double)found->present, variance = (squares - sum * sum / count) / count;
-    found->deviation = variance > 0 ? sqrt(variance) : 0;
+    found->deviation = deviation_of(n, copy, found->present);
 }
 
 /* Samples at or beyond the values where they pile up become NaN. */

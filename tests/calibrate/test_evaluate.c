@@ -310,6 +310,9 @@ static void test_errors(void **state)
     y[1] = (double)NAN;
     CHECK_STATUS(evaluate(&table, &settings, &error), IMK_ERROR_NOT_FINITE);
     assert_int_equal(error.index, 1);
+    y[1] = 1e160;
+    CHECK_STATUS(evaluate(&table, &settings, &error), IMK_ERROR_NOT_FINITE);
+    assert_string_equal(error.field, "reading");
     char small[64];
     y[1] = 1;
     CHECK_STATUS(

@@ -58,10 +58,15 @@ static void test_bad_logs(void **state)
 /* What --gaps refuse says; what the default does instead is in test_gaps_kept. */
 static const struct bad_log refused_logs[] = {
     {"sed '500s/,.*/,nan/' good.csv >b.csv", "b.csv",
-     "b.csv: 1 row with a value that is not a finite number, first in row 499, column "
+     "b.csv: 1 row with a value that is not a finite number or beyond 1e60, first in row 499, "
+     "column "
      "gyro_x; " REMEDY},
+    {"sed '500s/,.*/,1e160/' good.csv >b.csv", "b.csv",
+     "b.csv: 1 row with a value that is not a finite number or beyond 1e60, first in row 499, "
+     "column gyro_x; " REMEDY},
     {"sed '500s/,.*/,/' good.csv >b.csv", "b.csv",
-     "b.csv: 1 row with a value that is not a finite number, first in row 499, column "
+     "b.csv: 1 row with a value that is not a finite number or beyond 1e60, first in row 499, "
+     "column "
      "gyro_x; " REMEDY},
     {"sed '500{h;d};501G' good.csv >b.csv", "b.csv",
      "b.csv: time runs backwards in 1 row, first in row 500 (by 0.01 s); " REMEDY},
@@ -105,8 +110,13 @@ static void test_gaps_kept(void **state)
          "their places are kept empty\n",
          1000},
         {"sed '500s/,.*/,nan/' good.csv >b.csv",
-         "imukit allan: warning: 1 row with a value that is not a finite number, first in row 499: "
+         "imukit allan: warning: 1 row with a value that is not a finite number or beyond 1e60, "
+         "first in row 499: "
          "counted as missing\n",
+         1000},
+        {"sed '500s/,.*/,1e160/' good.csv >b.csv",
+         "imukit allan: warning: 1 row with a value that is not a finite number or beyond 1e60, "
+         "first in row 499: counted as missing\n",
          1000},
         {"sed '101,300d;500d' good.csv >b.csv",
          "201 of 1000 samples are missing, in 2 holes, the longest of 2 s", 1000},
@@ -116,7 +126,7 @@ static void test_gaps_kept(void **state)
          "imukit allan: warning: 1 row whose time stands still or runs backwards: left out\n",
          1000},
         {"awk -F, 'NR > 600 {$1 = \"nan\"} {print $1 \",\" $2}' good.csv >b.csv",
-         "401 rows with a value that is not a finite number, first in row 600", 599},
+         "401 rows with a value that is not a finite number or beyond 1e60, first in row 600", 599},
     };
     char rows[40];
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -130,6 +140,35 @@ static void test_gaps_kept(void **state)
         check_contains(out, "\"interval\": {\"value\": 0.01, ", cases[i].make);
         sweep();
     }
+}
+
+/* A number whose square overflows, and an infinity, are told and left out by identify too, whose
+ * results are those of the log where the cell is empty. */
+static void test_no_readings(void **state)
+{
+    (void)state;
+    static const char *const cells[] = {"", "inf", "1e160", "-1e63"};
+    char make[100], *empty = NULL;
+    for (size_t i = 0; i < sizeof cells / sizeof cells[0]; i++) {
+        write_good();
+        snprintf(make, sizeof make, "sed '500s/,.*/,%s/' good.csv >b.csv", cells[i]);
+        assert_int_equal(run(make), 0);
+        assert_int_equal(run("$I identify b.csv --json"), 0);
+        check_contains(err,
+                       "imukit identify: warning: 1 row with a value that is not a finite number "
+                       "or beyond 1e60, first in row 499: counted as missing\n",
+                       make);
+        if (empty)
+            assert_string_equal(out, empty);
+        else
+            assert_non_null(empty = strdup(out));
+        assert_int_equal(run("$I spectrum b.csv"), 1);
+        check_contains(err, "first in row 499, column gyro_x; use --gaps longest", make);
+        assert_int_equal(run("$I spectrum b.csv --gaps bridge"), 0);
+        assert_null(strstr(out, "inf"));
+        sweep();
+    }
+    free(empty);
 }
 
 /* Only the channel that lacks a value lacks it; times that are no grid are refused. */
@@ -277,10 +316,15 @@ static void test_unwritable_outputs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bad_logs),           cmocka_unit_test(test_refused_logs),
-        cmocka_unit_test(test_gaps_kept),          cmocka_unit_test(test_grids),
-        cmocka_unit_test(test_next_command),       cmocka_unit_test(test_gap_policies),
-        cmocka_unit_test(test_bridging_is_linear), cmocka_unit_test(test_unwritable_outputs),
+        cmocka_unit_test(test_bad_logs),
+        cmocka_unit_test(test_refused_logs),
+        cmocka_unit_test(test_gaps_kept),
+        cmocka_unit_test(test_no_readings),
+        cmocka_unit_test(test_grids),
+        cmocka_unit_test(test_next_command),
+        cmocka_unit_test(test_gap_policies),
+        cmocka_unit_test(test_bridging_is_linear),
+        cmocka_unit_test(test_unwritable_outputs),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -5,6 +5,7 @@
 #include "imukit/allan.h"
 #include "imukit/distributions.h"
 #include "imukit/random.h"
+#include "imukit/samples.h"
 
 #include <stdlib.h>
 
@@ -240,6 +241,29 @@ static void test_noise_types(void **state)
     }
 }
 
+/* One value whose square overflows: the correlation is inf/inf, and no type. */
+static void test_overflow(void **state)
+{
+    (void)state;
+    enum { N = 2000 };
+    static double y[N + 1], s[N + 1];
+    imk_allan_settings settings = imk_allan_default();
+    imk_power_law type = IMK_FLICKER_RATE;
+    imk_allan_point point = {.m = 99};
+    const size_t m = 2;
+    imk_random_normals(imk_random_seeded(12), 0, 0, N, y);
+    y[700] = 1e160;
+    imk_allan_sums(N, y, s, NULL);
+    CHECK_STATUS(imk_allan_noise_type(N, s, 2, &type), IMK_ERROR_NOT_FINITE);
+    assert_int_equal(type, IMK_FLICKER_RATE);
+    CHECK_STATUS(imk_allan_points(&settings, N, s, 1, &m, &point, NULL), IMK_ERROR_NOT_FINITE);
+    /* The largest reading there may be is no fault of arithmetic. */
+    y[700] = IMK_READING_MAX;
+    imk_allan_sums(N, y, s, NULL);
+    CHECK_OK(imk_allan_points(&settings, N, s, 1, &m, &point, NULL));
+    assert_true(point.deviation > 1e58 && point.upper < 1e60);
+}
+
 static void test_bad_arguments(void **state)
 {
     (void)state;
@@ -271,6 +295,7 @@ int main(void)
         cmocka_unit_test(test_order_of_work),
         cmocka_unit_test(test_factors),
         cmocka_unit_test(test_noise_types),
+        cmocka_unit_test(test_overflow),
         cmocka_unit_test(test_bad_arguments),
     };
     return cmocka_run_group_tests_name("allan", tests, NULL, NULL);

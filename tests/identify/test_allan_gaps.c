@@ -256,6 +256,12 @@ static void test_refusals(void **state)
     assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
                      IMK_OK);
     assert_true(p.point.count == 0 || p.point.deviation > 0);
+    /* Values whose squares overflow have no variance, and their noise no type. */
+    for (size_t i = 0; i < 100; i++)
+        rate[i] = i == 50 ? 1e160 : i == 52 ? (double)NAN : sin((double)i);
+    m = 1;
+    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
+                     IMK_ERROR_NOT_FINITE);
     m = 51;
     assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
                      IMK_ERROR_RANGE);
@@ -280,6 +286,7 @@ int main(void)
         cmocka_unit_test(test_bias_and_coverage),
         cmocka_unit_test(test_robust),
         cmocka_unit_test(test_large_constant_and_hole),
+
         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

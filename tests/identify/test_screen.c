@@ -112,6 +112,35 @@ static void test_outliers(void **state)
     }
 }
 
+/* An outlier whose square overflows is one like any other, and no reason to call the record
+ * constant; nor are readings whose squares vanish. */
+static void test_extreme_sizes(void **state)
+{
+    (void)state;
+    const imk_screen_settings settings = settings_of();
+    make(5, 1, 0, 0);
+    rate[700] = 1e160;
+    imk_screen s = look(&settings);
+    CHECK_RELATIVE(s.deviation, 1e160 / sqrt(N), 1e-4);
+    assert_int_equal(s.outliers.count, 1);
+    assert_int_equal(s.outliers.first, 700);
+    assert_true(s.resolution == 0);
+    make(5, 1e-4, 0, 0);
+    rate[1] = 4294967295.0; /* 2^32 - 1 where a driver had nothing to say: no step of the output */
+    s = look(&settings);
+    assert_true(s.resolution == 0);
+    assert_int_equal(s.outliers.count, 1);
+    assert_int_equal(s.outliers.first, 1);
+    make(5, 1, 0, 0);
+    const double deviation = look(&settings).deviation;
+    for (size_t i = 0; i < N; i++)
+        rate[i] = ldexp(rate[i], -700);
+    CHECK_RELATIVE(look(&settings).deviation, ldexp(deviation, -700), 1e-14);
+    for (size_t i = 0; i < N; i++)
+        rate[i] = i == 700 ? 1 : 1e-300;
+    assert_true(look(&settings).deviation > 0);
+}
+
 static void test_stuck_saturated_missing(void **state)
 {
     (void)state;
@@ -245,13 +274,10 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sound_records),
-        cmocka_unit_test(test_outliers),
-        cmocka_unit_test(test_stuck_saturated_missing),
-        cmocka_unit_test(test_repeated),
-        cmocka_unit_test(test_warm_up),
-        cmocka_unit_test(test_temperature),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_sound_records), cmocka_unit_test(test_outliers),
+        cmocka_unit_test(test_extreme_sizes), cmocka_unit_test(test_stuck_saturated_missing),
+        cmocka_unit_test(test_repeated),      cmocka_unit_test(test_warm_up),
+        cmocka_unit_test(test_temperature),   cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

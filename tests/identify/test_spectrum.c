@@ -270,6 +270,8 @@ static void test_missing(void **state)
     for (size_t k = 10; k + 1 < s.count; k++)
         mean += s.density[k] / (double)(s.count - 11);
     CHECK_CLOSE(mean, 1, 5 * sqrt(2.0 / N)); /* all samples are in the mean */
+    x[5] = 1e160;
+    CHECK_STATUS(estimate(&settings, N, x, &s), IMK_ERROR_NOT_FINITE);
     for (size_t i = 0; i < N; i += 100)
         x[i] = INFINITY;
     CHECK_STATUS(estimate(&settings, N, x, &s), IMK_ERROR_GAP);
