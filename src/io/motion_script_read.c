@@ -215,7 +215,8 @@ static int node_of(const imki_script_reader *r, const imk_error *error)
         strncmp(error->field, "mounting", 8) == 0 || strcmp(error->field, "smoothing") == 0;
     if (error->index >= 0 && (size_t)error->index < r->step_count)
         return r->step_node[error->index];
-    snprintf(path, sizeof path, "%s%s", is_root ? "" : "start.", error->field + (is_place ? 6 : 0));
+    snprintf(path, sizeof path, "%s%.*s", is_root ? "" : "start.", (int)sizeof error->field - 1,
+             error->field + (is_place ? 6 : 0));
     return imki_document_find(r->document, 0, path, NULL);
 }
 
@@ -236,19 +237,34 @@ static void place_error(const imki_script_reader *r, imk_error *error)
     imki_document_path(r->document, node, error->field, sizeof error->field);
 }
 
+/* Room for `count` pieces, and the script compiled into it. */
+static imk_status compile_into(const imki_script_reader *r, size_t count, imk_motion_file *file,
+                               imk_error *error)
+{
+    free(file->piece);
+    file->piece = calloc(count, sizeof *file->piece);
+    if (!file->piece)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    return imk_motion_script_compile(&r->script, file->piece, count, &file->trajectory, error);
+}
+
+/* Counting pieces takes as long as compiling, so only scripts of many are counted. */
 static imk_status compile(const imki_script_reader *r, imk_motion_file *file, imk_error *error)
 {
+    enum { FEW = 1024 };
     size_t count = 0;
-    imk_status status = imk_motion_script_pieces(&r->script, &count, error);
-    if (status == IMK_OK) {
-        file->piece = calloc(count, sizeof *file->piece);
-        if (!file->piece)
-            return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-        status =
-            imk_motion_script_compile(&r->script, file->piece, count, &file->trajectory, error);
+    imk_error found;
+    imk_status status = compile_into(r, FEW, file, &found);
+    if (status == IMK_ERROR_WORKSPACE) {
+        status = imk_motion_script_pieces(&r->script, &count, &found);
+        if (status == IMK_OK)
+            status = compile_into(r, count, file, &found);
     }
-    if (status != IMK_OK)
-        place_error(r, error);
+    if (status == IMK_OK)
+        return IMK_OK;
+    place_error(r, &found);
+    if (error)
+        *error = found;
     return status;
 }
 

@@ -222,6 +222,27 @@ static char *manual(void)
     return text;
 }
 
+/* A swing takes 20 to 80 pieces a cycle: room for a thousand does not do for a hundred cycles. */
+static void long_scripts_are_compiled_whole(void **state)
+{
+    (void)state;
+    static const char swing[] = "imukit_motion: 1\nsteps:\n  - swing x 5 deg at 1 Hz for 100 s\n";
+    static const char wrong[] = "imukit_motion: 1\nsteps:\n  - swing x 5 deg at 1 Hz for 100 s\n"
+                                "  - brake 1 m/s^2 for 1 s\n";
+    imk_motion_file *file = parsed(swing);
+    const imk_trajectory *trajectory = imk_motion_file_motion(file)->trajectory;
+    assert_true(trajectory->piece_count > 2000 && trajectory->piece_count < 8000);
+    CHECK_OK(imk_trajectory_validate(trajectory, NULL));
+    CHECK_CLOSE(imk_motion_file_duration(file), 100, 1e-12);
+    imk_motion_file_free(file);
+    imk_error error = {.status = IMK_OK};
+    file = NULL;
+    CHECK_STATUS(imk_motion_parse(wrong, strlen(wrong), NULL, 1, &file, &error), IMK_ERROR_RANGE);
+    assert_null(file);
+    assert_int_equal(error.line, 4);
+    assert_string_equal(error.found, "brake 1 m/s^2 for 1 s");
+}
+
 static void examples_of_the_manual_are_read(void **state)
 {
     (void)state;
@@ -660,6 +681,7 @@ int main(void)
         cmocka_unit_test(pose_has_three_angles),
         cmocka_unit_test(repeats_are_written_out),
         cmocka_unit_test(script_is_compiled),
+        cmocka_unit_test(long_scripts_are_compiled_whole),
         cmocka_unit_test(examples_of_the_manual_are_read),
         cmocka_unit_test(tables_of_the_manual_are_read),
         cmocka_unit_test(end_is_stop_or_hold),
