@@ -142,7 +142,7 @@ static void eliminate(const spline_system *system, const double *const position[
             if (i > 0) {
                 double right = 6.0 * (next - chord[c]);
                 if (i > 1)
-                    right -= lower * second[c - COMPONENTS];
+                    right -= lower * system->second[COMPONENTS * (i - 1) + c];
                 second[c] = right * system->inverse[i];
             }
             chord[c] = next;
