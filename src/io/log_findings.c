@@ -47,7 +47,6 @@ static double median_of_pending(const imki_log_times *times)
 
 void imki_log_times_start(imki_log_times *times, double given_interval)
 {
-    memset(times, 0, sizeof *times);
     times->given_interval = given_interval;
     times->last_time = (double)NAN;
     times->findings.interval = given_interval;

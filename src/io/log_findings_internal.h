@@ -28,6 +28,8 @@ typedef struct imki_log_times {
     double deviation_sum, deviation_square_sum;
 } imki_log_times;
 
+/* Begin with a structure of zeros: clearing its 128 KiB again takes longer than reading a short
+ * log. */
 void imki_log_times_start(imki_log_times *times, double given_interval);
 
 /* Add the times of rows first_row, first_row + 1, … */
