@@ -68,11 +68,13 @@ size_t imki_nearest_name(const char *name, size_t count, const char *const *cand
         size_t length = candidates[i] ? reduce(candidates[i], letters) : SIZE_MAX;
         if (length == SIZE_MAX || length == 0)
             continue;
-        size_t d = distance(wanted, wanted_length, letters, length);
         /* A third of the longer name, but one slip also in the shortest. */
-        size_t longer = length > wanted_length ? length : wanted_length;
-        size_t allowed = longer < 6 ? 1 : longer / 3;
-        if (longer > 1 && d <= allowed && d < best_distance) {
+        const size_t longer = length > wanted_length ? length : wanted_length;
+        const size_t allowed = longer < 6 ? 1 : longer / 3;
+        if (longer < 2 || length + wanted_length < 2 * longer - allowed)
+            continue; /* they differ by more in their lengths */
+        const size_t d = distance(wanted, wanted_length, letters, length);
+        if (d <= allowed && d < best_distance) {
             best = i;
             best_distance = d;
         }
