@@ -20,4 +20,8 @@ if(IMUKIT_SANITIZE)
        -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${IMUKIT_SANITIZE})
 endif()
+# What a fuzzer meets in the library guides it: edges are counted there too.
+if(IMUKIT_FUZZ)
+  list(APPEND imukit_flags -fsanitize=fuzzer-no-link)
+endif()
 add_compile_options("$<$<COMPILE_LANGUAGE:C>:${imukit_flags}>")

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* libFuzzer entry: imk_decimal_parse() against strtod(), and what is written reads back. */
+/* libFuzzer entry: imk_decimal_parse() against strtod(), and what is written reads back.
+ * Reads: src/base/decimal_parse.c src/base/decimal_format.c src/base/decimal_big.c */
+#include "harness.h"
+
 #include "imukit/decimal.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static uint64_t bits_of(double value)
 {

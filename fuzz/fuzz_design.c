@@ -1,20 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of the design file: any bytes are read or refused; what is read is a valid
- * design, which is written and read again with the same bits. */
+ * design, which is written and read again with the same bits.
+ * Reads: src/io/design_file.c src/io/design_read.c src/io/design_field.c src/io/design_print.c */
+#include "harness.h"
+
 #include "imukit/design_file.h"
 
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(bool condition)
-{
-    if (!condition)
-        abort();
-}
 
 static void require_same(const imk_design_file *a, const imk_design_file *b)
 {
@@ -37,7 +30,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *text = NULL;
     size_t length = 0;
     const imk_status status = imk_design_parse((const char *)data, size, &file, &error);
-    require(status == error.status && (file.design != NULL) == (status == IMK_OK));
+    require_told(status, &error);
+    require((file.design != NULL) == (status == IMK_OK));
     if (status != IMK_OK)
         return 0;
     require(file.instrument->validate(file.design, NULL) == IMK_OK);

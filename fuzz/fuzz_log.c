@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* libFuzzer entry: any bytes as a log, read in pieces whose length the bytes choose. */
+/* libFuzzer entry: any bytes as a log, read in pieces whose length the bytes choose.
+ * Reads: src/io/log_reader.c src/io/log_format.c src/io/log_header.c src/io/log_columns.c
+ * src/io/log_row.c src/io/log_cells.c src/io/log_cells_avx2.c src/io/log_text.c
+ * src/io/log_findings.c */
+#include "harness.h"
+
 #include "imukit/log.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { ROWS_MAX = 64 };
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static imk_log_settings settings_of(uint32_t choice)
 {
@@ -27,35 +27,33 @@ static imk_log_settings settings_of(uint32_t choice)
     return settings;
 }
 
+static void read_all(imk_log_reader *reader, size_t piece)
+{
+    static double values[IMK_LOG_COLUMNS_MAX][ROWS_MAX];
+    double *columns[IMK_LOG_COLUMNS_MAX];
+    imk_error error = {.status = IMK_OK};
+    imk_status status;
+    for (size_t i = 0; i < IMK_LOG_COLUMNS_MAX; i++)
+        columns[i] = i % 3 == 2 ? NULL : values[i];
+    size_t rows = 0, total = 0;
+    while ((status = imk_log_read(reader, piece, columns, &rows, &error)) == IMK_OK && rows > 0)
+        total += rows;
+    require_told(status, &error);
+    const imk_log_findings found = imk_log_findings_get(reader);
+    require(found.rows == total && found.not_finite <= total && found.gaps <= total);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    /* The sum of the bytes chooses, so that a log as it is can be an input. */
-    uint32_t choice = 0;
-    for (size_t i = 0; i < size; i++)
-        choice += data[i];
+    const uint32_t choice = choice_of(data, size);
     const imk_log_settings settings = settings_of(choice);
-    const size_t piece = 1 + choice / 64 % ROWS_MAX;
-    imk_log_reader *reader;
-    imk_error error;
-    /* A copy of exact size lets the address sanitiser see every byte read outside. */
-    char *text = malloc(size + (size == 0));
-    if (!text)
-        return 0;
-    if (size > 0)
-        memcpy(text, data, size);
-    if (imk_log_open_memory(text, size, &settings, &reader, &error) == IMK_OK) {
-        static double values[IMK_LOG_COLUMNS_MAX][ROWS_MAX];
-        double *columns[IMK_LOG_COLUMNS_MAX];
-        for (size_t i = 0; i < IMK_LOG_COLUMNS_MAX; i++)
-            columns[i] = i % 3 == 2 ? NULL : values[i];
-        size_t rows = 0, total = 0;
-        while (imk_log_read(reader, piece, columns, &rows, &error) == IMK_OK && rows > 0)
-            total += rows;
-        const imk_log_findings found = imk_log_findings_get(reader);
-        if (found.rows != total || found.not_finite > total || found.gaps > total)
-            abort();
-        imk_log_close(reader);
-    }
-    free(text);
+    imk_log_reader *reader = NULL;
+    imk_error error = {.status = IMK_OK};
+    const imk_status status =
+        imk_log_open_memory((const char *)data, size, &settings, &reader, &error);
+    require_told(status, &error);
+    if (status == IMK_OK)
+        read_all(reader, 1 + choice / 64 % ROWS_MAX);
+    imk_log_close(reader);
     return 0;
 }

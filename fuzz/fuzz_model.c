@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of the model file: any bytes are read or refused; a model that is read is
  * written with its document as the same bytes, and without it as a text that reads back to the
- * same model. */
+ * same model.
+ * Reads: src/io/document.c src/io/model_file.c src/io/model_items.c
+ * src/io/model_yaml_correlation.c src/io/model_yaml_edit.c src/io/model_yaml_fields.c
+ * src/io/model_yaml_read.c src/io/model_yaml_values.c src/io/model_yaml_write.c */
+#include "harness.h"
+
 #include "imukit/model_file.h"
 
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(bool condition)
-{
-    if (!condition)
-        abort();
-}
 
 /* Write without the document, read, compare, and write again. */
 static void check_canonical(const imk_model *model)
@@ -52,7 +48,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     imk_document *document = NULL;
     imk_error error = {.status = IMK_OK};
     imk_status status = imk_model_parse((const char *)data, size, &model, &document, &error);
-    require(status == error.status);
+    require_told(status, &error);
     if (status != IMK_OK)
         return 0;
     char *same = NULL;

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fuzz entry point of the foreign parameter files: any bytes are read or refused; what is read is
- * written in its own format, and that reads back. */
+/* Fuzz entry point of the foreign parameter files: any bytes are read or refused, as the format
+ * they are recognised as and as one that they are said to be; what is read is written in a format,
+ * and that reads back. Trying all pairs of formats, up to 110 of them, took 20 ms an input: the
+ * bytes choose one.
+ * Reads: src/io/parameter_file.c src/io/parameter_ardupilot.c src/io/parameter_expression.c
+ * src/io/parameter_filter.c src/io/parameter_gazebo.c src/io/parameter_gnss_ins_sim.c
+ * src/io/parameter_kalibr.c src/io/parameter_matlab.c src/io/parameter_navego.c
+ * src/io/parameter_px4.c src/io/parameter_values.c src/io/parameter_vins.c */
+#include "harness.h"
+
 #include "imukit/parameter_file.h"
 
-#include <stdint.h>
 #include <stdlib.h>
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(bool condition)
-{
-    if (!condition)
-        abort();
-}
+enum { FORMATS = IMK_PARAMETERS_FILTER };
 
 /* Write a model in a format and read that again. A value near the edge of what is plausible may
  * leave it in another unit, and a model may hold nothing that fits. */
@@ -22,12 +23,12 @@ static void check_written(const imk_model *model, imk_parameter_settings setting
     char *text = NULL;
     size_t text_size;
     imk_model back;
-    imk_error error;
+    imk_error error = {.status = IMK_OK};
     settings.format = format;
     settings.sensor = NULL;
-    imk_status status =
+    const imk_status status =
         imk_parameters_print(NULL, &settings, model, &text, &text_size, NULL, &error);
-    require(status == IMK_OK || status == error.status);
+    require_told(status, &error);
     require(status == IMK_OK || status == IMK_ERROR_RANGE || status == IMK_ERROR_UNSUPPORTED ||
             status == IMK_ERROR_NOT_FINITE);
     if (status == IMK_OK)
@@ -35,24 +36,32 @@ static void check_written(const imk_model *model, imk_parameter_settings setting
     free(text);
 }
 
+/* @return whether it was read */
+static bool check_read(const uint8_t *data, size_t size, const imk_parameter_settings *settings,
+                       imk_model *model)
+{
+    imk_parameter_notes notes;
+    imk_error error = {.status = IMK_OK};
+    const imk_status status =
+        imk_parameters_parse((const char *)data, size, settings, model, &notes, &error);
+    require_told(status, &error);
+    if (status == IMK_OK)
+        require(imk_model_validate(model, NULL) == IMK_OK);
+    return status == IMK_OK;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     imk_model model;
-    imk_parameter_notes notes;
+    const uint32_t choice = choice_of(data, size);
     imk_parameter_settings settings = imk_parameter_settings_default();
     settings.rate = 100;
-    for (int format = 0; imk_parameter_format_name((imk_parameter_format)(format ? format : 1));
-         format++) {
-        imk_error error = {.status = IMK_OK};
-        settings.format = (imk_parameter_format)format;
-        imk_status status =
-            imk_parameters_parse((const char *)data, size, &settings, &model, &notes, &error);
-        require(status == error.status);
-        if (status != IMK_OK)
-            continue;
-        require(imk_model_validate(&model, NULL) == IMK_OK);
-        for (int target = 1; imk_parameter_format_name((imk_parameter_format)target); target++)
-            check_written(&model, settings, (imk_parameter_format)target);
+    bool is_read = check_read(data, size, &settings, &model);
+    if (!is_read) {
+        settings.format = (imk_parameter_format)(1 + choice % FORMATS);
+        is_read = check_read(data, size, &settings, &model);
     }
+    if (is_read)
+        check_written(&model, settings, (imk_parameter_format)(1 + choice / FORMATS % FORMATS));
     return 0;
 }

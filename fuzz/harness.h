@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the fuzz entry points have in common. */
+#ifndef IMUKIT_FUZZ_HARNESS_H
+#define IMUKIT_FUZZ_HARNESS_H
+
+#include "imukit/status.h"
+
+#include <stdbool.h>
+
+/* Called by libFuzzer, and by replay.c. */
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* What must hold whatever the bytes are. */
+void require(bool condition);
+
+/* A refusal carries its status and makes a sentence; what was read left the error alone. The error
+ * is begun as (imk_error){.status = IMK_OK}. */
+void require_told(imk_status status, const imk_error *error);
+
+/* A number that chooses settings: the sum of the bytes, so that a file as it is can be an input. */
+uint32_t choice_of(const uint8_t *data, size_t size);
+
+/* The bytes as files, for readers that take a path: in memory, each name one file. */
+typedef enum input_file {
+    INPUT_TABLE,         /* table: a log, compressed or not */
+    INPUT_SCRIPT,        /* script.yaml */
+    INPUT_MATRIX,        /* matrix.npy */
+    INPUT_MATRIX_NAMES,  /* matrix.npy.columns */
+    INPUT_CAMPAIGN_PART, /* campaign.h5.part */
+    INPUT_FILES
+} input_file;
+
+/* Put the bytes into a file, in the place of those before. @return its path */
+const char *input_file_put(input_file file, const uint8_t *data, size_t size);
+
+#endif
