@@ -122,7 +122,8 @@ int evaluate_draw(const evaluation *v, const char *path)
     while (f && made < v->channel_count && make(&v->channel[made], &f[made])) {
         for (size_t p = 0; p < f[made].panels; p++)
             panel[panels++] = f[made].panel[p];
-        two = two || f[made++].panels > 1;
+        two = two || f[made].panels > 1;
+        made++;
     }
     if (f && made == v->channel_count && panels == 0)
         status = imk_error_set(&error, IMK_ERROR_EMPTY, "plot", NULL,

@@ -222,13 +222,31 @@ static void test_report(void **state)
     sweep();
 }
 
+/* Two panels for each channel that has a loop, however many channels. */
+static void test_plot_of_several_channels(void **state)
+{
+    (void)state;
+    if (!imk_plot_available())
+        skip();
+    write_table("t.csv", "reading_x [deg/s]", 1);
+    assert_int_equal(run("awk -F, 'NR == 1 { print $0 \",reading_y [deg/s],reading_z [deg/s]\" }"
+                         " NR > 1 { print $0 \",\" $2 \",\" $2 }' t.csv >three.csv && "
+                         "$I evaluate three.csv --plot p.svg"),
+                     0);
+    read_text("p.svg", out);
+    check_contains(out, "x: hysteresis", "figure");
+    check_contains(out, "y: hysteresis", "figure");
+    check_contains(out, "z: hysteresis", "figure");
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),    cmocka_unit_test(test_counts),
         cmocka_unit_test(test_limits),   cmocka_unit_test(test_runs_and_directions),
         cmocka_unit_test(test_messages), cmocka_unit_test(test_logs),
-        cmocka_unit_test(test_report),
+        cmocka_unit_test(test_report),   cmocka_unit_test(test_plot_of_several_channels),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
