@@ -74,10 +74,13 @@ static void describe_outputs(const physics *p, sheet *s)
     add_column(s, gyro ? "gyro_x" : "accel_x",
                gyro ? IMK_QUANTITY_ANGULAR_RATE : IMK_QUANTITY_SPECIFIC_FORCE, 0,
                gyro ? "deg/s" : "m/s^2");
-    for (size_t i = 1; i < instrument->output_count; i++)
+    bool told = false; /* by the instrument itself */
+    for (size_t i = 1; i < instrument->output_count; i++) {
         add_column(s, instrument->outputs[i].name, IMK_QUANTITY_OTHER, -1,
                    instrument->outputs[i].unit);
-    s->temperature = p->input.temperature_rate != 0;
+        told = told || strcmp(instrument->outputs[i].name, "temperature") == 0;
+    }
+    s->temperature = p->input.temperature_rate != 0 && !told;
     if (s->temperature)
         add_column(s, "temperature", IMK_QUANTITY_TEMPERATURE, -1, "degC");
 }

@@ -185,6 +185,19 @@ static void test_temperature_and_signals(void **state)
     sweep();
 }
 
+/* One that tells its temperature itself has one column of it. */
+static void test_told_temperature(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I physics vibrating_beam --temperature-rate 60degC/min -d 1s -o a.csv "
+                         "&& head -n 1 a.csv && rm a.csv"),
+                     0);
+    check_contains(
+        out, "\ntime [s],accel_x [m/s^2],frequency_1 [Hz],frequency_2 [Hz],temperature [degC]\n",
+        "header");
+    sweep();
+}
+
 static void test_levels_and_warnings(void **state)
 {
     (void)state;
@@ -488,6 +501,7 @@ int main(void)
         cmocka_unit_test(test_sine),
         cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_temperature_and_signals),
+        cmocka_unit_test(test_told_temperature),
         cmocka_unit_test(test_levels_and_warnings),
         cmocka_unit_test(test_reduce),
         cmocka_unit_test(test_sweep),
