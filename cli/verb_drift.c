@@ -100,8 +100,8 @@ const verb drift_verb = {
     .operands_minimum = 1,
     .operands_maximum = DRIFT_MODELS_MAX,
     .examples =
-        {{"imukit drift tactical --duration 1h --monte-carlo 1000",
-          "error growth of a class by covariance, with the budget of its terms, beside a thousand "
+        {{"imukit drift tactical --duration 1h --monte-carlo 100",
+          "error growth of a class by covariance, with the budget of its terms, beside a hundred "
           "simulated runs"},
          {"imukit drift model.yaml --aligned self --want \"CEP 1 nmi @ 1h\" --report drift.html",
           "what each term must become for a mile in an hour, and which devices would do"}},
