@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Temporary files beside their targets, and the register from which a signal handler removes them.
+/* Temporary files beside their targets.
  *
  * The temporary file of DIR/NAME is DIR/.NAME.<process>.<number>.part, made with O_EXCL: no random
  * numbers, and a file left by a killed process only makes the number go up. */
 #define _POSIX_C_SOURCE 200809L
 #define _XOPEN_SOURCE 700
-#include "imukit/output_file.h"
 #include "io/output_target_internal.h"
+
+#include "io/leftovers_internal.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -19,53 +20,10 @@
 #include <unistd.h>
 
 enum {
-    SLOTS = 32,
     NAME_SIZE = 4096, /* PATH_MAX of Linux */
     LINKS_MAX = 40,   /* as Linux itself follows */
     ATTEMPTS_MAX = 10000
 };
-
-/* A temporary file, for the signal handler: the name lies in static memory, since a handler may run
- * on one thread while another frees memory. Whoever takes the slot out of SLOT_LIVE decides what
- * becomes of the file. */
-enum { SLOT_FREE, SLOT_FILLING, SLOT_LIVE };
-
-static struct {
-    atomic_int state;
-    char name[NAME_SIZE];
-} slots[SLOTS];
-
-static int register_temporary(const char *name)
-{
-    const size_t size = strlen(name) + 1;
-    for (int slot = 0; slot < SLOTS && size <= NAME_SIZE; slot++) {
-        int state = SLOT_FREE;
-        if (atomic_compare_exchange_strong(&slots[slot].state, &state, SLOT_FILLING)) {
-            memcpy(slots[slot].name, name, size);
-            atomic_store(&slots[slot].state, SLOT_LIVE);
-            return slot;
-        }
-    }
-    return -1;
-}
-
-static void unregister_temporary(int slot)
-{
-    int state = SLOT_LIVE;
-    if (slot >= 0)
-        atomic_compare_exchange_strong(&slots[slot].state, &state, SLOT_FREE);
-}
-
-void imk_output_file_abandon_all(void)
-{
-    const int saved = errno;
-    for (int slot = 0; slot < SLOTS; slot++) {
-        int state = SLOT_LIVE;
-        if (atomic_compare_exchange_strong(&slots[slot].state, &state, SLOT_FILLING))
-            unlink(slots[slot].name);
-    }
-    errno = saved;
-}
 
 /* Directory part of a path with its slash, as a length. */
 static size_t directory_length(const char *path)
@@ -128,7 +86,7 @@ static int make_temporary(imki_target *target, mode_t mode)
         target->temporary = NULL;
         return errno;
     }
-    target->slot = register_temporary(target->temporary);
+    target->slot = imki_leftover_add(target->temporary);
     return 0;
 }
 
@@ -202,7 +160,7 @@ int imki_target_publish(imki_target *target)
         return 0;
     if (rename(target->temporary, target->name) != 0)
         return errno;
-    unregister_temporary(target->slot);
+    imki_leftover_drop(target->slot);
     sync_directory(target->name);
     free(target->temporary);
     target->temporary = NULL;
@@ -215,7 +173,7 @@ void imki_target_close(imki_target *target)
         close(target->file);
     if (target->temporary) {
         unlink(target->temporary);
-        unregister_temporary(target->slot);
+        imki_leftover_drop(target->slot);
     }
     free(target->path);
     free(target->name);
