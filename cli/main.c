@@ -69,9 +69,12 @@ static void main_manual(void)
            IMK_VERSION);
     for (size_t i = 0; i < VERB_COUNT; i++)
         printf(".TP\n.BR imukit\\-%s (1)\n%s\n", verbs[i]->name, verbs[i]->summary);
-    fputs(".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nno colours when set\n"
-          ".TP\n.B TMPDIR\nwhere figures are drawn before they are put in place\n",
-          stdout);
+    fputs(
+        ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nno colours when set\n"
+        ".TP\n.B TMPDIR\nwhere figures are drawn before they are put in place, and where a copy of "
+        "a pipe is kept that is read twice\n"
+        ".TP\n.B IMUKIT_GNUPLOT_SECONDS\nhow long gnuplot may take for a figure; default 120\n",
+        stdout);
 }
 
 /* imukit help [VERB], and the hidden forms packaging uses: help --man [VERB], help --completion. */
@@ -102,7 +105,7 @@ static int help(int count, char **words)
     return command_finish(EXIT_DONE);
 }
 
-static const int ending_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+static const int ending_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT, SIGXCPU};
 enum { ENDING_SIGNALS = sizeof ending_signals / sizeof ending_signals[0] };
 
 /* Interrupted: leave no half-written file behind, and end as the signal would have. */
@@ -114,9 +117,13 @@ static void interrupted(int number)
 }
 
 /* A second signal, which shells and timeout(1) send soon after the first, waits until the files are
- * gone. A signal that the parent has switched off, as nohup(1) does, stays off. */
+ * gone. A signal that the parent has switched off, as nohup(1) does, stays off; but of gnuplot we
+ * need to know how it ended. A file beyond the limit of its size is an error of write() like any
+ * other, with a sentence. */
 static void catch_signals(void)
 {
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGCHLD, SIG_DFL);
     struct sigaction action = {.sa_handler = interrupted}, before;
     sigemptyset(&action.sa_mask);
     for (int i = 0; i < ENDING_SIGNALS; i++)
