@@ -312,7 +312,6 @@ int allan_draw(const allan_result *result, const char *plot)
 
 int allan_write_report(const allan_result *result, const char *path)
 {
-    imk_error error;
     char subtitle[300];
     allan_figure *f = make_figure(result);
     if (!f)
@@ -332,7 +331,6 @@ int allan_write_report(const allan_result *result, const char *path)
     }
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    imk_status status = imk_page_write(page, path, &error);
     free_figure(f);
-    return status == IMK_OK ? -1 : command_error(&error, NULL);
+    return page_write(page, path);
 }

@@ -85,7 +85,6 @@ static void put_temperature(imk_page *page, const bench *b)
 int bench_report(const bench *b, const char *path)
 {
     char subtitle[300];
-    imk_error error;
     size_t used = 0;
     subtitle[0] = '\0';
     for (size_t k = 0; k < b->log_count && used < sizeof subtitle; k++)
@@ -109,7 +108,5 @@ int bench_report(const bench *b, const char *path)
     put_model(page, b);
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    if (imk_page_write(page, path, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return -1;
+    return page_write(page, path);
 }

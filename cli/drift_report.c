@@ -73,7 +73,6 @@ static void put_models(imk_page *page, const drift_result *r)
 
 int drift_report(const drift_result *r, const drift_answer *answer, const char *path)
 {
-    imk_error error;
     char conditions[DRIFT_CONDITIONS];
     imk_page *page = imk_page_create("Error growth", r->model_count > 1 ? "" : r->name[0]);
     drift_conditions(r, conditions, sizeof conditions);
@@ -96,7 +95,5 @@ int drift_report(const drift_result *r, const drift_answer *answer, const char *
     put_models(page, r);
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    if (imk_page_write(page, path, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return -1;
+    return page_write(page, path);
 }

@@ -130,7 +130,6 @@ static void put_definitions(imk_page *page, const evaluation *v)
 
 int evaluate_report(const evaluation *v, const char *path)
 {
-    imk_error error;
     char subtitle[300];
     evaluate_row row[EVALUATE_ROWS];
     const evaluate_options *o = v->options;
@@ -159,5 +158,5 @@ int evaluate_report(const evaluation *v, const char *path)
     }
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    return imk_page_write(page, path, &error) == IMK_OK ? -1 : command_error(&error, NULL);
+    return page_write(page, path);
 }

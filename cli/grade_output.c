@@ -179,7 +179,6 @@ static void put_maps(imk_page *page, const grade_result *r)
 
 int grade_report(const grade_result *r, const char *path)
 {
-    imk_error error;
     imk_page *page = imk_page_create("Grade", r->count > 1 ? "" : r->cases[0].operand);
     put_table(page, "Comparison", grade_comparison_table(r));
     for (size_t m = 0; m < r->count; m++)
@@ -197,7 +196,5 @@ int grade_report(const grade_result *r, const char *path)
     }
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    if (imk_page_write(page, path, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return -1;
+    return page_write(page, path);
 }

@@ -91,10 +91,7 @@ int identify_report(const identification *i, const char *path)
     free(figure);
     put_model(page, i);
     put_next_steps(page, i);
-    imk_error error;
-    if (imk_page_write(page, path, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return -1;
+    return page_write(page, path);
 }
 
 static json_t *estimate_json(const imk_estimate *e, const char *unit, double scale)

@@ -309,10 +309,7 @@ int several_report(const several_logs *s, const char *path)
         put_sentences(page, s->log[r]);
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    imk_error error;
-    if (imk_page_write(page, path, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return -1;
+    return page_write(page, path);
 }
 
 static json_t *joint_channel_json(const several_logs *s, size_t channel)

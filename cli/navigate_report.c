@@ -151,7 +151,6 @@ static void put_start(imk_page *page, const navigation *n)
 int navigate_report(const navigation *n, const char *path)
 {
     char subtitle[300], length[60];
-    imk_error error;
     track_figure f = {0};
     format_duration(n->dt * (double)n->rows, length, sizeof length);
     snprintf(subtitle, sizeof subtitle, "%.120s: %zu samples, %g Hz, %s", n->path, n->rows,
@@ -176,7 +175,5 @@ int navigate_report(const navigation *n, const char *path)
     text_table_free(&table);
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    if (imk_page_write(page, path, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return -1;
+    return page_write(page, path);
 }

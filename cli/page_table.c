@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Hands the cells of a text table to the page. */
+/* What the verbs share of reports: tables of texts, and writing the page. */
 #include "page_table.h"
+
+#include "command.h"
 
 #include <stdlib.h>
 
@@ -16,4 +18,15 @@ void page_put_table(imk_page *page, const text_table *table)
             cells[r * table->columns + c] = text_table_get(table, r, c);
     imk_page_table(page, table->rows, table->columns, cells);
     free(cells);
+}
+
+int page_write(imk_page *page, const char *path)
+{
+    imk_error error;
+    const bool lacks_figures = imk_page_lacks_figures(page);
+    if (imk_page_write(page, path, &error) != IMK_OK)
+        return command_error(&error, NULL);
+    if (lacks_figures)
+        command_note("%s has no figures: gnuplot is not installed; apt install gnuplot-nox", path);
+    return -1;
 }

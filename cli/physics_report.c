@@ -91,7 +91,6 @@ int physics_report(const physics *p, const physics_run *run, const physics_labor
                    const char *path)
 {
     const imk_instrument *instrument = p->file.instrument;
-    imk_error error;
     char subtitle[400];
     snprintf(subtitle, sizeof subtitle, "%.120s. Default design: %.240s", instrument->title,
              instrument->source);
@@ -110,7 +109,5 @@ int physics_report(const physics *p, const physics_run *run, const physics_labor
         imk_page_verdict(page, 2, command_warning_get(i)->message);
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    if (imk_page_write(page, path, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return -1;
+    return page_write(page, path);
 }

@@ -360,7 +360,6 @@ static void put_on_page(void *page, text_table *table)
 
 int spectrum_write_report(const spectrum_result *result, const char *path)
 {
-    imk_error error;
     char subtitle[300], text[300];
     spectrum_figure *figure = spectrum_figure_make(result);
     if (!figure)
@@ -375,7 +374,6 @@ int spectrum_write_report(const spectrum_result *result, const char *path)
     each_table(result, put_on_page, page);
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
-    imk_status status = imk_page_write(page, path, &error);
     spectrum_figure_free(figure);
-    return status == IMK_OK ? -1 : command_error(&error, NULL);
+    return page_write(page, path);
 }

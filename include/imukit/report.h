@@ -74,9 +74,10 @@ typedef struct imk_figure {
 IMK_API bool imk_plot_available(void);
 
 /** Draw a figure to FILE.svg or FILE.png, or to standard output with "term" (in letters, as large
- *  as the terminal; in colours on a terminal unless NO_COLOR is set). No shell is involved. Without
- *  gnuplot FILE.dat and FILE.gp are written instead and IMK_ERROR_UNSUPPORTED names the package to
- *  install.
+ *  as the terminal; in colours on a terminal unless NO_COLOR is set). gnuplot runs in a folder of
+ *  TMPDIR and sees no name but its own there, so none is a command to it; it has 120 s, or
+ *  IMUKIT_GNUPLOT_SECONDS. Without gnuplot FILE.dat and FILE.gp are written instead and
+ *  IMK_ERROR_UNSUPPORTED names the package to install.
  *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_FORMAT
  *          (another ending), IMK_ERROR_UNSUPPORTED, IMK_ERROR_OPEN, IMK_ERROR_WRITE */
 IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_error *error);
@@ -123,7 +124,8 @@ IMK_API void imk_page_text(imk_page *page, const char *text);
 IMK_API void imk_page_verdict(imk_page *page, int level, const char *text);
 /** A table of rows x columns texts, the first row the header. */
 IMK_API void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *const *cells);
-/** A figure, drawn into the page; without gnuplot a note that says what to install. */
+/** A figure, drawn into the page. Without gnuplot a note says what to install, and of a figure
+ *  without a point to draw what is missing; any other failure becomes that of imk_page_write(). */
 IMK_API void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption);
 /** An animation, drawn into the page. */
 IMK_API void imk_page_animation(imk_page *page, const imk_animation *animation,
@@ -132,7 +134,11 @@ IMK_API void imk_page_animation(imk_page *page, const imk_animation *animation,
 IMK_API void imk_page_break(imk_page *page);
 /** Preformatted text, such as a model file. */
 IMK_API void imk_page_code(imk_page *page, const char *text);
-/** Write the page and free it; NULL path only frees. */
+/** Does the page lack figures because gnuplot is not installed? */
+IMK_API bool imk_page_lacks_figures(const imk_page *page);
+/** Write the page and free it; NULL path only frees.
+ *  @return IMK_ERROR_MEMORY, IMK_ERROR_OPEN, IMK_ERROR_WRITE, and why a figure was not drawn, as of
+ *          imk_figure_svg(): then nothing is written */
 IMK_API imk_status imk_page_write(imk_page *page, const char *path, imk_error *error);
 
 #ifdef __cplusplus

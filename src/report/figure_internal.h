@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What figure.c hands to gnuplot.c: the script and the numbers of a figure as text. */
+/* What figure.c hands to gnuplot.c and figure_file.c: the script and the numbers of a figure as
+ * text; and the drawing. */
 #ifndef IMUKIT_REPORT_FIGURE_INTERNAL_H
 #define IMUKIT_REPORT_FIGURE_INTERNAL_H
 
@@ -26,10 +27,9 @@ imk_status imki_figure_check(const imk_figure *figure, imk_error *error);
 char *imki_figure_script(const imk_figure *figure, const imki_drawing *drawing, size_t *size);
 char *imki_figure_data(const imk_figure *figure, size_t *size);
 
-/* Path of a program on PATH, from malloc(); NULL when there is none. */
-char *imki_program_find(const char *name);
-
-/* Run the program on one script file with its messages discarded; true when it ended with 0. */
-bool imki_gnuplot_run(const char *program, const char *script);
+/* Draw with gnuplot, in a temporary folder: the drawing from malloc(), with a terminating zero.
+ * output and data of `drawing` are set. */
+imk_status imki_gnuplot_draw(const imk_figure *figure, imki_drawing *drawing, char **image,
+                             size_t *size, imk_error *error);
 
 #endif

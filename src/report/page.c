@@ -16,6 +16,8 @@ struct imk_page {
     char *text;
     size_t size;
     int figures;
+    bool lacks_figures;
+    imk_error failure; /* of the first drawing that failed */
 };
 
 static const char style[] =
@@ -155,6 +157,12 @@ static void put_svg(imk_page *page, const char *svg)
     }
 }
 
+static void fail(imk_page *page, const imk_error *error)
+{
+    if (page->failure.status == IMK_OK)
+        page->failure = *error;
+}
+
 void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption)
 {
     if (!page)
@@ -162,9 +170,15 @@ void imk_page_figure(imk_page *page, const imk_figure *figure, const char *capti
     char *svg = NULL;
     size_t size;
     imk_error error;
-    if (imk_figure_svg(figure, &svg, &size, &error) != IMK_OK) {
+    const bool drawn = imk_figure_svg(figure, &svg, &size, &error) == IMK_OK;
+    if (!drawn && (error.status == IMK_ERROR_EMPTY || !imk_plot_available())) {
+        page->lacks_figures = page->lacks_figures || error.status != IMK_ERROR_EMPTY;
         element(page, "<p class=\"verdict note\">Figure left out: ", error.found, "; ");
         element(page, "", error.expected, ".</p>\n");
+        return;
+    }
+    if (!drawn) {
+        fail(page, &error);
         return;
     }
     fputs("<figure>\n", page->stream);
@@ -180,7 +194,12 @@ void imk_page_animation(imk_page *page, const imk_animation *animation, const ch
     imk_error error;
     if (!page)
         return;
-    if (imk_animation_svg(animation, &svg, &size, &error) != IMK_OK) {
+    const imk_status status = imk_animation_svg(animation, &svg, &size, &error);
+    if (status == IMK_ERROR_MEMORY) {
+        fail(page, &error);
+        return;
+    }
+    if (status != IMK_OK) {
         element(page, "<p class=\"verdict note\">Animation left out: ", error.found, ".</p>\n");
         return;
     }
@@ -188,6 +207,11 @@ void imk_page_animation(imk_page *page, const imk_animation *animation, const ch
     put_svg(page, svg);
     element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
     free(svg);
+}
+
+bool imk_page_lacks_figures(const imk_page *page)
+{
+    return page && page->lacks_figures;
 }
 
 imk_status imk_page_write(imk_page *page, const char *path, imk_error *error)
@@ -201,6 +225,10 @@ imk_status imk_page_write(imk_page *page, const char *path, imk_error *error)
     imk_status status = IMK_OK;
     if (path && bad) {
         status = imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
+    } else if (path && page->failure.status != IMK_OK) {
+        status = page->failure.status;
+        if (error)
+            *error = page->failure;
     } else if (path) {
         imk_output_file *file;
         status = imk_output_file_open(path, &file, error);

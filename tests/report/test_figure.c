@@ -194,6 +194,7 @@ static void test_without_gnuplot(void **state)
     char *saved = strdup(getenv("PATH"));
     setenv("PATH", directory, 1);
     assert_false(imk_plot_available());
+    const imk_status in_letters = imk_figure_write(&figure, "term", &error);
     imk_status status = imk_figure_write(&figure, path_in_directory("b.svg"), &error);
     char *svg = NULL;
     size_t size;
@@ -201,6 +202,7 @@ static void test_without_gnuplot(void **state)
     imk_status svg_status = imk_figure_svg(&figure, &svg, &size, &svg_error);
     setenv("PATH", saved, 1);
     free(saved);
+    CHECK_STATUS(in_letters, IMK_ERROR_UNSUPPORTED);
     CHECK_STATUS(status, IMK_ERROR_UNSUPPORTED);
     CHECK_STATUS(svg_status, IMK_ERROR_UNSUPPORTED);
     assert_non_null(strstr(error.expected, "gnuplot-nox"));
@@ -216,6 +218,32 @@ static void test_without_gnuplot(void **state)
     unlink(path_in_directory("b.gp"));
 }
 
+/* Without a temporary folder nothing is drawn, and nothing is freed that was not made. */
+static void test_without_temporary_folder(void **state)
+{
+    (void)state;
+    imk_error error;
+    if (!imk_plot_available())
+        skip();
+    const char *before = getenv("TMPDIR");
+    char *saved = before ? strdup(before) : NULL;
+    setenv("TMPDIR", "/nonexistent", 1);
+    imk_status status = imk_figure_write(&figure, path_in_directory("a.svg"), &error);
+    char *svg = NULL;
+    size_t size;
+    const imk_status svg_status = imk_figure_svg(&figure, &svg, &size, NULL);
+    if (saved)
+        setenv("TMPDIR", saved, 1);
+    else
+        unsetenv("TMPDIR");
+    free(saved);
+    CHECK_STATUS(status, IMK_ERROR_OPEN);
+    CHECK_STATUS(svg_status, IMK_ERROR_OPEN);
+    assert_string_equal(error.field, "temporary folder");
+    assert_null(svg);
+    assert_false(exists(path_in_directory("a.svg")));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -225,6 +253,7 @@ int main(void)
         cmocka_unit_test(test_regions),
         cmocka_unit_test(test_refuses_what_cannot_be_drawn),
         cmocka_unit_test(test_without_gnuplot),
+        cmocka_unit_test(test_without_temporary_folder),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

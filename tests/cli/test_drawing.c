@@ -1,0 +1,332 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* --plot, --report and --animate of every verb when gnuplot or the temporary folder is missing, and
+ * with names that gnuplot or a shell would take for commands. */
+#include "run_command.h"
+
+#include <signal.h>
+#include <time.h>
+
+static const char allan[] = "$I allan one.csv";
+
+/* Every place from which a verb draws; the letters are the options it takes. */
+static const struct {
+    const char *line, *options;
+} drawings[] = {
+    {allan, "pr"},
+    {"$I spectrum one.csv", "pr"},
+    {"$I identify one.csv", "pr"},
+    {"$I identify one.csv one.csv --runs", "pr"},
+    {"$I identify one.csv one.csv --devices", "r"},
+    {"$I calibrate faces.csv -p sixposition -g 9.81m/s^2", "pr"},
+    {"$I evaluate table.csv", "pr"},
+    {"$I navigate faces.csv -p '48 deg, 11 deg, 500 m' --attitude '0 0 0 deg'", "pr"},
+    {"$I drift tactical -d 10s -r 1Hz", "pr"},
+    {"$I grade tactical", "pr"},
+    {"$I physics rate_gyro -d 20ms", "pr"},
+    {"$I physics shell_gyro --view 1", "p"},
+    {"$I physics shell_gyro", "a"},
+};
+enum { DRAWINGS = sizeof drawings / sizeof drawings[0] };
+
+/* A gyro for ten seconds, a unit for four seconds on each of its faces, a table of readings. */
+static int make_inputs(void **state)
+{
+    if (set_up(state) != 0)
+        return -1;
+    uint64_t n = 1;
+    FILE *one = fopen("one.csv", "w"), *faces = fopen("faces.csv", "w");
+    if (!one || !faces)
+        return -1;
+    fputs("time [s],gyro_x [deg/s]\n", one);
+    fputs("time [s],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],accel_x [g],accel_y [g],accel_z "
+          "[g],face\n",
+          faces);
+    for (int i = 0; i < 480; i++) {
+        const int face = i / 80;
+        fprintf(faces, "%.2f", i / 20.0);
+        for (int k = 0; k < 6; k++, n = 16807 * n % 2147483647)
+            fprintf(faces, ",%.6f",
+                    (k == 3 + face / 2 ? 1 - 2 * (face % 2) : 0) + 1e-3 * (double)n / 2147483647);
+        fprintf(faces, ",%c%c\n", "+-"[face % 2], "xyz"[face / 2]);
+        fprintf(one, "%.2f,%.6f\n", i / 20.0, (double)n / 2147483647);
+    }
+    put("table.csv", "reference [deg/s],reading [deg/s]\n-10,-10.1\n0,0.01\n10,10.02\n10,10.01\n"
+                     "0,0\n-10,-10\n");
+    put("gnuplot.sh", "#!/bin/sh\nsleep 1000 &\necho $$ $! >\"$PID_FILE\"\nwait\n");
+    if (fclose(one) != 0 || fclose(faces) != 0)
+        return -1;
+    return mkdir("bin", 0700) == 0 && mkdir("tmp", 0700) == 0
+               ? run("mv gnuplot.sh bin/gnuplot && chmod +x bin/gnuplot")
+               : -1;
+}
+
+static int remove_inputs(void **state)
+{
+    run("rm -rf bin tmp one.csv faces.csv table.csv");
+    return tear_down(state);
+}
+
+static void check_absent(const char *line, const char *name)
+{
+    if (access(name, F_OK) == 0) {
+        print_error("%s\n  has left %s\n", line, name);
+        fail();
+    }
+}
+
+/* Run a line that must end with this code, and say this. */
+static void check_says(const char *line, int code, const char *says)
+{
+    const int actual = run(line);
+    if (actual != code) {
+        print_error("%s\n  code %d, expected %d; says: %s\n", line, actual, code, err);
+        fail();
+    }
+    check_contains(err, says, line);
+}
+
+/* Numbers and script instead of the figure, and code 1; a page that says what is missing. */
+static void test_without_gnuplot(void **state)
+{
+    (void)state;
+    char line[600];
+    for (size_t i = 0; i < DRAWINGS; i++) {
+        if (strchr(drawings[i].options, 'p')) {
+            snprintf(line, sizeof line, "PATH=/nonexistent %s --plot x.svg", drawings[i].line);
+            check_says(line, 1,
+                       "x.svg: gnuplot is not installed; apt install gnuplot-nox, then: gnuplot "
+                       "'x.gp' (written with its data)\n");
+            check_absent(line, "x.svg");
+            assert_int_equal(unlink("x.gp") + unlink("x.dat"), 0);
+            snprintf(line, sizeof line, "PATH=/nonexistent %s --plot term", drawings[i].line);
+            check_says(line, 1, "gnuplot is not installed; install it: apt install gnuplot-nox\n");
+        }
+        if (strchr(drawings[i].options, 'r')) {
+            snprintf(line, sizeof line, "PATH=/nonexistent %s --report x.html", drawings[i].line);
+            const bool drawn = !strstr(line, "--devices"); /* whose page is tables alone */
+            check_says(line, 0,
+                       drawn ? "x.html has no figures: gnuplot is not installed; apt install "
+                               "gnuplot-nox\n"
+                             : "");
+            read_text("x.html", out);
+            check_contains(out, drawn ? "Figure left out: gnuplot is not installed" : "", line);
+            check_contains(out, "</html>\n", line);
+            unlink("x.html");
+        }
+        if (strchr(drawings[i].options, 'a')) {
+            snprintf(line, sizeof line, "PATH=/nonexistent %s --animate x.svg", drawings[i].line);
+            check_says(line, 0, "");
+            assert_int_equal(unlink("x.svg"), 0);
+        }
+    }
+}
+
+/* Code 1 and no file, neither figure nor page. */
+static void test_without_temporary_folder(void **state)
+{
+    (void)state;
+    char line[600];
+    if (!imk_plot_available())
+        skip();
+    for (size_t i = 0; i < DRAWINGS; i++) {
+        static const char *const options[] = {"--plot x.svg", "--plot term", "--report x.html"};
+        for (int k = 0; k < 3; k++) {
+            if (!strchr(drawings[i].options, k < 2 ? 'p' : 'r') || strstr(drawings[i].line, "-dev"))
+                continue;
+            snprintf(line, sizeof line, "TMPDIR=/nonexistent %s %s", drawings[i].line, options[k]);
+            check_says(line, 1,
+                       "temporary folder: the file cannot be opened: No such file or directory; "
+                       "set TMPDIR to a folder that can be written\n");
+            check_absent(line, "x.svg");
+            check_absent(line, "x.html");
+        }
+    }
+}
+
+/* A folder that cannot be written, and a name that is too long; relative ones, also those that
+ * would be a command to gnuplot, are folders like any other. */
+static void test_temporary_folders(void **state)
+{
+    (void)state;
+    char line[6000];
+    if (!imk_plot_available())
+        skip();
+    snprintf(line, sizeof line, "TMPDIR=/proc %s --plot x.svg", allan); /* not even root may */
+    check_says(line, 1, "; set TMPDIR to a folder that can be written\n");
+    char name[5000];
+    memset(name, 'x', sizeof name);
+    name[sizeof name - 1] = '\0';
+    snprintf(line, sizeof line, "TMPDIR=/tmp/%s %s --plot x.svg", name, allan);
+    check_says(line, 1, "File name too long; set TMPDIR to a folder that can be written\n");
+    check_absent(line, "x.svg");
+    static const char *const folders[] = {"tmp", "./tmp",   "|touch stolen;", "<touch stolen;",
+                                          "-e",  "a b'c\"d"};
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
+        mkdir(folders[i], 0700);
+        setenv("F", folders[i], 1);
+        snprintf(line, sizeof line, "TMPDIR=\"$F\" %s --plot x.svg", allan);
+        check_says(line, 0, "");
+        check_absent(line, "stolen");
+        assert_int_equal(unlink("x.svg"), 0);
+        assert_int_equal(rmdir(folders[i]), 0); /* nothing was left in it */
+    }
+    mkdir("tmp", 0700);
+}
+
+/* Figures may have any name. */
+static void test_names(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"|touch stolen;.svg", "<touch stolen;.svg", "-x.svg",
+                                        "~x.svg", "a b'c\"d`touch stolen`$(touch stolen).svg"};
+    char line[600];
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        setenv("F", names[i], 1);
+        snprintf(line, sizeof line, "%s --plot=\"$F\"", allan);
+        if (imk_plot_available()) {
+            check_says(line, 0, "");
+            assert_int_equal(unlink(names[i]), 0);
+        }
+        /* The command that is advised, as a shell runs it. */
+        snprintf(line, sizeof line,
+                 "PATH=/nonexistent %s --plot=\"$F\" 2>said; "
+                 "sed 's/.*then: //; s/ (written with its data)$//' said >advice; cat advice",
+                 allan);
+        assert_int_equal(run(line), 0);
+        if (imk_plot_available()) {
+            assert_int_equal(run("sh ./advice"), 0);
+            check_absent(names[i], "stolen");
+            assert_int_equal(unlink(names[i]), 0);
+        }
+        assert_int_equal(run("rm -f ./*.gp ./*.dat ./-*.gp ./-*.dat said advice"), 0);
+    }
+    setenv("F", "a\nb.svg", 1);
+    snprintf(line, sizeof line, "PATH=/nonexistent %s --plot \"$F\"", allan);
+    check_says(line, 1, "a name without control characters\n");
+}
+
+/* ---- a gnuplot that does not end ------------------------------------------------------------- */
+
+typedef struct started {
+    int gnuplot, its_child; /* process numbers */
+} started;
+
+/* Wait for what bin/gnuplot writes. */
+static started wait_for_gnuplot(void)
+{
+    const struct timespec nap = {.tv_nsec = 5000000};
+    for (int i = 0; i < 6000; i++, nanosleep(&nap, NULL)) {
+        FILE *file = fopen("pid", "r");
+        started s = {0, 0};
+        const bool there = file && fscanf(file, "%d %d\n", &s.gnuplot, &s.its_child) == 2;
+        if (file)
+            fclose(file);
+        if (there)
+            return s;
+    }
+    fail_msg("gnuplot was not started");
+    return (started){0, 0};
+}
+
+/* Does the process run? One that has ended may wait for a parent that does not care. */
+static bool runs(int process)
+{
+    char path[40], state = 'Z';
+    snprintf(path, sizeof path, "/proc/%d/stat", process);
+    FILE *file = fopen(path, "r");
+    if (file && fscanf(file, "%*d (%*[^)]) %c", &state) != 1)
+        state = '?';
+    if (file)
+        fclose(file);
+    return state != 'Z';
+}
+
+/* Neither gnuplot, nor what it had started, nor its folder. */
+static void check_nothing_left(started s)
+{
+    assert_false(runs(s.gnuplot));
+    assert_false(runs(s.its_child));
+    assert_int_equal(rmdir("tmp"), 0);
+    check_absent("interrupted", "x.svg");
+    mkdir("tmp", 0700);
+    unlink("pid");
+}
+
+static void test_hung_gnuplot(void **state)
+{
+    (void)state;
+    const char *const hung = "PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp PID_FILE=$PWD/pid "
+                             "IMUKIT_GNUPLOT_SECONDS=0.2 ";
+    char line[600];
+    snprintf(line, sizeof line, "%s%s --plot x.svg", hung, allan);
+    check_message(line, 1,
+                  "imukit allan: error: plot: gnuplot was ended: it has not finished in 0.2 s; "
+                  "expected a working gnuplot, or more time: IMUKIT_GNUPLOT_SECONDS\n");
+    check_nothing_left(wait_for_gnuplot());
+    snprintf(line, sizeof line, "%s%s --report x.html", hung, allan);
+    check_says(line, 1, "gnuplot was ended");
+    check_absent(line, "x.html");
+    check_nothing_left(wait_for_gnuplot());
+}
+
+/* Also a gnuplot that fails, or draws nothing, or half. */
+static void test_failing_gnuplot(void **state)
+{
+    (void)state;
+    mkdir("bad", 0700);
+    static const char *const programs[] = {"exit 1", "exit 0", "echo '<svg' >figure.out; exit 3",
+                                           "echo '<svg' >figure.out; kill -9 $$"};
+    for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++) {
+        char text[100], line[600];
+        snprintf(text, sizeof text, "#!/bin/sh\n%s\n", programs[i]);
+        put("bad/gnuplot", text);
+        chmod("bad/gnuplot", 0700);
+        snprintf(line, sizeof line, "PATH=bad:$PATH TMPDIR=tmp %s --plot x.svg", allan);
+        check_says(line, 1, "gnuplot failed");
+        check_absent(line, "x.svg");
+        assert_int_equal(rmdir("tmp"), 0);
+        mkdir("tmp", 0700);
+    }
+    assert_int_equal(run("rm -r bad"), 0);
+}
+
+static void test_signals(void **state)
+{
+    (void)state;
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU};
+    for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
+        fflush(stdout);
+        const pid_t child = fork();
+        if (child == 0) {
+            char path[5000];
+            snprintf(path, sizeof path, "%s/bin:%s", directory, getenv("PATH"));
+            setenv("PATH", path, 1);
+            setenv("TMPDIR", "tmp", 1);
+            snprintf(path, sizeof path, "%s/pid", directory);
+            setenv("PID_FILE", path, 1);
+            if (!freopen("/dev/null", "w", stdout))
+                _exit(99);
+            execl(command, command, "allan", "one.csv", "--plot", "x.svg", (char *)NULL);
+            _exit(98);
+        }
+        const started gnuplot = wait_for_gnuplot();
+        kill(child, signals[i]);
+        int status;
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(WIFSIGNALED(status));
+        assert_int_equal(WTERMSIG(status), signals[i]);
+        check_nothing_left(gnuplot);
+    }
+    unlink("core");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_without_gnuplot),   cmocka_unit_test(test_without_temporary_folder),
+        cmocka_unit_test(test_temporary_folders), cmocka_unit_test(test_names),
+        cmocka_unit_test(test_hung_gnuplot),      cmocka_unit_test(test_failing_gnuplot),
+        cmocka_unit_test(test_signals),
+    };
+    return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
+}
