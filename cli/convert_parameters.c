@@ -107,7 +107,7 @@ static int read_source(const parameter_options *o, const imk_parameter_settings 
     imk_error error;
     imk_parameter_settings reading = *settings;
     reading.format = (imk_parameter_format)o->from;
-    if (o->from == 0 && strcmp(in, "-") != 0)
+    if (o->from == 0)
         reading.format = imk_parameter_format_detect(in);
     *format = reading.format;
     if (reading.format == IMK_PARAMETERS_UNKNOWN)

@@ -64,8 +64,9 @@ static json_t *json_of_motion(const drift_scene *scene)
     snprintf(text, sizeof text, "%016llx%016llx", (unsigned long long)d.a, (unsigned long long)d.b);
     json_t *motion = json_pack("{s:I, s:I, s:s}", "pieces", (json_int_t)t->piece_count, "lines",
                                (json_int_t)t->line_count, "digest", text);
-    if (scene->motion_text)
-        json_object_set_new(motion, "script", json_string(scene->motion_text));
+    const char *script = imk_motion_file_text(scene->motion);
+    if (script) /* for whoever repeats it */
+        json_object_set_new(motion, "script", json_string(script));
     return motion;
 }
 

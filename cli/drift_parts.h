@@ -55,7 +55,6 @@ typedef struct drift_wished {
 typedef struct drift_scene {
     imk_drift_settings settings; /* its times are the first `dense` or the `rows` below */
     imk_motion_file *motion;
-    char *motion_text; /* of a script, from malloc(); else NULL */
     drift_wished want;
     size_t time_count; /* of all times, those of the table and those between for curves */
     double *time;

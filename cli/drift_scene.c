@@ -13,19 +13,6 @@ static const double minute = 60, hour = 3600, day = 86400;
 
 /* ---- motion ---- */
 
-/* The text of a script goes into the results of a campaign, for whoever repeats it. */
-static char *text_of(const char *path)
-{
-    enum { LARGEST = 1 << 20 };
-    FILE *file = fopen(path, "rb");
-    char *text = file ? malloc(LARGEST + 1) : NULL;
-    if (text)
-        text[fread(text, 1, LARGEST, file)] = '\0';
-    if (file)
-        fclose(file);
-    return text;
-}
-
 static int check_rest(const drift_options *o)
 {
     if (o->roll != 0 || o->pitch != 0 || o->yaw != 0)
@@ -58,8 +45,6 @@ static int open_motion(const drift_options *o, drift_scene *s)
     if (*note)
         command_warn("motion", "%s: %s", o->motion, note);
     s->settings.motion = motion->trajectory;
-    if (imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT)
-        s->motion_text = text_of(o->motion);
     return -1;
 }
 
@@ -298,7 +283,6 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
 void drift_scene_free(drift_scene *s)
 {
     imk_motion_file_free(s->motion);
-    free(s->motion_text);
     free(s->time);
     free(s->row);
 }

@@ -192,10 +192,9 @@ static imk_log_settings table_settings(const evaluation *v)
 static bool is_table(const evaluation *v, const char *path)
 {
     imk_log_reader *reader;
-    const imk_log_settings settings = table_settings(v);
+    imk_log_settings settings = table_settings(v);
     bool reference = false, reading = false;
-    if (strcmp(path, "-") == 0)
-        return true;
+    settings.reopened = true;
     if (imk_log_open(path, &settings, &reader, NULL) != IMK_OK)
         return false;
     for (size_t k = 0; k < imk_log_column_count(reader); k++) {

@@ -178,10 +178,10 @@ static int take_record(evaluation *v, const bench_log *log)
 int evaluate_load_log(evaluation *v, const char *path)
 {
     imk_error error;
-    bench b = {.options = &v->options->bench};
+    bench b = {.options = &v->options->bench, .motion = v->motion};
     bench_log log = {.path = path};
     int code = -1;
-    if (b.options->motion &&
+    if (b.options->motion && !b.motion &&
         imk_motion_read(b.options->motion, NULL, NULL, 1, &b.motion, &error) != IMK_OK)
         code = command_error(&error, b.options->motion);
     if (code < 0)
@@ -191,6 +191,6 @@ int evaluate_load_log(evaluation *v, const char *path)
     if (code < 0)
         code = take_record(v, &log);
     bench_log_free(&log);
-    imk_motion_file_free(b.motion);
+    v->motion = b.motion;
     return code;
 }

@@ -79,7 +79,8 @@ typedef struct evaluation {
     evaluate_rest rest[EVALUATE_CHANNELS];
     size_t limit_count;
     evaluate_limit limit[EVALUATE_LIMITS];
-    bool missed; /* a limit */
+    bool missed;             /* a limit */
+    imk_motion_file *motion; /* of --motion; NULL until a log asks for it */
 } evaluation;
 
 /* All return -1 or the exit code, the message printed, where nothing else is said. */

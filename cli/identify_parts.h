@@ -71,8 +71,8 @@ bool identify_settings_for(identification *i, size_t channel, imk_identify_setti
 void identify_free(identification *i);
 
 /* identify_stream.c: all channels of a long log in one pass over it. `taken` is false, and nothing
- * done, where the log is to be loaded: it is short, comes from standard input, or its rows are not
- * evenly spaced. @return -1 or the exit code */
+ * done, where the log is to be loaded: it is short, or its rows are not evenly spaced. @return -1
+ * or the exit code */
 int identify_stream(identification *i, const imk_executor *executor, bool *taken);
 
 /* identify_screen.c: the samples themselves. */

@@ -77,10 +77,8 @@ static int load_logs(several_logs *s, const char *const *paths, unsigned take_ou
                      const imk_executor *executor)
 {
     for (size_t r = 0; r < s->count; r++) /* before the others have taken their time */
-        if (access(paths[r], R_OK) != 0)
-            return command_failed("%s cannot be read%s", paths[r],
-                                  strcmp(paths[r], "-") == 0 ? ": several logs are to be files"
-                                                             : "");
+        if (strcmp(paths[r], "-") != 0 && access(paths[r], R_OK) != 0)
+            return command_failed("%s cannot be read", paths[r]);
     for (size_t r = 0; r < s->count; r++) {
         identification *i = s->log[r] = calloc(1, sizeof *i);
         if (!i)

@@ -314,10 +314,11 @@ static bool start(log_stream *s, const char *path)
 {
     identification *i = s->all;
     log_channels *channels = &i->channels;
-    const imk_log_settings settings = log_input_settings(&i->options->log);
+    imk_log_settings settings = log_input_settings(&i->options->log);
+    settings.reopened = true; /* for who loads it */
     imk_error error;
     uint64_t done, size;
-    if (strcmp(path, "-") == 0 || imk_log_open(path, &settings, &s->reader, &error) != IMK_OK)
+    if (imk_log_open(path, &settings, &s->reader, &error) != IMK_OK)
         return false;
     imk_log_progress(s->reader, &done, &size);
     if (size < (uint64_t)IMK_IDENTIFY_RECORD_ADVISED * ROW_BYTES_LEAST)

@@ -43,10 +43,11 @@ static int open_motion(const simulate_options *o, scene *s)
     if (o->no_earth)
         return command_misused("--no-earth is of a unit at rest: a motion script says `earth: no`");
     const imk_geodetic *stated = isnan(o->latitude) ? NULL : &place;
-    imk_status status = imk_motion_read(o->motion, NULL, stated, o->seed, &s->motion, &error);
+    imk_log_settings settings = imk_log_settings_default();
+    settings.reopened = true;
+    imk_status status = imk_motion_read(o->motion, &settings, stated, o->seed, &s->motion, &error);
     if (status != IMK_OK && lacks_rate(&error) && o->rate > 0) {
         /* A table without time has the rate of the log. */
-        imk_log_settings settings = imk_log_settings_default();
         settings.rate = o->rate;
         status = imk_motion_read(o->motion, &settings, stated, o->seed, &s->motion, &error);
     }

@@ -254,6 +254,7 @@ static void free_evaluation(evaluation *v)
         free(c->run);
         free(c->level);
     }
+    imk_motion_file_free(v->motion);
     free(v);
 }
 

@@ -51,6 +51,10 @@ typedef struct imk_log_settings {
     double rate;           /**< [Hz]; needed when there is no time column; 0: from time */
     const char *axes;      /**< "right-forward-up" …: mapped to forward-right-down; NULL: as is */
     bool any_columns;      /**< accept a table without time and sensors too; false */
+    bool reopened; /**< the log is opened again after this, to be read by somebody else: what cannot
+                        be rewound, such as a pipe, is copied to a temporary file in TMPDIR first,
+                        which is read now and by the openings after this, up to the first without
+                        `reopened`; false */
 } imk_log_settings;
 
 /** Everything from the header of the file. */
@@ -78,8 +82,8 @@ typedef struct imk_log_findings {
 
 typedef struct imk_log_reader imk_log_reader;
 
-/** Open a log ("-": standard input) and read its header. The memory needed does not depend on the
- *  length of the log; a line beyond 1 MiB is refused.
+/** Open a log ("-": standard input; also a pipe, or what is compressed) and read its header. The
+ * memory needed does not depend on the length of the log; a line beyond 1 MiB is refused.
  *
  *  Names, in any case: time (t, timestamp); gyro_, dtheta_, accel_ (acc_), dvel_ followed by x, y,
  * z or 0 … 7; temperature (temp). Units stand in brackets or parentheses behind the name. Counts
@@ -87,8 +91,8 @@ typedef struct imk_log_reader imk_log_reader;
  *  known, as they stand if not; where the first row holds a text, the column is one of labels.
  *
  *  The message of every refusal ends with the exact option to add.
- *  @return IMK_ERROR_OPEN, _READ, _EMPTY, _FORMAT, _COMPRESSED, _COLUMN, _UNIT_MISSING,
- *          _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, … */
+ *  @return IMK_ERROR_OPEN, _READ, _WRITE (a copy), _EMPTY, _FORMAT, _COMPRESSED, _COLUMN,
+ * _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, … */
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 

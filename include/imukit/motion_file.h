@@ -16,12 +16,13 @@ extern "C" {
 typedef struct imk_motion_file imk_motion_file;
 
 typedef enum imk_motion_kind {
-    IMK_MOTION_SCRIPT,  /**< YAML (.yaml, .yml, .json) */
+    IMK_MOTION_SCRIPT,  /**< YAML */
     IMK_MOTION_POSES,   /**< a table with positions and attitudes */
     IMK_MOTION_RECORDED /**< a table with rates and forces */
 } imk_motion_kind;
 
-/** Read a motion file: a script when the name ends in .yaml, .yml or .json, else a log with columns
+/** Read a motion file: a script when the name ends in .yaml, .yml or .json or the content begins as
+ *  one, else a log with columns
  *
  *   - time, latitude, longitude, height (or x, y, z: local north-east-down [m] with the place given
  *     in `place`; or ecef_x …), and roll, pitch, yaw or q_w, q_x, q_y, q_z (q_nb): poses. Without
@@ -53,6 +54,9 @@ IMK_API const imk_motion *imk_motion_file_motion(const imk_motion_file *file);
 IMK_API double imk_motion_file_duration(const imk_motion_file *file);
 /** Name of a script ("" when it has none). */
 IMK_API const char *imk_motion_file_name(const imk_motion_file *file);
+
+/** Text of a script as it was read; NULL of a table. */
+IMK_API const char *imk_motion_file_text(const imk_motion_file *file);
 
 /** What was assumed for columns that are missing, and that columns were not used; "" when nothing
  *  was. */

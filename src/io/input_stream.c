@@ -8,6 +8,9 @@
  * had to be looked at; then the file is read straight into the caller's buffer. */
 #define _POSIX_C_SOURCE 200809L
 #include "io/input_stream_internal.h"
+
+#include "io/descriptor_name_internal.h"
+#include "io/input_copy_internal.h"
 #include "io/system_error_internal.h"
 
 #include <errno.h>
@@ -29,8 +32,10 @@ struct imki_input {
     encoding encoding;
     const char *bytes; /* memory */
     size_t size;
-    int file; /* closed by us unless it is standard input or -1 */
-    bool standard;
+    int file;      /* -1: none */
+    bool standard; /* it is standard input, which stays open */
+    bool copy;     /* it is a copy, which others read too */
+    off_t rewind;  /* where standard input is put back to at the end; -1: nowhere */
     char path[96]; /* for messages */
     uint64_t file_size;
     uint64_t fetched; /* bytes taken from the file or memory */
@@ -43,12 +48,13 @@ struct imki_input {
     imk_error failure; /* kept: a failed input stays failed */
 };
 
-/* read(), again when a signal interrupts it. */
+/* read(), again when a signal interrupts it; from a copy pread(), whose place is its own. */
 static imk_status fetch(imki_input *input, void *target, size_t capacity, size_t *got)
 {
     ssize_t count;
     do
-        count = read(input->file, target, capacity);
+        count = input->copy ? pread(input->file, target, capacity, (off_t)input->fetched)
+                            : read(input->file, target, capacity);
     while (count < 0 && errno == EINTR);
     if (count < 0)
         return imki_system_error(&input->failure, IMK_ERROR_READ, input->path, errno);
@@ -236,29 +242,83 @@ static imk_status recognise(imki_input *input)
     return IMK_OK;
 }
 
-/* Open the file and learn what it is. */
-static imk_status open_file(imki_input *input, const char *path)
+/* A stream that is open already is taken as it is: a socket cannot be opened by its name, nor the
+ * pipe of another user. */
+static int open_stream(imki_input *input, const char *path)
 {
-    input->standard = strcmp(path, "-") == 0;
-    snprintf(input->path, sizeof input->path, "%s", input->standard ? "standard input" : path);
-    input->file = input->standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+    if (input->standard)
+        return STDIN_FILENO;
+    const int number = imki_descriptor_named(path);
+    return number >= 0 ? fcntl(number, F_DUPFD_CLOEXEC, 0)
+                       : open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+}
+
+static imk_status open_regular(imki_input *input, const char *path, bool kept)
+{
     struct stat about;
+    input->file = input->standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
     if (input->file < 0 || fstat(input->file, &about) != 0)
         return imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, errno);
-    if (S_ISDIR(about.st_mode))
-        return imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, EISDIR);
-    if (S_ISREG(about.st_mode)) {
-        const off_t begin = lseek(input->file, 0, SEEK_CUR); /* stdin may stand in the middle */
-        if (begin >= 0 && about.st_size > begin)
-            input->file_size = (uint64_t)(about.st_size - begin);
+    const off_t begin = lseek(input->file, 0, SEEK_CUR); /* stdin may stand in the middle */
+    if (begin >= 0 && about.st_size > begin)
+        input->file_size = (uint64_t)(about.st_size - begin);
+    if (kept && input->standard)
+        input->rewind = begin;
 #ifdef POSIX_FADV_SEQUENTIAL
-        posix_fadvise(input->file, 0, 0, POSIX_FADV_SEQUENTIAL);
+    posix_fadvise(input->file, 0, 0, POSIX_FADV_SEQUENTIAL);
 #endif
-    }
     return IMK_OK;
 }
 
-imk_status imki_input_open(const char *path, imki_input **input, imk_error *error)
+/* The copy that was made before, or that is made now for those who come after. */
+static imk_status open_copy(imki_input *input, const char *path, const struct stat *about,
+                            bool kept)
+{
+    struct stat copied;
+    int file;
+    imk_status status = imki_copy_open(about, kept, &file, &input->failure);
+    if (status == IMK_OK && file < 0 && kept) {
+        const int from = open_stream(input, path);
+        if (from < 0)
+            return imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, errno);
+        status = imki_copy_make(about, from, input->path, &input->failure);
+        if (!input->standard)
+            close(from);
+        if (status == IMK_OK)
+            status = imki_copy_open(about, kept, &file, &input->failure);
+        if (status == IMK_OK && file < 0)
+            status = imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, errno);
+    }
+    if (status != IMK_OK || file < 0 || fstat(file, &copied) != 0)
+        return status;
+    input->file = file;
+    input->copy = true;
+    input->standard = false;
+    input->file_size = (uint64_t)copied.st_size;
+    return IMK_OK;
+}
+
+/* Open the file and learn what it is. */
+static imk_status open_file(imki_input *input, const char *path, bool kept)
+{
+    struct stat about;
+    input->standard = strcmp(path, "-") == 0;
+    snprintf(input->path, sizeof input->path, "%s", input->standard ? "standard input" : path);
+    if ((input->standard ? fstat(STDIN_FILENO, &about) : stat(path, &about)) != 0)
+        return imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, errno);
+    if (S_ISDIR(about.st_mode))
+        return imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, EISDIR);
+    if (S_ISREG(about.st_mode))
+        return open_regular(input, path, kept);
+    const imk_status status = open_copy(input, path, &about, kept);
+    if (status == IMK_OK && !input->copy)
+        input->file = open_stream(input, path);
+    return status == IMK_OK && input->file < 0
+               ? imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, errno)
+               : status;
+}
+
+static imk_status open_input(const char *path, bool kept, imki_input **input, imk_error *error)
 {
     imki_input *made = calloc(1, sizeof *made);
     unsigned char *raw = malloc(RAW_SIZE);
@@ -269,8 +329,9 @@ imk_status imki_input_open(const char *path, imki_input **input, imk_error *erro
     }
     made->encoding = ENCODING_PLAIN;
     made->file = -1;
+    made->rewind = -1;
     made->raw = raw;
-    imk_status status = open_file(made, path);
+    imk_status status = open_file(made, path, kept);
     if (status == IMK_OK)
         status = recognise(made);
     if (status != IMK_OK) {
@@ -283,6 +344,16 @@ imk_status imki_input_open(const char *path, imki_input **input, imk_error *erro
     return IMK_OK;
 }
 
+imk_status imki_input_open(const char *path, imki_input **input, imk_error *error)
+{
+    return open_input(path, false, input, error);
+}
+
+imk_status imki_input_open_kept(const char *path, imki_input **input, imk_error *error)
+{
+    return open_input(path, true, input, error);
+}
+
 imk_status imki_input_open_memory(const char *bytes, size_t size, imki_input **input)
 {
     imki_input *made = calloc(1, sizeof *made);
@@ -292,6 +363,7 @@ imk_status imki_input_open_memory(const char *bytes, size_t size, imki_input **i
     made->bytes = size > 0 ? bytes : "";
     made->size = size;
     made->file = -1;
+    made->rewind = -1;
     made->file_size = size;
     *input = made;
     return IMK_OK;
@@ -318,6 +390,8 @@ void imki_input_close(imki_input *input)
     if (input->encoding == ENCODING_GZIP)
         inflateEnd(&input->gzip);
     ZSTD_freeDStream(input->zstd);
+    if (input->rewind >= 0)
+        lseek(input->file, input->rewind, SEEK_SET);
     if (input->file >= 0 && !input->standard)
         close(input->file);
     free(input->raw);

@@ -19,6 +19,13 @@ typedef struct imki_input imki_input;
  *         reason), IMK_ERROR_EMPTY, IMK_ERROR_READ, IMK_ERROR_MEMORY; error.field is the path */
 imk_status imki_input_open(const char *path, imki_input **input, imk_error *error);
 
+/* The same for a file that is opened again, to be read by somebody else: one that cannot be
+ * rewound, such as a pipe, is read to its end now, and its copy in TMPDIR is what this input and
+ * the next opening read. Openings by imki_input_open() end the copy.
+ *
+ * @return IMK_ERROR_WRITE besides, when the copy cannot be written */
+imk_status imki_input_open_kept(const char *path, imki_input **input, imk_error *error);
+
 /* The same from memory, which must outlive the input; never decompressed. Empty is no error. */
 imk_status imki_input_open_memory(const char *bytes, size_t size, imki_input **input);
 

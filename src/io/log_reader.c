@@ -81,7 +81,8 @@ imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_
     imki_input *input;
     imk_status status = check_settings(settings, error);
     if (status == IMK_OK)
-        status = imki_input_open(path, &input, error);
+        status = settings->reopened ? imki_input_open_kept(path, &input, error)
+                                    : imki_input_open(path, &input, error);
     return status == IMK_OK ? make_reader(input, path, settings, reader, error) : status;
 }
 

@@ -6,6 +6,7 @@
 #include "text_file_internal.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #define PI 3.14159265358979323846
 
@@ -29,6 +30,16 @@ static imk_status make(imk_motion_file **made, imk_error *error)
     return *made ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
 }
 
+static imk_status keep_text(imk_motion_file *file, const char *text, size_t size, imk_error *error)
+{
+    file->text = malloc(size + 1);
+    if (!file->text)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    memcpy(file->text, text, size);
+    file->text[size] = '\0';
+    return IMK_OK;
+}
+
 imk_status imk_motion_parse(const char *text, size_t size, const imk_geodetic *place, uint64_t seed,
                             imk_motion_file **file, imk_error *error)
 {
@@ -39,6 +50,8 @@ imk_status imk_motion_parse(const char *text, size_t size, const imk_geodetic *p
         status = imki_document_parse_as("motion", "imukit_motion: 1", text, size, &document, error);
     if (status == IMK_OK)
         status = imki_motion_script_open(document, place, seed, made, error);
+    if (status == IMK_OK)
+        status = keep_text(made, text, size, error);
     imk_document_free(document);
     return finish(status, made, file);
 }
@@ -47,7 +60,7 @@ imk_status imk_motion_read(const char *path, const imk_log_settings *settings,
                            const imk_geodetic *place, uint64_t seed, imk_motion_file **file,
                            imk_error *error)
 {
-    if (!imki_is_script_name(path)) {
+    if (!imki_is_script(path, "imukit_motion")) {
         imk_motion_file *made = NULL;
         imk_status status = make(&made, error);
         if (status == IMK_OK)
@@ -70,6 +83,7 @@ void imk_motion_file_free(imk_motion_file *file)
     imk_log_free(&file->log);
     free(file->piece);
     free(file->line);
+    free(file->text);
     free(file);
 }
 
@@ -91,6 +105,11 @@ double imk_motion_file_duration(const imk_motion_file *file)
 const char *imk_motion_file_name(const imk_motion_file *file)
 {
     return file->name;
+}
+
+const char *imk_motion_file_text(const imk_motion_file *file)
+{
+    return file->text;
 }
 
 const char *imk_motion_file_note(const imk_motion_file *file)

@@ -19,6 +19,7 @@ struct imk_motion_file {
     imk_motion_kind kind;
     char name[IMKI_MOTION_NAME_SIZE];
     char note[IMKI_MOTION_NOTE_SIZE];
+    char *text; /* of a script, from malloc; else NULL */
     double duration;
     imk_motion motion; /* points to one of the two below */
     imk_trajectory trajectory;

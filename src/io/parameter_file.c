@@ -178,11 +178,13 @@ static imk_parameter_format recognise(const char *text, size_t size)
 /* ---- reading --------------------------------------------------------------------------------- */
 
 /* All bytes of a file and a zero. */
-static imk_status read_all(const char *path, char **text, size_t *size, imk_error *error)
+static imk_status read_all(const char *path, bool reopened, char **text, size_t *size,
+                           imk_error *error)
 {
     enum { CAPACITY = IMKI_DOCUMENT_SIZE_MAX };
     imki_input *input = NULL;
-    imk_status status = imki_input_open(path, &input, error);
+    imk_status status =
+        reopened ? imki_input_open_kept(path, &input, error) : imki_input_open(path, &input, error);
     if (status != IMK_OK)
         return status;
     char *buffer = malloc(CAPACITY + 1);
@@ -210,7 +212,7 @@ imk_parameter_format imk_parameter_format_detect(const char *path)
 {
     char *text = NULL;
     size_t size;
-    if (strcmp(path, "-") == 0 || read_all(path, &text, &size, NULL) != IMK_OK)
+    if (read_all(path, true, &text, &size, NULL) != IMK_OK)
         return IMK_PARAMETERS_UNKNOWN;
     imk_parameter_format format = recognise(text, size);
     free(text);
@@ -303,7 +305,7 @@ imk_status imk_parameters_read(const char *path, const imk_parameter_settings *s
 {
     char *text = NULL;
     size_t size = 0;
-    imk_status status = read_all(path, &text, &size, error);
+    imk_status status = read_all(path, false, &text, &size, error);
     if (status == IMK_OK && text)
         status = imk_parameters_parse(text, size, settings, model, notes, error);
     free(text);

@@ -258,9 +258,10 @@ imk_status imk_temperature_read(const char *path, imk_temperature_file **file, i
     imk_temperature_file *made = calloc(1, sizeof *made);
     if (!made)
         return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    imk_status status = is_quantity(path)           ? open_constant(path, made, error)
-                        : imki_is_script_name(path) ? open_script(path, made, error)
-                                                    : open_table(path, made, error);
+    imk_status status = is_quantity(path) ? open_constant(path, made, error)
+                        : imki_is_script(path, "imukit_temperature")
+                            ? open_script(path, made, error)
+                            : open_table(path, made, error);
     if (status == IMK_OK)
         status = imk_temperature_validate(&made->profile, error);
     if (status == IMK_OK)

@@ -44,3 +44,35 @@ bool imki_is_script_name(const char *path)
     }
     return false;
 }
+
+/* Does a line of the text begin with the key? JSON has a brace and a quote before it. */
+static bool has_key(const char *text, const char *key)
+{
+    while (text) {
+        text += strspn(text, " {\"\r\n");
+        if (strncmp(text, key, strlen(key)) == 0)
+            return true;
+        text = strchr(text, '\n');
+    }
+    return false;
+}
+
+bool imki_is_script(const char *path, const char *key)
+{
+    enum { HEAD = 4096 };
+    imki_input *input;
+    char head[HEAD];
+    size_t used = 0, got = 1;
+    if (imki_is_script_name(path))
+        return true;
+    if (imki_input_open_kept(path, &input, NULL) != IMK_OK)
+        return false; /* who reads it says why */
+    while (got > 0 && used < HEAD - 1)
+        if (imki_input_read(input, head + used, HEAD - 1 - used, &got, NULL) == IMK_OK)
+            used += got;
+        else
+            got = 0;
+    imki_input_close(input);
+    head[used] = '\0';
+    return has_key(head, key);
+}

@@ -16,4 +16,8 @@ imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, siz
 /* Is it a script by its name: .yaml, .yml, .json? */
 bool imki_is_script_name(const char *path);
 
+/* By its name, or else by its content: does a line begin with this key? It is opened again after
+ * this. */
+bool imki_is_script(const char *path, const char *key);
+
 #endif

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Copies of inputs that cannot be read twice: pipes, terminals, sockets. Whoever looks into a file
+ * before another reads it leaves the other a copy. */
+#ifndef IMUKIT_INPUT_COPY_INTERNAL_H
+#define IMUKIT_INPUT_COPY_INTERNAL_H
+
+#include "imukit/status.h"
+
+#include <stdbool.h>
+#include <sys/stat.h>
+
+/* Copy all that the stream `file` still gives to a temporary file in TMPDIR, and keep that for the
+ * input `about`. @return IMK_ERROR_READ, _WRITE, _MEMORY, with `path` in error.field */
+imk_status imki_copy_make(const struct stat *about, int file, const char *path, imk_error *error);
+
+/* The copy of an input: a descriptor that the caller closes and reads by pread(), -1 when there is
+ * none.
+ * @param kept  for the next one who asks, too
+ * @return why the copy could not be made when it was tried */
+imk_status imki_copy_open(const struct stat *about, bool kept, int *file, imk_error *error);
+
+#endif

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Every verb reads and writes through pipes what it reads and writes as files, to the byte. */
+#include "run_command.h"
+
+/* A file, and a line that reads it where @ stands. */
+static const struct {
+    const char *file, *line;
+} readings[] = {
+    {"one.csv", "$I identify @ -o - --name x"},
+    {"one.csv", "$I identify second.csv @ --devices --json"},
+    {"log.csv", "$I allan @ --json"},
+    {"log.csv", "$I spectrum @ --json"},
+    {"log.csv", "$I convert @ -"},
+    {"log.csv", "$I compensate @ tactical"},
+    {"log.csv", "$I navigate @ -p '48 deg, 11 deg, 500 m' --attitude '0 0 0 deg' -o -"},
+    {"log.npy", "$I convert @ - --columns time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z "
+                "--gyro-unit deg/s --accel-unit m/s^2 --time-unit s"},
+    {"table.csv", "$I evaluate @ --json"},
+    {"table.csv", "$I evaluate other.csv @ --json"},
+    {"log.csv", "$I evaluate other.csv --static @ --json"},
+    {"turns.csv", "$I evaluate @ --motion turns.yaml --json"},
+    {"turns.yaml", "$I evaluate turns.csv turns.csv --motion @ --json"},
+    {"turns.csv", "$I calibrate @ -p rate-table --motion turns.yaml --no-earth -g 9.81m/s^2"},
+    {"turns.yaml", "$I calibrate turns.csv -p rate-table --motion @ --no-earth -g 9.81m/s^2"},
+    {"unit.yaml", "$I simulate @ --rate 10Hz --duration 10s"},
+    {"turns.yaml", "$I simulate tactical --motion @ --rate 10Hz"},
+    {"rates.csv", "$I simulate tactical --motion @ --rate 10Hz"}, /* without time: read twice */
+    {"warm.yaml", "$I simulate tactical --temperature @ --rate 10Hz -d 9s"},
+    {"warm.csv", "$I simulate tactical --temperature @ --rate 10Hz -d 9s"},
+    {"turns.yaml", "$I drift tactical -r 1Hz --motion @ --json"},
+    {"turns.yaml", "$I drift tactical -r 1Hz --motion @ -n 3 -o runs.h5 && cat runs.h5"},
+    {"unit.yaml", "$I drift @ -d 10s -r 1Hz --json"},
+    {"unit.yaml", "$I grade @ --json"},
+    {"unit.yaml", "$I convert @ - --to kalibr --rate 100Hz"},
+    {"kalibr.yaml", "$I convert @ - --to gazebo --rate 100Hz"},
+    {"design.yaml", "$I physics @ --reduce"},
+};
+enum { READINGS = sizeof readings / sizeof readings[0] };
+
+/* A name for it, $F being the file and $LINE the line with that name, and two ways to run the line
+ * that must print the same: the first gives it a file, the second a pipe. */
+static const struct {
+    const char *name, *as_file, *as_pipe;
+} ways[] = {
+    {NULL, "eval \"$LINE\"",
+     "mv $F whole; mkfifo $F; { gzip -c whole >$F; } & eval \"$LINE\"; code=$?; mv whole $F; exit "
+     "$code"},
+    {"/dev/stdin", "eval \"$LINE\" <$F", "cat $F | eval \"$LINE\""},
+    {"-", "eval \"$LINE\" <$F", "cat $F | eval \"$LINE\""},
+    {"/dev/fd/7", "eval \"$LINE\" 7<$F", "cat $F | eval \"$LINE\" 7<&0"}, /* as <(cat FILE) */
+};
+enum { WAYS = sizeof ways / sizeof ways[0], FIRST_WAYS = 2 };
+
+static int make_inputs(void **state)
+{
+    if (set_up(state) != 0)
+        return -1;
+    put("turns.yaml", "imukit_motion: 1\nsteps:\n  - hold 4 s\n  - turn right 40 deg at 10 deg/s\n"
+                      "  - hold 4 s\n  - turn right 80 deg at 20 deg/s\n  - hold 4 s\n");
+    put("warm.yaml", "imukit_temperature: 1\nsteps:\n  - start 25 degC\n  - ramp to 40 degC at 100 "
+                     "degC/min\n");
+    put("warm.csv", "time [s],temperature [degC]\n0,20\n100,40\n");
+    put("table.csv", "reference [deg/s],reading [deg/s]\n-10,-10.1\n0,0.01\n10,10.02\n10,10.01\n"
+                     "0,0\n-10,-10\n");
+    return run("$I simulate tactical --rate 50Hz --duration 12s -o log.csv && "
+               "$I simulate tactical --motion turns.yaml --rate 50Hz -o turns.csv && "
+               "cp table.csv other.csv && cut -d, -f1,2 log.csv >second.csv && cp second.csv "
+               "one.csv && $I convert log.csv log.npy && rm log.npy.columns && "
+               "$I identify log.csv -o unit.yaml >/dev/null && "
+               "$I convert unit.yaml kalibr.yaml --to kalibr --rate 100Hz && "
+               "$I physics rate_gyro --show >design.yaml && "
+               "{ echo 'gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],accel_x [m/s^2],accel_y "
+               "[m/s^2],accel_z [m/s^2]'; yes 0,0,1,0,0,-9.8 | head -99; } >rates.csv");
+}
+
+static int remove_inputs(void **state)
+{
+    sweep();
+    return tear_down(state);
+}
+
+/* Put the line with a name for @ into $LINE, and run it. */
+static void run_reading(size_t reading, const char *name, const char *way)
+{
+    const char *line = readings[reading].line, *at = strchr(line, '@');
+    char named[400];
+    snprintf(named, sizeof named, "%.*s%s%s", (int)(at - line), line, name, at + 1);
+    setenv("LINE", named, 1);
+    if (run(way) == 0)
+        return;
+    print_error("%s\n  with %s\n  says: %s\n", named, way, err);
+    fail();
+}
+
+static void check_reading(size_t reading, size_t way)
+{
+    static char expected[TEXT_SIZE];
+    const char *file = readings[reading].file, *name = ways[way].name ? ways[way].name : file;
+    setenv("F", file, 1);
+    run_reading(reading, name, ways[way].as_file);
+    memcpy(expected, out, sizeof expected);
+    run_reading(reading, name, ways[way].as_pipe);
+    if (memcmp(out, expected, sizeof expected) == 0)
+        return;
+    print_error("%s: not the same with %s\n", getenv("LINE"), ways[way].as_pipe);
+    fail();
+}
+
+/* All readings in two ways, and those of verbs that look into their input first in all ways. */
+static void test_same_from_pipes(void **state)
+{
+    (void)state;
+    for (size_t reading = 0; reading < READINGS; reading++) {
+        const char *line = readings[reading].line;
+        const bool looks = strstr(line, "evaluate @") || strstr(line, "identify @ -o");
+        for (size_t way = 0; way < (looks ? WAYS : FIRST_WAYS); way++)
+            check_reading(reading, way);
+    }
+}
+
+/* The copy that identify and evaluate need has no room: a sentence, and no result of a part. */
+static void test_copy_that_fails(void **state)
+{
+    (void)state;
+    static const char *const verbs[] = {"identify", "evaluate"};
+    char line[300];
+    for (size_t i = 0; i < 2; i++) {
+        snprintf(line, sizeof line, "cat log.csv | TMPDIR=/nonexistent $I %s /dev/stdin", verbs[i]);
+        assert_int_equal(run(line), 1);
+        check_contains(err,
+                       "/dev/stdin: its temporary copy cannot be written: No such file or "
+                       "directory; set TMPDIR to a folder with room, or give a file instead of a "
+                       "pipe\n",
+                       line);
+        assert_string_equal(out, "");
+        snprintf(line, sizeof line, "cat log.csv | ( ulimit -f 100; $I %s - )", verbs[i]);
+        assert_int_equal(run(line), 1);
+        check_contains(err, "standard input: its temporary copy cannot be written: File too large",
+                       line);
+        assert_string_equal(out, "");
+    }
+}
+
+/* What streams needs no copy, and takes no end for granted: the first rows come before the last. */
+static void test_streams_stay_streams(void **state)
+{
+    (void)state;
+    assert_int_equal(run("cat log.csv | TMPDIR=/nonexistent $I convert - - | cmp - log.csv"), 0);
+    assert_int_equal(run("yes 0.01,0.02 | TMPDIR=/nonexistent $I convert - - --rate 100Hz "
+                         "--columns gyro_x,gyro_y --gyro-unit deg/s | head -3"),
+                     0);
+    assert_string_equal(out, "gyro_x [deg/s],gyro_y [deg/s]\n0.01,0.02\n0.01,0.02\n");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_from_pipes),
+        cmocka_unit_test(test_copy_that_fails),
+        cmocka_unit_test(test_streams_stay_streams),
+    };
+    return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
+}
