@@ -186,13 +186,18 @@ static void test_units(void **state)
     put_readings(HEADER("deg/s", "m/s^2"), "0.00295,0,-0.00295", "0,0,-9.806");
     assert_int_equal(run("$I navigate readings.csv " PLACE " --attitude '0 20 0 deg'"), 0);
     check_contains(err, "begins with an acceleration of 3.41 m/s^2: the attitude", "attitude");
-    assert_int_equal(run("(cat readings.csv; echo 20,0,0,0,1e200,0,-1e200; echo 21,0,0,0,0,0,-9) "
+    assert_int_equal(run("(cat readings.csv; echo 20,0,0,0,1e50,0,-1e50; echo 21,0,0,0,0,0,-9) "
                          "> absurd.csv; $I navigate absurd.csv " PLACE " --align 15s "
                          "--align-method means -o track.csv"),
                      1);
     assert_string_equal(err, "imukit navigate: error: absurd.csv: by 20.000 s the estimate has "
                              "left the Earth's surroundings: a reading before is absurd, or its "
                              "unit wrong\n");
+    assert_int_equal(access("track.csv", F_OK), -1);
+    assert_int_equal(run("sed -i 's/1e50/1e200/g' absurd.csv; $I navigate absurd.csv " PLACE
+                         " --align 15s --align-method means -o track.csv"),
+                     1);
+    check_contains(err, "beyond 1e60, first in row 21, column accel_x", "1e200");
     assert_int_equal(access("track.csv", F_OK), -1);
     sweep();
 }
