@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "campaign_run.h"
 #include "command.h"
+#include "memory_guard.h"
 
 #include "imukit/output_file.h"
 
@@ -159,6 +160,7 @@ static int obey(int argc, char **argv)
 int main(int argc, char **argv)
 {
     catch_signals();
+    memory_guard();
     campaign_begin(&argc, &argv);
     return campaign_end(obey(argc, argv));
 }

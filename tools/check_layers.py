@@ -33,7 +33,7 @@ PUBLIC = {
     "calibrate": "calibration calibration_plan evaluate ferraris laboratory procedure "
                  "reference_alignment repeatability static_detection test_record thermal",
     "navigate": "alignment drift navigate zero_velocity",
-    "io": "campaign design_file firmware_file io log model_file motion_file output_file "
+    "io": "campaign design_file firmware_file io log memory_limit model_file motion_file output_file "
           "parameter_file thread_pool",
     "report": "report",
 }

@@ -8,6 +8,7 @@
 #include "imukit/design_file.h"
 #include "imukit/firmware_file.h"
 #include "imukit/log.h"
+#include "imukit/memory_limit.h"
 #include "imukit/model_file.h"
 #include "imukit/motion_file.h"
 #include "imukit/output_file.h"

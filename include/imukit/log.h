@@ -55,6 +55,7 @@ typedef struct imk_log_settings {
                         be rewound, such as a pipe, is copied to a temporary file in TMPDIR first,
                         which is read now and by the openings after this, up to the first without
                         `reopened`; false */
+    size_t memory;         /**< bytes that a whole log may take; 0: half of imk_memory_limit() */
 } imk_log_settings;
 
 /** Everything from the header of the file. */
@@ -146,7 +147,9 @@ typedef struct imk_log {
 /** Called now and then on long work; `done` of `total` (0: not known) in any measure. */
 typedef void (*imk_progress)(void *context, uint64_t done, uint64_t total);
 
-/** Read a whole log. @param progress may be NULL. Free with imk_log_free(). */
+/** Read a whole log. @param progress may be NULL. Free with imk_log_free().
+ *  @return as imk_log_open(), imk_log_read(); IMK_ERROR_MEMORY (how many rows were read) for a log
+ *          that takes more memory than the settings allow */
 IMK_API imk_status imk_log_load(const char *path, const imk_log_settings *settings,
                                 imk_progress progress, void *progress_context, imk_log *log,
                                 imk_error *error);

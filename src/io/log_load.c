@@ -2,6 +2,9 @@
 /* A whole log in memory. */
 #include "io/log_reader_internal.h"
 
+#include "imukit/memory_limit.h"
+
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,8 +14,6 @@ enum { LOAD_ROWS = 1 << 16, FIRST_CAPACITY = 1 << 12 };
 static bool set_capacity(imk_log *log, size_t capacity)
 {
     for (size_t i = 0; i < log->column_count; i++) {
-        if (capacity >= SIZE_MAX / sizeof(double))
-            return false;
         double *larger = realloc(log->data[i], (capacity + 1) * sizeof(double));
         if (!larger)
             return false;
@@ -38,15 +39,28 @@ static size_t next_capacity(const imk_log_reader *reader, size_t rows)
     return bounded > least ? bounded : least;
 }
 
-static imk_status read_all(imk_log_reader *reader, imk_progress progress, void *context,
-                           imk_log *log, imk_error *error)
+/* A few bytes of compressed text are rows without end; what is beyond the memory of the machine
+ * would end the program, or all others, without a word. */
+static imk_status refuse_length(const imk_log *log, imk_error *error)
+{
+    char found[96];
+    const double taken = (double)log->rows * (double)log->column_count * sizeof(double);
+    snprintf(found, sizeof found, "memory is full: %zu rows of %zu columns take %.1f MB", log->rows,
+             log->column_count, 1e-6 * taken);
+    return imk_error_set(error, IMK_ERROR_MEMORY, "", found,
+                         "cut the log into parts, or leave out columns (--columns with -)");
+}
+
+static imk_status read_all(imk_log_reader *reader, size_t rows_most, imk_progress progress,
+                           void *context, imk_log *log, imk_error *error)
 {
     size_t capacity = FIRST_CAPACITY;
     for (;;) {
         if (log->rows == capacity)
             capacity = next_capacity(reader, log->rows);
-        if (!set_capacity(log, capacity))
-            return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, "a shorter log");
+        capacity = capacity < rows_most ? capacity : rows_most;
+        if (log->rows == capacity || !set_capacity(log, capacity))
+            return refuse_length(log, error);
         while (log->rows < capacity) {
             double *place[IMK_LOG_COLUMNS_MAX];
             for (size_t i = 0; i < log->column_count; i++)
@@ -77,7 +91,10 @@ imk_status imk_log_load(const char *path, const imk_log_settings *settings, imk_
     if (status != IMK_OK)
         return status;
     imk_log made = {.column_count = reader->layout.column_count};
-    status = read_all(reader, progress, progress_context, &made, error);
+    const size_t memory =
+        settings && settings->memory > 0 ? settings->memory : imk_memory_limit() / 2;
+    status = read_all(reader, memory / (made.column_count * sizeof(double)), progress,
+                      progress_context, &made, error);
     if (status == IMK_OK) {
         memcpy(made.column, reader->layout.column, made.column_count * sizeof made.column[0]);
         made.findings = imk_log_findings_get(reader);

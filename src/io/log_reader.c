@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const uint32_t settings_cookie = 0x4C4F4731; /* "LOG1" */
+static const uint32_t settings_cookie = 0x4C4F4732; /* "LOG2" */
 
 imk_log_settings imk_log_settings_default(void)
 {

@@ -2,6 +2,8 @@
 /* Logs, models and outputs that are wrong: the sentence, the exit code, and nothing left behind. */
 #include "run_command.h"
 
+#include "imukit/memory_limit.h"
+
 #define REMEDY "use --gaps longest (the longest clean stretch) or --gaps bridge (interpolate)\n"
 
 /* How the file is made, and what every verb that analyses a log says about it. */
@@ -171,6 +173,53 @@ static void test_no_readings(void **state)
     free(empty);
 }
 
+/* A few kilobytes that are rows without end: what loads a log says so before the memory is gone,
+ * what passes it on does it in constant memory. The sanitizers need all the address space. */
+static void test_rows_without_end(void **state)
+{
+    (void)state;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    skip();
+#endif
+    static const char *const loading[] = {
+        "allan b.csv.gz --threads 1", "identify b.csv.gz --threads 1",
+        "spectrum b.csv.gz --threads 1", "calibrate b.csv.gz --procedure repeatability",
+        "simulate tactical --motion b.csv.gz --threads 1"};
+    char line[300];
+    assert_int_equal(run("(echo 'time [s],gyro_x [deg/s]'; yes 0,0 | head -n 2200000) | gzip -1 "
+                         ">b.csv.gz"),
+                     0);
+    for (size_t i = 0; i < sizeof loading / sizeof loading[0]; i++) {
+        snprintf(line, sizeof line, "ulimit -v 60000; $I %s", loading[i]);
+        assert_int_equal(run(line), 1);
+        check_contains(err, "b.csv.gz: memory is full: ", line);
+        check_contains(err, " rows of 2 columns take ", line);
+        check_contains(err, "cut the log into parts", line);
+    }
+    assert_int_equal(run("ulimit -v 60000; $I convert b.csv.gz --threads 1 - | tail -n 1"), 0);
+    assert_string_equal(out, "0,0\n");
+    assert_string_equal(err, "");
+    sweep();
+}
+
+/* Systems that promise more memory than there is would end a program that takes it: its data is
+ * limited, as that of its children. */
+static void test_memory_is_limited(void **state)
+{
+    (void)state;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    skip();
+#endif
+    write_good();
+    put("gnuplot", "#!/bin/sh\nulimit -d >limit.txt\n");
+    run("chmod +x gnuplot; H=$PWD; sed -i \"s,limit.txt,$H/limit.txt,\" gnuplot; "
+        "PATH=$H:$PATH $I allan good.csv --plot p.svg");
+    assert_int_equal(run("cat limit.txt"), 0);
+    const double kilobytes = strtod(out, NULL); /* 0 when it is unlimited */
+    assert_true(kilobytes >= 1e3 && 1024 * kilobytes <= 0.876 * (double)imk_memory_limit());
+    sweep();
+}
+
 /* Only the channel that lacks a value lacks it; times that are no grid are refused. */
 static void test_grids(void **state)
 {
@@ -320,6 +369,8 @@ int main(void)
         cmocka_unit_test(test_refused_logs),
         cmocka_unit_test(test_gaps_kept),
         cmocka_unit_test(test_no_readings),
+        cmocka_unit_test(test_rows_without_end),
+        cmocka_unit_test(test_memory_is_limited),
         cmocka_unit_test(test_grids),
         cmocka_unit_test(test_next_command),
         cmocka_unit_test(test_gap_policies),

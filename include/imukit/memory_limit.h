@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file memory_limit.h
+ *  How much memory there is. */
+#ifndef IMUKIT_MEMORY_LIMIT_H
+#define IMUKIT_MEMORY_LIMIT_H
+
+#include "imukit/status.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Bytes that this process may have in all: the least of the machine's memory and of the limits on
+ *  its address space, its data and its control group; SIZE_MAX when nothing is known. */
+IMK_API size_t imk_memory_limit(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
