@@ -3,6 +3,8 @@
  * with laser gyros, whose alignment and drift are known from independent estimators. */
 #include "run_command.h"
 
+#include "imukit/earth.h"
+
 #define PLACE "--position '45 deg, 10 deg, 100 m'"
 
 /* 20 s at rest at 45 deg north, level, heading north, perfect readings; 10 Hz. */
@@ -280,6 +282,33 @@ static void test_parked(void **state)
     sweep();
 }
 
+/* Readings in g whose g is 9.780327 m/s^2 are 1.0026905 of gravity, and are told to be within 1e-4
+ * of that: from both sides, just within and just without. */
+static void test_g_of_another_maker(void **state)
+{
+    (void)state;
+    static const struct {
+        double off;
+        bool told;
+    } cases[] = {{0.97e-4, true}, {-0.97e-4, true}, {1.03e-4, false}, {-1.03e-4, false}};
+    const double gravity = imk_normal_gravity(45 * 3.14159265358979323846 / 180, 0) / 9.80665;
+    const double rate = 15.041067 / 3600 / sqrt(2); /* deg/s, north and down at 45 deg */
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        FILE *file = fopen("g.csv", "wb");
+        assert_non_null(file);
+        fprintf(file, "time [s],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],accel_x [g],accel_y "
+                      "[g],accel_z [g]\n");
+        for (int k = 0; k < 700; k++)
+            fprintf(file, "%.1f,%.12f,0,%.12f,0,0,%.12f\n", 0.1 * k, rate, -rate,
+                    -(9.80665 / 9.780327 + cases[i].off) * gravity);
+        fclose(file);
+        assert_int_equal(run("$I navigate g.csv --position '45 deg, 0 deg, 0 m' --align 60s"), 0);
+        const bool told = strstr(err, "as if g stood for 9.780327 m/s^2") != NULL;
+        assert_int_equal(told, cases[i].told);
+    }
+    sweep();
+}
+
 /* Gyros with a bias of 0.1 deg/s, 70 times the Earth's rotation, turn 8 deg in the minute of
  * alignment: the vertical is found all the same, to what 0.06 mg/sqrt(Hz) and 0.3 deg/sqrt(h)
  * leave, and north is not claimed. */
@@ -442,11 +471,11 @@ static void test_gravity_free(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_perfect),      cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_company),      cmocka_unit_test(test_units),
-        cmocka_unit_test(test_parked),       cmocka_unit_test(test_coarse_gyros),
-        cmocka_unit_test(test_stops),        cmocka_unit_test(test_smooth_motion),
-        cmocka_unit_test(test_gravity_free),
+        cmocka_unit_test(test_perfect),       cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_company),       cmocka_unit_test(test_units),
+        cmocka_unit_test(test_parked),        cmocka_unit_test(test_g_of_another_maker),
+        cmocka_unit_test(test_coarse_gyros),  cmocka_unit_test(test_stops),
+        cmocka_unit_test(test_smooth_motion), cmocka_unit_test(test_gravity_free),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

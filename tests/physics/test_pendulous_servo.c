@@ -202,6 +202,27 @@ static void angular_acceleration_acts_at_the_centre_of_percussion(void **state)
                    d.inertia / d.pendulosity * (3.0 + 10.0), 1e-12);
 }
 
+/* A rod of 12 mm on a hinge at its end, 0.8 g: P = m L/2, J = m L^2/3, and the centre of percussion
+ * is at 2/3 of its length, wherever the loop. The reading under angular acceleration and the
+ * reduced model both say 8 mm along the pendulum, and nothing across. */
+static void the_lever_arm_of_a_rod(void **state)
+{
+    (void)state;
+    const double mass = 0.8e-3, length = 12e-3, arm = 8e-3;
+    static imk_model model;
+    imk_pendulous_servo d = checked();
+    d.pendulosity = 0.5 * mass * length;
+    d.inertia = mass * length * length / 3.0;
+    const imk_physics_settings settings = quiet(1000.0);
+    imk_exposure exposure = imk_exposure_default();
+    exposure.angular_acceleration[1] = 1.0;
+    CHECK_RELATIVE(mean_of(servo, &d, &settings, &exposure, 1000, 10, 0), arm, 1e-9);
+    imk_pendulous_servo_reduce(&d, &model);
+    CHECK_RELATIVE(model.accel.lever_arm.value[0][2], arm, 1e-14);
+    assert_true(model.accel.lever_arm.value[0][0] == 0.0);
+    assert_true(model.accel.lever_arm.value[0][1] == 0.0);
+}
+
 /* Without integral action: K_ip = P/K and the scale factor lacks K_h/K. */
 static void a_soft_loop_deflects(void **state)
 {
@@ -368,6 +389,7 @@ int main(void)
         cmocka_unit_test(no_numerical_damping),
         cmocka_unit_test(the_laboratory_finds_what_reduce_states),
         cmocka_unit_test(angular_acceleration_acts_at_the_centre_of_percussion),
+        cmocka_unit_test(the_lever_arm_of_a_rod),
         cmocka_unit_test(a_soft_loop_deflects),
         cmocka_unit_test(a_long_record_identifies_as_reduced),
         cmocka_unit_test(noise_is_its_formula),
