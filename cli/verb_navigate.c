@@ -14,9 +14,9 @@ static const option navigate_option_table[] = {
      "how long the unit stands at the start, to find its attitude by itself",
      offsetof(navigate_options, align)},
     {"align-method", 0, OPTION_CHOICE, "CHOICE", NULL, "means|inertial|fine",
-     "from the means of force and rate (the default for gyros that read more than the Earth's "
-     "rotation); from gravity's turn in inertial axes (the default for others: the unit may "
-     "rock); the same and an estimate of the rest",
+     "from the means of force and rate (the default for gyros that read more than 1.5 times the "
+     "Earth's rotation); from gravity's turn in inertial axes (the default for others: the unit "
+     "may rock); the same and an estimate of the rest",
      offsetof(navigate_options, method)},
     {"heading", 0, OPTION_TEXT, "ANGLE", NULL, NULL,
      "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 deg\"",
