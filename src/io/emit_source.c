@@ -70,6 +70,9 @@ static void describe(imki_text *out, const imk_firmware_operation *o,
 static void row(source *s, const imki_text *text)
 {
     int number = 0;
+    s->table.failed = s->table.failed || text->failed;
+    if (s->table.failed)
+        return;
     const char *at = s->table.bytes;
     for (; number < s->constants; number++) {
         const size_t length = strcspn(at, "\n");
@@ -81,7 +84,6 @@ static void row(source *s, const imki_text *text)
         imki_text_add(&s->table, "%s\n", text->bytes);
         s->constants++;
     }
-    s->table.failed = s->table.failed || text->failed;
     imki_text_add(&s->body, "c[%d]", number);
 }
 

@@ -38,14 +38,14 @@ static char *follow_links(const char *path)
 {
     char *current = strdup(path);
     for (int links = 0; current && links < LINKS_MAX; links++) {
-        struct stat about;
-        if (lstat(current, &about) != 0 || !S_ISLNK(about.st_mode))
-            return current;
         char link[NAME_SIZE];
         const ssize_t length = readlink(current, link, sizeof link);
+        if (length < 0 && (errno == EINVAL || errno == ENOENT)) /* no link, or nothing there */
+            return current;
         if (length < 0 || length == sizeof link) {
+            const int number = length < 0 ? errno : ENAMETOOLONG;
             free(current);
-            errno = length < 0 ? errno : ENAMETOOLONG;
+            errno = number;
             return NULL;
         }
         const size_t directory = link[0] == '/' ? 0 : directory_length(current);
@@ -58,8 +58,9 @@ static char *follow_links(const char *path)
         free(current);
         current = next;
     }
+    const int number = current ? ELOOP : ENOMEM;
     free(current);
-    errno = current ? ELOOP : ENOMEM;
+    errno = number;
     return NULL;
 }
 
