@@ -23,6 +23,7 @@
 #include <unistd.h>
 #include <zlib.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 enum { RAW_SIZE = 1 << 18 };
 
@@ -93,6 +94,11 @@ static imk_status damaged(imki_input *input, const char *what)
                          "copy or download the file again");
 }
 
+static imk_status no_memory(imki_input *input)
+{
+    return imk_error_set(&input->failure, IMK_ERROR_MEMORY, input->path, "", "");
+}
+
 /* After a gzip member: another one, zero padding, or the end. */
 static imk_status next_member(imki_input *input)
 {
@@ -134,7 +140,8 @@ static imk_status read_gzip(imki_input *input, unsigned char *target, size_t cap
         if (result == Z_STREAM_END) {
             input->inside = false;
         } else if (result != Z_OK && result != Z_BUF_ERROR) {
-            status = damaged(input, z->msg ? z->msg : "damaged gzip data");
+            status = result == Z_MEM_ERROR ? no_memory(input)
+                                           : damaged(input, z->msg ? z->msg : "damaged gzip data");
             return *got > 0 ? IMK_OK : status;
         } else if (*got == 0 && input->file_ended && input->raw_begin == input->raw_end) {
             return damaged(input, "the gzip data is cut short");
@@ -157,7 +164,9 @@ static imk_status read_zstd(imki_input *input, unsigned char *target, size_t cap
         *got = out.pos;
         input->raw_begin += in.pos;
         if (ZSTD_isError(result)) {
-            status = damaged(input, ZSTD_getErrorName(result));
+            status = ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation
+                         ? no_memory(input)
+                         : damaged(input, ZSTD_getErrorName(result));
             return *got > 0 ? IMK_OK : status;
         }
         input->inside = result != 0;
@@ -232,12 +241,12 @@ static imk_status recognise(imki_input *input)
         input->encoding = ENCODING_GZIP;
         input->inside = true;
         if (inflateInit2(&input->gzip, 15 + 16) != Z_OK) /* 15: largest window, + 16: gzip only */
-            return imk_error_set(&input->failure, IMK_ERROR_MEMORY, input->path, "", "");
+            return no_memory(input);
     } else if (word == 0xFD2FB528u || (word & 0xFFFFFFF0u) == 0x184D2A50u) {
         input->encoding = ENCODING_ZSTD;
         input->zstd = ZSTD_createDStream();
         if (!input->zstd)
-            return imk_error_set(&input->failure, IMK_ERROR_MEMORY, input->path, "", "");
+            return no_memory(input);
     }
     return IMK_OK;
 }

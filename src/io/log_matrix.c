@@ -1,31 +1,36 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Logs as .npy matrices: float64 or float32, rows by columns. The names of the columns stand one a
  * line in FILE.npy.columns, as `gyro_x [deg/s]`, or come from the settings. */
+#define _POSIX_C_SOURCE 200809L
 #include "io/log_reader_internal.h"
+#include "io/text_file_internal.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { NAMES_SIZE = 16384 };
 
 /* The file of names with its line ends; "" when there is none. */
-static void read_names(const char *path, char names[NAMES_SIZE])
+static imk_status read_names(const char *path, char names[NAMES_SIZE], imk_error *error)
 {
-    size_t length = 0;
     const size_t path_size = strlen(path) + sizeof ".columns";
-    char *names_path = malloc(path_size);
-    if (names_path) {
-        snprintf(names_path, path_size, "%s.columns", path);
-        FILE *file = fopen(names_path, "r");
-        if (file) {
-            length = fread(names, 1, NAMES_SIZE - 1, file);
-            fclose(file);
-        }
-        free(names_path);
-    }
-    names[length] = '\0';
+    char *names_path = malloc(path_size), *text = NULL;
+    size_t size = 0;
+    if (!names_path)
+        return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
+    snprintf(names_path, path_size, "%s.columns", path);
+    imk_status status = IMK_OK;
+    if (access(names_path, F_OK) == 0)
+        status = imki_text_file_read(names_path, NAMES_SIZE - 2, &text, &size, error);
+    if (status == IMK_OK && size > 0)
+        memcpy(names, text, size);
+    names[size] = '\0';
+    free(text);
+    free(names_path);
+    return status;
 }
 
 static size_t split_names(const char *names, bool by_line, imki_log_piece *cells)
@@ -113,7 +118,9 @@ imk_status imki_log_open_matrix(imk_log_reader *reader, const char *path,
     text->next += reader->npy.header_size;
     char names[NAMES_SIZE] = "";
     if (!settings->columns && path && strcmp(path, "-") != 0)
-        read_names(path, names);
+        status = read_names(path, names, error);
+    if (status != IMK_OK)
+        return status;
     imki_log_piece cells[IMK_LOG_COLUMNS_MAX];
     const size_t count = settings->columns ? split_names(settings->columns, false, cells)
                                            : split_names(names, true, cells);

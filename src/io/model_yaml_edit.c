@@ -149,7 +149,7 @@ static imk_status add_to_block(const imk_document *document, int mapping, int be
 {
     size_t place = before == IMKI_NONE ? line_start(document, node_at(document, mapping)->begin)
                                        : next_line(document, before);
-    if (place == SIZE_MAX || entry->failed)
+    if (place == SIZE_MAX)
         return IMK_ERROR_UNSUPPORTED;
     bool line_is_open = place > 0 && document->text[place - 1] != '\n';
     imki_writer insert = {.bytes = NULL};
@@ -189,8 +189,10 @@ static imk_status add_item(const imk_document *document, int mapping, size_t ind
         entry.indent = (int)node_at(document, node->first)->column - 1;
     write_entry(&entry, document, mapping, index, item, model);
     int before = entry_before(document, mapping, index);
-    imk_status status = node->is_flow ? add_to_flow(document, mapping, before, &entry, text, size)
-                                      : add_to_block(document, mapping, before, &entry, text, size);
+    imk_status status = entry.failed ? IMK_ERROR_MEMORY
+                        : node->is_flow
+                            ? add_to_flow(document, mapping, before, &entry, text, size)
+                            : add_to_block(document, mapping, before, &entry, text, size);
     free(entry.bytes);
     return status;
 }

@@ -126,8 +126,8 @@ static imk_status write_zstd(imk_output_file *file, const unsigned char *bytes, 
         ZSTD_outBuffer out = {file->buffer, BUFFER_SIZE, file->used};
         left = ZSTD_compressStream2(file->zstd, &out, &in, directive);
         file->used = out.pos;
-        if (ZSTD_isError(left))
-            return fail(file, EINVAL);
+        if (ZSTD_isError(left)) /* nothing is wrong with the bytes */
+            return fail(file, ENOMEM);
     } while (in.pos < size || (directive == ZSTD_e_end && left > 0));
     return file->status;
 }
