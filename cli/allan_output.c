@@ -277,16 +277,10 @@ static allan_figure *make_figure(const allan_result *result)
     for (size_t c = 0; c < result->channels.count; c++)
         for (size_t k = 0; k < result->statistic_count; k++)
             points += result->curve[c][k].count;
-    allan_figure *f = calloc(1, sizeof *f);
-    if (!f)
-        return NULL;
-    f->memory = malloc((3 * points + 1) * sizeof *f->memory);
-    if (!f->memory) {
-        free(f);
-        return NULL;
-    }
+    allan_figure *f = command_memory(NULL, sizeof *f);
+    *f = (allan_figure){.memory = command_memory(NULL, (3 * points + 1) * sizeof *f->memory),
+                        .figure = {result->path, 0, 2, f->panel}};
     double *rest = f->memory;
-    f->figure = (imk_figure){result->path, 0, 2, f->panel};
     for (int time = 0; time < 2; time++)
         for (channel_kind kind = CHANNEL_GYRO; kind < CHANNEL_KINDS; kind++)
             add_panel(f, result, kind, time == 1, &used, &rest);
@@ -303,8 +297,6 @@ int allan_draw(const allan_result *result, const char *plot)
 {
     imk_error error;
     allan_figure *f = make_figure(result);
-    if (!f)
-        return command_failed("memory is exhausted");
     imk_status status = imk_figure_write(&f->figure, plot, &error);
     free_figure(f);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
@@ -314,8 +306,6 @@ int allan_write_report(const allan_result *result, const char *path)
 {
     char subtitle[300];
     allan_figure *f = make_figure(result);
-    if (!f)
-        return command_failed("memory is exhausted");
     snprintf(subtitle, sizeof subtitle, "%.120s: %zu samples of %zu channels, %g Hz", result->path,
              result->channels.rows, result->channels.count, 1 / result->channels.dt);
     imk_page *page = imk_page_create("Allan deviation", subtitle);

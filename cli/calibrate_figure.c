@@ -41,7 +41,7 @@ static size_t axis_points(const bench *b, int sensor, int axis, double scale, do
     return count;
 }
 
-static bool residual_panel(const bench *b, calibrate_figure *f, int sensor)
+static void residual_panel(const bench *b, calibrate_figure *f, int sensor)
 {
     static const char *const titles[2] = {"gyro residuals", "accelerometer residuals"};
     static const char *const labels[2] = {"residual [deg/s]", "residual [mg]"};
@@ -50,9 +50,7 @@ static bool residual_panel(const bench *b, calibrate_figure *f, int sensor)
     const size_t p = f->figure.panel_count;
     size_t curves = 0;
     free(f->memory[p]);
-    f->memory[p] = malloc(6 * (size_t)POINTS_MAX * sizeof(double));
-    if (!f->memory[p])
-        return false;
+    f->memory[p] = command_memory(NULL, 6 * (size_t)POINTS_MAX * sizeof(double));
     for (int axis = 0; axis < 3; axis++) {
         double *x = f->memory[p] + 2 * (size_t)axis * POINTS_MAX, *y = x + POINTS_MAX;
         const size_t count = axis_points(b, sensor, axis, scales[sensor], x, y);
@@ -65,14 +63,13 @@ static bool residual_panel(const bench *b, calibrate_figure *f, int sensor)
                                                 .y = y};
     }
     if (curves == 0)
-        return true; /* the memory is freed with the figure, or used by the next panel */
+        return; /* the memory is freed with the figure, or used by the next panel */
     f->panel[p] = (imk_panel){.title = titles[sensor],
                               .x_label = "observation",
                               .y_label = labels[sensor],
                               .curve_count = curves,
                               .curves = f->curve[p]};
     f->figure.panel_count++;
-    return true;
 }
 
 /* ---- activity -------------------------------------------------------------------------------- */
@@ -97,16 +94,14 @@ static size_t thin(const bench_log *log, double *x, double *y)
     return count;
 }
 
-static bool activity_panel(calibrate_figure *f, const bench_log *log)
+static void activity_panel(calibrate_figure *f, const bench_log *log)
 {
     const size_t p = f->figure.panel_count;
     if (!log->activity || p == PANELS_MAX)
-        return true;
+        return;
     free(f->memory[p]);
-    f->memory[p] = malloc((2 * (size_t)POINTS_MAX + 4) * sizeof(double));
-    f->region[p] = calloc(REGIONS_MAX, sizeof *f->region[p]);
-    if (!f->memory[p] || !f->region[p])
-        return false;
+    f->memory[p] = command_memory(NULL, (2 * (size_t)POINTS_MAX + 4) * sizeof(double));
+    f->region[p] = command_memory(NULL, REGIONS_MAX * sizeof *f->region[p]);
     double *x = f->memory[p], *y = x + POINTS_MAX, *line = y + POINTS_MAX;
     const size_t count = thin(log, x, y);
     double top = 10;
@@ -145,24 +140,16 @@ static bool activity_panel(calibrate_figure *f, const bench_log *log)
                               .regions = f->region[p],
                               .key = IMK_KEY_BELOW};
     f->figure.panel_count++;
-    return true;
 }
 
-/* NULL when memory is exhausted. */
 static calibrate_figure *make_figure(const bench *b)
 {
-    calibrate_figure *f = calloc(1, sizeof *f);
-    bool made = f != NULL;
-    if (made)
-        f->figure = (imk_figure){.title = "calibration", .columns = 1, .panels = f->panel};
-    for (int sensor = 1; made && sensor >= 0 && b->result; sensor--)
-        made = residual_panel(b, f, sensor);
-    for (size_t k = 0; made && k < b->log_count; k++)
-        made = activity_panel(f, &b->log[k]);
-    if (f && !made) {
-        free_figure(f);
-        f = NULL;
-    }
+    calibrate_figure *f = command_memory(NULL, sizeof *f);
+    *f = (calibrate_figure){.figure = {.title = "calibration", .columns = 1, .panels = f->panel}};
+    for (int sensor = 1; sensor >= 0 && b->result; sensor--)
+        residual_panel(b, f, sensor);
+    for (size_t k = 0; k < b->log_count; k++)
+        activity_panel(f, &b->log[k]);
     return f;
 }
 
@@ -170,8 +157,6 @@ int bench_draw(const bench *b, const char *path)
 {
     imk_error error;
     calibrate_figure *f = make_figure(b);
-    if (!f)
-        return command_failed("memory is exhausted");
     const imk_status status =
         f->figure.panel_count > 0
             ? imk_figure_write(&f->figure, path, &error)
@@ -183,11 +168,10 @@ int bench_draw(const bench *b, const char *path)
 void bench_put_figure(const bench *b, imk_page *page)
 {
     calibrate_figure *f = make_figure(b);
-    if (f && f->figure.panel_count > 0)
+    if (f->figure.panel_count > 0)
         imk_page_figure(page, &f->figure,
                         "Residuals of each observation, and for each log the scatter within a "
                         "short window over what noise allows: below the dashes it stands still. "
                         "Tinted: the intervals found.");
-    if (f)
-        free_figure(f);
+    free_figure(f);
 }

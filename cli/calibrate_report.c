@@ -42,18 +42,6 @@ static void put_holds(imk_page *page, const bench_log *log)
     imk_page_text(page, text);
 }
 
-static void put_model(imk_page *page, const bench *b)
-{
-    char *text = NULL;
-    size_t size;
-    imk_error error;
-    if (imk_model_print(&b->model, NULL, &text, &size, &error) != IMK_OK)
-        return;
-    imk_page_heading(page, "Model file");
-    imk_page_code(page, text);
-    free(text);
-}
-
 static void put_parameters(imk_page *page, const bench *b)
 {
     char text[900];
@@ -105,7 +93,7 @@ int bench_report(const bench *b, const char *path)
     for (size_t k = 0; k < b->log_count; k++)
         put_holds(page, &b->log[k]);
     put_table(page, bench_pose_table(b));
-    put_model(page, b);
+    page_put_model(page, "Model file", &b->model);
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
     return page_write(page, path);

@@ -4,6 +4,7 @@
 #include "command.h"
 
 #include "imukit/names.h"
+#include "imukit/output_file.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -109,6 +110,26 @@ int command_error(const imk_error *error, const char *source)
     char text[900];
     imk_error_text(error, source, text, sizeof text);
     return command_failed("%s", text);
+}
+
+void command_end(int code)
+{
+    imk_output_file_abandon_all();
+    exit(code);
+}
+
+imk_status command_unless_memory(imk_status status)
+{
+    if (status == IMK_ERROR_MEMORY)
+        command_end(command_failed("memory is exhausted"));
+    return status;
+}
+
+void *command_memory(void *at, size_t size)
+{
+    void *memory = realloc(at, size);
+    (void)command_unless_memory(memory ? IMK_OK : IMK_ERROR_MEMORY);
+    return memory;
 }
 
 /* The remedy of the log reader is "add --option value … (why)": the options are what stands

@@ -31,6 +31,13 @@ int command_failed(const char *format, ...) __attribute__((format(printf, 1, 2))
 int command_misused(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The sentence of a library error; source is the file it is about, or NULL. */
 int command_error(const imk_error *error, const char *source);
+/* End the command at once, from where there is no way back; unfinished output files are removed. */
+_Noreturn void command_end(int code);
+/* Memory for what is printed and drawn: realloc() that ends the command when it fails, so that no
+ * result is short of what did not fit. */
+void *command_memory(void *at, size_t size);
+/* The same of what the library reports: the status, unless it is that memory failed. */
+imk_status command_unless_memory(imk_status status);
 /* Open a model file or a catalogue entry. @return -1 or the exit code, the message printed */
 int command_model(const char *name, imk_model *model, imk_document **document);
 /* The same for a log that cannot be read as it is; when an option would help, the whole command to

@@ -220,14 +220,13 @@ static double largest(const drift_result *r)
     return most;
 }
 
-bool drift_figure_make(const drift_result *r, drift_figure *d)
+void drift_figure_make(const drift_result *r, drift_figure *d)
 {
     const drift_scene *scene = r->scene;
     *d = (drift_figure){.times = scene->time_count};
     const size_t lines = 1 + r->case_count * (2 + DRIFT_BANDS + 2);
-    d->memory = malloc((lines * scene->time_count + 7 * scene->row_count) * sizeof *d->memory);
-    if (!d->memory)
-        return false;
+    d->memory = command_memory(NULL, (lines * scene->time_count + 7 * scene->row_count) *
+                                         sizeof *d->memory);
     double *rest = d->memory, *time = cut(&rest, scene->time_count);
     d->unit = unit_of_time(scene->time[scene->time_count - 1], &d->time_label);
     d->length = largest(r) >= 2000 ? 1000 : 1;
@@ -250,7 +249,6 @@ bool drift_figure_make(const drift_result *r, drift_figure *d)
     d->figure.title = r->model_count > 1 ? "Comparison" : r->name[0];
     d->figure.columns = d->figure.panel_count < 3 ? d->figure.panel_count : 3;
     d->figure.panels = d->panel;
-    return true;
 }
 
 void drift_figure_free(drift_figure *figure)
@@ -261,11 +259,8 @@ void drift_figure_free(drift_figure *figure)
 int drift_draw(const drift_result *r, const char *path)
 {
     imk_error error;
-    drift_figure *d = malloc(sizeof *d);
-    if (!d || !drift_figure_make(r, d)) {
-        free(d);
-        return command_failed("memory is exhausted");
-    }
+    drift_figure *d = command_memory(NULL, sizeof *d);
+    drift_figure_make(r, d);
     if (strcmp(path, "term") == 0) /* letters have no shades */
         d->figure.panel_count = 1;
     const imk_status status = imk_figure_write(&d->figure, path, &error);

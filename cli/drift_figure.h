@@ -24,7 +24,7 @@ typedef struct drift_figure {
 } drift_figure;
 
 /* False when memory is exhausted. */
-bool drift_figure_make(const drift_result *r, drift_figure *d);
+void drift_figure_make(const drift_result *r, drift_figure *d);
 void drift_figure_free(drift_figure *figure);
 
 #endif

@@ -83,15 +83,13 @@ static json_t *json_of_physics(const imk_model *model)
     char *text = NULL;
     size_t size;
     json_t *tree = NULL;
-    imk_model *bare = malloc(sizeof *bare);
-    if (!bare)
-        return NULL;
+    imk_model *bare = command_memory(NULL, sizeof *bare);
     *bare = *model;
     bare->name[0] = bare->description[0] = bare->residual_of[0] = '\0';
     forget(&bare->gyro_evidence);
     forget(&bare->accel_evidence);
     bare->gyro.noise.density = bare->accel.noise.density = IMK_DENSITY_TWO_SIDED;
-    if (imk_model_print_json(bare, NULL, &text, &size, NULL) == IMK_OK)
+    if (command_unless_memory(imk_model_print_json(bare, NULL, &text, &size, NULL)) == IMK_OK)
         tree = json_loadb(text, size, 0, NULL);
     free(text);
     free(bare);

@@ -17,14 +17,13 @@ static void put_table(imk_page *page, const char *title, text_table table)
 
 static void put_figure(imk_page *page, const drift_result *r)
 {
-    drift_figure *d = malloc(sizeof *d);
-    if (d && drift_figure_make(r, d)) {
-        imk_page_figure(page, &d->figure,
-                        "CEP is the radius of the circle that holds half of all outcomes, R95 that "
-                        "of 95 %. Shares are of the variance: a term with 25 % makes half as much "
-                        "error as the whole.");
-        drift_figure_free(d);
-    }
+    drift_figure *d = command_memory(NULL, sizeof *d);
+    drift_figure_make(r, d);
+    imk_page_figure(page, &d->figure,
+                    "CEP is the radius of the circle that holds half of all outcomes, R95 that of "
+                    "95 %. Shares are of the variance: a term with 25 % makes half as much error "
+                    "as the whole.");
+    drift_figure_free(d);
     free(d);
 }
 
@@ -60,15 +59,8 @@ static void put_answer(imk_page *page, const drift_result *r, const drift_answer
 
 static void put_models(imk_page *page, const drift_result *r)
 {
-    for (size_t m = 0; m < r->model_count; m++) {
-        char *text = NULL;
-        size_t size;
-        if (imk_model_print(r->model[m], NULL, &text, &size, NULL) == IMK_OK) {
-            imk_page_heading(page, r->name[m]);
-            imk_page_code(page, text);
-        }
-        free(text);
-    }
+    for (size_t m = 0; m < r->model_count; m++)
+        page_put_model(page, r->name[m], r->model[m]);
 }
 
 int drift_report(const drift_result *r, const drift_answer *answer, const char *path)

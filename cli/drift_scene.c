@@ -2,6 +2,7 @@
 /* What is navigated and when to look, from the options. */
 #include "drift_parts.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -69,13 +69,11 @@ static size_t mean_curves(const evaluate_channel *c, double *m, imk_curve *curve
     return 3;
 }
 
-static bool make(const evaluate_channel *c, channel_figure *f)
+static void make(const evaluate_channel *c, channel_figure *f)
 {
     const size_t n = c->result.levels;
-    f->memory = malloc((n > 0 ? n : 1) * ARRAYS * sizeof *f->memory);
+    f->memory = command_memory(NULL, (n > 0 ? n : 1) * ARRAYS * sizeof *f->memory);
     f->panels = 0;
-    if (!f->memory)
-        return false;
     snprintf(f->x_label, sizeof f->x_label, "reference [%s]", c->reference_unit.text);
     const size_t means = mean_curves(c, f->memory, f->curve[0]);
     snprintf(f->title[0], sizeof f->title[0], "%s: off the least-squares line", c->name);
@@ -87,7 +85,7 @@ static bool make(const evaluate_channel *c, channel_figure *f)
                                         .curves = f->curve[0],
                                         .key = IMK_KEY_BELOW};
     if (c->result.hysteresis_level < 0)
-        return true;
+        return;
     double *m = f->memory + 7 * n;
     const size_t ups = side_points(c, true, m, m + n);
     const size_t downs = side_points(c, false, m + 2 * n, m + 3 * n);
@@ -102,7 +100,6 @@ static bool make(const evaluate_channel *c, channel_figure *f)
                                         .curve_count = 4,
                                         .curves = f->curve[1],
                                         .key = IMK_KEY_BELOW};
-    return true;
 }
 
 /* A single panel keeps its own width; two stand side by side. */
@@ -115,24 +112,24 @@ int evaluate_draw(const evaluation *v, const char *path)
 {
     imk_error error;
     imk_panel panel[2 * EVALUATE_CHANNELS];
-    size_t panels = 0, made = 0;
-    channel_figure *f = calloc(EVALUATE_CHANNELS, sizeof *f);
-    imk_status status = imk_error_set(&error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
+    size_t panels = 0;
+    channel_figure *f = command_memory(NULL, EVALUATE_CHANNELS * sizeof *f);
+    imk_status status;
     bool two = false;
-    while (f && made < v->channel_count && make(&v->channel[made], &f[made])) {
-        for (size_t p = 0; p < f[made].panels; p++)
-            panel[panels++] = f[made].panel[p];
-        two = two || f[made].panels > 1;
-        made++;
+    for (size_t k = 0; k < v->channel_count; k++) {
+        make(&v->channel[k], &f[k]);
+        for (size_t p = 0; p < f[k].panels; p++)
+            panel[panels++] = f[k].panel[p];
+        two = two || f[k].panels > 1;
     }
-    if (f && made == v->channel_count && panels == 0)
+    if (panels == 0) {
         status = imk_error_set(&error, IMK_ERROR_EMPTY, "plot", NULL,
                                "a table or a log with a reference");
-    else if (f && made == v->channel_count) {
+    } else {
         const imk_figure figure = figure_of(panel, panels, two && panels > 1 ? 2 : 1);
         status = imk_figure_write(&figure, path, &error);
     }
-    for (size_t k = 0; f && k < EVALUATE_CHANNELS; k++)
+    for (size_t k = 0; k < v->channel_count; k++)
         free(f[k].memory);
     free(f);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
@@ -141,7 +138,8 @@ int evaluate_draw(const evaluation *v, const char *path)
 void evaluate_put_figure(const evaluate_channel *channel, imk_page *page)
 {
     channel_figure f = {.panels = 0};
-    if (channel->result.levels > 1 && make(channel, &f)) {
+    if (channel->result.levels > 1) {
+        make(channel, &f);
         const imk_figure figure = figure_of(f.panel, f.panels, f.panels);
         imk_page_figure(page, &figure,
                         "Mean readings of each level less the least-squares line. Dashes: the best "

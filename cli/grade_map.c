@@ -33,8 +33,8 @@ static void place(grade_map *m, size_t model, double x, double y, const double x
 /* The presets show what the classes look like here. */
 static void add_presets(grade_map *m, bool gyro)
 {
-    imk_model *model = malloc(sizeof *model);
-    for (size_t i = 0; model && i < 5; i++) {
+    imk_model *model = command_memory(NULL, sizeof *model);
+    for (size_t i = 0; i < 5; i++) {
         imk_device_model(imk_device_get(i), model);
         const imk_grade_result table = imk_grade_model(model);
         const imk_triad *triad = gyro ? &model->gyro : &model->accel;
@@ -45,7 +45,7 @@ static void add_presets(grade_map *m, bool gyro)
     m->curve[m->panel.curve_count++] = (imk_curve){.label = "presets, strategic to control",
                                                    .style = IMK_CURVE_POINTS,
                                                    .color = 7,
-                                                   .count = model ? 5 : 0,
+                                                   .count = 5,
                                                    .x = m->preset_x,
                                                    .y = m->preset_y};
     free(model);
@@ -121,9 +121,7 @@ int grade_draw(const grade_result *r, const char *path)
     const grade_options *o = r->options;
     imk_panel panel[GRADE_MAPS];
     imk_figure figure = {.title = "Grade", .columns = 2, .panels = panel};
-    grade_map *maps = malloc(GRADE_MAPS * sizeof *maps);
-    if (!maps)
-        return command_failed("memory is exhausted");
+    grade_map *maps = command_memory(NULL, GRADE_MAPS * sizeof *maps);
     for (int map = 0; map < GRADE_MAPS; map++)
         if ((o->map == 0 || o->map == map + 1) && grade_map_make(r, map, &maps[map]))
             panel[figure.panel_count++] = maps[map].panel;

@@ -166,8 +166,8 @@ static const char *caption(int map)
 
 static void put_maps(imk_page *page, const grade_result *r)
 {
-    grade_map *map = malloc(sizeof *map);
-    for (int i = 0; map && i < GRADE_MAPS; i++) {
+    grade_map *map = command_memory(NULL, sizeof *map);
+    for (int i = 0; i < GRADE_MAPS; i++) {
         if (!grade_map_make(r, i, map))
             continue;
         const imk_figure figure = {.title = "", .panel_count = 1, .panels = &map->panel};
@@ -187,13 +187,8 @@ int grade_report(const grade_result *r, const char *path)
     put_maps(page, r);
     imk_page_text(page, "[ELSHEIMY2020]: doi 10.1186/s43020-019-0001-5. [YAZDI1998]: doi "
                         "10.1109/5.704269. The table of classes is the one above.");
-    for (size_t m = 0; m < r->count; m++) {
-        char *text = NULL;
-        size_t size;
-        if (imk_model_print(r->cases[m].model, NULL, &text, &size, NULL) == IMK_OK)
-            imk_page_code(page, text);
-        free(text);
-    }
+    for (size_t m = 0; m < r->count; m++)
+        page_put_model(page, r->cases[m].operand, r->cases[m].model);
     imk_page_heading(page, "This page was made by");
     imk_page_code(page, command_line());
     return page_write(page, path);

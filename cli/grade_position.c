@@ -83,7 +83,7 @@ static void find_shares(grade_case *one, const imk_drift_analysis *a)
 
 static void find_needs(grade_case *one, const imk_drift_analysis *a)
 {
-    imk_drift_requirement *need = malloc(sizeof *need);
+    imk_drift_requirement *need = command_memory(NULL, sizeof *need);
     const imk_grade present = one->way[GRADE_GIVEN].grade;
     one->next = present > IMK_GRADE_TACTICAL    ? IMK_GRADE_TACTICAL
                 : present > IMK_GRADE_STRATEGIC ? (imk_grade)(present - 1)
@@ -92,10 +92,9 @@ static void find_needs(grade_case *one, const imk_drift_analysis *a)
     const bool open = row && isinf(row->position_limit);
     const size_t time = one->next == IMK_GRADE_STRATEGIC ? GRADE_DAY : GRADE_HOUR;
     /* A class whose claim has no upper end wants an error that is a position still. */
-    if (need && row &&
-        imk_drift_require(a, time, open ? IMK_WISH_DRMS : IMK_WISH_CEP,
-                          open ? IMK_DRIFT_DISTANCE_MAX : row->position_limit, need,
-                          NULL) == IMK_OK) {
+    if (row && imk_drift_require(a, time, open ? IMK_WISH_DRMS : IMK_WISH_CEP,
+                                 open ? IMK_DRIFT_DISTANCE_MAX : row->position_limit, need,
+                                 NULL) == IMK_OK) {
         size_t wanting = 0;
         one->next_all = need->all;
         for (size_t k = 0; k < a->source_count; k++) {

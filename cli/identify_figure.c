@@ -73,19 +73,15 @@ static void fill_octaves(panel_data *d, const identification *i, size_t channel,
     }
 }
 
-static bool fill(panel_data *d, const identification *i, size_t channel, double scale,
+static void fill(panel_data *d, const identification *i, size_t channel, double scale,
                  double **memory)
 {
     const imk_identification *r = &i->result[channel];
     double dt = i->channels.dt;
     size_t *factors = allan_factors_of_grid(IMK_ALLAN_DECADE, i->channels.rows, &d->smooth_count);
     d->octave_count = i->curve[channel].count;
-    *memory =
-        malloc(((2 + IMK_NOISE_TERMS) * d->smooth_count + 12 * d->octave_count) * sizeof **memory);
-    if (!factors || !*memory) {
-        free(factors);
-        return false;
-    }
+    *memory = command_memory(
+        NULL, ((2 + IMK_NOISE_TERMS) * d->smooth_count + 12 * d->octave_count) * sizeof **memory);
     double *rest = *memory;
     d->tau = cut(&rest, d->smooth_count);
     d->total = cut(&rest, d->smooth_count);
@@ -104,7 +100,6 @@ static bool fill(panel_data *d, const identification *i, size_t channel, double 
     }
     free(factors);
     fill_octaves(d, i, channel, scale);
-    return true;
 }
 
 static size_t make_curves(imk_curve *curve, const panel_data *d, const identification *i,
@@ -156,15 +151,14 @@ static size_t columns_for(size_t channels)
     return channels % 3 == 0 ? 3 : channels % 2 == 0 ? 2 : 1;
 }
 
-static bool make_panels(const identification *i, identify_figure *figure, size_t channel,
+static void make_panels(const identification *i, identify_figure *figure, size_t channel,
                         imk_panel *deviation, imk_panel *misfit)
 {
     const imk_log_column *column = log_channel_column(&i->channels, channel);
     const allan_curve *measured = &i->curve[channel];
     const imk_unit unit = channel_readable_unit(column, measured->deviation[measured->count / 2]);
     panel_data data;
-    if (!fill(&data, i, channel, unit.scale, &figure->memory[channel]))
-        return false;
+    fill(&data, i, channel, unit.scale, &figure->memory[channel]);
     char *label = figure->label[channel];
     snprintf(label, sizeof figure->label[channel], "Allan deviation [%s]", unit.text);
     imk_curve *curve = figure->curve[channel];
@@ -173,7 +167,7 @@ static bool make_panels(const identification *i, identify_figure *figure, size_t
         (imk_panel){column->name, "averaging time [s]", label, true, true, curves, curve, 0,
                     NULL,         IMK_KEY_UPPER};
     if (!misfit)
-        return true;
+        return;
     make_misfit(figure->misfit[channel], &data);
     *misfit = (imk_panel){column->name,
                           "averaging time [s]",
@@ -185,38 +179,29 @@ static bool make_panels(const identification *i, identify_figure *figure, size_t
                           0,
                           NULL,
                           IMK_KEY_UPPER};
-    return true;
 }
 
-bool identify_figure_make(const identification *i, bool misfit, identify_figure *figure)
+void identify_figure_make(const identification *i, bool misfit, identify_figure *figure)
 {
     const size_t count = i->channels.count;
     const size_t columns = misfit ? columns_for(count) : count < 3 ? count : 3;
     figure->channels = count;
-    for (size_t c = 0; c < count; c++)
-        figure->memory[c] = NULL;
     for (size_t c = 0; c < count; c++) {
         const size_t place = misfit ? c / columns * 2 * columns + c % columns : c;
-        if (!make_panels(i, figure, c, &figure->panel[place],
-                         misfit ? &figure->panel[place + columns] : NULL)) {
-            identify_figure_free(figure);
-            return false;
-        }
+        make_panels(i, figure, c, &figure->panel[place],
+                    misfit ? &figure->panel[place + columns] : NULL);
     }
     figure->figure = (imk_figure){i->path, misfit ? 2 * count : count, columns, figure->panel};
-    return true;
 }
 
 int identify_draw(const identification *i, const char *plot)
 {
     imk_error error;
-    imk_status status = imk_error_set(&error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
-    identify_figure *figure = malloc(sizeof *figure);
+    identify_figure *figure = command_memory(NULL, sizeof *figure);
     /* Letters have no room for more. */
-    if (figure && identify_figure_make(i, strcmp(plot, "term") != 0, figure)) {
-        status = imk_figure_write(&figure->figure, plot, &error);
-        identify_figure_free(figure);
-    }
+    identify_figure_make(i, strcmp(plot, "term") != 0, figure);
+    const imk_status status = imk_figure_write(&figure->figure, plot, &error);
+    identify_figure_free(figure);
     free(figure);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
 }

@@ -103,15 +103,14 @@ static int write_into(identification *i, imk_model *noise)
     int code = command_model(i->options->into, &i->model, &document);
     if (code >= 0)
         return code;
-    imk_model *before = malloc(sizeof *before);
-    if (before)
-        *before = i->model;
+    imk_model *before = command_memory(NULL, sizeof *before);
+    *before = i->model;
     code = merge_kind(i, CHANNEL_GYRO, noise);
     if (code < 0)
         code = merge_kind(i, CHANNEL_ACCEL, noise);
     if (code < 0 && i->options->name)
         snprintf(i->model.name, sizeof i->model.name, "%s", i->options->name);
-    if (code < 0 && before)
+    if (code < 0)
         model_print_changes(i->options->into, before, &i->model, document);
     if (code < 0 && i->options->output &&
         imk_model_write(i->options->output, &i->model, document, &error) != IMK_OK)

@@ -134,7 +134,7 @@ typedef struct identify_figure {
     double *memory[IMK_LOG_COLUMNS_MAX];
 } identify_figure;
 /* False when memory is exhausted. */
-bool identify_figure_make(const identification *i, bool misfit, identify_figure *figure);
+void identify_figure_make(const identification *i, bool misfit, identify_figure *figure);
 /* Make it and draw it where --plot says. @return -1 or the exit code */
 int identify_draw(const identification *i, const char *plot);
 void identify_figure_free(identify_figure *figure);

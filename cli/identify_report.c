@@ -39,16 +39,9 @@ static void put_parameters(imk_page *page, const identification *i)
 
 static void put_model(imk_page *page, const identification *i)
 {
-    char *text = NULL;
-    size_t size;
-    imk_error error;
     if (!i->model.gyro.present && !i->model.accel.present)
         return;
-    if (imk_model_print(&i->model, NULL, &text, &size, &error) != IMK_OK)
-        return;
-    imk_page_heading(page, "Model file");
-    imk_page_code(page, text);
-    free(text);
+    page_put_model(page, "Model file", &i->model);
 }
 
 static void put_next_steps(imk_page *page, const identification *i)
@@ -78,16 +71,15 @@ int identify_report(const identification *i, const char *path)
         imk_page_verdict(page, i->verdict[k].level, i->verdict[k].text);
     put_parameters(page, i);
     imk_page_heading(page, "Allan deviation");
-    identify_figure *figure = malloc(sizeof *figure);
-    if (figure && identify_figure_make(i, true, figure)) {
-        imk_page_figure(page, &figure->figure,
-                        "Points: the log, with confidence intervals. Line: the model. Dashes: its "
-                        "terms. Grey: where the points of a record of this length may fall under "
-                        "the model. Twin: a simulation of the model. Below: how improbable the "
-                        "difference of each point from the model is, as standard deviations of a "
-                        "normal distribution; neighbours share most of their data.");
-        identify_figure_free(figure);
-    }
+    identify_figure *figure = command_memory(NULL, sizeof *figure);
+    identify_figure_make(i, true, figure);
+    imk_page_figure(page, &figure->figure,
+                    "Points: the log, with confidence intervals. Line: the model. Dashes: its "
+                    "terms. Grey: where the points of a record of this length may fall under the "
+                    "model. Twin: a simulation of the model. Below: how improbable the difference "
+                    "of each point from the model is, as standard deviations of a normal "
+                    "distribution; neighbours share most of their data.");
+    identify_figure_free(figure);
     free(figure);
     put_model(page, i);
     put_next_steps(page, i);

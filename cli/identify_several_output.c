@@ -270,14 +270,13 @@ static void put_joint(imk_page *page, const several_logs *s)
         put_table(page, identify_table(s->joint, kind));
     imk_page_text(page, "One set of terms for all logs, by maximum likelihood on their spectra "
                         "together. Each log has its own mean, ramp and lines.");
-    identify_figure *figure = malloc(sizeof *figure);
-    if (figure && identify_figure_make(s->joint, true, figure)) {
-        imk_page_figure(page, &figure->figure,
-                        "Points: the Allan deviations of all logs, pooled, with confidence "
-                        "intervals. Line: the joint model. Below: how improbable the difference of "
-                        "each point from it is, as standard deviations of a normal distribution.");
-        identify_figure_free(figure);
-    }
+    identify_figure *figure = command_memory(NULL, sizeof *figure);
+    identify_figure_make(s->joint, true, figure);
+    imk_page_figure(page, &figure->figure,
+                    "Points: the Allan deviations of all logs, pooled, with confidence intervals. "
+                    "Line: the joint model. Below: how improbable the difference of each point "
+                    "from it is, as standard deviations of a normal distribution.");
+    identify_figure_free(figure);
     free(figure);
 }
 

@@ -6,6 +6,16 @@
 #include <math.h>
 #include <stdlib.h>
 
+static void *allocate(size_t size)
+{
+    return command_memory(NULL, size);
+}
+
+void json_begin(void)
+{
+    json_set_alloc_funcs(allocate, free);
+}
+
 json_t *json_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();

@@ -9,6 +9,10 @@
 
 #include <jansson.h>
 
+/* Before the first JSON: from here on the command ends where memory fails, so that nobody need look
+ * whether a member has been added. */
+void json_begin(void);
+
 /* A number, or null when it is not finite. */
 json_t *json_number(double value);
 /* {"value": …, "unit": …} */

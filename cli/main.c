@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "campaign_run.h"
 #include "command.h"
+#include "json_output.h"
 #include "memory_guard.h"
 
 #include "imukit/output_file.h"
@@ -161,6 +162,7 @@ int main(int argc, char **argv)
 {
     catch_signals();
     memory_guard();
+    json_begin();
     campaign_begin(&argc, &argv);
     return campaign_end(obey(argc, argv));
 }

@@ -2,6 +2,8 @@
 /* Two model files compared line by line. */
 #include "model_changes.h"
 
+#include "command.h"
+
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,8 +39,10 @@ void model_print_changes(const char *path, const imk_model *before, const imk_mo
     char *old_text = NULL, *new_text = NULL;
     size_t size;
     imk_error error;
-    if (imk_model_print(before, document, &old_text, &size, &error) == IMK_OK &&
-        imk_model_print(after, document, &new_text, &size, &error) == IMK_OK) {
+    if (command_unless_memory(imk_model_print(before, document, &old_text, &size, &error)) ==
+            IMK_OK &&
+        command_unless_memory(imk_model_print(after, document, &new_text, &size, &error)) ==
+            IMK_OK) {
         fprintf(stderr, "Changes to %s:\n", path);
         print_missing_lines(old_text, new_text, '-');
         print_missing_lines(new_text, old_text, '+');

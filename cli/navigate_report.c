@@ -19,16 +19,14 @@ typedef struct track_figure {
     imk_figure figure;
 } track_figure;
 
-static bool fill(const navigation *n, track_figure *f, size_t *count)
+static size_t fill(const navigation *n, track_figure *f)
 {
     const size_t every = n->track_rows / POINTS_MAX + 1;
     const size_t points = (n->track_rows + every - 1) / every;
     double **arrays[] = {&f->time,    &f->way[0],  &f->way[1],   &f->low[0],  &f->low[1],
                          &f->high[0], &f->high[1], &f->speed[0], &f->speed[1]};
     const size_t array_count = sizeof arrays / sizeof arrays[0];
-    f->memory = malloc(array_count * points * sizeof(double));
-    if (!f->memory)
-        return false;
+    f->memory = command_memory(NULL, array_count * points * sizeof(double));
     for (size_t a = 0; a < array_count; a++)
         *arrays[a] = f->memory + a * points;
     for (size_t k = 0; k < points; k++) {
@@ -44,8 +42,7 @@ static bool fill(const navigation *n, track_figure *f, size_t *count)
             f->speed[i][k] = n->track[TRACK_VELOCITY + i][row];
         }
     }
-    *count = points;
-    return true;
+    return points;
 }
 
 /* One axis against time, between the lines of 1 sigma. */
@@ -70,11 +67,9 @@ static size_t axis_curves(const navigation *n, track_figure *f, int axis, size_t
     return curves;
 }
 
-static bool make_figure(const navigation *n, track_figure *f)
+static void make_figure(const navigation *n, track_figure *f)
 {
-    size_t count;
-    if (!fill(n, f, &count))
-        return false;
+    const size_t count = fill(n, f);
     f->curve[0][0] = (imk_curve){.style = IMK_CURVE_LINE,
                                  .color = LINE_COLOR,
                                  .label = "",
@@ -101,15 +96,13 @@ static bool make_figure(const navigation *n, track_figure *f)
     for (int axis = 0; axis < 2; axis++)
         f->panel[1 + axis].curve_count = axis_curves(n, f, axis, count, f->curve[1 + axis]);
     f->figure = (imk_figure){n->path, PANELS, 2, f->panel};
-    return true;
 }
 
 int navigate_draw(const navigation *n, const char *path)
 {
     track_figure f = {0};
     imk_error error;
-    if (!make_figure(n, &f))
-        return command_failed("memory is exhausted");
+    make_figure(n, &f);
     const imk_status status = imk_figure_write(&f.figure, path, &error);
     free(f.memory);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
@@ -159,16 +152,14 @@ int navigate_report(const navigation *n, const char *path)
     put_verdict(page, n);
     put_start(page, n);
     imk_page_heading(page, "Track");
-    if (make_figure(n, &f)) {
-        imk_page_figure(
-            page, &f.figure,
-            !n->has_model ? "Horizontal track, and position and velocity against time."
-            : navigate_at_rest(n)
-                ? "Grey: 1 sigma of the error that the model predicts, about the start, where the "
-                  "unit stood."
-                : "Grey: 1 sigma of the error that the model predicts, about the track.");
-        free(f.memory);
-    }
+    make_figure(n, &f);
+    imk_page_figure(page, &f.figure,
+                    !n->has_model ? "Horizontal track, and position and velocity against time."
+                    : navigate_at_rest(n)
+                        ? "Grey: 1 sigma of the error that the model predicts, about the start, "
+                          "where the unit stood."
+                        : "Grey: 1 sigma of the error that the model predicts, about the track.");
+    free(f.memory);
     text_table table = navigate_table(n);
     imk_page_heading(page, "At the end");
     page_put_table(page, &table);

@@ -5,7 +5,11 @@
 
 #include "text_table.h"
 
+#include "imukit/model.h"
 #include "imukit/report.h"
+
+/* A model file as text, or why there is none. */
+void page_put_model(imk_page *page, const char *title, const imk_model *model);
 
 /* Nothing for a table without rows. */
 void page_put_table(imk_page *page, const text_table *table);

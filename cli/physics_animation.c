@@ -63,9 +63,7 @@ int physics_animate(const physics *p, const char *path)
     int code = choose(p, &index);
     if (code >= 0)
         return code;
-    physics_figure *figure = malloc(sizeof *figure);
-    if (!figure)
-        return command_failed("memory is exhausted");
+    physics_figure *figure = command_memory(NULL, sizeof *figure);
     code = physics_figure_of_view(p, index, figure);
     if (code < 0) {
         const imk_view view = physics_view_as_asked(p, index);

@@ -65,7 +65,7 @@ static void response_of_run(const physics_run *run, const char *unit, physics_fi
                                IMK_KEY_UPPER};
 }
 
-bool physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *f)
+void physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *f)
 {
     const imk_instrument *instrument = p->file.instrument;
     const size_t outputs = instrument->output_count;
@@ -73,11 +73,9 @@ bool physics_figure_of_run(const physics *p, const physics_run *run, physics_fig
     for (size_t i = 0; i < outputs; i++) {
         const imk_signal *signal = &instrument->outputs[i];
         const imk_unit unit = physics_output_unit(p, run, i);
-        double *values = malloc(2 * (run->points + 1) * sizeof *values), *input;
+        double *values = command_memory(NULL, 2 * (run->points + 1) * sizeof *values);
+        double *input = values + run->points;
         f->memory[i] = values;
-        if (!values)
-            return false;
-        input = values + run->points;
         for (size_t k = 0; k < run->points; k++) {
             values[k] = (run->curve[i][k] - unit.offset) / unit.scale;
             input[k] = run->input[k] / unit.scale;
@@ -97,7 +95,6 @@ bool physics_figure_of_run(const physics *p, const physics_run *run, physics_fig
     if (p->input.is_sine)
         response_of_run(run, physics_output_unit(p, run, 0).text, f, outputs);
     finish(f, p->file.name[0] ? p->file.name : instrument->title, outputs + p->input.is_sine);
-    return true;
 }
 
 /* ---- views ----------------------------------------------------------------------------------- */
@@ -203,10 +200,8 @@ static int make_panel(const physics *p, const imk_view *view, physics_figure *f,
     const uint64_t stride = samples / VIEW_POINTS + 1;
     const size_t points = (size_t)(samples / stride);
     const size_t columns = (size_t)view->curve_count + 1;
-    double *data = malloc((columns * points + 1) * sizeof *data);
+    double *data = command_memory(NULL, (columns * points + 1) * sizeof *data);
     f->memory[at] = data;
-    if (!data)
-        return command_failed("memory is exhausted");
     int code = record(p, view, points, stride, data);
     if (code >= 0)
         return code;
@@ -328,16 +323,14 @@ int physics_find_view(const physics *p, size_t *index)
 /* ---- laboratory ------------------------------------------------------------------------------ */
 
 /* Distance from the straight line through zero of the computed scale, in parts of full scale. */
-static bool table_panel(const physics_laboratory *l, bool gyro, physics_figure *f)
+static void table_panel(const physics_laboratory *l, bool gyro, physics_figure *f)
 {
     const char *unit = gyro ? "deg/s" : "m/s^2";
     const imk_laboratory_result *r = &l->result;
     const size_t count = (size_t)r->point_count;
     const double scale = imk_unit_of(unit).scale;
-    double *data = malloc(4 * (count + 1) * sizeof *data);
+    double *data = command_memory(NULL, 4 * (count + 1) * sizeof *data);
     f->memory[0] = data;
-    if (!data)
-        return false;
     for (size_t i = 0; i < count; i++) {
         const double error = (r->point[i].output - r->point[i].input) / scale;
         const double spread = 2 * r->point[i].sigma / scale;
@@ -360,17 +353,14 @@ static bool table_panel(const physics_laboratory *l, bool gyro, physics_figure *
                               0,
                               NULL,
                               IMK_KEY_UPPER};
-    return true;
 }
 
-static bool response_panel(const physics_laboratory *l, physics_figure *f, size_t at)
+static void response_panel(const physics_laboratory *l, physics_figure *f, size_t at)
 {
     const imk_laboratory_result *r = &l->result;
     const size_t count = (size_t)r->response_count;
-    double *data = malloc(2 * (count + 1) * sizeof *data);
+    double *data = command_memory(NULL, 2 * (count + 1) * sizeof *data);
     f->memory[at] = data;
-    if (!data)
-        return false;
     for (size_t i = 0; i < count; i++) {
         data[i] = r->response[i].frequency;
         data[count + i] = r->response[i].gain;
@@ -379,7 +369,6 @@ static bool response_panel(const physics_laboratory *l, physics_figure *f, size_
     f->panel[at] = (imk_panel){
         "Frequency response", "frequency [Hz]", "gain", true, true, 1, f->curve[at], 0, NULL,
         IMK_KEY_UPPER};
-    return true;
 }
 
 bool physics_figure_of_laboratory(const physics *p, const physics_laboratory *l, physics_figure *f)
@@ -387,12 +376,12 @@ bool physics_figure_of_laboratory(const physics *p, const physics_laboratory *l,
     const bool gyro = p->file.instrument->sensor == IMK_GYRO;
     size_t panels = 0;
     memset(f, 0, sizeof *f);
-    if (l->result.point_count > 0 && !table_panel(l, gyro, f))
-        return false;
-    panels += l->result.point_count > 0;
-    if (l->result.response_count > 0 && !response_panel(l, f, panels))
-        return false;
-    panels += l->result.response_count > 0;
+    if (l->result.point_count > 0) {
+        table_panel(l, gyro, f);
+        panels++;
+    }
+    if (l->result.response_count > 0)
+        response_panel(l, f, panels++);
     finish(f, p->file.instrument->title, panels);
     return panels > 0;
 }

@@ -110,7 +110,7 @@ typedef struct physics_figure {
 } physics_figure;
 
 /* The outputs of a run against time, and against the input when that is a sine. */
-bool physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *figure);
+void physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *figure);
 /* A view, with the duration and rate that were asked for. */
 imk_view physics_view_as_asked(const physics *p, size_t index);
 /* One view of the instrument, or all of them (index SIZE_MAX). @return -1 or the exit code */

@@ -9,15 +9,13 @@
 
 static void put_run(imk_page *page, const physics *p, const physics_run *run)
 {
-    physics_figure *figure = malloc(sizeof *figure);
-    if (figure && physics_figure_of_run(p, run, figure)) {
-        imk_page_heading(page, "Outputs against time");
-        imk_page_figure(page, &figure->figure,
-                        run->stride > 1 ? "Each point is the mean of several samples."
-                                        : "Each point is a sample: the mean since the one before.");
-    }
-    if (figure)
-        physics_figure_free(figure);
+    physics_figure *figure = command_memory(NULL, sizeof *figure);
+    physics_figure_of_run(p, run, figure);
+    imk_page_heading(page, "Outputs against time");
+    imk_page_figure(page, &figure->figure,
+                    run->stride > 1 ? "Each point is the mean of several samples."
+                                    : "Each point is a sample: the mean since the one before.");
+    physics_figure_free(figure);
     free(figure);
 }
 
@@ -38,10 +36,10 @@ static void put_view(imk_page *page, const imk_view *view, const physics_figure 
 static void put_views(imk_page *page, const physics *p)
 {
     const imk_instrument *instrument = p->file.instrument;
-    physics_figure *figure = malloc(sizeof *figure);
-    if (figure && instrument->view_count > 0)
+    physics_figure *figure = command_memory(NULL, sizeof *figure);
+    if (instrument->view_count > 0)
         imk_page_heading(page, "Inside the instrument");
-    for (size_t i = 0; figure && i < instrument->view_count; i++) {
+    for (size_t i = 0; i < instrument->view_count; i++) {
         const imk_view *view = &instrument->views[i];
         if (physics_figure_of_view(p, i, figure) >= 0) {
             command_warn("view", "the view \"%s\" is left out", view->title);
@@ -63,27 +61,21 @@ static void put_table(imk_page *page, const char *title, text_table table)
 
 static void put_model(imk_page *page, const physics *p)
 {
-    char *text = NULL;
-    size_t size;
-    imk_error error;
     put_table(page, "Reduced error model",
               physics_model_table(p->model, p->file.instrument->sensor));
     imk_page_text(page, "From the design by closed forms; one axis, along x.");
-    if (imk_model_print(p->model, NULL, &text, &size, &error) == IMK_OK)
-        imk_page_code(page, text);
-    free(text);
+    page_put_model(page, "As a file", p->model);
 }
 
 static void put_laboratory(imk_page *page, const physics *p, const physics_laboratory *l)
 {
-    physics_figure *figure = malloc(sizeof *figure);
+    physics_figure *figure = command_memory(NULL, sizeof *figure);
     put_table(page, "Closed forms against experiments", physics_sweep_table(p, l));
-    if (figure && physics_figure_of_laboratory(p, l, figure))
+    if (physics_figure_of_laboratory(p, l, figure))
         imk_page_figure(page, &figure->figure,
                         "The rate table shows output less input, bars of two standard deviations; "
                         "the response is the gain for a sine.");
-    if (figure)
-        physics_figure_free(figure);
+    physics_figure_free(figure);
     free(figure);
 }
 

@@ -65,18 +65,13 @@ static void add_panel(spectrum_figure *f, const spectrum_result *result, channel
 
 spectrum_figure *spectrum_figure_make(const spectrum_result *result)
 {
-    spectrum_figure *f = calloc(1, sizeof *f);
+    spectrum_figure *f = command_memory(NULL, sizeof *f);
     size_t values = 1, used = 0;
     for (size_t c = 0; c < result->channels.count; c++)
         values += 4 * result->found[c].plotted_count + 2 * result->found[c].line_count;
-    if (f)
-        f->memory = malloc(values * sizeof *f->memory);
-    if (!f || !f->memory) {
-        free(f);
-        return NULL;
-    }
+    *f = (spectrum_figure){.memory = command_memory(NULL, values * sizeof *f->memory),
+                           .figure = {result->path, 0, 2, f->panel}};
     double *rest = f->memory;
-    f->figure = (imk_figure){result->path, 0, 2, f->panel};
     for (channel_kind kind = CHANNEL_GYRO; kind < CHANNEL_KINDS; kind++)
         add_panel(f, result, kind, &used, &rest);
     return f;
@@ -89,8 +84,7 @@ const imk_figure *spectrum_figure_get(const spectrum_figure *figure)
 
 void spectrum_figure_free(spectrum_figure *figure)
 {
-    if (figure)
-        free(figure->memory);
+    free(figure->memory);
     free(figure);
 }
 
@@ -98,8 +92,6 @@ int spectrum_draw(const spectrum_result *result, const char *plot)
 {
     imk_error error;
     spectrum_figure *f = spectrum_figure_make(result);
-    if (!f)
-        return command_failed("memory is exhausted");
     imk_status status = imk_figure_write(&f->figure, plot, &error);
     spectrum_figure_free(f);
     return status == IMK_OK ? -1 : command_error(&error, NULL);

@@ -362,8 +362,6 @@ int spectrum_write_report(const spectrum_result *result, const char *path)
 {
     char subtitle[300], text[300];
     spectrum_figure *figure = spectrum_figure_make(result);
-    if (!figure)
-        return command_failed("memory is exhausted");
     snprintf(subtitle, sizeof subtitle, "%.120s: %zu samples of %zu channels, %g Hz", result->path,
              result->channels.rows, result->channels.count, 1 / result->channels.dt);
     imk_page *page = imk_page_create("Power spectral density", subtitle);

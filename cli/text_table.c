@@ -18,12 +18,7 @@ void text_table_row(text_table *table)
 {
     if (table->rows == table->capacity) {
         size_t capacity = table->capacity ? 2 * table->capacity : 32;
-        void *grown = realloc(table->cell, capacity * table->columns * CELL_SIZE);
-        if (!grown) {
-            command_failed("memory is exhausted");
-            exit(EXIT_FAILED);
-        }
-        table->cell = grown;
+        table->cell = command_memory(table->cell, capacity * table->columns * CELL_SIZE);
         table->capacity = capacity;
     }
     for (size_t c = 0; c < table->columns; c++)

@@ -282,13 +282,12 @@ static int show(const physics *p, const physics_run *r, const physics_laboratory
     const physics_options *o = p->options;
     int code = o->report ? physics_report(p, r, l, o->report) : -1;
     if (code < 0 && o->plot) {
-        physics_figure *figure = calloc(1, sizeof *figure);
+        physics_figure *figure = command_memory(NULL, sizeof *figure);
+        memset(figure, 0, sizeof *figure);
         size_t view = SIZE_MAX;
-        bool drawn = false;
-        if (!figure)
-            code = command_failed("memory is exhausted");
-        else if (r)
-            drawn = physics_figure_of_run(p, r, figure);
+        bool drawn = r != NULL;
+        if (r)
+            physics_figure_of_run(p, r, figure);
         else if (l)
             drawn = physics_figure_of_laboratory(p, l, figure);
         else if (p->file.instrument->view_count == 0)
@@ -302,9 +301,8 @@ static int show(const physics *p, const physics_run *r, const physics_laboratory
         }
         if (code < 0)
             code = drawn ? physics_draw(&figure->figure, o->plot)
-                         : command_failed("memory is exhausted");
-        if (figure)
-            physics_figure_free(figure);
+                         : command_failed("nothing was measured that can be drawn");
+        physics_figure_free(figure);
         free(figure);
     }
     return code;
