@@ -207,8 +207,8 @@ static void check_offset(const bench_log *log)
 {
     imk_error error;
     imk_reference_shift shift;
-    if (search_offset(log, &shift, &error) != IMK_OK || !(shift.correlation > followed) ||
-        fabs(shift.offset) < log->record.dt + 5 * shift.sigma)
+    if (command_unless_memory(search_offset(log, &shift, &error)) != IMK_OK ||
+        !(shift.correlation > followed) || fabs(shift.offset) < log->record.dt + 5 * shift.sigma)
         return;
     command_warn("motion_offset",
                  "%s follows the programme best when that begins %.4f s %s in the log than it "

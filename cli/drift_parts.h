@@ -154,6 +154,7 @@ typedef struct drift_candidate {
     imk_drift_figures figures;
     bool usable;  /* gyros and accelerometers are there, and the analysis worked */
     bool no_bias; /* its source states no run-to-run bias of one of them */
+    bool no_memory;
 } drift_candidate;
 
 typedef struct drift_answer {

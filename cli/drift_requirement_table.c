@@ -35,6 +35,7 @@ static void try_device(void *context, size_t item)
     imk_model *model = malloc(sizeof *model);
     void *memory = NULL;
     imk_drift_analysis *analysis;
+    c->no_memory = !model;
     if (!model)
         return;
     imk_device_model(c->device, model);
@@ -42,6 +43,7 @@ static void try_device(void *context, size_t item)
     if (imk_drift_validate(model, &s->settings, NULL) == IMK_OK) {
         const size_t size = imk_drift_covariance_size(model, &s->settings);
         memory = drift_memory(size);
+        c->no_memory = !memory;
         if (memory && imk_drift_covariance(model, &s->settings, memory, size, NULL, &analysis,
                                            NULL) == IMK_OK) {
             c->figures = imk_drift_figures_of(&analysis->total[0]);
@@ -100,7 +102,10 @@ int drift_answer_find(const drift_result *r, const imk_executor *executor, drift
     s.settings.time = &r->scene->time[answer->time];
     s.settings.time_count = 1;
     imk_execute(executor, answer->candidate_count, try_device, &s);
-    if (!sort_candidates(answer, want->figure))
+    bool good = true;
+    for (size_t i = 0; i < answer->candidate_count; i++)
+        good = good && !answer->candidate[i].no_memory;
+    if (!good || !sort_candidates(answer, want->figure))
         return command_failed("memory is exhausted");
     return -1;
 }
@@ -117,7 +122,7 @@ static json_t *json_of_model(const imk_model *model)
 {
     char *text = NULL;
     size_t size;
-    if (imk_model_print_json(model, NULL, &text, &size, NULL) != IMK_OK)
+    if (command_unless_memory(imk_model_print_json(model, NULL, &text, &size, NULL)) != IMK_OK)
         return NULL;
     json_t *tree = json_loadb(text, size, 0, NULL);
     free(text);

@@ -195,7 +195,7 @@ static bool is_table(const evaluation *v, const char *path)
     imk_log_settings settings = table_settings(v);
     bool reference = false, reading = false;
     settings.reopened = true;
-    if (imk_log_open(path, &settings, &reader, NULL) != IMK_OK)
+    if (command_unless_memory(imk_log_open(path, &settings, &reader, NULL)) != IMK_OK)
         return false;
     for (size_t k = 0; k < imk_log_column_count(reader); k++) {
         const imk_log_column *column = imk_log_column_get(reader, k);

@@ -175,6 +175,8 @@ static void analyse(void *context, size_t channel)
         f->status = make_bands(r, f);
     if (f->status == IMK_OK)
         fit_parameters(r, f, samples);
+    if (f->fit_status == IMK_ERROR_MEMORY) /* says nothing about the log */
+        f->status = f->fit_status;
 }
 
 /* What a channel could not be analysed for, as a sentence. */
