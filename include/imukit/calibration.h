@@ -211,13 +211,15 @@ IMK_API imk_status imk_triad_frame_convert(imk_model *model, imk_triad_frame fra
 
 /** Compare two calibrations of one unit: b is brought to a's frame. Where a states a convention
  *  (accel_evidence.frame: upper-triangular, lower-triangular, symmetric) b is converted to it; else
- *  b is turned by the small rotation that makes the two agree best. Takes some 100 kB of stack.
- *  @param rotation    3 angles [rad]: what had to be turned
+ *  b is turned by the small rotation that makes the two agree best.
+ *  @param turned      b in a's frame; after an error something in between
+ *  @param rotation    3 angles [rad]: what had to be turned; NULL: not wanted
  *  @param difference  for every parameter of a: b less a; NaN where b does not state it
  *  @param sigma       of the difference, from both models' sigmas */
 IMK_API imk_status imk_calibration_compare(const imk_model *a, const imk_model *b, size_t count,
-                                           const imk_model_parameter *parameter, double rotation[3],
-                                           double *difference, double *sigma, imk_error *error);
+                                           const imk_model_parameter *parameter, imk_model *turned,
+                                           double rotation[3], double *difference, double *sigma,
+                                           imk_error *error);
 
 #ifdef __cplusplus
 }

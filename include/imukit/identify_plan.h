@@ -61,7 +61,7 @@ typedef struct imk_identification_bounds {
     imk_bound correlation_time[IMK_TERMS_MAX]; /**< detection as of its sigma */
 } imk_identification_bounds;
 
-/** Bytes of workspace for the two functions below: some 400 KiB. */
+/** Bytes of workspace for the two functions below: some 700 KiB. */
 IMK_API size_t imk_bounds_workspace_size(void);
 
 /** Bounds for a record of so many seconds.

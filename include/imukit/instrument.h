@@ -139,7 +139,8 @@ typedef struct imk_instrument {
      *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
     imk_status (*validate)(const void *design, imk_error *error);
     /** Validate and start, in the state the instrument is in when it has been switched on.
-     *  @param state state_size bytes, 64-byte aligned; plain data that may be copied
+     *  @param state state_size bytes, 64-byte aligned; plain data that may be copied; of no use
+     *               after an error
      *  @return errors of validate; IMK_ERROR_RANGE for a step (field "step") or rate that would
      *          give wrong results; IMK_ERROR_UNSUPPORTED for a level it does not have */
     imk_status (*init)(const void *design, const imk_physics_settings *settings, void *state,

@@ -172,24 +172,25 @@ static bool align(const imk_model *a, imk_model *turned, double total[3])
 }
 
 imk_status imk_calibration_compare(const imk_model *a, const imk_model *b, size_t count,
-                                   const imk_model_parameter *parameter, double rotation[3],
-                                   double *difference, double *sigma, imk_error *error)
+                                   const imk_model_parameter *parameter, imk_model *turned,
+                                   double rotation[3], double *difference, double *sigma,
+                                   imk_error *error)
 {
-    imk_model turned = *b;
     imk_status status = imk_model_validate(a, error);
     if (status == IMK_OK)
         status = imk_model_validate(b, error);
     if (status != IMK_OK)
         return status;
     double total[3];
-    if (!align(a, &turned, total))
+    *turned = *b;
+    if (!align(a, turned, total))
         return imk_error_set(error, IMK_ERROR_SINGULAR, "direction", NULL,
                              "triads whose axes are near the body axes of their numbers");
     if (rotation)
         memcpy(rotation, total, sizeof total);
     for (size_t p = 0; p < count; p++) {
         double *of_b = NULL;
-        const double *y = imk_model_parameter_at(&turned, parameter[p], &of_b);
+        const double *y = imk_model_parameter_at(turned, parameter[p], &of_b);
         difference[p] = y ? *y - imk_model_parameter_get(a, parameter[p]) : (double)NAN;
         if (isnan(difference[p])) {
             sigma[p] = (double)NAN;
@@ -197,7 +198,7 @@ imk_status imk_calibration_compare(const imk_model *a, const imk_model *b, size_
         }
         /* The sigma stands at the same place in both. */
         double of_a;
-        memcpy(&of_a, (const char *)a + ((const char *)of_b - (const char *)&turned), sizeof of_a);
+        memcpy(&of_a, (const char *)a + ((const char *)of_b - (const char *)turned), sizeof of_a);
         sigma[p] = sqrt(of_a * of_a + *of_b * *of_b);
     }
     return IMK_OK;

@@ -100,6 +100,7 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, arena *a)
     e->slow.order = take(a, n * sizeof *e->slow.order);
     e->slow.covariance = take(a, globals * globals * number);
     e->slow.axis = take(a, globals * globals * number);
+    e->slow.sums = take(a, imki_slow_noise_sums());
     imki_normal *normal = &e->normal;
     normal->band = take(a, band * number);
     normal->factor = take(a, band * number);

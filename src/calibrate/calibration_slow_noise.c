@@ -116,6 +116,11 @@ static bool is_before(const imk_calibration *c, int a, int b)
                                   : a < b;
 }
 
+size_t imki_slow_noise_sums(void)
+{
+    return sizeof(sums);
+}
+
 void imki_slow_noise_start(imki_estimator *e)
 {
     const imk_calibration *c = e->problem;
@@ -408,7 +413,7 @@ static double length_of_all(const imki_estimator *e, int sensor, int axis)
 void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
 {
     const size_t g = e->globals;
-    sums s;
+    sums *s = e->slow.sums;
     if (e->slow.count == 0)
         return;
     memset(e->slow.covariance, 0, g * g * sizeof *e->slow.covariance);
@@ -423,11 +428,11 @@ void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
                 first = r.end;
                 if (!process_of(e, &r, &p))
                     continue;
-                sum_pairs(e, &r, &p, &s);
-                expected += s.diagonal - trace_with_information(&e->normal, e->slow.axis);
+                sum_pairs(e, &r, &p, s);
+                expected += s->diagonal - trace_with_information(&e->normal, e->slow.axis);
                 for (size_t i = 0; i < g * g; i++)
                     e->slow.covariance[i] += e->slow.axis[i];
-                add_level(e, &r, &p, all, &s);
+                add_level(e, &r, &p, all, s);
             }
         }
         const double left = fit->redundancy[group];

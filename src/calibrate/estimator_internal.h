@@ -70,6 +70,7 @@ typedef struct imki_slow_noise {
     int *order;         /* of these, by record and time */
     double *covariance; /* what it adds to that of the globals */
     double *axis;       /* the same of one axis */
+    void *sums;         /* along a record, imki_slow_noise_sums() bytes */
 } imki_slow_noise;
 
 typedef struct imki_estimator {
@@ -197,6 +198,7 @@ void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *freedom);
 
 /* ---- calibration_slow_noise.c: noise that observations of one record share; does nothing when the
  * model states none ---- */
+size_t imki_slow_noise_sums(void);
 void imki_slow_noise_start(imki_estimator *e);
 /* What it adds to the covariance and to the squares of a fit, at the present solution. */
 void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit);

@@ -250,12 +250,12 @@ static imk_status check(const imk_laboratory *l, void *state, imk_error *error)
     return l->instrument->init(l->design, &l->physics, state, error);
 }
 
-static double full_scale_of(const imk_laboratory *laboratory, const imk_triad *stated)
+static double full_scale_of(const imk_laboratory *laboratory, double range)
 {
     if (laboratory->full_scale > 0.0)
         return laboratory->full_scale;
-    if (stated->range.value[0] > 0.0) /* a bias must not push a reading over the end */
-        return 0.8 * stated->range.value[0];
+    if (range > 0.0) /* a bias must not push a reading over the end */
+        return 0.8 * range;
     return laboratory->instrument->sensor == IMK_GYRO ? 1.0 : 10.0;
 }
 
@@ -293,17 +293,30 @@ static void static_record(const imk_laboratory *laboratory, char *state, double 
     white->sigma[0] = sqrt(white->sigma[0] * white->sigma[0] + ends * ends);
 }
 
+/* What reduce says of the axes. */
+typedef struct stated_axes {
+    double direction[IMK_AXES_MAX][3], pendulous_axis[IMK_AXES_MAX][3];
+    imk_axes range;
+    double bandwidth; /* of the first */
+} stated_axes;
+
 /* A model of one axis with no errors, and what reduce says of the axes. */
-static void begin_model(const imk_triad *stated, int sensor, imk_model *model)
+static stated_axes begin_model(const imk_laboratory *laboratory, imk_laboratory_result *result)
 {
+    const imk_instrument *instrument = laboratory->instrument;
+    imk_model *model = &result->model;
+    instrument->reduce(laboratory->design, model);
+    imk_triad *triad = imki_triad_of(laboratory, result);
+    stated_axes stated = {.range = triad->range, .bandwidth = triad->bandwidth.value[0]};
+    memcpy(stated.direction, triad->direction, sizeof stated.direction);
+    memcpy(stated.pendulous_axis, triad->nonlinearity.pendulous_axis, sizeof stated.pendulous_axis);
     imk_model_default(model);
-    imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
-    (sensor == IMK_GYRO ? &model->accel : &model->gyro)->present = false;
+    (instrument->sensor == IMK_GYRO ? &model->accel : &model->gyro)->present = false;
     triad->axis_count = 1;
-    memcpy(triad->direction, stated->direction, sizeof triad->direction);
-    memcpy(triad->nonlinearity.pendulous_axis, stated->nonlinearity.pendulous_axis,
-           sizeof stated->nonlinearity.pendulous_axis);
-    triad->range = stated->range;
+    memcpy(triad->direction, stated.direction, sizeof stated.direction);
+    memcpy(triad->nonlinearity.pendulous_axis, stated.pendulous_axis, sizeof stated.pendulous_axis);
+    triad->range = stated.range;
+    return stated;
 }
 
 imk_status imk_laboratory_run(const imk_laboratory *laboratory, void *workspace,
@@ -319,10 +332,8 @@ imk_status imk_laboratory_run(const imk_laboratory *laboratory, void *workspace,
         return status;
     const imk_instrument *instrument = laboratory->instrument;
     memset(result, 0, sizeof *result);
-    instrument->reduce(laboratory->design, &result->model);
-    const imk_triad stated = *imki_triad_of(laboratory, result);
-    begin_model(&stated, instrument->sensor, &result->model);
-    result->full_scale = full_scale_of(laboratory, &stated);
+    const stated_axes stated = begin_model(laboratory, result);
+    result->full_scale = full_scale_of(laboratory, stated.range.value[0]);
     imki_zero_readings(laboratory, states, executor, result);
     if (laboratory->points > 0) {
         imki_rate_table(laboratory, states, executor, result);
@@ -332,11 +343,11 @@ imk_status imk_laboratory_run(const imk_laboratory *laboratory, void *workspace,
     if (laboratory->threshold)
         imki_threshold(laboratory, states, executor, result);
     if (laboratory->tumble)
-        imki_tumble(laboratory, stated.nonlinearity.pendulous_axis[0], states, executor, result);
+        imki_tumble(laboratory, stated.pendulous_axis[0], states, executor, result);
     if (laboratory->temperature)
         imki_chamber(laboratory, states, executor, result);
     if (laboratory->frequencies > 0)
-        imki_shaker(laboratory, stated.bandwidth.value[0], states, executor, result);
+        imki_shaker(laboratory, stated.bandwidth, states, executor, result);
     if (laboratory->record > 0.0)
         static_record(laboratory, states,
                       (double *)(void *)(states + TRIALS_MAX * imki_state_size(laboratory)),

@@ -47,8 +47,6 @@ imk_status imk_plan_script(const imk_plan_settings *settings, size_t step_count,
     if (!settings || settings->cookie != IMKI_PLAN_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "plan_settings", NULL,
                              "imk_plan_default()");
-    imk_model perfect;
-    imk_model_default(&perfect);
     const double level[3] = {0.0, 0.0, 0.0};
     const double *last = level;
     size_t count = 0;
@@ -59,10 +57,10 @@ imk_status imk_plan_script(const imk_plan_settings *settings, size_t step_count,
                                  "poses and rates: a motion script has no centrifuge");
         const bool turned = k > 0 && step[k - 1].action == IMK_PLAN_RATE;
         if (turned || !is_same_pose(last, s->angle))
-            motion_step[count++] = (imk_motion_step){
-                .kind = IMK_STEP_POSE,
-                .duration = imki_plan_turn_time(settings, &perfect, last, s->angle),
-                .angle = {s->angle[0], s->angle[1], s->angle[2]}};
+            motion_step[count++] =
+                (imk_motion_step){.kind = IMK_STEP_POSE,
+                                  .duration = settings->turn_time,
+                                  .angle = {s->angle[0], s->angle[1], s->angle[2]}};
         count += put_step(settings, s, motion_step + count);
         last = s->angle;
     }

@@ -3,6 +3,7 @@
 #ifndef IMUKIT_THERMAL_INTERNAL_H
 #define IMUKIT_THERMAL_INTERNAL_H
 
+#include "imukit/correct.h"
 #include "imukit/thermal.h"
 
 enum {
@@ -103,6 +104,7 @@ typedef struct imki_thermal_work {
     imki_thermal_variance variance[IMKI_THERMAL_AXES];
     int best[IMKI_THERMAL_AXES]; /* most likely point of the grid */
     unsigned available;          /* columns that the log tells apart, bit k: column k */
+    imk_correction correction;   /* of the readings at the reference: thermal_observe.c */
 } imki_thermal_work;
 
 /* Fill everything else of a work whose blocks are filled. */

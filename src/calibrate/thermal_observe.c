@@ -101,11 +101,10 @@ typedef struct surroundings {
 
 /* Force that the model makes of the readings at the reference temperature. */
 static void force_of(const imki_procedure_call *call, const imk_thermal_findings *findings,
-                     double force[3])
+                     imk_correction *correction, double force[3])
 {
-    imk_model model = call->calibration->model;
+    imk_model *model = &call->calibration->model;
     const imk_test_record *record = call->calibration->record[call->record];
-    imk_correction correction;
     imk_readings readings = {0};
     double reading[2][IMK_AXES_MAX] = {{0.0}}, out[2][IMK_AXES_MAX];
     double *to[2][IMK_AXES_MAX];
@@ -115,21 +114,21 @@ static void force_of(const imki_procedure_call *call, const imk_thermal_findings
     settings.force_limit = 2.0 * IMK_STANDARD_GRAVITY;
     settings.rate_limit = 1.0;
     memset(force, 0, 3 * sizeof *force);
-    if (imk_correction_start(&correction, &model, &settings, NULL) != IMK_OK ||
-        !correction.solves[IMK_ACCEL])
+    if (imk_correction_start(correction, model, &settings, NULL) != IMK_OK ||
+        !correction->solves[IMK_ACCEL])
         return;
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++) {
             if (i < record->axis_count[sensor])
                 reading[sensor][i] = findings->axis[sensor][i].constant.value;
-            const imk_triad *triad = imki_thermal_triad(&model, sensor);
+            const imk_triad *triad = imki_thermal_triad(model, sensor);
             if (triad->present && i < triad->axis_count && triad->sensitivity.value[i] != 0.0)
                 reading[sensor][i] =
                     reading[sensor][i] * triad->sensitivity.value[i] + triad->zero_offset.value[i];
             readings.channel[sensor][i] = &reading[sensor][i];
             to[sensor][i] = &out[sensor][i];
         }
-    imk_correct(&correction, &readings, 1, (double *const(*)[IMK_AXES_MAX])to);
+    imk_correct(correction, &readings, 1, (double *const(*)[IMK_AXES_MAX])to);
     memcpy(force, out[IMK_ACCEL], 3 * sizeof *force);
 }
 
@@ -139,7 +138,7 @@ static double length_of(const double v[3])
 }
 
 static imk_status look_around(const imki_procedure_call *call, const imk_thermal_findings *findings,
-                              surroundings *s)
+                              imki_thermal_work *work, surroundings *s)
 {
     /* A unit before its calibration shows the vertical to some degrees. */
     const double attitude_sigma = 0.1;
@@ -147,7 +146,7 @@ static imk_status look_around(const imki_procedure_call *call, const imk_thermal
     *s = (surroundings){.fixture = -1};
     if (findings->axis_count[IMK_ACCEL] == 0)
         return IMK_OK;
-    force_of(call, findings, s->force);
+    force_of(call, findings, &work->correction, s->force);
     const double length = length_of(s->force);
     if (!(length > 0.0))
         return IMK_OK;
@@ -236,14 +235,13 @@ static double reading_of(const imki_thermal_work *work, int axis, const block_re
 }
 
 static imk_status observe_blocks(const imki_procedure_call *call,
-                                 const imk_thermal_findings *findings,
-                                 const imki_thermal_work *work)
+                                 const imk_thermal_findings *findings, imki_thermal_work *work)
 {
     const imk_test_record *record = call->calibration->record[call->record];
     const imk_model *model = &call->calibration->model;
     block_reading prepared[IMKI_THERMAL_AXES];
     surroundings around;
-    imk_status status = look_around(call, findings, &around);
+    imk_status status = look_around(call, findings, work, &around);
     for (int a = 0; a < IMKI_THERMAL_AXES; a++)
         if (work->blocks.used[a])
             prepare(work, a, &findings->axis[a / IMK_AXES_MAX][a % IMK_AXES_MAX], &prepared[a]);

@@ -56,13 +56,16 @@ static imk_status settings_check(const imk_allan_fit_settings *settings)
 size_t imk_allan_fit_workspace_size(const imk_allan_fit_settings *settings, size_t count,
                                     size_t draws)
 {
-    return imki_allan_problem_size(count, capacity(settings)) +
-           (draws * (IMK_NOISE_TERMS + 1) + 1) * sizeof(double);
+    const size_t terms = capacity(settings);
+    const size_t solution = count * (count + terms + 1) + 2 * terms * terms;
+    const size_t bootstrap = draws > 0 ? count * count + draws * IMK_NOISE_TERMS : 0;
+    return sizeof(imki_allan_work) + imki_allan_problem_size(count, terms) +
+           (solution + bootstrap + 1) * sizeof(double);
 }
 
 imk_status imki_allan_fit_start(const imk_allan_fit_settings *settings,
-                                const imk_allan_table *table, imki_allan_problem *problem,
-                                void *workspace, size_t workspace_size, double **rest)
+                                const imk_allan_table *table, void *workspace,
+                                size_t workspace_size, imki_allan_work **work)
 {
     imk_status status = settings_check(settings);
     if (status == IMK_OK)
@@ -79,10 +82,20 @@ imk_status imki_allan_fit_start(const imk_allan_fit_settings *settings,
     if (workspace_size < imk_allan_fit_workspace_size(settings, table->count, 0))
         return IMK_ERROR_WORKSPACE;
     const size_t misaligned = (uintptr_t)workspace % sizeof(double);
-    double *memory =
-        (double *)(void *)((char *)workspace + (misaligned ? sizeof(double) - misaligned : 0));
-    *problem = (imki_allan_problem){.table = table, .variances = table->variances};
-    imki_allan_problem_lay(problem, table->count, capacity(settings), memory);
+    imki_allan_work *w =
+        (void *)((char *)workspace + (misaligned ? sizeof(double) - misaligned : 0));
+    imki_allan_problem *problem = &w->problem;
+    double *memory = (double *)(void *)(w + 1);
+    const size_t count = table->count, terms = capacity(settings);
+    memset(w, 0, sizeof *w);
+    problem->table = table;
+    problem->variances = table->variances;
+    imki_allan_problem_lay(problem, count, terms, memory);
+    problem->matrix = memory + imki_allan_problem_size(count, terms) / sizeof(double);
+    problem->white = problem->matrix + count * count;
+    problem->scaled = problem->white + count * (terms + 1);
+    problem->factor = problem->scaled + terms * terms;
+    w->rest = problem->factor + terms * terms;
     problem->tolerance = settings->tolerance;
     problem->noise.filter = settings->filter;
     problem->noise.sinusoid_count = settings->sinusoid_count;
@@ -94,7 +107,7 @@ imk_status imki_allan_fit_start(const imk_allan_fit_settings *settings,
         use[i] = settings->term[i] || settings->keep[i];
     imki_allan_problem_terms(problem, use);
     imki_allan_sums(problem, 0, false);
-    *rest = memory + imki_allan_problem_size(table->count, capacity(settings)) / sizeof(double);
+    *work = w;
     return IMK_OK;
 }
 
@@ -116,9 +129,11 @@ static double probability(const imki_allan_problem *problem, const imki_allan_st
 
 /* Leave out shortest tau until the rest is explained. One that the model misses by many times its
  * standard deviation does not only fail itself: the correlations carry it to all others. */
-static void trim(imki_allan_problem *problem, imki_allan_state *state)
+static void trim(imki_allan_work *w)
 {
-    const imki_allan_state all = *state;
+    imki_allan_problem *problem = &w->problem;
+    imki_allan_state *state = &w->state;
+    w->other = *state;
     const size_t half = problem->table->count / 2;
     /* Chance alone comes near the first limit in no record; what is left must look ordinary. */
     double limit = 1e-6;
@@ -128,7 +143,7 @@ static void trim(imki_allan_problem *problem, imki_allan_state *state)
         imki_allan_solve(problem, state, IMKI_ALLAN_NONE, 0);
         if (problem->first > half || degrees_of(problem, state) < 1 || state->status != IMK_OK) {
             problem->first = 0;
-            *state = all;
+            *state = w->other;
             return;
         }
     }
@@ -179,19 +194,20 @@ static void choose(const imk_allan_fit_settings *settings, const imki_allan_prob
 
 /* A ramp, which has a sign, is added by a two-sided test at a tenth of the significance, as
  * elsewhere: in one record it and a random walk look much alike. */
-static void choose_ramp(const imk_allan_fit_settings *settings, const imki_allan_problem *problem,
-                        imki_allan_state *state, double needed)
+static void choose_ramp(const imk_allan_fit_settings *settings, imki_allan_work *w, double needed)
 {
+    const imki_allan_problem *problem = &w->problem;
+    imki_allan_state *state = &w->state, *with = &w->other;
     const int ramp = place_of(problem, IMK_NOISE_RAMP);
     if (ramp == IMKI_ALLAN_NONE)
         return;
-    imki_allan_state with = *state;
-    with.active[ramp] = true;
-    imki_allan_solve(problem, &with, IMKI_ALLAN_NONE, 0);
+    *with = *state;
+    with->active[ramp] = true;
+    imki_allan_solve(problem, with, IMKI_ALLAN_NONE, 0);
     const double enough = imk_chi_square_quantile(1 - 0.1 * settings->significance, 1);
-    if (settings->keep[IMK_NOISE_RAMP] || (with.status == IMK_OK && with.amount[ramp] > 0 &&
-                                           imki_allan_deviance(problem, &with, ramp, 0) > enough)) {
-        *state = with;
+    if (settings->keep[IMK_NOISE_RAMP] || (with->status == IMK_OK && with->amount[ramp] > 0 &&
+                                           imki_allan_deviance(problem, with, ramp, 0) > enough)) {
+        *state = *with;
         choose(settings, problem, state, needed);
     }
 }
@@ -253,14 +269,13 @@ static void store_agreement(const imki_allan_problem *problem, const imki_allan_
                             imk_allan_fit *fit)
 {
     const imk_allan_table *table = problem->table;
-    double matrix[IMKI_ALLAN_TAUS * IMKI_ALLAN_TAUS];
-    imki_allan_matrix(problem, state->amount, matrix);
+    imki_allan_matrix(problem, state->amount, problem->matrix);
     fit->noise = problem->noise;
     for (size_t t = 0; t < problem->terms; t++)
         imki_allan_store_amount(problem, t, state->active[t] ? state->amount[t] : 0, &fit->noise);
     for (size_t i = 0; i < table->count; i++) {
         fit->expected[i] = imk_allan_noise_variance(&fit->noise, table->dt, table->factors[i]);
-        fit->sigma[i] = sqrt(matrix[i * table->count + i]);
+        fit->sigma[i] = sqrt(problem->matrix[i * table->count + i]);
     }
     fit->chi_square = state->chi_square;
     fit->first = problem->first;
@@ -305,34 +320,33 @@ imk_status imk_allan_fit_table(const imk_allan_fit_settings *settings, const imk
                                imk_allan_fit *fit, void *workspace, size_t workspace_size,
                                imk_error *error)
 {
-    imki_allan_problem problem;
-    double *rest = NULL;
-    const imk_status status =
-        imki_allan_fit_start(settings, table, &problem, workspace, workspace_size, &rest);
+    imki_allan_work *w = NULL;
+    const imk_status status = imki_allan_fit_start(settings, table, workspace, workspace_size, &w);
     if (status != IMK_OK)
         return imk_error_set(error, status, "table", NULL, NULL);
-    imki_allan_state state = {.chi_square = 0};
-    const int ramp = place_of(&problem, IMK_NOISE_RAMP);
-    for (size_t t = 0; t < problem.terms; t++)
-        state.active[t] = (int)t != ramp;
-    imki_allan_solve(&problem, &state, IMKI_ALLAN_NONE, 0);
-    if (state.status != IMK_OK)
-        return imk_error_set(error, state.status, "table", NULL, NULL);
+    imki_allan_problem *problem = &w->problem;
+    imki_allan_state *state = &w->state;
+    const int ramp = place_of(problem, IMK_NOISE_RAMP);
+    for (size_t t = 0; t < problem->terms; t++)
+        state->active[t] = (int)t != ramp;
+    imki_allan_solve(problem, state, IMKI_ALLAN_NONE, 0);
+    if (state->status != IMK_OK)
+        return imk_error_set(error, state->status, "table", NULL, NULL);
     if (settings->sinusoid_refine)
-        imki_allan_sinusoids_refine(&problem, &state);
+        imki_allan_sinusoids_refine(problem, state);
     /* A Gauss-Markov term has two parameters and is searched for: 10, as in the spectral fit. */
-    imki_allan_gauss_markov_find(&problem, &state, settings->gauss_markov_max, 10);
+    imki_allan_gauss_markov_find(problem, state, settings->gauss_markov_max, 10);
     if (settings->trim)
-        trim(&problem, &state);
+        trim(w);
     const double needed = imk_chi_square_quantile(1 - 2 * settings->significance, 1);
-    choose(settings, &problem, &state, needed);
-    choose_ramp(settings, &problem, &state, needed);
-    if (state.status != IMK_OK)
-        return imk_error_set(error, state.status, "table", NULL, NULL);
+    choose(settings, problem, state, needed);
+    choose_ramp(settings, w, needed);
+    if (state->status != IMK_OK)
+        return imk_error_set(error, state->status, "table", NULL, NULL);
     const double drop = imk_chi_square_quantile(settings->confidence, 1);
     *fit = (imk_allan_fit){.gauss_markov_count = 0};
-    store_agreement(&problem, &state, fit);
-    store_correlation(&problem, &state, fit);
-    store_terms(&problem, &state, drop, fit);
+    store_agreement(problem, state, fit);
+    store_correlation(problem, state, fit);
+    store_terms(problem, state, drop, fit);
     return IMK_OK;
 }

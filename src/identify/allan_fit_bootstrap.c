@@ -16,10 +16,10 @@
 /* Five terms of a problem by their places, as in allan_fit.c, and the model to draw from. */
 typedef struct bootstrap_work {
     imki_allan_problem *problem;
-    imki_allan_state truth;
+    imki_allan_state *truth;
     int place[IMK_NOISE_TERMS];
     double expected[IMKI_ALLAN_TAUS], degrees[IMKI_ALLAN_TAUS];
-    double factor[IMKI_ALLAN_TAUS * IMKI_ALLAN_TAUS];
+    double *factor; /* count x count */
     double drawn[IMKI_ALLAN_TAUS];
 } bootstrap_work;
 
@@ -37,19 +37,19 @@ static imk_status prepare(bootstrap_work *w, const imk_allan_fit *fit)
     imki_allan_sums(problem, 0, false);
     const size_t n = problem->table->count;
     for (size_t t = 0; t < problem->terms; t++) {
-        w->truth.amount[t] = imki_allan_amount(problem, &fit->noise, t);
-        w->truth.active[t] = w->truth.amount[t] > 0;
+        w->truth->amount[t] = imki_allan_amount(problem, &fit->noise, t);
+        w->truth->active[t] = w->truth->amount[t] > 0;
         const imki_lag_kind kind = problem->term[t].kind;
         if (kind != IMKI_LAG_DECAY && kind != IMKI_LAG_RINGING && kind != IMKI_LAG_SINUSOID &&
-            w->truth.active[t])
+            w->truth->active[t])
             w->place[problem->origin[t]] = (int)t;
     }
-    imki_allan_matrix(problem, w->truth.amount, w->factor);
+    imki_allan_matrix(problem, w->truth->amount, w->factor);
     double sd[IMKI_ALLAN_TAUS];
     for (size_t i = 0; i < n; i++) {
         w->expected[i] = 0;
         for (size_t t = 0; t < problem->terms; t++)
-            w->expected[i] += w->truth.amount[t] * problem->shape[i * problem->capacity + t];
+            w->expected[i] += w->truth->amount[t] * problem->shape[i * problem->capacity + t];
         const double admitted = 2 * problem->tolerance * w->expected[i];
         w->factor[i * n + i] += admitted * admitted;
         sd[i] = sqrt(w->factor[i * n + i]);
@@ -109,7 +109,7 @@ static void sort(double *x, size_t count)
 static void summarise(const bootstrap_work *w, double *values, double confidence, size_t draws,
                       int term, struct imk_allan_bootstrap_term *out)
 {
-    const double truth = w->truth.amount[w->place[term]];
+    const double truth = w->truth->amount[w->place[term]];
     double mean = 0, square = 0;
     for (size_t i = 0; i < draws; i++)
         mean += values[i] / truth / (double)draws;
@@ -131,17 +131,21 @@ imk_status imk_allan_fit_bootstrap(const imk_allan_fit_settings *settings,
 {
     if (draws < 20)
         return IMK_ERROR_RANGE;
-    imki_allan_problem problem;
-    double *values = NULL;
-    imk_status status =
-        imki_allan_fit_start(settings, table, &problem, workspace, workspace_size, &values);
+    imki_allan_work *work = NULL;
+    imk_status status = imki_allan_fit_start(settings, table, workspace, workspace_size, &work);
     if (status == IMK_OK &&
         workspace_size < imk_allan_fit_workspace_size(settings, table->count, draws))
         status = IMK_ERROR_WORKSPACE;
     if (status != IMK_OK)
         return status;
-    problem.first = fit->first;
-    bootstrap_work w = {.problem = &problem, .place = {-1, -1, -1, -1, -1}};
+    imki_allan_problem *problem = &work->problem;
+    imki_allan_state *state = &work->other;
+    problem->first = fit->first;
+    bootstrap_work w = {.problem = problem,
+                        .truth = &work->state,
+                        .place = {-1, -1, -1, -1, -1},
+                        .factor = work->rest};
+    double *values = work->rest + table->count * table->count;
     status = prepare(&w, fit);
     if (status != IMK_OK)
         return status;
@@ -149,17 +153,17 @@ imk_status imk_allan_fit_bootstrap(const imk_allan_fit_settings *settings,
     imk_allan_bootstrap found = {.draws = draws};
     for (size_t d = 0; d < draws; d++) {
         draw(&w, random, d);
-        imki_allan_state state = w.truth;
-        imki_allan_solve(&problem, &state, IMKI_ALLAN_NONE, 0);
-        if (state.status != IMK_OK)
-            return state.status;
-        found.probability += (state.chi_square > fit->chi_square) / (double)draws;
+        *state = *w.truth;
+        imki_allan_solve(problem, state, IMKI_ALLAN_NONE, 0);
+        if (state->status != IMK_OK)
+            return state->status;
+        found.probability += (state->chi_square > fit->chi_square) / (double)draws;
         for (int term = 0; term < IMK_NOISE_TERMS; term++)
             if (w.place[term] >= 0) {
                 const int t = w.place[term];
-                values[(size_t)term * draws + d] = state.amount[t];
+                values[(size_t)term * draws + d] = state->amount[t];
                 found.term[term].covered +=
-                    (imki_allan_deviance(&problem, &state, t, w.truth.amount[t]) <= drop) /
+                    (imki_allan_deviance(problem, state, t, w.truth->amount[t]) <= drop) /
                     (double)draws;
             }
     }

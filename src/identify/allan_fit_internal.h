@@ -40,8 +40,11 @@ typedef struct imki_allan_problem {
     int origin[IMKI_ALLAN_TERMS]; /* the term's place among its kind */
     imki_lag_term term[IMKI_ALLAN_TERMS];
     double spectrum[IMK_TERMS_MAX][IMKI_ALLAN_TERMS]; /* of each term at each sinusoid, amount 1 */
-    double *shape;           /* count x capacity: Allan variance for amount 1 */
-    double *sums;            /* (pair of tau) x (pair of terms): covariance for amounts 1 */
+    double *shape; /* count x capacity: Allan variance for amount 1 */
+    double *sums;  /* (pair of tau) x (pair of terms): covariance for amounts 1 */
+    /* For a while: covariance, count x count; whitened shapes and variances, (capacity + 1) x
+     * count; matrices of the terms, capacity x capacity. */
+    double *matrix, *white, *scaled, *factor;
     const double *variances; /* of the table, or drawn */
     const double *held;      /* amounts that C is held at while a shape is searched; NULL: those of
                                 the state */
@@ -86,7 +89,7 @@ size_t imki_allan_stride(const imk_allan_table *table, size_t i);
 
 /* allan_table.c */
 imk_status imki_allan_table_check(const imk_allan_table *table);
-size_t imki_allan_problem_size(size_t count, size_t terms);
+size_t imki_allan_problem_size(size_t count, size_t terms); /* of shape and sums */
 void imki_allan_problem_lay(imki_allan_problem *problem, size_t count, size_t terms,
                             double *memory);
 /* Second differences of all records at a factor. */
@@ -118,9 +121,16 @@ void imki_allan_sinusoids_refine(imki_allan_problem *problem, imki_allan_state *
 double imki_allan_time_end(imki_allan_problem *problem, const imki_allan_state *state, size_t term,
                            double direction, double drop);
 
+/* What a fit needs, at the start of its workspace. */
+typedef struct imki_allan_work {
+    imki_allan_problem problem;
+    imki_allan_state state, other;
+    double *rest; /* the workspace behind what the problem needs */
+} imki_allan_work;
+
 /* allan_fit.c: problem of a table in a workspace, with room for all terms the settings allow. */
 imk_status imki_allan_fit_start(const imk_allan_fit_settings *settings,
-                                const imk_allan_table *table, imki_allan_problem *problem,
-                                void *workspace, size_t workspace_size, double **rest);
+                                const imk_allan_table *table, void *workspace,
+                                size_t workspace_size, imki_allan_work **work);
 
 #endif

@@ -18,11 +18,15 @@ enum { ITERATIONS = 100 };
 #define CONVERGED 1e-7
 #define ACCEPTED 1e-3
 
-/* Solve the normal equations over the terms in `in`; false when singular. */
-static bool solve_over(size_t terms, const double *h, const double *b, const bool *in, double *x)
+/* Solve the normal equations over the terms in `in`, of the problem's scaled matrix h; false when
+ * singular. */
+static bool solve_over(const imki_allan_problem *problem, const double *b, const bool *in,
+                       double *x)
 {
+    const size_t terms = problem->terms;
+    const double *h = problem->scaled;
     size_t index[IMKI_ALLAN_TERMS], count = 0;
-    double l[IMKI_ALLAN_TERMS * IMKI_ALLAN_TERMS], y[IMKI_ALLAN_TERMS];
+    double *l = problem->factor, y[IMKI_ALLAN_TERMS];
     for (size_t t = 0; t < terms; t++)
         if (in[t])
             index[count++] = t;
@@ -43,9 +47,11 @@ static bool solve_over(size_t terms, const double *h, const double *b, const boo
 
 /* min 1/2 x^T H x - b^T x over x >= 0, the diagonal of H being 1, among the candidates
  * [LAWSON1974, ch. 23]. Leaves x. */
-static bool non_negative(size_t terms, const double *h, const double *b, const bool *candidate,
+static bool non_negative(const imki_allan_problem *problem, const double *b, const bool *candidate,
                          double *x)
 {
+    const size_t terms = problem->terms;
+    const double *h = problem->scaled;
     bool in[IMKI_ALLAN_TERMS] = {false};
     double trial[IMKI_ALLAN_TERMS];
     double size = 0;
@@ -69,7 +75,7 @@ static bool non_negative(size_t terms, const double *h, const double *b, const b
             return true;
         in[best] = true;
         for (;;) {
-            if (!solve_over(terms, h, b, in, trial))
+            if (!solve_over(problem, b, in, trial))
                 return false;
             double reach = 1;
             for (size_t t = 0; t < terms; t++)
@@ -96,8 +102,7 @@ static imk_status normal_equations(const imki_allan_problem *problem, const doub
                                    bool start, double *h, double *b, double *square)
 {
     const size_t n = problem->table->count, terms = problem->terms, first = problem->first;
-    double matrix[IMKI_ALLAN_TAUS * IMKI_ALLAN_TAUS];
-    double white[IMKI_ALLAN_TERMS + 1][IMKI_ALLAN_TAUS];
+    double *restrict matrix = problem->matrix, *restrict white = problem->white;
     if (start) {
         memset(matrix, 0, n * n * sizeof *matrix);
         for (size_t i = 0; i < n; i++) {
@@ -124,20 +129,20 @@ static imk_status normal_equations(const imki_allan_problem *problem, const doub
                          : t < terms ? problem->shape[i * problem->capacity + t]
                                      : problem->variances[i];
             for (size_t k = 0; k < i; k++)
-                sum -= matrix[i * n + k] * white[t][k];
-            white[t][i] = sum / matrix[i * n + i];
+                sum -= matrix[i * n + k] * white[t * n + k];
+            white[t * n + i] = sum / matrix[i * n + i];
         }
     *square = 0;
     for (size_t i = 0; i < n; i++)
-        *square += white[terms][i] * white[terms][i];
+        *square += white[terms * n + i] * white[terms * n + i];
     for (size_t t = 0; t < terms; t++) {
         b[t] = 0;
         for (size_t i = 0; i < n; i++)
-            b[t] += white[t][i] * white[terms][i];
+            b[t] += white[t * n + i] * white[terms * n + i];
         for (size_t u = 0; u <= t; u++) {
             double sum = 0;
             for (size_t i = 0; i < n; i++)
-                sum += white[t][i] * white[u][i];
+                sum += white[t * n + i] * white[u * n + i];
             h[t * terms + u] = h[u * terms + t] = sum;
         }
     }
@@ -145,10 +150,11 @@ static imk_status normal_equations(const imki_allan_problem *problem, const doub
 }
 
 /* Non-negative least squares with one amount held; amounts are scaled by their columns. */
-static bool least_squares(size_t terms, const double *h, const double *b, const bool *active,
-                          int held, double value, double *amount)
+static bool least_squares(const imki_allan_problem *problem, const double *h, const double *b,
+                          const bool *active, int held, double value, double *amount)
 {
-    double scaled[IMKI_ALLAN_TERMS * IMKI_ALLAN_TERMS], right[IMKI_ALLAN_TERMS];
+    const size_t terms = problem->terms;
+    double *scaled = problem->scaled, right[IMKI_ALLAN_TERMS];
     double scale[IMKI_ALLAN_TERMS], x[IMKI_ALLAN_TERMS];
     bool candidate[IMKI_ALLAN_TERMS];
     for (size_t t = 0; t < terms; t++) {
@@ -162,7 +168,7 @@ static bool least_squares(size_t terms, const double *h, const double *b, const 
     }
     for (size_t t = 0; t < terms; t++)
         right[t] = candidate[t] ? right[t] : 0;
-    if (!non_negative(terms, scaled, right, candidate, x))
+    if (!non_negative(problem, right, candidate, x))
         return false;
     for (size_t t = 0; t < terms; t++)
         amount[t] = candidate[t] ? scale[t] * x[t] : 0;
@@ -262,7 +268,7 @@ void imki_allan_solve(const imki_allan_problem *problem, imki_allan_state *state
         const imk_status status =
             normal_equations(problem, weights, start, state->information, b, &square);
         if (status != IMK_OK ||
-            !least_squares(terms, state->information, b, state->active, held, value, next)) {
+            !least_squares(problem, state->information, b, state->active, held, value, next)) {
             state->status = status != IMK_OK ? status : IMK_ERROR_SINGULAR;
             return;
         }
@@ -289,7 +295,7 @@ void imki_allan_spread(const imki_allan_problem *problem, const imki_allan_state
                        double *covariance)
 {
     const size_t terms = problem->terms;
-    double l[IMKI_ALLAN_TERMS * IMKI_ALLAN_TERMS], inverse[IMKI_ALLAN_TERMS * IMKI_ALLAN_TERMS];
+    double *l = problem->factor, *inverse = problem->scaled;
     size_t index[IMKI_ALLAN_TERMS], count = 0;
     memset(covariance, 0, terms * terms * sizeof *covariance);
     for (size_t t = 0; t < terms; t++)

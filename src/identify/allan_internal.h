@@ -10,8 +10,10 @@
  * function that names it. */
 #if defined(__GNUC__)
 #define IMKI_INLINED static inline __attribute__((always_inline))
+#define IMKI_OUTLINED static __attribute__((noinline))
 #else
 #define IMKI_INLINED static inline
+#define IMKI_OUTLINED static
 #endif
 
 enum {

@@ -47,6 +47,13 @@ IMKI_INLINED void modified_block(imki_allan_cursor *c, const double *sums, size_
     c->total += square;
 }
 
+/* By itself: its array would stand on the stack beside those of the others. */
+IMKI_OUTLINED void block_portable(imki_allan_cursor *c, const double *sums, size_t first,
+                                  size_t size)
+{
+    modified_block(c, sums, first, size);
+}
+
 #if defined(__x86_64__) && defined(__GNUC__)
 __attribute__((target("avx512f"))) static void
 block_avx512(imki_allan_cursor *c, const double *sums, size_t first, size_t size)
@@ -75,5 +82,5 @@ void imki_allan_modified_block(imki_allan_cursor *c, imk_kernel kernel, const do
     }
 #endif
     (void)kernel;
-    modified_block(c, sums, first, size);
+    block_portable(c, sums, first, size);
 }

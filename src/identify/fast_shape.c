@@ -50,9 +50,9 @@ enum { FREQUENCIES = 48, QUALITIES = 6 };
 static const double DISPERSED = 3;
 enum { NEIGHBOURS = 7, TEMPERINGS = 2 };
 
-/* Score test of one further template; the information is factored in h. */
-static double score_gain(const imki_joint_fit *j, const double *h, const double *scale,
-                         double *shape, double *amount)
+/* Score test of one further template; the information is factored. */
+static double score_gain(const imki_joint_fit *j, const double *scale, double *shape,
+                         double *amount)
 {
     const size_t p = j->count, bands = j->w->bands->count;
     const double *weight = imki_joint_fit_row(j, IMKI_SHAPE_WEIGHT);
@@ -71,7 +71,7 @@ static double score_gain(const imki_joint_fit *j, const double *h, const double 
             sum += shape[b] * row[b];
         solved[i] = c[i] = sum * scale[i];
     }
-    imk_cholesky_solve(p, h, solved);
+    imk_cholesky_solve(p, imki_joint_fit_row(j, IMKI_SHAPE_FACTOR), solved);
     double left = square;
     for (size_t i = 0; i < p; i++)
         left -= c[i] * solved[i];
@@ -86,10 +86,10 @@ static double score_gain(const imki_joint_fit *j, const double *h, const double 
 static double best_resonance(imki_joint_fit *j, double widest, imk_resonance *best)
 {
     const imki_bands *bands = j->w->bands;
-    double h[IMKI_SHAPE_PARAMETERS * IMKI_SHAPE_PARAMETERS], scale[IMKI_SHAPE_PARAMETERS];
-    double shape[IMKI_BANDS_MAX], top = 0;
+    double *shape = imki_joint_fit_row(j, IMKI_SHAPE_SCRATCH);
+    double scale[IMKI_SHAPE_PARAMETERS], top = 0;
     imki_joint_fit_linearise(j);
-    if (!imki_joint_fit_factor(j, 1e-9, h, scale))
+    if (!imki_joint_fit_factor(j, 1e-9, scale))
         return 0;
     for (int i = 0; i < FREQUENCIES; i++) {
         const double part = (double)i / (FREQUENCIES - 1);
@@ -98,7 +98,7 @@ static double best_resonance(imki_joint_fit *j, double widest, imk_resonance *be
             const double q = widest * exp(log(Q_LAST / widest) * k / (QUALITIES - 1));
             double amount = 0;
             imki_resonance_shape(f, q, bands, shape);
-            const double gain = score_gain(j, h, scale, shape, &amount);
+            const double gain = score_gain(j, scale, shape, &amount);
             if (gain > top) {
                 top = gain;
                 *best = (imk_resonance){sqrt(amount), f, q};
@@ -260,7 +260,7 @@ static void add_resonances(imki_joint_fit *j)
 static void temper(imki_joint_fit *j)
 {
     imki_bands *bands = j->w->bands;
-    double square[IMKI_BANDS_MAX];
+    double *square = imki_joint_fit_row(j, IMKI_SHAPE_SCRATCH);
     resolve(j);
     for (size_t b = 0; b < bands->count; b++) {
         const double r = bands->power[b] / imki_fit_spectrum(j->w->fit, b) - 1;

@@ -36,6 +36,8 @@ typedef struct plan {
     int slot[4]; /* column of Q^2 ... K^2; -1: not estimated */
     size_t gauss_markov[IMK_TERMS_MAX], time[IMK_TERMS_MAX]; /* columns */
     double scratch[2][BANDS_MAX];
+    double matrix[2][PARAMETERS_MAX * PARAMETERS_MAX]; /* for the inverse of the information */
+    double covariance[PARAMETERS_MAX * PARAMETERS_MAX];
 } plan;
 
 size_t imk_bounds_workspace_size(void)
@@ -240,9 +242,9 @@ static void information(const plan *p, const double *spectrum, size_t count, con
 
 /* Inverse of the information of all parameters. One that the record says nothing about at all has
  * no part in it: its variance is infinite. */
-static imk_status invert(const plan *p, double *covariance)
+static imk_status invert(plan *p)
 {
-    double h[PARAMETERS_MAX * PARAMETERS_MAX], inverse[PARAMETERS_MAX * PARAMETERS_MAX];
+    double *h = p->matrix[0], *inverse = p->matrix[1];
     double scale[PARAMETERS_MAX];
     size_t index[PARAMETERS_MAX] = {0};
     const size_t count = p->parameters;
@@ -259,10 +261,10 @@ static imk_status invert(const plan *p, double *covariance)
     imk_cholesky_inverse(count, h, inverse);
     for (size_t i = 0; i < count; i++)
         for (size_t j = 0; j < count; j++)
-            covariance[i * count + j] = scale[i] > 0 && scale[j] > 0
-                                            ? inverse[i * count + j] * scale[i] * scale[j]
-                                        : i == j ? HUGE_VAL
-                                                 : 0;
+            p->covariance[i * count + j] = scale[i] > 0 && scale[j] > 0
+                                               ? inverse[i * count + j] * scale[i] * scale[j]
+                                           : i == j ? HUGE_VAL
+                                                    : 0;
     return IMK_OK;
 }
 
@@ -422,8 +424,9 @@ static imk_bound bound_of(double value, double square_variance)
                        .relative = magnitude > 0 ? sd / (2 * magnitude * magnitude) : HUGE_VAL};
 }
 
-static void store(plan *p, const double *covariance, imk_identification_bounds *bounds)
+static void store(plan *p, imk_identification_bounds *bounds)
 {
+    const double *covariance = p->covariance;
     const double z = imk_normal_quantile(1 - p->settings->significance);
     const size_t count = p->parameters;
     for (int i = 0; i < IMK_NOISE_TERMS; i++) /* what is not estimated */
@@ -519,12 +522,11 @@ imk_status imk_identify_bounds(const imk_expected_noise *noise, const imk_bounds
     lay_bands(p);
     set_amounts(p);
     set_shapes(p);
-    double covariance[PARAMETERS_MAX * PARAMETERS_MAX];
     imk_identification_bounds found = {0};
-    if (invert(p, covariance) != IMK_OK)
+    if (invert(p) != IMK_OK)
         return imk_error_set(error, IMK_ERROR_SINGULAR, "noise", NULL,
                              "terms that a record can tell apart");
-    store(p, covariance, &found);
+    store(p, &found);
     *bounds = found;
     return IMK_OK;
 }

@@ -44,6 +44,16 @@ typedef struct imki_bands {
     double end_product[2][IMKI_BANDS_MAX], end_square[2][IMKI_BANDS_MAX];
 } imki_bands;
 
+/* Spectrum and powers of a fit at the bands, and rows that its slope is summed with. */
+typedef struct imki_evaluation {
+    double spectrum[IMKI_BANDS_MAX];
+    double power[IMKI_BANDS_MAX]; /* without ramp and ends */
+    double weight[IMKI_BANDS_MAX], product[IMKI_BANDS_MAX];
+    double end_slope; /* of the likelihood in Q^2 by the ends' variance alone */
+    double end_information;
+    double log_likelihood;
+} imki_evaluation;
+
 /* Spectral model: S = sum of amount[j] * shape[j], amount >= 0, plus a ramp in the mean. */
 typedef struct imki_fit {
     size_t templates;
@@ -56,6 +66,7 @@ typedef struct imki_fit {
     double log_likelihood;
     double sine_square[IMKI_BANDS_MAX];                   /* sin^2(pi f dt) at the bands */
     double change[IMKI_GAUSS_MARKOV_MAX][IMKI_BANDS_MAX]; /* scratch: d S/d log correlation time */
+    imki_evaluation evaluation;                           /* scratch of spectral_fit.c */
 } imki_fit;
 
 /* A fit but for its shapes: cheap to keep and to go back to. */
@@ -100,7 +111,7 @@ double imki_fit_maximise(imki_fit *fit, const imki_bands *bands);
 /* The same with one amount (or the ramp: index IMK_NOISE_RAMP when `ramp`) held at a value. */
 double imki_fit_profile(imki_fit *fit, const imki_bands *bands, int held, double value);
 /* Covariance of the active amounts, templates x templates, row-major; zero for the others. */
-void imki_fit_covariance(const imki_fit *fit, const imki_bands *bands, double *covariance);
+void imki_fit_covariance(imki_fit *fit, const imki_bands *bands, double *covariance);
 double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands);
 double imki_fit_spectrum(const imki_fit *fit, size_t band);
 imki_amounts imki_fit_keep(const imki_fit *fit);
@@ -108,7 +119,7 @@ imki_amounts imki_fit_keep(const imki_fit *fit);
 void imki_fit_restore(imki_fit *fit, const imki_bands *bands, const imki_amounts *kept);
 void imki_fit_copy(imki_fit *to, const imki_fit *from, const imki_bands *bands);
 /* Log-likelihood's gradient and information over `count` columns of d S/d parameter, at the fit. */
-void imki_fit_slope(const imki_fit *fit, const imki_bands *bands, size_t count,
+void imki_fit_slope(imki_fit *fit, const imki_bands *bands, size_t count,
                     const double *const *columns, double *gradient, double *information);
 enum { IMKI_HELD_NONE = -1, IMKI_HELD_RAMP = -2 };
 

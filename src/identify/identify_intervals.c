@@ -78,7 +78,7 @@ static double profile_end(const profile *p, double start, double step, double li
 /* Values, sigmas and correlations of the chosen terms. */
 static void store_values(const imki_work *w, imk_identification *result)
 {
-    const imki_fit *fit = w->fit;
+    imki_fit *fit = w->fit;
     const size_t t = fit->templates;
     double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
     imki_fit_covariance(fit, w->bands, covariance);
@@ -132,7 +132,7 @@ static void set_free(imki_work *w, int term)
  * for a strength known from few coefficients in the drop. */
 static double centre_of(const imki_work *w, int held, profile *p, double *step)
 {
-    const imki_fit *fit = w->fit;
+    imki_fit *fit = w->fit;
     if (held == IMKI_HELD_RAMP) {
         *step = 1 / sqrt(imki_fit_ramp_information(fit, w->bands));
         return fit->ramp;

@@ -46,7 +46,7 @@ static double likelihood(const imki_fit *fit, const imki_bands *bands)
 }
 
 /* Strengths of a record beside the joint ones, whose variances are given. */
-static void compare(const imki_work *w, const imki_fit *own, const imki_bands *bands, size_t record,
+static void compare(const imki_work *w, imki_fit *own, const imki_bands *bands, size_t record,
                     const double *joint_covariance, imk_joint_agreement *a)
 {
     double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];

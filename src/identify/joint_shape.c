@@ -24,10 +24,15 @@ enum { STEPS = 60 };
 
 double *imki_joint_fit_row(const imki_joint_fit *j, size_t i)
 {
+    if (i >= 2 * IMKI_TEMPLATES_MAX)
+        return j->w->trial->change[i - 2 * IMKI_TEMPLATES_MAX];
     return i < IMKI_TEMPLATES_MAX ? j->w->trial->shape[i]
                                   : j->w->chosen->shape[i - IMKI_TEMPLATES_MAX];
 }
-_Static_assert((int)IMKI_SHAPE_ROWS <= 2 * (int)IMKI_TEMPLATES_MAX, "rows of two fits");
+_Static_assert((int)IMKI_SHAPE_ROWS <= 2 * (int)IMKI_TEMPLATES_MAX + (int)IMKI_GAUSS_MARKOV_MAX,
+               "rows of two fits");
+_Static_assert((int)IMKI_SHAPE_PARAMETERS *(int)IMKI_SHAPE_PARAMETERS <= (int)IMKI_BANDS_MAX,
+               "a matrix in a row");
 
 static double *place_of(imki_joint_fit *j, size_t i)
 {
@@ -192,6 +197,8 @@ void imki_joint_fit_linearise(imki_joint_fit *j)
     const size_t p = j->count, count = bands->count;
     double *weight = imki_joint_fit_row(j, IMKI_SHAPE_WEIGHT);
     double *excess = imki_joint_fit_row(j, IMKI_SHAPE_EXCESS);
+    double *restrict weighted = imki_joint_fit_row(j, IMKI_SHAPE_SCRATCH);
+    double *information = imki_joint_fit_row(j, IMKI_SHAPE_INFORMATION);
     for (size_t b = 0; b < count; b++) {
         const double s = imki_fit_spectrum(j->w->fit, b);
         weight[b] = 0.5 * bands->degrees[b] / (s * s);
@@ -199,7 +206,7 @@ void imki_joint_fit_linearise(imki_joint_fit *j)
     }
     for (size_t i = 0; i < p; i++) {
         const double *row = imki_joint_fit_row(j, i);
-        double weighted[IMKI_BANDS_MAX], sum = 0;
+        double sum = 0;
         for (size_t b = 0; b < count; b++) {
             weighted[b] = weight[b] * row[b];
             sum += weighted[b] * excess[b];
@@ -210,22 +217,31 @@ void imki_joint_fit_linearise(imki_joint_fit *j)
             sum = 0;
             for (size_t b = 0; b < count; b++)
                 sum += weighted[b] * column[b];
-            j->information[i * p + k] = j->information[k * p + i] = sum;
+            information[i * p + k] = information[k * p + i] = sum;
         }
     }
 }
 
-bool imki_joint_fit_factor(const imki_joint_fit *j, double lambda, double *h, double *scale)
+/* The first `count` parameters' part of the information, scaled to a unit diagonal plus lambda, as
+ * its Cholesky factor. */
+static bool factor(const imki_joint_fit *j, size_t count, double lambda, double *scale)
 {
-    const size_t p = j->count;
-    for (size_t i = 0; i < p; i++) {
-        const double d = j->information[i * p + i];
+    const double *information = imki_joint_fit_row(j, IMKI_SHAPE_INFORMATION);
+    double *h = imki_joint_fit_row(j, IMKI_SHAPE_FACTOR);
+    for (size_t i = 0; i < count; i++) {
+        const double d = information[i * j->count + i];
         scale[i] = d > 0 ? 1 / sqrt(d) : 0;
     }
-    for (size_t i = 0; i < p; i++)
-        for (size_t k = 0; k < p; k++)
-            h[i * p + k] = i == k ? 1 + lambda : j->information[i * p + k] * scale[i] * scale[k];
-    return imk_cholesky_factor(p, h) == IMK_OK;
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < count; k++)
+            h[i * count + k] =
+                i == k ? 1 + lambda : information[i * j->count + k] * scale[i] * scale[k];
+    return imk_cholesky_factor(count, h) == IMK_OK;
+}
+
+bool imki_joint_fit_factor(const imki_joint_fit *j, double lambda, double *scale)
+{
+    return factor(j, j->count, lambda, scale);
 }
 
 /* What a step changes of the likelihood; the ends of the record and its ramp do
@@ -250,13 +266,12 @@ static bool climb(imki_joint_fit *j, double *lambda)
     for (size_t i = 0; i < j->count; i++)
         start[i] = *place_of(j, i);
     for (; *lambda < 1e6; *lambda *= 10) {
-        double h[IMKI_SHAPE_PARAMETERS * IMKI_SHAPE_PARAMETERS], scale[IMKI_SHAPE_PARAMETERS];
-        double step[IMKI_SHAPE_PARAMETERS];
-        if (!imki_joint_fit_factor(j, *lambda, h, scale))
+        double scale[IMKI_SHAPE_PARAMETERS], step[IMKI_SHAPE_PARAMETERS];
+        if (!imki_joint_fit_factor(j, *lambda, scale))
             continue;
         for (size_t i = 0; i < j->count; i++)
             step[i] = j->gradient[i] * scale[i];
-        imk_cholesky_solve(j->count, h, step);
+        imk_cholesky_solve(j->count, imki_joint_fit_row(j, IMKI_SHAPE_FACTOR), step);
         for (size_t i = 0; i < j->count; i++)
             next[i] = moved(j, i, start[i], step[i] * scale[i]);
         for (size_t i = 0; i < j->count; i++)
@@ -293,19 +308,11 @@ double imki_joint_fit_maximise(imki_joint_fit *j)
  * cannot be told apart. */
 static bool variances(const imki_joint_fit *j, size_t count, size_t wanted, double *variance)
 {
-    double h[IMKI_SHAPE_PARAMETERS * IMKI_SHAPE_PARAMETERS], scale[IMKI_SHAPE_PARAMETERS];
-    double inverse[IMKI_SHAPE_PARAMETERS * IMKI_SHAPE_PARAMETERS];
-    for (size_t i = 0; i < count; i++) {
-        const double d = j->information[i * j->count + i];
-        scale[i] = d > 0 ? 1 / sqrt(d) : 0;
-    }
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < count; k++)
-            h[i * count + k] =
-                i == k ? 1 + 1e-9 : j->information[i * j->count + k] * scale[i] * scale[k];
-    if (imk_cholesky_factor(count, h) != IMK_OK)
+    double scale[IMKI_SHAPE_PARAMETERS];
+    if (!factor(j, count, 1e-9, scale))
         return false;
-    imk_cholesky_inverse(count, h, inverse);
+    double *inverse = imki_joint_fit_row(j, IMKI_SHAPE_INVERSE);
+    imk_cholesky_inverse(count, imki_joint_fit_row(j, IMKI_SHAPE_FACTOR), inverse);
     for (size_t i = 0; i < wanted; i++)
         variance[i] = inverse[i * count + i] * scale[i] * scale[i];
     return true;

@@ -9,9 +9,15 @@
 enum {
     /* Amounts, bandwidth and damping of the filter, frequency and quality of each resonance. */
     IMKI_SHAPE_PARAMETERS = IMKI_TEMPLATES_MAX + 2 + 2 * IMK_TERMS_MAX,
-    /* The derivatives by these, and the bands' weights and excesses, stand in the shapes of the
-     * work's two spare fits. */
-    IMKI_SHAPE_ROWS = IMKI_SHAPE_PARAMETERS + 2
+    /* Rows in the work's two spare fits: the derivatives by these; v/(2 S^2) of the bands, P - S,
+     * and one for what is needed for a while; then matrices of the parameters. */
+    IMKI_SHAPE_WEIGHT = IMKI_SHAPE_PARAMETERS,
+    IMKI_SHAPE_EXCESS,
+    IMKI_SHAPE_SCRATCH,
+    IMKI_SHAPE_INFORMATION,
+    IMKI_SHAPE_FACTOR,
+    IMKI_SHAPE_INVERSE,
+    IMKI_SHAPE_ROWS
 };
 
 typedef enum imki_shape_kind {
@@ -35,7 +41,6 @@ typedef struct imki_joint_fit {
     size_t count;
     imki_shape_parameter parameter[IMKI_SHAPE_PARAMETERS];
     double gradient[IMKI_SHAPE_PARAMETERS];
-    double information[IMKI_SHAPE_PARAMETERS * IMKI_SHAPE_PARAMETERS];
 } imki_joint_fit;
 
 /* Resonances wider than that would stand for the filter's slope and for the white noise. */
@@ -45,13 +50,13 @@ typedef struct imki_joint_fit {
 double imki_joint_fit_maximise(imki_joint_fit *j);
 /* Lists the parameters; their derivatives, gradient and information at the fit. */
 void imki_joint_fit_linearise(imki_joint_fit *j);
-/* Information scaled to a unit diagonal, plus lambda on it, factored; false if it cannot be. */
-bool imki_joint_fit_factor(const imki_joint_fit *j, double lambda, double *h, double *scale);
+/* Information scaled to a unit diagonal, plus lambda on it, factored in its row; false if it cannot
+ * be. */
+bool imki_joint_fit_factor(const imki_joint_fit *j, double lambda, double *scale);
 /* Shapes of the filter and of the active resonances as the result has them. */
 void imki_joint_fit_update(imki_joint_fit *j);
-/* Row i of the derivatives; behind them v/(2 S^2) of the bands and P - S. */
+/* Row i: of the derivatives, or one of those named above. */
 double *imki_joint_fit_row(const imki_joint_fit *j, size_t i);
-enum { IMKI_SHAPE_WEIGHT = IMKI_SHAPE_PARAMETERS, IMKI_SHAPE_EXCESS };
 
 /* The narrowest resonance that the bands resolve at a frequency. */
 double imki_quality_resolved(const imki_bands *bands, double frequency);

@@ -61,6 +61,7 @@ typedef struct imki_missing {
     double
         whole[IMKI_BANDS_MAX]; /* degrees of freedom of the fit's bands if nothing were missing */
     int rounds, refinements;
+    double scratch[5][IMKI_BANDS_MAX]; /* for a while; of a level's making the last three */
 } imki_missing;
 
 /* missing_spectrum.c */

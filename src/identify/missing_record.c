@@ -17,6 +17,7 @@
 #include "imukit/fourier.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 /* Fixed for ever: the same record gives the same result. */
@@ -45,7 +46,7 @@ imki_missing *imki_missing_place(void *memory, size_t count)
 {
     char *next = memory;
     imki_missing *m = memory;
-    memset(m, 0, sizeof *m);
+    memset(m, 0, offsetof(imki_missing, scratch));
     m->count = count;
     next += aligned(sizeof *m);
     for (int i = 0; i < 3; i++, next += aligned(count * sizeof(double)))
@@ -194,8 +195,9 @@ static imki_fill fill_of(imki_work *w, imki_missing *m)
  * included, the shares add up to the missing samples. */
 static void find_lost(imki_fill *fill, imki_missing *m, uint64_t draws)
 {
-    double mean[IMKI_BANDS_MAX], count[IMKI_BANDS_MAX], raw[IMKI_BANDS_MAX] = {0};
+    double *mean = m->scratch[0], *count = m->scratch[1], *raw = m->scratch[2];
     double all = 0, between_lines = 0, smoothed = 0;
+    memset(raw, 0, m->bands * sizeof *raw);
     for (uint64_t draw = 0; draw < draws; draw++) {
         imki_fill_draw(fill, imk_random_seeded(SEED), draw);
         imki_fill_coefficients(fill);
@@ -219,7 +221,7 @@ static void find_lost(imki_fill *fill, imki_missing *m, uint64_t draws)
 /* One round; returns how far the bands moved. */
 static double turn(imki_work *w, imki_missing *m, imki_fill *fill)
 {
-    double power[IMKI_BANDS_MAX], degrees[IMKI_BANDS_MAX];
+    double *power = m->scratch[0], *degrees = m->scratch[1];
     imki_fill_mean(fill, w->samples);
     find_lost(fill, m, 1);
     memcpy(w->coefficients, w->samples, w->n * sizeof(double));
@@ -284,7 +286,7 @@ void imki_missing_fill(imki_work *w, imk_identification *result)
 static double adopt_fit(const imki_work *w, imki_missing *m)
 {
     const imki_bands *bands = w->bands;
-    double level[IMKI_BANDS_MAX], lost[IMKI_BANDS_MAX], change = 0;
+    double *level = m->scratch[0], *lost = m->scratch[1], change = 0;
     size_t at = 0, lost_at = 0;
     for (size_t b = 0; b < bands->count; b++) {
         const size_t k = (size_t)(bands->frequency[b] * 2 * (double)w->n * bands->dt + 0.5);

@@ -176,13 +176,13 @@ static bool fit_terms(imki_work *w, const imki_missing *m, const double *power,
 double imki_missing_levels(imki_work *w, imki_missing *m, const double *power,
                            const double *degrees)
 {
-    double ratio[IMKI_BANDS_MAX] = {0}, reference[IMKI_BANDS_MAX], change = 0;
+    double *ratio = m->scratch[2], *reference = m->scratch[3], *smoothed = m->scratch[4];
+    double change = 0, peak = 0;
     const bool fitted = fit_terms(w, m, power, degrees);
     for (size_t b = 0; b < m->bands; b++) {
         reference[b] = fitted ? imki_fit_spectrum(w->fit, b) / w->settings->dt : 1;
         ratio[b] = power[b] / reference[b];
     }
-    double smoothed[IMKI_BANDS_MAX], peak = 0;
     imki_missing_smooth(m->bands, ratio, degrees, LEVEL_DEGREES, smoothed);
     for (size_t b = 0; b < m->bands; b++) {
         smoothed[b] *= reference[b];

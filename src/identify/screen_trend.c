@@ -30,7 +30,7 @@ typedef struct trend_work {
     double coefficient[PARTS];    /* of the record */
     double temperature[2][PARTS]; /* of the temperature and its square */
     double trend[TRENDS][PARTS];  /* of the trends fitted */
-    double spectrum[PARTS];       /* fitted */
+    double spectrum[PARTS];       /* fitted; before a fit, values to be transformed */
     double amount[NOISES];
     double factor[TRENDS], covariance[TRENDS * TRENDS];
     size_t trends;
@@ -190,7 +190,7 @@ static void fit_anew(trend_work *w)
 /* Transform of exp(-t/T), each part's mean: a geometric sum over its samples. */
 static void set_exponential(trend_work *w, double *coefficient, double time)
 {
-    double mean[PARTS];
+    double *mean = w->spectrum;
     const double step = w->dt / time;
     for (size_t p = 0; p < w->parts; p++) {
         const double from = (double)part_begin(w, p);
@@ -245,7 +245,7 @@ static void find_warm_up(trend_work *w, double significance, imk_screen *found)
     double without = fit(w, FIRST_ROUNDS);
     for (size_t i = 0; i < NOISES; i++)
         search.start[i] = w->amount[i];
-    double ramp[PARTS];
+    double *ramp = w->spectrum;
     for (size_t p = 0; p < w->parts; p++)
         ramp[p] = (double)p / (double)w->parts;
     transform(w, ramp, w->trend[w->trends++]);
@@ -299,7 +299,8 @@ static double fit_temperature(trend_work *w, size_t degree, const double *amount
 static void find_temperature(trend_work *w, const imk_screen_settings *settings,
                              const double *samples, imk_screen *found)
 {
-    double mean[PARTS], square[PARTS], low = HUGE_VAL, high = -HUGE_VAL, centre = 0;
+    double *mean = w->spectrum, *square = w->trend[0]; /* no trend is there yet */
+    double low = HUGE_VAL, high = -HUGE_VAL, centre = 0;
     if (!part_means(w, settings->temperature, samples, mean))
         return;
     for (size_t p = 0; p < w->parts; p++) {
@@ -348,7 +349,7 @@ void imki_trend_find(const imk_screen_settings *settings, size_t n, const double
 {
     trend_work work, *w = &work;
     const size_t parts = n / 8 < PARTS ? n / 8 : PARTS;
-    double mean[PARTS];
+    double *mean = w->spectrum;
     if (parts < 16)
         return;
     w->parts = parts;

@@ -24,15 +24,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Spectrum and powers of a fit at the bands. */
-typedef struct evaluation {
-    double spectrum[IMKI_BANDS_MAX];
-    double power[IMKI_BANDS_MAX]; /* without ramp and ends */
-    double end_slope;             /* of the likelihood in Q^2 by the ends' variance alone */
-    double end_information;
-    double log_likelihood;
-} evaluation;
-
 double imki_fit_spectrum(const imki_fit *fit, size_t band)
 {
     double s = 0;
@@ -64,7 +55,7 @@ static double end_product(const imki_fit *fit, const imki_bands *bands, size_t p
 }
 
 /* What the ends add to the likelihood; takes them from the powers. */
-static double take_ends(const imki_fit *fit, const imki_bands *bands, evaluation *e)
+static double take_ends(const imki_fit *fit, const imki_bands *bands, imki_evaluation *e)
 {
     const double q = 2 * fit->amount[IMK_NOISE_QUANTIZATION];
     double gain = 0;
@@ -90,8 +81,9 @@ static double take_ends(const imki_fit *fit, const imki_bands *bands, evaluation
     return gain;
 }
 
-static double evaluate(const imki_fit *fit, const imki_bands *bands, evaluation *e)
+static double evaluate(imki_fit *fit, const imki_bands *bands)
 {
+    imki_evaluation *e = &fit->evaluation;
     const size_t count = bands->count;
     double sum = 0, least = HUGE_VAL;
     add_spectrum(fit, count, e->spectrum);
@@ -111,20 +103,19 @@ static double evaluate(const imki_fit *fit, const imki_bands *bands, evaluation 
 }
 
 /* Gradient and information over columns dS/d parameter, at an evaluation. */
-static void slope(const evaluation *e, const imki_bands *bands, size_t count,
+static void slope(imki_evaluation *e, const imki_bands *bands, size_t count,
                   const double *const *columns, double *gradient, double *information)
 {
     const size_t bands_count = bands->count;
-    double weight[IMKI_BANDS_MAX], excess[IMKI_BANDS_MAX], product[IMKI_BANDS_MAX];
-    for (size_t b = 0; b < bands_count; b++) {
-        weight[b] = 0.5 * bands->degrees[b] / (e->spectrum[b] * e->spectrum[b]);
-        excess[b] = e->power[b] - e->spectrum[b];
-    }
+    const double *restrict spectrum = e->spectrum, *restrict power = e->power;
+    double *restrict weight = e->weight, *restrict product = e->product;
+    for (size_t b = 0; b < bands_count; b++)
+        weight[b] = 0.5 * bands->degrees[b] / (spectrum[b] * spectrum[b]);
     for (size_t i = 0; i < count; i++) {
         double sum = 0;
         for (size_t b = 0; b < bands_count; b++) {
             product[b] = weight[b] * columns[i][b];
-            sum += product[b] * excess[b];
+            sum += product[b] * (power[b] - spectrum[b]);
         }
         gradient[i] = sum;
         for (size_t j = 0; j <= i; j++) {
@@ -141,16 +132,15 @@ static void slope(const evaluation *e, const imki_bands *bands, size_t count,
     }
 }
 
-void imki_fit_slope(const imki_fit *fit, const imki_bands *bands, size_t count,
+void imki_fit_slope(imki_fit *fit, const imki_bands *bands, size_t count,
                     const double *const *columns, double *gradient, double *information)
 {
-    evaluation e;
-    evaluate(fit, bands, &e);
-    slope(&e, bands, count, columns, gradient, information);
+    evaluate(fit, bands);
+    slope(&fit->evaluation, bands, count, columns, gradient, information);
 }
 
 /* Covariance of the active amounts: inverse of the scaled information. */
-void imki_fit_covariance(const imki_fit *fit, const imki_bands *bands, double *covariance)
+void imki_fit_covariance(imki_fit *fit, const imki_bands *bands, double *covariance)
 {
     const size_t t = fit->templates;
     double h[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], scale[IMKI_TEMPLATES_MAX];
@@ -186,7 +176,7 @@ double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands)
 }
 
 /* Best ramp for the present spectrum: weighted mean of c/d. */
-static double best_ramp(const imki_bands *bands, const evaluation *e)
+static double best_ramp(const imki_bands *bands, const imki_evaluation *e)
 {
     double product = 0, information = 0;
     for (size_t b = 0; b < bands->singles; b++) {
@@ -218,9 +208,9 @@ static bool solve(size_t count, const double *h, const double *g, size_t chosen,
 /* Newton step over the free amounts; those that would turn negative are taken to zero one by one,
  * and the step of the others solved again. Returns twice the likelihood that
  * the step promises, negative when there is none. */
-static double scoring_step(const imki_fit *fit, const imki_bands *bands, const evaluation *e,
-                           int held, double *step)
+static double scoring_step(imki_fit *fit, const imki_bands *bands, int held, double *step)
 {
+    imki_evaluation *e = &fit->evaluation;
     size_t slot[IMKI_TEMPLATES_MAX] = {0}, index[IMKI_TEMPLATES_MAX], count = 0;
     const double *columns[IMKI_TEMPLATES_MAX] = {0};
     double gradient[IMKI_TEMPLATES_MAX], h[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX];
@@ -273,15 +263,14 @@ static double scoring_step(const imki_fit *fit, const imki_bands *bands, const e
     return promised;
 }
 
-static bool take_step(imki_fit *fit, const imki_bands *bands, const double *step, double best,
-                      evaluation *e)
+static bool take_step(imki_fit *fit, const imki_bands *bands, const double *step, double best)
 {
     double start[IMKI_TEMPLATES_MAX];
     memcpy(start, fit->amount, sizeof start);
     for (double part = 1; part > 1e-10; part *= 0.5) {
         for (size_t j = 0; j < fit->templates; j++)
             fit->amount[j] = fmax(0, start[j] + part * step[j]);
-        if (evaluate(fit, bands, e) >= best)
+        if (evaluate(fit, bands) >= best)
             return true;
     }
     memcpy(fit->amount, start, sizeof start);
@@ -290,24 +279,24 @@ static bool take_step(imki_fit *fit, const imki_bands *bands, const double *step
 
 static double maximise(imki_fit *fit, const imki_bands *bands, int held)
 {
-    evaluation e;
-    double best = evaluate(fit, bands, &e);
+    const imki_evaluation *e = &fit->evaluation;
+    double best = evaluate(fit, bands);
     for (int iteration = 0; iteration < 200; iteration++) {
         const double before = best;
         double step[IMKI_TEMPLATES_MAX];
-        const double promised = scoring_step(fit, bands, &e, held, step);
+        const double promised = scoring_step(fit, bands, held, step);
         const bool moved = promised > 1e-8;
-        if (moved && !take_step(fit, bands, step, best, &e))
-            evaluate(fit, bands, &e);
-        best = moved ? e.log_likelihood : best;
+        if (moved && !take_step(fit, bands, step, best))
+            evaluate(fit, bands);
+        best = moved ? e->log_likelihood : best;
         if (fit->ramp_active && held != IMKI_HELD_RAMP) {
             const double ramp = fit->ramp;
-            fit->ramp = best_ramp(bands, &e);
-            if (!(evaluate(fit, bands, &e) >= best)) {
+            fit->ramp = best_ramp(bands, e);
+            if (!(evaluate(fit, bands) >= best)) {
                 fit->ramp = ramp;
-                evaluate(fit, bands, &e);
+                evaluate(fit, bands);
             }
-            best = e.log_likelihood;
+            best = e->log_likelihood;
         }
         if (!(best - before > 1e-7))
             break;

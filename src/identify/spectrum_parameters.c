@@ -23,9 +23,9 @@ enum { BANDS_MAX = 400, PER_DECADE = 40, CHECKED_PER_DECADE = 10, ITERATIONS = 6
 enum { BINS_MIN = 8 };
 
 typedef struct banded {
-    const imk_spectrum *spectrum;
     size_t count;
-    double power[BANDS_MAX], degrees[BANDS_MAX], shape[TERMS][BANDS_MAX];
+    imk_spectrum_band band[BANDS_MAX];
+    double shape[TERMS][BANDS_MAX];
 } banded;
 
 typedef struct fitted {
@@ -69,20 +69,17 @@ static void fill_bands(banded *b, const imk_spectrum *s, size_t line_count,
                        const imk_spectrum_line *lines, int per_decade, double lowest,
                        double highest)
 {
-    imk_spectrum_band bands[BANDS_MAX];
     const size_t made =
-        imk_spectrum_bands(s, per_decade, 0.95, line_count, lines, BANDS_MAX, bands);
-    b->spectrum = s;
+        imk_spectrum_bands(s, per_decade, 0.95, line_count, lines, BANDS_MAX, b->band);
     b->count = 0;
     for (size_t i = 0; i < made; i++) {
-        if (bands[i].from < lowest - 0.6 * s->step || bands[i].to > highest + 0.6 * s->step ||
-            !(bands[i].density > 0))
+        const imk_spectrum_band band = b->band[i];
+        if (band.from < lowest - 0.6 * s->step || band.to > highest + 0.6 * s->step ||
+            !(band.density > 0))
             continue;
-        b->power[b->count] = bands[i].density;
-        b->degrees[b->count] = bands[i].degrees;
         for (int term = 0; term < TERMS; term++)
-            b->shape[term][b->count] = seen_spectrum(s, term, bands[i].frequency);
-        b->count++;
+            b->shape[term][b->count] = seen_spectrum(s, term, band.frequency);
+        b->band[b->count++] = band;
     }
 }
 
@@ -103,7 +100,8 @@ static double likelihood(const banded *b, const double *amount)
         const double s = model_of(b, amount, i);
         if (!(s > 0))
             return -HUGE_VAL;
-        sum += b->degrees[i] * (imk_ln(s / b->power[i]) + b->power[i] / s);
+        const double power = b->band[i].density;
+        sum += b->band[i].degrees * (imk_ln(s / power) + power / s);
     }
     return -0.5 * sum;
 }
@@ -123,10 +121,10 @@ static size_t slope(const banded *b, const double *amount, int set, double *grad
         const double s = model_of(b, amount, i);
         for (size_t j = 0; j < count; j++) {
             const double shape = b->shape[index[j]][i] / s;
-            gradient[j] += 0.5 * b->degrees[i] * shape * (b->power[i] / s - 1);
+            gradient[j] += 0.5 * b->band[i].degrees * shape * (b->band[i].density / s - 1);
             for (size_t k = 0; k < count; k++)
                 information[j * count + k] +=
-                    0.5 * b->degrees[i] * shape * b->shape[index[k]][i] / s;
+                    0.5 * b->band[i].degrees * shape * b->shape[index[k]][i] / s;
         }
     }
     for (size_t j = 0; j < count; j++)
@@ -150,7 +148,7 @@ static fitted maximise(const banded *b, int set)
     for (int j = 0; j < TERMS; j++) {
         double least = HUGE_VAL;
         for (size_t i = 0; i < b->count; i++)
-            least = fmin(least, b->power[i] / b->shape[j][i]);
+            least = fmin(least, b->band[i].density / b->shape[j][i]);
         f.amount[j] = set >> j & 1 ? least / members : 0;
     }
     f.log_likelihood = likelihood(b, f.amount);
@@ -205,29 +203,23 @@ static bool deviations(const banded *b, const double *amount, int set, double *d
 
 /* ---- result ---------------------------------------------------------------------------------- */
 
-static void check_fit(const imk_spectrum *s, size_t line_count, const imk_spectrum_line *lines,
-                      const double *amount, imk_spectrum_parameters *result)
+/* At the coarse bands. */
+static void check_fit(const banded *b, const double *amount, imk_spectrum_parameters *result)
 {
-    banded b;
     double squares = 0, worst = -1;
-    imk_spectrum_band bands[BANDS_MAX];
-    fill_bands(&b, s, line_count, lines, CHECKED_PER_DECADE, result->lowest, result->highest);
-    const size_t made =
-        imk_spectrum_bands(s, CHECKED_PER_DECADE, 0.95, line_count, lines, BANDS_MAX, bands);
-    for (size_t i = 0; i < b.count; i++) {
+    for (size_t i = 0; i < b->count; i++) {
         /* The cube root of chi-square is nearly normal [WILSON1931]. */
-        const double ratio = b.power[i] / model_of(&b, amount, i), v = 2 / (9 * b.degrees[i]);
+        const imk_spectrum_band *band = &b->band[i];
+        const double ratio = band->density / model_of(b, amount, i), v = 2 / (9 * band->degrees);
         const double root = imk_exp(imk_ln(ratio) / 3), z = (root - (1 - v)) / sqrt(v);
         squares += z * z;
         if (fabs(z) > worst) {
             worst = fabs(z);
             result->worst_ratio = ratio;
-            for (size_t k = 0; k < made; k++)
-                if (bands[k].density == b.power[i])
-                    result->worst_frequency = bands[k].frequency;
+            result->worst_frequency = band->frequency;
         }
     }
-    result->misfit = b.count > 0 ? sqrt(squares / (double)b.count) : 0;
+    result->misfit = b->count > 0 ? sqrt(squares / (double)b->count) : 0;
 }
 
 static imk_estimate estimate_of(double chosen, double deviation, double free_amount,
@@ -287,7 +279,8 @@ imk_status imk_spectrum_fit(const imk_spectrum *spectrum, size_t line_count,
         return IMK_ERROR_NO_CONVERGENCE;
     for (int j = 0; j < TERMS; j++)
         found.term[j] = estimate_of(best.amount[j], own[j], free_fit.amount[j], all[j], confidence);
-    check_fit(spectrum, line_count, lines, best.amount, &found);
+    fill_bands(&b, spectrum, line_count, lines, CHECKED_PER_DECADE, found.lowest, found.highest);
+    check_fit(&b, best.amount, &found);
     *result = found;
     return IMK_OK;
 }

@@ -60,7 +60,7 @@ imki_penalties imki_penalties_of(const imki_bands *bands, double significance)
  *     2 gain = (v + 1) log(1 + t^2/v) ~ (v + 1)/v [(8v + 3)/(8v + 1)]^2 z^2 */
 static double ramp_penalty(const search *s)
 {
-    const imki_fit *fit = s->fit;
+    imki_fit *fit = s->fit;
     const size_t t = fit->templates;
     double covariance[IMKI_TEMPLATES_MAX * IMKI_TEMPLATES_MAX], variance = 0;
     imki_fit_covariance(fit, s->bands, covariance);

@@ -57,7 +57,9 @@ imk_status imki_count_iterations(const imki_inversion *inversion, double toleran
 /* Spectral radius of the bound matrix on the way from 0 to the solution. */
 double imki_contraction(const imki_inversion *inversion);
 
-/* Fill an error for a model that is not invertible: names the term that matters most. */
-imk_status imki_refuse_inversion(const imki_inversion *inversion, imk_error *error);
+/* Fill an error for a model that is not invertible: names the term that matters most.
+ * @param distortion  that of the inversion, from which terms are taken for a while */
+imk_status imki_refuse_inversion(const imki_inversion *inversion, imk_distortion *distortion,
+                                 imk_error *error);
 
 #endif

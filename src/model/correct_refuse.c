@@ -69,22 +69,25 @@ static void remove_term(imk_axis_response *axis, int term)
     }
 }
 
-imk_status imki_refuse_inversion(const imki_inversion *inversion, imk_error *error)
+imk_status imki_refuse_inversion(const imki_inversion *inversion, imk_distortion *distortion,
+                                 imk_error *error)
 {
     const double contraction = imki_contraction(inversion);
     const char *worst = "";
     double best = INFINITY;
     for (int k = 0; error && k < 2 * TERMS; k++) {
         const int sensor = k / TERMS, term = k % TERMS;
-        imk_distortion without = *inversion->distortion;
+        imk_axis_response with[IMK_AXES_MAX];
         imki_inversion trial = *inversion;
         int singular;
-        trial.distortion = &without;
-        for (int i = 0; i < without.axis_count[sensor]; i++)
-            remove_term(&without.axis[sensor][i], term);
-        if (!names[sensor][term] || imki_invert_middle(&trial, &singular) != IMK_OK)
+        if (!names[sensor][term])
             continue;
-        const double left = imki_contraction(&trial);
+        memcpy(with, distortion->axis[sensor], sizeof with);
+        for (int i = 0; i < distortion->axis_count[sensor]; i++)
+            remove_term(&distortion->axis[sensor][i], term);
+        const bool inverted = imki_invert_middle(&trial, &singular) == IMK_OK;
+        const double left = inverted ? imki_contraction(&trial) : HUGE_VAL;
+        memcpy(distortion->axis[sensor], with, sizeof with);
         if (left < best) {
             best = left;
             worst = names[sensor][term];

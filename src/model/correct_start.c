@@ -326,7 +326,7 @@ imk_status imk_correction_start(imk_correction *correction, const imk_model *mod
                       "check direction, misalignment, cross_axis and scale_factor");
     status = imki_count_iterations(&v, with->tolerance, &made.iterations, &made.contraction, left);
     if (status != IMK_OK)
-        return imki_refuse_inversion(&v, error);
+        return imki_refuse_inversion(&v, &made.distortion, error);
     copy_results(&made, &v, model, left);
     made.cookie = IMKI_CORRECTION_COOKIE;
     *correction = made;

@@ -33,22 +33,25 @@ void imki_draws_fill(imki_draws *draws)
     draws->position = 0;
 }
 
+double imki_run_constant(const imk_physics_settings *settings, uint8_t source, double repeatability)
+{
+    double constant = 0.0;
+    if (settings->noise)
+        imk_random_normals(imk_random_seeded(settings->seed),
+                           stream_of(settings, 0, CONSTANTS + source), 0, 1, &constant);
+    return constant * repeatability;
+}
+
 imk_status imki_wander_start(imki_wander *wander, const imk_physics_settings *settings,
                              uint8_t source, double repeatability, double instability)
 {
-    const imk_random random = imk_random_seeded(settings->seed);
-    wander->constant = 0.0;
+    wander->constant = imki_run_constant(settings, source, repeatability);
     wander->flickers = settings->noise && instability > 0.0;
     wander->position = IMKI_WANDER_BLOCK;
-    if (settings->noise) {
-        imk_random_normals(random, stream_of(settings, 0, CONSTANTS + source), 0, 1,
-                           &wander->constant);
-        wander->constant *= repeatability;
-    }
     if (!wander->flickers)
         return IMK_OK;
     return imk_flicker_start(
-        &wander->flicker, instability, 1.0 / settings->rate, random,
+        &wander->flicker, instability, 1.0 / settings->rate, imk_random_seeded(settings->seed),
         stream_of(settings, settings->occasion, FLICKERS + FLICKER_INSTANCES * source));
 }
 

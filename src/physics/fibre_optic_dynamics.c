@@ -344,13 +344,9 @@ imk_status imki_fibre_optic_init(const void *design, const imk_physics_settings 
     start_detector(g, settings);
     start_loop(g);
     start_slow(g, settings);
-    imki_wander wavelength;
-    status = imki_wander_start(&wavelength, settings, SOURCE_WAVELENGTH,
-                               d->wavelength_repeatability, 0.0);
-    if (status == IMK_OK)
-        status = imki_wander_start(&g->phase, settings, SOURCE_PHASE, d->phase_repeatability,
-                                   d->phase_instability);
-    g->wavelength_run = wavelength.constant;
+    g->wavelength_run = imki_run_constant(settings, SOURCE_WAVELENGTH, d->wavelength_repeatability);
+    status = imki_wander_start(&g->phase, settings, SOURCE_PHASE, d->phase_repeatability,
+                               d->phase_instability);
     imki_draws_start(&g->draws, settings, SOURCE_DETECTOR);
     return status;
 }

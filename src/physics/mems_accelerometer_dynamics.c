@@ -332,27 +332,24 @@ imk_status imki_mems_init(const void *design, const imk_physics_settings *settin
         status = imki_settings_check(settings, error);
     if (status != IMK_OK)
         return status;
-    mems_state fresh;
-    memset(&fresh, 0, sizeof fresh);
-    fresh.design = *(const imk_mems_accelerometer *)design;
-    fresh.slow = settings->level == IMK_LEVEL_SLOW;
-    fresh.sample = 1.0 / settings->rate;
-    status = divide(&fresh, settings, error);
+    memset(m, 0, sizeof *m);
+    m->design = *(const imk_mems_accelerometer *)design;
+    m->slow = settings->level == IMK_LEVEL_SLOW;
+    m->sample = 1.0 / settings->rate;
+    status = divide(m, settings, error);
     if (status != IMK_OK)
         return status;
-    fresh.point = imki_mems_operating_point(&fresh.design);
-    fresh.errors = imki_mems_static_errors(&fresh.design, &fresh.point);
-    set_constants(&fresh);
-    discretise(&fresh, fresh.h, settings->noise);
-    imki_draws_start(&fresh.linear, settings, DRAW_LINEAR);
-    imki_draws_start(&fresh.pickoff, settings, DRAW_PICKOFF);
-    imki_draws_start(&fresh.film, settings, DRAW_FILM);
-    const imk_mems_accelerometer *d = &fresh.design;
-    status = imki_wander_start(&fresh.bias, settings, WANDER_BIAS, d->bias_repeatability,
+    m->point = imki_mems_operating_point(&m->design);
+    m->errors = imki_mems_static_errors(&m->design, &m->point);
+    set_constants(m);
+    discretise(m, m->h, settings->noise);
+    imki_draws_start(&m->linear, settings, DRAW_LINEAR);
+    imki_draws_start(&m->pickoff, settings, DRAW_PICKOFF);
+    imki_draws_start(&m->film, settings, DRAW_FILM);
+    const imk_mems_accelerometer *d = &m->design;
+    status = imki_wander_start(&m->bias, settings, WANDER_BIAS, d->bias_repeatability,
                                d->bias_instability);
     if (status == IMK_OK)
-        status = imki_wander_start(&fresh.gain, settings, WANDER_GAIN, d->gain_repeatability, 0.0);
-    if (status == IMK_OK)
-        memcpy(m, &fresh, sizeof fresh);
+        status = imki_wander_start(&m->gain, settings, WANDER_GAIN, d->gain_repeatability, 0.0);
     return status;
 }

@@ -61,7 +61,6 @@ imk_status imki_servo_init(const void *design, const imk_physics_settings *setti
                            imk_error *error)
 {
     servo *s = state;
-    imki_wander torquer;
     imk_status status = imk_pendulous_servo_validate(design, error);
     if (status == IMK_OK)
         status = imki_settings_check(settings, error);
@@ -81,11 +80,9 @@ imk_status imki_servo_init(const void *design, const imk_physics_settings *setti
     s->readout_deviation = settings->noise ? d->readout_noise * sqrt(settings->rate) : 0.0;
     imki_draws_start(&s->loop, settings, SOURCE_LOOP);
     imki_draws_start(&s->readout, settings, SOURCE_READOUT);
-    status = imki_wander_start(&torquer, settings, WANDER_TORQUER, d->torquer_repeatability, 0.0);
-    s->constant_torquer = torquer.constant;
-    if (status == IMK_OK)
-        status = imki_wander_start(&s->hinge, settings, WANDER_HINGE, d->hinge_torque_repeatability,
-                                   d->hinge_torque_instability);
+    s->constant_torquer = imki_run_constant(settings, WANDER_TORQUER, d->torquer_repeatability);
+    status = imki_wander_start(&s->hinge, settings, WANDER_HINGE, d->hinge_torque_repeatability,
+                               d->hinge_torque_instability);
     return status == IMK_OK ? status
                             : imki_design_refuse(error, status, "hinge.torque_instability",
                                                  d->hinge_torque_instability, 0.0, NULL);

@@ -43,7 +43,7 @@ static inline double imki_draw(imki_draws *draws)
 
 /* A quantity that differs from run to run and wanders within one: a constant drawn once with the
  * 1 sigma `repeatability` and flicker noise of the instability B (model.h) at the sample rate.
- * imki_wander() gives the value for the next sample. */
+ * imki_wander_next() gives the value for the next sample. */
 enum { IMKI_WANDER_BLOCK = 64 };
 typedef struct imki_wander {
     double constant;
@@ -53,6 +53,9 @@ typedef struct imki_wander {
     double buffer[IMKI_WANDER_BLOCK];
 } imki_wander;
 
+/* The constant by itself, of a quantity that does not wander. */
+double imki_run_constant(const imk_physics_settings *settings, uint8_t source,
+                         double repeatability);
 imk_status imki_wander_start(imki_wander *wander, const imk_physics_settings *settings,
                              uint8_t source, double repeatability, double instability);
 void imki_wander_fill(imki_wander *wander);

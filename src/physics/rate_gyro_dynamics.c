@@ -12,6 +12,7 @@
 #include "base/linear_system_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Sources of randomness; fixed for ever. */
 enum { TORQUE_NOISE = 0, PICKOFF_NOISE = 1, TORQUE_WANDER = 0 };
@@ -57,41 +58,41 @@ imk_status imki_rate_gyro_init(const void *design, const imk_physics_settings *s
                                void *state, imk_error *error)
 {
     const imk_rate_gyro *d = design;
-    imki_rate_gyro_state s = {0};
+    imki_rate_gyro_state *s = state;
     imk_status status = imk_rate_gyro_validate(d, error);
     if (status == IMK_OK)
         status = imki_settings_check(settings, error);
     if (status != IMK_OK)
         return status;
+    memset(s, 0, sizeof *s);
     const bool slow = settings->level == IMK_LEVEL_SLOW;
     const double sample = 1.0 / settings->rate;
     status =
         imki_divide_sample(settings, slow ? sample : cycle(d) / steps_per_cycle,
                            slow ? (double)INFINITY : cycle(d) / fewest_steps,
-                           "at least 8 steps to a cycle of the gimbal", &s.count, &s.step, error);
+                           "at least 8 steps to a cycle of the gimbal", &s->count, &s->step, error);
     if (status != IMK_OK)
         return status;
-    s.level = settings->level;
-    s.rate = settings->rate;
-    s.gimbal = imki_rate_gyro_gimbal(d);
-    s.stiffness = imki_rate_gyro_stiffness(d);
-    s.stiffness_temperature = s.stiffness * d->stiffness_temperature;
-    s.friction = d->friction;
-    s.stop = d->stop;
-    s.fixed_torque = d->torque.fixed;
-    s.torque_temperature = d->torque.temperature;
-    s.reading = d->stiffness / d->momentum;
-    s.noise = d->pickoff_noise * sqrt(settings->rate);
-    s.resolution = d->pickoff_resolution;
-    start_linear_part(&s, d);
-    imki_draws_start(&s.torque_draws, settings, TORQUE_NOISE);
-    imki_draws_start(&s.pickoff_draws, settings, PICKOFF_NOISE);
-    status = imki_wander_start(&s.wander, settings, TORQUE_WANDER, d->torque.repeatability,
+    s->level = settings->level;
+    s->rate = settings->rate;
+    s->gimbal = imki_rate_gyro_gimbal(d);
+    s->stiffness = imki_rate_gyro_stiffness(d);
+    s->stiffness_temperature = s->stiffness * d->stiffness_temperature;
+    s->friction = d->friction;
+    s->stop = d->stop;
+    s->fixed_torque = d->torque.fixed;
+    s->torque_temperature = d->torque.temperature;
+    s->reading = d->stiffness / d->momentum;
+    s->noise = d->pickoff_noise * sqrt(settings->rate);
+    s->resolution = d->pickoff_resolution;
+    start_linear_part(s, d);
+    imki_draws_start(&s->torque_draws, settings, TORQUE_NOISE);
+    imki_draws_start(&s->pickoff_draws, settings, PICKOFF_NOISE);
+    status = imki_wander_start(&s->wander, settings, TORQUE_WANDER, d->torque.repeatability,
                                d->torque.instability);
     if (status != IMK_OK)
         return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
                                   NULL);
-    *(imki_rate_gyro_state *)state = s;
     return IMK_OK;
 }
 

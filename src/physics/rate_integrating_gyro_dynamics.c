@@ -16,6 +16,7 @@
 #include "base/linear_system_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Sources of randomness; fixed for ever. */
 enum { TORQUE_NOISE = 0, PICKOFF_NOISE = 1, TORQUE_WANDER = 0 };
@@ -152,23 +153,24 @@ imk_status imki_rate_integrating_gyro_init(const void *design, const imk_physics
                                            void *state, imk_error *error)
 {
     const imk_rate_integrating_gyro *d = design;
-    gyro s = {0};
+    gyro *s = state;
     imk_status status = imk_rate_integrating_gyro_validate(d, error);
     if (status == IMK_OK)
         status = imki_settings_check(settings, error);
-    if (status == IMK_OK)
-        status = divide(&s, d, settings, error);
     if (status != IMK_OK)
         return status;
-    start_constants(&s, d, settings);
-    imki_draws_start(&s.torque_draws, settings, TORQUE_NOISE);
-    imki_draws_start(&s.pickoff_draws, settings, PICKOFF_NOISE);
-    status = imki_wander_start(&s.wander, settings, TORQUE_WANDER, d->torque.repeatability,
+    memset(s, 0, sizeof *s);
+    status = divide(s, d, settings, error);
+    if (status != IMK_OK)
+        return status;
+    start_constants(s, d, settings);
+    imki_draws_start(&s->torque_draws, settings, TORQUE_NOISE);
+    imki_draws_start(&s->pickoff_draws, settings, PICKOFF_NOISE);
+    status = imki_wander_start(&s->wander, settings, TORQUE_WANDER, d->torque.repeatability,
                                d->torque.instability);
     if (status != IMK_OK)
         return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
                                   NULL);
-    *(gyro *)state = s;
     return IMK_OK;
 }
 

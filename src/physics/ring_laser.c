@@ -228,23 +228,19 @@ static imk_status check_slow(const imk_ring_laser *design, const imk_physics_set
 static imk_status start_random(imki_ring_laser *gyro, const imk_physics_settings *settings)
 {
     const imk_ring_laser *design = &gyro->design;
-    imki_wander scale, start;
     imki_draws_start(&gyro->quantum_draws, settings, IMKI_RING_LASER_QUANTUM);
     imki_draws_start(&gyro->dither_draws, settings, IMKI_RING_LASER_DITHER);
-    imk_status status =
+    const imk_status status =
         imki_wander_start(&gyro->null_wander, settings, IMKI_RING_LASER_NULL,
                           design->null_shift.repeatability, design->null_shift.instability);
-    if (status == IMK_OK)
-        status = imki_wander_start(&scale, settings, IMKI_RING_LASER_SCALE,
-                                   design->scale_factor.repeatability, 0.0);
-    /* a normal of ten fringes is a uniform phase to one in 1e85 */
-    if (status == IMK_OK)
-        status = imki_wander_start(&start, settings, IMKI_RING_LASER_START, 10.0, 0.0);
     if (status != IMK_OK)
         return status;
-    gyro->fringes = imk_ring_laser_fringes_per_radian(design) *
-                    (1.0 + design->scale_factor.error + imki_wander_next(&scale));
-    imki_fringes_add(&gyro->beat, imki_wander_next(&start));
+    gyro->fringes =
+        imk_ring_laser_fringes_per_radian(design) *
+        (1.0 + design->scale_factor.error +
+         imki_run_constant(settings, IMKI_RING_LASER_SCALE, design->scale_factor.repeatability));
+    /* a normal of ten fringes is a uniform phase to one in 1e85 */
+    imki_fringes_add(&gyro->beat, imki_run_constant(settings, IMKI_RING_LASER_START, 10.0));
     gyro->beat.whole = 0;
     return IMK_OK;
 }
@@ -299,8 +295,10 @@ static imk_status start(const imk_ring_laser *design, const imk_physics_settings
         status = imki_settings_check(settings, error);
     if (status != IMK_OK)
         return status;
-    *gyro =
-        (imki_ring_laser){.design = *design, .level = settings->level, .dt = 1.0 / settings->rate};
+    memset(gyro, 0, sizeof *gyro);
+    gyro->design = *design;
+    gyro->level = settings->level;
+    gyro->dt = 1.0 / settings->rate;
     if (settings->level == IMK_LEVEL_SLOW) {
         status = check_slow(design, settings, error);
         gyro->steps = 1;
@@ -336,11 +334,7 @@ static imk_status start(const imk_ring_laser *design, const imk_physics_settings
 static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
                        imk_error *error)
 {
-    imki_ring_laser gyro;
-    const imk_status status = start(design, settings, &gyro, error);
-    if (status == IMK_OK)
-        memcpy(state, &gyro, sizeof gyro);
-    return status;
+    return start(design, settings, state, error);
 }
 
 /* ---- a sample -------------------------------------------------------------------------------- */

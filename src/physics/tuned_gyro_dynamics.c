@@ -7,6 +7,7 @@
 #include "physics/tuned_gyro_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Sources of randomness; fixed for ever. */
 enum { TORQUE_NOISE = 0, PICKOFF_NOISE = 2, TORQUE_WANDER = 0 };
@@ -78,25 +79,26 @@ imk_status imki_tuned_gyro_init(const void *design, const imk_physics_settings *
                                 void *state, imk_error *error)
 {
     const imk_tuned_gyro *d = design;
-    gyro s = {0};
+    gyro *s = state;
     imk_status status = imk_tuned_gyro_validate(d, error);
     if (status == IMK_OK)
         status = imki_settings_check(settings, error);
-    if (status == IMK_OK)
-        status = divide(&s, d, settings, error);
     if (status != IMK_OK)
         return status;
-    start_constants(&s, d, settings);
+    memset(s, 0, sizeof *s);
+    status = divide(s, d, settings, error);
+    if (status != IMK_OK)
+        return status;
+    start_constants(s, d, settings);
     for (int axis = 0; axis < 2 && status == IMK_OK; axis++) {
-        imki_draws_start(&s.torque_draws[axis], settings, (uint8_t)(TORQUE_NOISE + axis));
-        imki_draws_start(&s.pickoff_draws[axis], settings, (uint8_t)(PICKOFF_NOISE + axis));
-        status = imki_wander_start(&s.wander[axis], settings, (uint8_t)(TORQUE_WANDER + axis),
+        imki_draws_start(&s->torque_draws[axis], settings, (uint8_t)(TORQUE_NOISE + axis));
+        imki_draws_start(&s->pickoff_draws[axis], settings, (uint8_t)(PICKOFF_NOISE + axis));
+        status = imki_wander_start(&s->wander[axis], settings, (uint8_t)(TORQUE_WANDER + axis),
                                    d->torque.repeatability, d->torque.instability);
     }
     if (status != IMK_OK)
         return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
                                   NULL);
-    *(gyro *)state = s;
     return IMK_OK;
 }
 
