@@ -10,6 +10,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char *current_verb;
@@ -174,6 +175,13 @@ int command_check_plot(const char *plot)
         return -1;
     return command_misused("--plot %s: expected a name ending in .svg or .png, or the word term",
                            plot);
+}
+
+bool command_is_stream(const char *path)
+{
+    struct stat about;
+    return strcmp(path, "-") == 0 ||
+           (stat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode));
 }
 
 void command_note(const char *format, ...)

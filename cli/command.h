@@ -46,6 +46,10 @@ int command_log_error(const imk_error *error, const char *path);
 /* Refuse a --plot that cannot be drawn before the work is done. @return -1 or the exit code */
 int command_check_plot(const char *plot);
 
+/* Is it standard output, or a pipe or device that is there: nothing that has a format by its name?
+ */
+bool command_is_stream(const char *path);
+
 /* "imukit drift: <sentence>" on standard error, without a label: what a person may want to know. */
 void command_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -142,7 +142,7 @@ static int present(several_logs *s, const imk_executor *executor)
     code = o->strict && is_bad(s) ? EXIT_FAILED : EXIT_DONE;
     if (o->json)
         code = several_json(s, code);
-    else
+    else if (!options_stdout_taken())
         several_print(s);
     const int drawn = o->plot ? identify_draw(s->joint, o->plot) : -1;
     return drawn < 0 ? code : drawn;

@@ -120,6 +120,15 @@ static int set_choice(const option *o, const char *text, int *target)
     return command_misused("--%s %s: expected one of %s", o->name, text, o->choices);
 }
 
+const char *options_output_name(const char *name)
+{
+    static const char *const names[] = {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (strcmp(name, names[i]) == 0)
+            return "-";
+    return name;
+}
+
 static int set_value(const option *o, const option_group *group, const char *text, void *settings)
 {
     void *target = (char *)settings + group->offset + o->offset;
@@ -132,7 +141,7 @@ static int set_value(const option *o, const option_group *group, const char *tex
     case OPTION_OUTPUT:
         if (!*text)
             return command_misused("--%s: the value is empty", o->name);
-        *(const char **)target = text;
+        *(const char **)target = o->kind == OPTION_OUTPUT ? options_output_name(text) : text;
         return -1;
     case OPTION_INTEGER:
         return set_integer(o, text, target);
@@ -177,13 +186,36 @@ static int take_option(const verb *v, int count, char **words, int *index, void 
     return set_value(o, group, value, settings);
 }
 
-/* Do two names mean one file? Devices and standard streams may serve twice. */
+/* Do two names mean one file? Devices may serve twice. */
 static bool is_same_file(const char *a, const char *b)
 {
     struct stat one, other;
     if (stat(a, &one) == 0 && stat(b, &other) == 0)
         return S_ISREG(one.st_mode) && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
     return strcmp(a, b) == 0 && strcmp(a, "-") != 0 && strcmp(a, "term") != 0;
+}
+
+/* The option whose output goes to standard output; NULL: none. */
+static const char *stdout_taken_by;
+
+bool options_stdout_taken(void)
+{
+    return stdout_taken_by != NULL;
+}
+
+/* Two texts in one stream are neither. */
+static int take_stdout(const verb *v, const void *settings, const char *name)
+{
+    const option_group *group = NULL;
+    const option *json = find(v, "json", 4, 0, &group);
+    const char *other = stdout_taken_by;
+    if (!other && json && *(const bool *)((const char *)settings + group->offset + json->offset))
+        other = json->name;
+    stdout_taken_by = name;
+    return other ? command_misused("--%s and --%s cannot both go to standard output: give a file "
+                                   "name",
+                                   other, name)
+                 : -1;
 }
 
 /* The file that an option writes; NULL: none. */
@@ -204,6 +236,11 @@ static int check_outputs(const verb *v, const void *settings, const char **opera
             const char *path = output_of(&v->groups[g], i, settings);
             if (!path)
                 continue;
+            if (strcmp(path, "-") == 0) {
+                const int code = take_stdout(v, settings, v->groups[g].options[i].name);
+                if (code >= 0)
+                    return code;
+            }
             for (size_t k = 0; k < v->operands_maximum && operands[k]; k++)
                 if (is_same_file(path, operands[k]))
                     return command_misused(

@@ -64,6 +64,12 @@ typedef struct verb {
 int options_parse(const verb *v, int argument_count, char **arguments, void *settings,
                   const char **operands);
 
+/* The name of an output: "-" for every name of standard output. */
+const char *options_output_name(const char *name);
+
+/* Does an output of the command line go to standard output? Tables for people then keep off it. */
+bool options_stdout_taken(void);
+
 /* "--rate RATE", "-o, --output FILE": at most `size` bytes. */
 void option_synopsis(const option *o, char *text, size_t size);
 

@@ -308,7 +308,7 @@ static int show(const allan_result *r)
         code = allan_write_report(r, o->report);
     if (code < 0 && o->json)
         code = allan_print_json(r);
-    if (code < 0 && !o->json && !o->output)
+    if (code < 0 && !o->json && !o->output && !options_stdout_taken())
         allan_print_tables(r);
     if (code < 0 && o->plot)
         code = allan_draw(r, o->plot);

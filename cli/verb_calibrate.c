@@ -190,7 +190,7 @@ static int show(bench *b)
         return code;
     if (o->json)
         code = bench_json(b, end);
-    else
+    else if (!options_stdout_taken())
         bench_print(b);
     const int drawn = o->plot ? bench_draw(b, o->plot) : -1;
     return drawn >= 0 ? drawn : code >= 0 ? code : end;

@@ -283,6 +283,7 @@ static int run(int count, char **words)
     int code = options_parse(&convert_verb, count, words, &o, operands);
     if (code >= 0)
         return code;
+    operands[1] = options_output_name(operands[1]);
     if (o.decimals != decimals_shortest && o.decimals > 17)
         return command_misused("--decimals %llu: expected 0 to 17", (unsigned long long)o.decimals);
     if (parameters_wanted(&o.parameters, operands[0]))

@@ -142,6 +142,10 @@ static int check_runs(const drift_options *o, size_t models)
         return command_misused("--monte-carlo is of one model at a time");
     if (o->shard && !o->output)
         return command_misused("--shard makes a part for imukit merge: add -o PART.h5");
+    if (o->output && !is_csv(o->output) && command_is_stream(o->output))
+        return command_misused("-o %s: runs are kept in a file beside their results while they are "
+                               "made; give a name ending in .csv or .h5",
+                               o->output);
     if (o->output && !ends_in(o->output, ".h5") && !is_csv(o->output))
         return command_misused("-o %s: expected a name ending in .h5, .csv, .csv.gz or .csv.zst",
                                o->output);
@@ -157,15 +161,13 @@ static int check(const drift_options *o, bool runs, size_t models)
         return code;
     if (!runs && o->shard)
         return command_misused("--shard is a part of --monte-carlo N: add it");
-    if (!runs && o->output && !is_csv(o->output) && strcmp(o->output, "-") != 0)
+    if (!runs && o->output && !is_csv(o->output) && !command_is_stream(o->output))
         return command_misused(
             "-o %s: figures against time are written as .csv (%s holds runs: add "
             "--monte-carlo 1000)",
             o->output, ends_in(o->output, ".h5") ? ".h5" : "a results file");
     if (o->want && models > 1)
         return command_misused("--want is of one model at a time");
-    if (o->output && strcmp(o->output, "-") == 0 && o->json)
-        return command_misused("-o - and --json cannot both go to standard output");
     return -1;
 }
 
@@ -199,7 +201,7 @@ static int show(const drift_result *r, const drift_answer *answer)
         code = drift_report(r, answer, o->report);
     if (code < 0 && o->json)
         code = drift_print_json(r, answer);
-    else if (code < 0 && !(o->output && strcmp(o->output, "-") == 0)) {
+    else if (code < 0 && !options_stdout_taken()) {
         drift_print(r);
         if (answer)
             drift_answer_print(r, answer);

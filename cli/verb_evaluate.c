@@ -223,7 +223,7 @@ static int show(const evaluation *v)
         return code;
     if (o->json)
         code = evaluate_json(v, end);
-    else
+    else if (!options_stdout_taken())
         evaluate_print(v);
     const int drawn = o->plot ? evaluate_draw(v, o->plot) : -1;
     return drawn >= 0 ? drawn : code >= 0 ? code : end;

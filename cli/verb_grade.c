@@ -69,7 +69,7 @@ static int show(const grade_result *r, grade_options *o)
         code = grade_report(r, o->report);
     if (code < 0 && o->json)
         code = grade_print_json(r);
-    else if (code < 0)
+    else if (code < 0 && !options_stdout_taken())
         grade_print(r);
     if (o->plot && o->map == 0 && strcmp(o->plot, "term") == 0)
         o->map = 1 + GRADE_MAP_GYRO;

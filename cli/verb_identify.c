@@ -180,7 +180,7 @@ static int present(identification *i, const imk_executor *executor)
     code = o->strict && identify_is_bad(i) ? EXIT_FAILED : EXIT_DONE;
     if (o->json) {
         code = identify_json(i, code);
-    } else {
+    } else if (!options_stdout_taken()) {
         print_text(i);
         suggest_next(i);
     }

@@ -134,7 +134,7 @@ static int show(const navigation *n)
         code = navigate_report(n, o->report);
     if (code < 0 && o->json)
         code = navigate_json(n, end);
-    else if (code < 0 && !(o->output && o->output[0] == '-' && !o->output[1]))
+    else if (code < 0 && !options_stdout_taken())
         navigate_print(n);
     if ((code < 0 || code == end) && o->plot) {
         const int drawn = navigate_draw(n, o->plot);
@@ -163,14 +163,6 @@ static int navigate(navigation *n)
     return code;
 }
 
-static int check(const navigate_options *o)
-{
-    if (o->json && o->output && o->output[0] == '-' && !o->output[1])
-        return command_misused("--json and the track cannot both go to standard output: give -o a "
-                               "name");
-    return command_check_plot(o->plot);
-}
-
 static int run(int count, char **words)
 {
     navigate_options o = {.align = (double)NAN,
@@ -184,7 +176,7 @@ static int run(int count, char **words)
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&navigate_verb, count, words, &o, operands);
     if (code < 0)
-        code = check(&o);
+        code = command_check_plot(o.plot);
     if (code >= 0)
         return code;
     navigation *n = calloc(1, sizeof *n);

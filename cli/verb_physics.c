@@ -186,12 +186,6 @@ static int check_numbers(const physics_options *o)
         return command_misused("--duration %g s: too many samples", o->duration);
     if (o->run > UINT32_MAX)
         return command_misused("--run: expected at most %u", UINT32_MAX);
-    if (o->output && o->signals && strcmp(o->output, "-") == 0 && strcmp(o->signals, "-") == 0)
-        return command_misused("the log and the signals cannot both go to standard output: name a "
-                               "file");
-    if (o->json && ((o->output && strcmp(o->output, "-") == 0) ||
-                    (o->signals && strcmp(o->signals, "-") == 0)))
-        return command_misused("a log and --json cannot both go to standard output: name a file");
     const size_t length = o->animate ? strlen(o->animate) : 0;
     if (o->animate && (length < 5 || strcmp(o->animate + length - 4, ".svg") != 0))
         return command_misused("--animate %s: expected a name ending in .svg", o->animate);
@@ -319,8 +313,8 @@ static int do_run(const physics *p)
         code = show(p, &r, NULL);
     if (code < 0 && o->json)
         code = json_print("physics", inputs_json(p), run_json(p, &r), EXIT_DONE);
-    else if (code < 0 && ((o->output && strcmp(o->output, "-") != 0) || o->plot || o->report ||
-                          (o->signals && strcmp(o->signals, "-") != 0)))
+    else if (code < 0 && !options_stdout_taken() &&
+             (o->output || o->plot || o->report || o->signals))
         print_run(p, &r);
     physics_run_free(&r);
     return code < 0 ? EXIT_DONE : code;
@@ -350,7 +344,7 @@ static int do_model(const physics *p)
         if (l)
             json_object_set_new(result, "experiment", physics_sweep_json(p, l));
         code = json_print("physics", inputs_json(p), result, EXIT_DONE);
-    } else if (code < 0 && !(o->output && strcmp(o->output, "-") == 0)) {
+    } else if (code < 0 && !options_stdout_taken()) {
         if (o->reduce)
             print_table("Error model by closed forms, one axis",
                         physics_model_table(p->model, sensor));

@@ -251,7 +251,7 @@ static int show(const spectrum_result *r)
         code = spectrum_write_report(r, o->report);
     if (code < 0 && o->json)
         code = spectrum_print_json(r);
-    if (code < 0 && !o->json && !o->output)
+    if (code < 0 && !o->json && !o->output && !options_stdout_taken())
         spectrum_print_tables(r);
     if (code < 0 && o->plot)
         code = spectrum_draw(r, o->plot);

@@ -15,8 +15,8 @@ typedef struct imk_output_file imk_output_file;
 /** Open for writing. The bytes go to a new file beside `path`, renamed by imk_output_file_commit().
  *
  *  - "-" and NULL are standard output (stdio's stdout is flushed first; the two must not be mixed
- *    afterwards); an existing file that is not regular (a pipe, /dev/null, /dev/full) is written
- *    directly.
+ *    afterwards). A stream that is open (/dev/stdout, /dev/fd/N, /proc/self/fd/N) and an existing
+ *    file that is not regular (a pipe, /dev/null, /dev/full) are written directly.
  *  - A symbolic link stays a link: the file it points at is replaced.
  *  - A replaced file keeps its permissions; a new one has those the umask leaves. A file that must
  *    not be written is refused, although its directory would allow to replace it.

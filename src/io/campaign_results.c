@@ -11,11 +11,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* @return an open regular file, its size; -1 on error */
+/* A FIFO is not waited for: it is refused. @return an open regular file, its size; -1 on error */
 static int open_file(const char *path, uint64_t *size, imk_status *status, imk_error *error)
 {
     struct stat about;
-    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
     if (file < 0 || fstat(file, &about) != 0)
         *status = imki_system_error(error, IMK_ERROR_OPEN, "", errno);
     else if (!S_ISREG(about.st_mode))

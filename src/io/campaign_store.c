@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writing results: HDF5, or CSV with one row per run and time. Either is streamed, a block of runs
  * at a time, into a file that appears complete or not at all. */
+#define _POSIX_C_SOURCE 200809L
 #include "imukit/decimal.h"
 #include "io/campaign_internal.h"
 #include "io/output_file_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { BLOCK = 1 << 20 }; /* bytes of values at a time, at least one run */
 
@@ -21,8 +23,17 @@ bool imki_store_is_hdf5(const char *path)
     return ends_with(path, ".h5");
 }
 
+static imk_status refuse_stream(const char *path, imk_error *error)
+{
+    return imk_error_set(error, IMK_ERROR_WRITE, path, "it is not a regular file",
+                         "a regular file, for its checksum is written last");
+}
+
 imk_status imki_store_check(const char *path, imk_error *error)
 {
+    struct stat about;
+    if (imki_store_is_hdf5(path) && stat(path, &about) == 0 && !S_ISREG(about.st_mode))
+        return refuse_stream(path, error);
     if (imki_store_is_hdf5(path) || ends_with(path, ".csv") || ends_with(path, ".csv.gz") ||
         ends_with(path, ".csv.zst"))
         return IMK_OK;
@@ -100,8 +111,7 @@ static imk_status put_hdf5_head(store *s, const char *path, imk_error *error)
     unsigned char *bytes;
     size_t size;
     if (!imki_output_file_can_replace(s->file))
-        return imk_error_set(error, IMK_ERROR_WRITE, path, "it is not a regular file",
-                             "a regular file, for its checksum is written last");
+        return refuse_stream(path, error);
     const imk_status status = imki_hdf5_write(s->record, path, &bytes, &size, error);
     if (status != IMK_OK)
         return status;

@@ -7,6 +7,7 @@
 #define _XOPEN_SOURCE 700
 #include "io/output_target_internal.h"
 
+#include "io/descriptor_name_internal.h"
 #include "io/leftovers_internal.h"
 
 #include <errno.h>
@@ -100,10 +101,6 @@ static int open_beside(imki_target *target)
         return errno;
     if (exists && S_ISDIR(about.st_mode))
         return EISDIR;
-    if (exists && !S_ISREG(about.st_mode)) {
-        target->file = open(target->name, O_WRONLY | O_CLOEXEC | O_NOCTTY);
-        return target->file < 0 ? errno : 0;
-    }
     if (target->name[directory_length(target->name)] == '\0')
         return target->name[0] == '\0' ? ENOENT : EISDIR;
     if (exists && access(target->name, W_OK) != 0)
@@ -112,6 +109,20 @@ static int open_beside(imki_target *target)
     if (number == 0 && exists)
         fchmod(target->file, about.st_mode & 0777); /* not every file system has permissions */
     return number;
+}
+
+/* A pipe or a device, and a stream that is open already, whatever it leads to: others may have
+ * written to it before. @return 0, an errno value, or -1: it is a file, or to become one */
+static int open_stream(imki_target *target, const char *path)
+{
+    struct stat about;
+    const int number = imki_descriptor_named(path);
+    if (number < 0 && (stat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode)))
+        return -1;
+    fflush(stdout);
+    target->file = number >= 0 ? fcntl(number, F_DUPFD_CLOEXEC, 0)
+                               : open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    return target->file < 0 ? errno : 0;
 }
 
 int imki_target_open(imki_target *target, const char *path)
@@ -124,7 +135,7 @@ int imki_target_open(imki_target *target, const char *path)
     if (target->standard) {
         fflush(stdout);
         target->file = STDOUT_FILENO;
-    } else {
+    } else if ((number = open_stream(target, path)) < 0) {
         target->name = follow_links(path);
         number = target->name ? open_beside(target) : errno;
     }

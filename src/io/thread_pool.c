@@ -121,12 +121,14 @@ static size_t processors(void)
     return count > 0 ? (size_t)count : 1;
 }
 
-/* Start the workers, with all signals blocked in them. */
+/* Start the workers, with all signals blocked in them but SIGPIPE: it comes to the thread that
+ * writes to a closed pipe, and is to end the process whichever thread that is. */
 static bool start_workers(imk_thread_pool *pool, size_t count)
 {
     sigset_t all, before;
     sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
+    sigdelset(&all, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
     while (pool->workers < count &&
            pthread_create(&pool->worker[pool->workers], NULL, worker_main, pool) == 0)
         pool->workers++;

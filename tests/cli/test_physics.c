@@ -425,7 +425,8 @@ static void test_refusals(void **state)
         {"ring_laser -d 1s -o a.csv --signals a.csv", 2,
          E "--output and --signals both write a.csv: give another name\n" TRY("physics")},
         {"ring_laser -d 1s -o - --json", 2,
-         E "a log and --json cannot both go to standard output: name a file\n" TRY("physics")},
+         E "--json and --output cannot both go to standard output: give a file name\n" TRY(
+             "physics")},
         {"ring_laser -d 1s --temperature '-1 K'", 2,
          E "--temperature: expected more than absolute zero\n" TRY("physics")},
         {"ring_laser -d 1s --level fast", 2,

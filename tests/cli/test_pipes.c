@@ -152,12 +152,143 @@ static void test_streams_stay_streams(void **state)
     assert_string_equal(out, "gyro_x [deg/s],gyro_y [deg/s]\n0.01,0.02\n0.01,0.02\n");
 }
 
+/* ---- outputs --------------------------------------------------------------------------------- */
+
+/* A line that writes where @ stands, and the ending of the name. */
+static const struct {
+    const char *ending, *line;
+} writings[] = {
+    {".csv", "$I simulate tactical --rate 50Hz --duration 12s -o @"},
+    {".csv", "$I simulate tactical --rate 10Hz --duration 5s -o /dev/null --truth @"},
+    {".csv", "$I compensate log.csv tactical -o @"},
+    {".csv", "$I convert log.csv @"},
+    {".csv", "$I allan one.csv -o @"},
+    {".html", "$I allan one.csv --report @"},
+    {".csv", "$I spectrum one.csv -o @"},
+    {".yaml", "$I identify one.csv --name x -o @"},
+    {".yaml", "$I calibrate turns.csv -p rate-table --motion turns.yaml --no-earth -g 9.81m/s^2 "
+              "--name x -o @"},
+    {".csv", "$I navigate log.csv -p '48 deg, 11 deg, 500 m' --attitude '0 0 0 deg' -o @"},
+    {".csv", "$I drift tactical -d 10s -r 1Hz -o @"},
+    {".csv", "$I physics rate_gyro -d 50ms -o @"},
+    {".csv", "$I physics rate_gyro -d 50ms -o /dev/null --signals @"},
+    {".yaml", "$I physics rate_gyro --reduce -o @"},
+    {".yaml", "$I convert kalibr.yaml @ --from kalibr --to gazebo --rate 100Hz"},
+};
+enum { WRITINGS = sizeof writings / sizeof writings[0] };
+
+static void name_output(const char *line, const char *name)
+{
+    const char *at = strchr(line, '@');
+    char named[400];
+    snprintf(named, sizeof named, "%.*s%s%s", (int)(at - line), line, name, at + 1);
+    setenv("LINE", named, 1);
+}
+
+static void check_run(const char *way)
+{
+    const int code = run(way);
+    if (code != 0) {
+        print_error("%s\n  with %s\n  code %d, says: %s\n", getenv("LINE"), way, code, err);
+        fail();
+    }
+}
+
+/* The command's own page says by which line it was made. */
+static void test_same_to_pipes(void **state)
+{
+    (void)state;
+    static const char *const streams[] = {"-", "/dev/stdout", "/proc/self/fd/1"};
+    char name[40];
+    for (size_t i = 0; i < WRITINGS; i++) {
+        setenv("SAME", strcmp(writings[i].ending, ".html") == 0 ? "grep -v one.csv" : "cat", 1);
+        snprintf(name, sizeof name, "made%s", writings[i].ending);
+        setenv("F", name, 1);
+        name_output(writings[i].line, name);
+        check_run("eval \"$LINE\" >/dev/null; $SAME $F >whole");
+        unlink(name);
+        check_run("mkfifo $F; $SAME $F >other & eval \"$LINE\" >/dev/null && wait $! && cmp whole "
+                  "other && test -p $F");
+        unlink(name);
+        for (size_t k = 0; k < sizeof streams / sizeof streams[0]; k++) {
+            name_output(writings[i].line, streams[k]);
+            check_run("eval \"$LINE\" | $SAME | cmp - whole");
+        }
+        check_run("echo before >log; { eval \"$LINE\"; echo after; } >>log; "
+                  "$SAME log >other; { echo before; cat whole; echo after; } | cmp - other");
+        name_output(writings[i].line, "/dev/fd/7"); /* as >(cmp - whole) */
+        check_run("{ eval \"$LINE\" >/dev/null; } 7>&1 | $SAME | cmp - whole");
+        name_output(writings[i].line, "/dev/null");
+        check_run("eval \"$LINE\" >/dev/null; test -c /dev/null");
+    }
+    assert_int_equal(run("rm whole other log"), 0);
+}
+
+/* A reader that goes away ends the command as other commands end, or with a sentence. */
+static void test_closed_pipe(void **state)
+{
+    (void)state;
+    static const char *const before[] = {"", "trap '' PIPE; "};
+    char line[300];
+    for (size_t i = 0; i < 2; i++) {
+        snprintf(line, sizeof line,
+                 "%s{ $I simulate tactical --rate 100Hz --duration 10min -o /dev/stdout; echo $? "
+                 ">code; } | head -c 10; cat code; rm code",
+                 before[i]);
+        assert_int_equal(run(line), 0);
+        check_contains(out, i == 0 ? "time [s],g141\n" : "time [s],g1\n", line);
+        assert_string_equal(err, i == 0 ? ""
+                                        : "imukit simulate: error: standard output: the file "
+                                          "cannot be written: Broken pipe\n");
+    }
+}
+
+/* What cannot be written into a pipe says so, before the work; nothing is left. */
+static void test_formats_that_seek(void **state)
+{
+    (void)state;
+    assert_int_equal(run("mkfifo x.npy x.h5"), 0);
+    check_message(
+        "cat x.npy & $I convert log.csv x.npy", 1,
+        "imukit convert: error: x.npy: this is not supported: a .npy of unknown length to "
+        "a pipe or compressed; write to a plain file, or a .csv\n");
+    check_message(
+        "$I drift tactical -d 10s -r 1Hz -n 3 -o x.h5", 2,
+        "imukit drift: error: -o x.h5: runs are kept in a file beside their results while "
+        "they are made; give a name ending in .csv or .h5\n" TRY("drift"));
+    assert_int_equal(run("$I drift tactical -d 10s -r 1Hz -n 3 -o runs.h5"), 0);
+    check_message("$I merge runs.h5 -o x.h5", 1,
+                  "imukit merge: error: x.h5: it is not a regular file; expected a regular file, "
+                  "for its checksum is written last\n");
+    check_message("$I drift tactical -d 10s -r 1Hz -n 3 -o /dev/stdout", 2,
+                  "imukit drift: error: -o -: runs are kept in a file beside their results while "
+                  "they are made; give a name ending in .csv or .h5\n" TRY("drift"));
+    check_message("$I drift x.h5", 1, "imukit drift: error: x.h5: it is not a regular file\n");
+    assert_int_equal(run("test -p x.npy && test -p x.h5 && rm x.npy x.h5 runs.h5"), 0);
+    assert_int_equal(run("ls x.*"), 2);
+}
+
+/* Two texts in one stream would be neither. */
+static void test_one_stream_one_text(void **state)
+{
+    (void)state;
+    check_message(
+        "$I allan one.csv -o - --json", 2,
+        "imukit allan: error: --json and --output cannot both go to standard output: give "
+        "a file name\n" TRY("allan"));
+    check_message(
+        "$I identify one.csv -o /dev/stdout --report -", 2,
+        "imukit identify: error: --output and --report cannot both go to standard output: "
+        "give a file name\n" TRY("identify"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_from_pipes),
-        cmocka_unit_test(test_copy_that_fails),
-        cmocka_unit_test(test_streams_stay_streams),
+        cmocka_unit_test(test_same_from_pipes),      cmocka_unit_test(test_copy_that_fails),
+        cmocka_unit_test(test_streams_stay_streams), cmocka_unit_test(test_same_to_pipes),
+        cmocka_unit_test(test_closed_pipe),          cmocka_unit_test(test_formats_that_seek),
+        cmocka_unit_test(test_one_stream_one_text),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
 }

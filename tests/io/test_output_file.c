@@ -362,6 +362,42 @@ static void standard_output(void **state)
     unlink(path_of("out"));
 }
 
+/* A stream that is open is written as it is, also where it leads to a file: what is in that stays.
+ */
+static void open_streams(void **state)
+{
+    (void)state;
+    int ends[2];
+    char name[40], content[32] = "";
+    assert_int_equal(pipe(ends), 0);
+    snprintf(name, sizeof name, "/proc/self/fd/%d", ends[1]);
+    write_text(name, "through");
+    snprintf(name, sizeof name, "/dev/fd/%d", ends[1]);
+    write_text(name, " a pipe");
+    assert_int_equal(read(ends[0], content, sizeof content), 14);
+    assert_string_equal(content, "through a pipe");
+    close(ends[0]);
+    close(ends[1]);
+
+    save(path_of("log"), "before ");
+    const int file = open(path_of("log"), O_WRONLY | O_APPEND);
+    snprintf(name, sizeof name, "/dev/fd/%d", file);
+    write_text(name, "and after");
+    assert_int_equal(close(file), 0); /* it was not closed by the others */
+    check_content(path_of("log"), "before and after", 16);
+    unlink(path_of("log"));
+
+    snprintf(name, sizeof name, "/dev/fd/%d", file);
+    check_refused(name, EBADF);
+    assert_int_equal(symlink("/dev/null", path_of("nowhere")), 0);
+    write_text(path_of("nowhere"), "nothing");
+    struct stat about;
+    assert_int_equal(stat("/dev/null", &about), 0);
+    assert_true(S_ISCHR(about.st_mode));
+    unlink(path_of("nowhere"));
+    assert_int_equal(count_files(), 0);
+}
+
 /* What a signal handler does in the middle of several files. */
 static void abandon_all(void **state)
 {
@@ -499,6 +535,7 @@ int main(void)
         cmocka_unit_test(bytes_can_be_replaced),
         cmocka_unit_test(named_pipe),
         cmocka_unit_test(standard_output),
+        cmocka_unit_test(open_streams),
         cmocka_unit_test(abandon_all),
         cmocka_unit_test(interrupted_process),
         cmocka_unit_test(many_and_long_names),

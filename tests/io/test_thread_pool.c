@@ -123,7 +123,7 @@ static void items_run_at_the_same_time(void **state)
 
 typedef struct mask_work {
     pthread_t caller;
-    atomic_int workers_seen, unblocked;
+    atomic_int workers_seen, unblocked, deaf; /* to a pipe that is closed */
 } mask_work;
 
 static void look_at_mask(void *context, size_t item)
@@ -135,12 +135,13 @@ static void look_at_mask(void *context, size_t item)
     if (!pthread_equal(pthread_self(), w->caller)) {
         atomic_fetch_add(&w->workers_seen, 1);
         atomic_fetch_add(&w->unblocked, sigismember(&mask, SIGINT) == 0);
+        atomic_fetch_add(&w->deaf, sigismember(&mask, SIGPIPE) == 1);
     }
     while (atomic_load(&w->workers_seen) == 0)
         sched_yield(); /* the caller's item waits until a worker has had one */
 }
 
-/* SIGINT must reach the thread that can clean up. */
+/* SIGINT must reach the thread that can clean up; SIGPIPE is of the thread that writes. */
 static void workers_block_signals(void **state)
 {
     (void)state;
@@ -150,6 +151,7 @@ static void workers_block_signals(void **state)
     imk_execute(&executor, 2, look_at_mask, &w);
     assert_true(atomic_load(&w.workers_seen) >= 1);
     assert_int_equal(atomic_load(&w.unblocked), 0);
+    assert_int_equal(atomic_load(&w.deaf), 0);
     sigset_t mask;
     pthread_sigmask(SIG_BLOCK, NULL, &mask);
     assert_int_equal(sigismember(&mask, SIGINT), 0);
