@@ -63,8 +63,8 @@ void shell_gyro_lag_problem(const imk_shell_gyro *design, double bias, double ga
 
 /** Mass of an accelerometer between its plates, output filter, integral of the output. The input is
  *  held over a sample, and the feedback of a sigma-delta loop over a clock. Reading of an open
- * loop: the mean of the output over a sample [m/s^2]; of a sigma-delta loop: the mass' displacement
- * over the gap, after each clock. */
+ *  loop: the mean of the output over a sample [m/s^2]; of a sigma-delta loop: the mass'
+ *  displacement over the gap, after each clock. */
 typedef struct mems_equations {
     const imk_mems_accelerometer *design;
     const imk_exposure *exposure;

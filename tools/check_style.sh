@@ -26,6 +26,21 @@ done
 grep -rnE '\b(TODO|FIXME|XXX|HACK)\b' include src cli tests bench fuzz examples cmake &&
     complain "something is left behind (above)"
 
+# What clang-format leaves where it has broken a comment's lines: a line of a /** block that lost its
+# indentation, blanks from the line's end in the middle of what a /**< comment says.
+mapfile -t headers < <(printf '%s\n' "${code[@]}" | grep '\.[ch]$')
+awk 'function told(line, what) { print FILENAME ":" line ": " what; found = 1 }
+     FNR == 1 { block = member = 0 }
+     /^ *\/\*\*( |$)/ { block = 1; deep = lost = 0 }
+     block && /^ *\*  [^ ]/ { deep = 1 }
+     block && /^ *\* [^ \/]/ && !lost { lost = FNR }
+     block && /\*\// { if (deep && lost) told(lost, "a comment has lost its indentation"); block = 0 }
+     /\/\*\*</ { member = 1; text = $0; sub(/.*\/\*\*< */, "", text) }
+     member && !/\/\*\*</ { text = $0; sub(/^ */, "", text) }
+     member && text ~ /[^ ]  +[^ ]/ { told(FNR, "blanks in the middle of a comment") }
+     member && /\*\// { member = 0 }
+     END { exit found }' "${headers[@]}" || complain "a comment was broken (above)"
+
 # Every [KEY] cited is in docs/references.md, and there is nothing that nobody cites.
 key='[A-Z][A-Z-]+[0-9]{2,4}(\.[0-9]+)?[a-z]?'
 sources="include src cli tests bench fuzz examples tools docs/theory docs/physics"

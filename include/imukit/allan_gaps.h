@@ -39,8 +39,8 @@ typedef struct imk_allan_gaps_settings {
     uint32_t cookie;
     double confidence; /**< two-sided, of the intervals; 0.95 */
     bool robust;       /**< bounded influence of any sample: samples far from the level around them
-                            count as missing, and squares beyond 6.25 times their mean count as that;
-                          false.       Degrees of freedom are then 0.96 of the others. */
+                            count as missing, and squares beyond 6.25 times their mean count as
+                            that; false. Degrees of freedom are then 0.96 of the others. */
 } imk_allan_gaps_settings;
 
 /** 95 % intervals, not robust. */

@@ -4,10 +4,10 @@
  *  records cut into shards.
  *
  *  One pass, less than 4 KiB a channel whatever the length, no allocation. The averaging factors
- * are the octaves m = 1, 2, 4 … 2^27. A tier t adds up blocks of 2^t samples, two of tier t - 1 at
- * a time, and keeps the last eight; a difference of four blocks and the four before is one window
- * of factor m = 2^(t+2). So windows start every m/4 samples (every sample for m <= 4), which is
- * less than the full overlap of OADEV and keeps this part of its degrees of freedom:
+ *  are the octaves m = 1, 2, 4 … 2^27. A tier t adds up blocks of 2^t samples, two of tier t - 1 at
+ *  a time, and keeps the last eight; a difference of four blocks and the four before is one window
+ *  of factor m = 2^(t+2). So windows start every m/4 samples (every sample for m <= 4), which is
+ *  less than the full overlap of OADEV and keeps this part of its degrees of freedom:
  *
  *  | noise        | m = 8 | 16    | 32    | large  |
  *  |--------------|-------|-------|-------|--------|
@@ -17,7 +17,7 @@
  *  | random walk  | 1.000 | 1.000 | 1.000 | 1.000  |
  *
  *  (1 for m <= 4; from the correlations of the windows, docs/theory/allan-stream.md). Quantization
- * is told from the shortest factors, where nothing is lost.
+ *  is told from the shortest factors, where nothing is lost.
  *
  *  A block is the pairwise sum of its samples, so a large constant (gravity) costs no digits: the
  *  rounding error of a mean over 2^27 samples stays below 2e-15 of the constant.
@@ -78,7 +78,7 @@ IMK_API imk_status imk_allan_stream_join(imk_allan_stream *stream,
 
 /** Pool the windows of another record (another day, behind a gap) of the same sensor: squares and
  *  counts add; no window spans both. Afterwards `stream` takes no more samples and cannot be
- * joined: it holds statistics only. */
+ *  joined: it holds statistics only. */
 IMK_API void imk_allan_stream_pool(imk_allan_stream *stream, const imk_allan_stream *other);
 
 /** One octave of a stream. */

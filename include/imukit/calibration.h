@@ -8,7 +8,7 @@
  *  the amount is known (any pose under gravity), and turns between two poses, over which the gyros
  *  must carry the vertical from one to the other. The solver fits all of them at once by maximum
  *  likelihood, with the attitudes that are not known, the placements and the mounting on the
- * fixture as further unknowns:
+ *  fixture as further unknowns:
  *
  *      reading = sensitivity * distort(model, rate, force, temperature) + zero offset + noise
  *
@@ -180,7 +180,8 @@ IMK_API size_t imk_calibration_workspace_size(const imk_calibration *calibration
  *          the observation), IMK_ERROR_CONFLICT (field "frame": a frame that contradicts the free
  *          parameters), IMK_ERROR_UNIT_MISSING (readings in counts, no sensitivity),
  *          IMK_ERROR_ARGUMENT, _RANGE, _WORKSPACE, _UNINITIALISED, errors of imk_model_validate().
- * The result is untouched on error: what is not finite or has not converged is never a result
+ *          The result is untouched on error: what is not finite or has not converged is never a
+ *          result
  */
 IMK_API imk_status imk_calibration_solve(imk_calibration *calibration, void *workspace,
                                          size_t workspace_size, imk_calibration_result *result,

@@ -95,7 +95,7 @@ typedef struct imk_readings {
  *  independent axes (solves[] is false) gives one output per axis instead: its input u, other
  *  components taken as zero. out may be the arrays of the readings. A reading that is not a number
  *  leaves no number in the outputs that depend on it. Thermal hysteresis is not taken out: the
- * model knows its width, not its state. Repeatabilities are not known either. */
+ *  model knows its width, not its state. Repeatabilities are not known either. */
 IMK_API void imk_correct(const imk_correction *correction, const imk_readings *readings,
                          size_t count, double *const out[2][IMK_AXES_MAX]);
 

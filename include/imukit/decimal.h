@@ -14,7 +14,7 @@ extern "C" {
 #define IMK_DECIMAL_SIZE 384
 
 /** Read a decimal number: [+-] digits [. digits] [e [+-] digits], or nan, inf, infinity in any
- * case.
+ *  case.
  *
  *  The value is the nearest double, ties to even, bit-equal to strtod() in the C locale on every
  *  input (hexadecimal is not read). Short decimals take a fast path, others Eisel-Lemire

@@ -176,7 +176,7 @@ IMK_API imk_drift_figures imk_drift_figures_of(const imk_drift_moments *moments)
 /** Of `count` runs: errors[run * stride + state]. `low` and `high` (or NULL) are 95 % intervals:
  *  of the radii by order statistics (infinite above where the runs are too few to say), of root
  *  mean squares by the fourth moments. Runs with a NaN are left out; `used` (or NULL) counts the
- * others.
+ *  others.
  *  @param workspace  count doubles */
 IMK_API imk_drift_figures imk_drift_figures_of_runs(size_t count, size_t stride,
                                                     const double *errors, double *workspace,

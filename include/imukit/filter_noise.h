@@ -3,7 +3,7 @@
  *  What a Kalman filter needs from a sensor model: bias states, and the matrices that drive them.
  *
  *  Per axis the filter's error states are the integral of the axis' error, x0 (the attitude error
- * of a gyro [rad], the velocity error of an accelerometer [m/s]), and its bias states b_i:
+ *  of a gyro [rad], the velocity error of an accelerometer [m/s]), and its bias states b_i:
  *
  *      dx0/dt  = sum b_i + w,             w   white, density N^2
  *      db_i/dt = -b_i/T_i + w_i,          w_i white, density q_i^2     (T_i infinite: random walk)

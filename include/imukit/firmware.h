@@ -7,12 +7,11 @@
  *  clipped to the valid range of each polynomial and scaled to t in -1 … 1,
  *
  *      d_i = r_i - zero_i - sensitivity_i b_i(t)                    (Horner's rule)
- *      x   = W d                                                   (W = J+ of correct.h /
- * sensitivity)
+ *      x   = W d                                    (W = J+ of correct.h / sensitivity)
  *
  *  is all there is for a linear model. Where the response is not linear, or the scale factor
- * depends on temperature, what is left of it, n(x, t), is taken out in the fixed number of steps
- * that imk_correction_start() has proven to be enough,
+ *  depends on temperature, what is left of it, n(x, t), is taken out in the fixed number of steps
+ *  that imk_correction_start() has proven to be enough,
  *
  *      x <- W d - J+ n(x, t),
  *

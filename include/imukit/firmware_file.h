@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file firmware_file.h
  *  A plan of correction (firmware.h) as C99: NAME.h and NAME.c, which need nothing but <stdint.h>,
- * and NAME_test.c, a table of readings with what imk_correct() makes of them.
+ *  and NAME_test.c, a table of readings with what imk_correct() makes of them.
  *
  *  The code has no loop, no heap, no libm, no variable outside its function. Equal models give
- * equal bytes. The comment at its head says what is taken out and what is not, units, bound and
- * cost. */
+ *  equal bytes. The comment at its head says what is taken out and what is not, units, bound and
+ *  cost. */
 #ifndef IMUKIT_FIRMWARE_FILE_H
 #define IMUKIT_FIRMWARE_FILE_H
 
@@ -47,7 +47,7 @@ IMK_API void imk_firmware_terms(const imk_firmware *firmware, const imk_model *m
  *  @param model     the model it was planned for
  *  @param settings  NULL: imk_firmware_file_default()
  *  @return IMK_ERROR_UNINITIALISED, _ARGUMENT (name), _RANGE (vectors), _CONFLICT (a foreign file
- * of that name), _OPEN, _WRITE, _MEMORY */
+ *          of that name), _OPEN, _WRITE, _MEMORY */
 IMK_API imk_status imk_firmware_write(const char *directory, const imk_firmware *firmware,
                                       const imk_model *model,
                                       const imk_firmware_file_settings *settings, imk_error *error);

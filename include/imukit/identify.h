@@ -3,10 +3,10 @@
  *  Static record -> stochastic terms with confidence, and a verdict on the record.
  *
  *  The estimator is maximum likelihood on the cosine spectrum of the record
- * (docs/theory/identification.md): the cosine transform makes white noise and random walk exactly
- * independent and the rest nearly so, which gives every frequency its right weight;
- * profile-likelihood intervals; a term is kept when the likelihood says so, and otherwise reported
- * as absent with an upper bound. */
+ *  (docs/theory/identification.md): the cosine transform makes white noise and random walk exactly
+ *  independent and the rest nearly so, which gives every frequency its right weight;
+ *  profile-likelihood intervals; a term is kept when the likelihood says so, and otherwise reported
+ *  as absent with an upper bound. */
 #ifndef IMUKIT_IDENTIFY_H
 #define IMUKIT_IDENTIFY_H
 
@@ -70,7 +70,7 @@ typedef struct imk_identification {
     double valid_from, valid_to; /**< range of tau [s] over which the model explains the measured
                                       Allan deviation; from is infinite when there is none */
     double five_terms_from;      /**< the same start for the five terms alone, without Gauss-Markov
-                                    terms,      lines, resonances and filter */
+                                      terms, lines, resonances and filter */
     double longest;              /**< longest tau [s] compared: a ninth of the record */
     double resolution;           /**< smallest step between values, 0 when none is seen [unit] */
     double log_likelihood;

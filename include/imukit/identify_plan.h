@@ -7,7 +7,7 @@
  *      I_ij = 1/2 sum_k (dS/dp_i)(dS/dp_j)/S^2,    f_k = k/(2 n dt),  k = 1 ... n - 1,
  *
  *  with the expectations of a finite record at the lowest k, is inverted: no unbiased estimate has
- * a smaller covariance (Cramer-Rao). imk_identify_channel() comes within some per cent of it. */
+ *  a smaller covariance (Cramer-Rao). imk_identify_channel() comes within some per cent of it. */
 #ifndef IMUKIT_IDENTIFY_PLAN_H
 #define IMUKIT_IDENTIFY_PLAN_H
 

@@ -27,8 +27,7 @@ extern "C" {
  *  - found is the bare text that stood there for the statuses about a text (_SYNTAX, _UNIT_…,
  *    _DIMENSION, _KEY_…, _NAME_UNKNOWN, _VERSION, _RANGE, _NOT_FINITE): it is quoted and the clause
  *    added; or a whole clause that begins with its own quotation mark. For the others it is a
- * reason
- *    ("Permission denied") or a clause ("gnuplot is not installed").
+ *    reason ("Permission denied") or a clause ("gnuplot is not installed").
  *  - expected begins with an article, a count or "at least" when it says what is due ("a positive
  *    number"; "expected" is put in front), else it is what to do ("add --rate 100Hz"); a single
  *    word after _UNIT_UNKNOWN, _KEY_UNKNOWN, _NAME_UNKNOWN becomes "did you mean …?".

@@ -15,7 +15,7 @@
  *
  *  Every point is a run of its own from power-on, with its own noise and the run constants of
  *  physics.run, as a unit would show them that is not switched off between the points. The names of
- * terms are those of IEEE 1293 and IEEE 528. */
+ *  terms are those of IEEE 1293 and IEEE 528. */
 #ifndef IMUKIT_LABORATORY_H
 #define IMUKIT_LABORATORY_H
 

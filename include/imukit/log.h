@@ -5,7 +5,7 @@
  *  CSV: a header `time [s],gyro_x [deg/s],…,accel_x [g],…,temperature [degC]` in any order; lines
  *  starting with # are comments; comma, semicolon, tab or blanks separate. Increments
  *  (`dtheta_x [arcsec]`, `dvel_x [m/s]`) are divided by the sample interval. Everything comes out
- * in SI units. */
+ *  in SI units. */
 #ifndef IMUKIT_LOG_H
 #define IMUKIT_LOG_H
 
@@ -87,8 +87,8 @@ typedef struct imk_log_reader imk_log_reader;
  * memory needed does not depend on the length of the log; a line beyond 1 MiB is refused.
  *
  *  Names, in any case: time (t, timestamp); gyro_, dtheta_, accel_ (acc_), dvel_ followed by x, y,
- * z or 0 … 7; temperature (temp). Units stand in brackets or parentheses behind the name. Counts
- * are allowed for any sensor. Other columns are kept as IMK_QUANTITY_OTHER, in SI if their unit is
+ *  z or 0 … 7; temperature (temp). Units stand in brackets or parentheses behind the name. Counts
+ *  are allowed for any sensor. Other columns are kept as IMK_QUANTITY_OTHER, in SI if their unit is
  *  known, as they stand if not; where the first row holds a text, the column is one of labels.
  *
  *  The message of every refusal ends with the exact option to add.
@@ -181,7 +181,7 @@ typedef struct imk_log_writer imk_log_writer;
  *    units of the columns chosen as for IMK_LOG_SHORTEST; `name [unit]` of each column goes to a
  *    line of FILE.npy.columns, which appears with it.
  *  - Any other: CSV text, commas, line feeds, `name [unit]` in the header (`name` for a unit
- * without text). NaN and infinities are written nan, inf, -inf.
+ *    without text). NaN and infinities are written nan, inf, -inf.
  *  - With .gz or .zst behind either, compressed; "-" and NULL are CSV to standard output.
  *
  *  @param columns   name and unit of each; values given to imk_log_write() are SI: an increment
@@ -202,7 +202,7 @@ IMK_API imk_status imk_log_comment(imk_log_writer *writer, const char *text);
 /** Text of a label column, for a value of it; NULL when there is none. */
 typedef const char *(*imk_log_label_lookup)(void *context, size_t index);
 /** Where the texts of columns with `label` set are, for a CSV; before the first row. Without it,
- * and where it gives NULL, and in a .npy, the index is written. It is called by several threads at
+ *  and where it gives NULL, and in a .npy, the index is written. It is called by several threads at
  *  once when imk_log_write() has an executor. */
 IMK_API void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup,
                                   void *context);

@@ -127,8 +127,8 @@ IMK_API imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer 
  *  |---|---|---|
  *  | scale factor over temperature | -(w0^2 s - 2 we^2 v)/(w0^2 - we^2) | -2v |
  *  | K2, K3 | series of springs, E and pickoff | of E in u, where the null is off the middle |
- *  | white noise | Brownian, and (w0^2 - we^2) times the pickoff's | and quantization (sigma-delta)
- * | | range | travel to the stops | force |
+ *  | white noise | Brownian, (w0^2 - we^2) times the pickoff's | and quantization (sigma-delta) |
+ *  | range | travel to the stops | force |
  *
  *  A sigma-delta loop without integral term has a dead band as long as its noise is too small to
  *  break the limit cycle (four standard deviations within its margin); with more noise it has the
@@ -140,7 +140,7 @@ IMK_API imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer 
  *
  *  s and v are the relative temperature coefficients of springs and voltages, we^2 the softening.
  *  `bandwidth` and `damping` are those of the second-order filter with the -3 dB point and the
- * delay of the whole chain. */
+ *  delay of the whole chain. */
 IMK_API void imk_mems_accelerometer_reduce(const imk_mems_accelerometer *design, imk_model *model);
 
 /* ---- closed forms ---------------------------------------------------------------------------- */

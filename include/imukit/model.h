@@ -214,8 +214,8 @@ IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
  *
  *  A name is a key of the model file, a term ("angle_random_walk", "noise.gauss_markov"), a group
  *  ("bias", "noise"), or either of one sensor only ("gyro.bias.fixed", "gyro.fixed",
- * "accel.noise"), or "timing" and its keys. What is no error stays always: directions, pendulous
- * axes, sensitivity and zero offset.
+ *  "accel.noise"), or "timing" and its keys. What is no error stays always: directions, pendulous
+ *  axes, sensitivity and zero offset.
  *  @param keep  true: only the terms named stay; false: only those go
  *  @return IMK_ERROR_NAME_UNKNOWN (error.found: the name, error.expected: the nearest) */
 IMK_API imk_status imk_model_select(imk_model *model, bool keep, size_t count,

@@ -53,7 +53,7 @@ typedef struct imk_pendulous_servo {
 } imk_pendulous_servo;
 
 /** A quartz-flexure accelerometer of navigation grade, by the datasheet of Honeywell's QA-3000: 60
- * g, 1.3 mA/g, bias 4 mg and 15 ug/K, repeatable to 40 ug, scale factor 120 ppm/K and 80 ppm,
+ *  g, 1.3 mA/g, bias 4 mg and 15 ug/K, repeatable to 40 ug, scale factor 120 ppm/K and 80 ppm,
  *  bandwidth above 300 Hz. Pendulum and loop are not published; they are chosen to give that. */
 IMK_API imk_pendulous_servo imk_pendulous_servo_default(void);
 

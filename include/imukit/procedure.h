@@ -64,7 +64,7 @@ typedef struct imk_procedure_settings {
     int temperature_order; /**< thermal: of the bias; 0 (default): chosen by cross-validation,
                                 at most 5 */
     int scale_temperature_order;  /**< thermal: of the scale factor; -1 (default): none at rest in
-                                     one  pose, else chosen likewise */
+                                       one pose, else chosen likewise */
     double reference_temperature; /**< thermal [K]; NaN (default): 25 degC if within, else the
                                        middle */
     double temperature_bin;       /**< thermal: width of the bins [K]; 0 (default): chosen */
@@ -100,9 +100,9 @@ IMK_API size_t imk_procedure_workspace_size(imk_procedure procedure, const imk_t
  *  nominal one and put it into the model; others refuse with IMK_ERROR_UNIT_MISSING.
  *  @return IMK_ERROR_TOO_SHORT (field "hold", "turn", "step", "temperature": value found, limit
  *          needed), IMK_ERROR_KEY_MISSING (field: "reference_rate", "temperature", "section",
- * "gyro" … that the record lacks), IMK_ERROR_UNIT_MISSING, IMK_ERROR_WORKSPACE (also: capacity of
- *          observations; value needed, limit there), IMK_ERROR_RANGE (settings), errors of
- *          imk_static_detect(); the calibration is then as before */
+ *          "gyro" … that the record lacks), IMK_ERROR_UNIT_MISSING, IMK_ERROR_WORKSPACE (also:
+ *          capacity of observations; value needed, limit there), IMK_ERROR_RANGE (settings), errors
+ *          of imk_static_detect(); the calibration is then as before */
 IMK_API imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calibration,
                                          const imk_test_record *record,
                                          const imk_procedure_settings *settings, bool keep_free,

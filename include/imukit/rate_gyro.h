@@ -14,14 +14,14 @@
  *  Output 0 is (k/H) times the angle, k and H as designed, averaged over the sample.
  *
  *  Levels: full, the dynamics of the gimbal; slow, the angle at which the torques balance. The
- * linear part is propagated exactly; what depends on the angle enters as the mean of its values at
- * both ends of a step, a scheme that is symmetric in time: without a damper the gimbal swings for
- * ever. Friction is Coulomb's: it holds the gimbal until the torque exceeds it. The stops do not
- * bounce.
+ *  linear part is propagated exactly; what depends on the angle enters as the mean of its values at
+ *  both ends of a step, a scheme that is symmetric in time: without a damper the gimbal swings for
+ *  ever. Friction is Coulomb's: it holds the gimbal until the torque exceeds it. The stops do not
+ *  bounce.
  *
- *  The default design is chosen, not copied: a miniature gyro with a torsion bar, +-200 deg/s
- * in 2.5 deg of gimbal angle, 30 Hz, damping ratio 0.7, no friction, and a bias of the class
- * "control system". */
+ *  The default design is chosen, not copied: a miniature gyro with a torsion bar, +-200 deg/s in
+ *  2.5 deg of gimbal angle, 30 Hz, damping ratio 0.7, no friction, and a bias of the class "control
+ *  system". */
 #ifndef IMUKIT_RATE_GYRO_H
 #define IMUKIT_RATE_GYRO_H
 
@@ -83,7 +83,7 @@ IMK_API double imk_rate_gyro_random_walk(const imk_rate_gyro *design);
  *
  *  Not in the error model, which has no such terms: -th w_z, the response to a rate along the spin
  *  axis while the gimbal is turned; (Iz - Ix)/H w_x w_z; -(I/H) times the angular acceleration
- * about the output axis. */
+ *  about the output axis. */
 IMK_API void imk_rate_gyro_reduce(const imk_rate_gyro *design, imk_model *model);
 
 /** "rate_gyro" */

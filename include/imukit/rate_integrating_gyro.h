@@ -4,7 +4,7 @@
  *
  *  The gyroscopic torque of a rate drives the float against the liquid: the float's angle is the
  *  integral of the rate. With H the angular momentum, C the damping, I the inertia of the float
- * about the output axis and k what its flex leads leave of a spring,
+ *  about the output axis and k what its flex leads leave of a spring,
  *
  *      I th'' + C th' + k th = H p + (Iz - Ix) p r - I a_y + M - T
  *      p = w_x cos th - w_z sin th,   r = w_x sin th + w_z cos th
@@ -21,7 +21,7 @@
  *  Case axes: x input, y output (the float's), z spin reference. Output 0 is the rate.
  *
  *  Levels: full, the float and its loop; slow, the float without inertia and the loop without
- * delay.
+ *  delay.
  *
  *  The default design: an analog loop of 30 deg/s. Its drift is that of a satellite's floated gyros
  *  in pulse-restrained loops: a band of 16 arcsec/h over a year and a half, taken as 4 sigma, and a
@@ -97,7 +97,8 @@ IMK_API double imk_rate_integrating_gyro_random_walk(const imk_rate_integrating_
  *      N              of the torques; Q = angle step/sqrt(12): of the pickoff's step times C/H
  *                     (open), of one pulse (ternary) or two (binary)
  *      bandwidth      1/(2 pi I/C) (open), of (K1 s + K2)/(I s^3 + C s^2 + (K1 + k) s + K2)
- * (analog) range          limit/H
+ *                     (analog)
+ *      range          limit/H
  *
  *  Not in the error model: -th w_z, small in a closed loop; -(I/H) times the angular acceleration
  *  about the output axis; (Iz - Ix)/H w_x w_z; the noise of the pickoff, which is (C/H) times the

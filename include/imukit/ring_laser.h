@@ -107,11 +107,11 @@ typedef struct imk_ring_laser {
 
 /** A gyro like Honeywell's GG1320AN. Published: bias stability 0.0035 deg/h (taken as a floor of
  *  the Allan deviation: B is 1/0.664 times that), angle random walk 0.0035 deg/sqrt(h), scale
- * factor 5 ppm. Chosen: a triangle of 16 cm, which fits its case of 88 mm, at 632.8 nm with 300 ppm
- * of loss and 10 mW a beam; a dither of 517 Hz, 150 deg/s, 2 % at random; the lock-in rate 152.5
- *  deg/h that makes up the published random walk with the quantum noise of that cavity; a bias
- *  repeatability of 0.003 deg/h; quarter fringes, 900 deg/s; a body that expands by 2e-8/K, the
- * limit of the glass ceramic such bodies are made of; a path length control of 2 um. */
+ *  factor 5 ppm. Chosen: a triangle of 16 cm, which fits its case of 88 mm, at 632.8 nm with 300
+ *  ppm of loss and 10 mW a beam; a dither of 517 Hz, 150 deg/s, 2 % at random; the lock-in rate
+ *  152.5 deg/h that makes up the published random walk with the quantum noise of that cavity; a
+ *  bias repeatability of 0.003 deg/h; quarter fringes, 900 deg/s; a body that expands by 2e-8/K,
+ *  the limit of the glass ceramic such bodies are made of; a path length control of 2 um. */
 IMK_API imk_ring_laser imk_ring_laser_default(void);
 
 /** Every field in its range, and: a dither that outruns lock-in (dither.rate > lock_in.rate) or
@@ -122,10 +122,10 @@ IMK_API imk_status imk_ring_laser_validate(const imk_ring_laser *design, imk_err
 /** The error model. Bias: null shift. Scale factor: error, repeatability, and with temperature the
  *  steps of the mode hops as a straight line, where operation reaches them. Noise: N =
  *  sqrt(N_lock^2 + N_q^2), B of the null shift, Q = count/sqrt(12). Dead band:
- * imk_ring_laser_dead_band() where it outweighs the noise, 2 b/(K N^2) > 1; below that noise
- * carries the phase through it. Not there: the square-root law just outside the dead band, the
- * bands at multiples of the dither frequency, the error of the pickoff
- * (imk_ring_laser_dither_residual()). */
+ *  imk_ring_laser_dead_band() where it outweighs the noise, 2 b/(K N^2) > 1; below that noise
+ *  carries the phase through it. Not there: the square-root law just outside the dead band, the
+ *  bands at multiples of the dither frequency, the error of the pickoff
+ *  (imk_ring_laser_dither_residual()). */
 IMK_API void imk_ring_laser_reduce(const imk_ring_laser *design, imk_model *model);
 
 /* ---- closed forms; the design must be valid -------------------------------------------------- */
@@ -148,7 +148,7 @@ IMK_API double imk_ring_laser_dead_band(const imk_ring_laser *design);
  *
  *  By Fourier's series sin(psi + K th_d sin w t) = sum J_n(K th_d) sin(psi + n w t) there is a band
  *  like the one at zero at every rate W_n = n w/K, of half width b_n = W_L |J_n|. The nearest acts
- * by the square-root law, the others in second order:
+ *  by the square-root law, the others in second order:
  *
  *      W_n + sign(x) sqrt(x^2 - b_n^2) - sum over m != n of b_m^2/(2 (W - W_m)),   x = W - W_n
  *
@@ -160,7 +160,7 @@ IMK_API double imk_ring_laser_band(const imk_ring_laser *design, int n, double *
 
 /** Angle random walk that the random dither makes of lock-in [rad/s/sqrt(Hz)]:
  *  W_L/sqrt(K W_d) sqrt(1 - e^(-(K th_d r)^2)); 0 without dither. A kick of W_L K sqrt(2 pi/(K W_d
- * w)) times a sine of random phase at every half cycle pi/w has this variance. */
+ *  w)) times a sine of random phase at every half cycle pi/w has this variance. */
 IMK_API double imk_ring_laser_lock_in_noise(const imk_ring_laser *design);
 /** Decay rate of the light in the cavity [1/s]: Gamma = c loss/P. Gamma/2 pi is its linewidth [Hz].
  */

@@ -31,7 +31,7 @@
  *
  *  Left out: the centrifugal term, alike on both modes, so that it changes nothing but the
  *  frequency, by a part (W/w)^2 (1e-7 at 1000 deg/s for 4 kHz), and the reference follows;
- * sensitivity to force, which a balanced shell has to second order only; nonlinear elasticity. */
+ *  sensitivity to force, which a balanced shell has to second order only; nonlinear elasticity. */
 #ifndef IMUKIT_SHELL_GYRO_H
 #define IMUKIT_SHELL_GYRO_H
 
@@ -121,8 +121,8 @@ IMK_API imk_shell_gyro imk_shell_gyro_default(void);
 /** Fields by the table, and together: damping positive in every direction and run (D and six times
  *  what is drawn of it < 2/tau); n = 2 for a hemisphere; a pattern ten times as large as thermal
  *  motion and pickoff noise, unless it is free; the loops slower than a tenth of their update rate,
- * and updates at least four times in tau; a rebalance force above that at rest
- * (IMK_ERROR_CONFLICT). */
+ *  and updates at least four times in tau; a rebalance force above that at rest
+ *  (IMK_ERROR_CONFLICT). */
 IMK_API imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *error);
 
 /** The error model. Noise and biases are those at 20 degC and at pattern.angle: as the pattern of a

@@ -21,8 +21,8 @@
  *   - without a temperature profile the temperature terms are zero;
  *   - timing: the sample clock runs fast by rate_error, so that samples are shorter than they say;
  *     each boundary between two samples is off by jitter (normal); accelerometers show what
- * happened `skew` earlier than the gyros; a row is lost with the probability `drops`. Stamps stay
- * k/rate;
+ *     happened `skew` earlier than the gyros; a row is lost with the probability `drops`. Stamps
+ *     stay k/rate;
  *   - with a sensitivity the output is whole counts, round(sensitivity * x + zero_offset);
  *   - every term of every axis has its own random stream, so that changing one changes no other:
  *     axes 0-7 are gyros, 8-15 accelerometers. Repeatabilities are normal 0 of the term
@@ -71,8 +71,8 @@ IMK_API size_t imk_simulator_size(const imk_model *model, const imk_simulation *
  *  @param memory  imk_simulator_size() bytes, 64-byte aligned; owns nothing else. The motion and
  *                 the temperature profile must stay while it runs
  *  @return the errors of imk_model_validate() and of the motion; IMK_ERROR_RANGE;
- * IMK_ERROR_CONFLICT (a clock error with a recorded motion, whose samples are what they are;
- * another rate than the recorded motion's); IMK_ERROR_WORKSPACE */
+ *          IMK_ERROR_CONFLICT (a clock error with a recorded motion, whose samples are what they
+ *          are; another rate than the recorded motion's); IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model,
                                        const imk_simulation *simulation, imk_simulator **simulator,
                                        imk_error *error);

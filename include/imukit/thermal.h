@@ -119,7 +119,7 @@ IMK_API size_t imk_thermal_workspace_size(void);
  *          sensitivity), IMK_ERROR_TOO_SHORT (field "temperature": range of temperature found,
  *          limit 2 K; field "samples"), IMK_ERROR_CONFLICT (field "pose": the unit was turned,
  *          index: of the sample), IMK_ERROR_RATE_MISSING, IMK_ERROR_NOT_FINITE (field "time"),
- * IMK_ERROR_RANGE (settings), _WORKSPACE, _UNINITIALISED */
+ *          IMK_ERROR_RANGE (settings), _WORKSPACE, _UNINITIALISED */
 IMK_API imk_status imk_thermal_analyse(const imk_test_record *record,
                                        const imk_thermal_settings *settings, const imk_model *model,
                                        void *workspace, size_t workspace_size,

@@ -4,17 +4,17 @@
  *
  *  The joint is two pairs of flexures with a small gimbal between them. Its springs would pull the
  *  rotor after the case; but the gimbal nods twice in a turn when the rotor is tilted, and what
- * that takes has the opposite sign. At one speed, the tuned one,
+ *  that takes has the opposite sign. At one speed, the tuned one,
  *
  *      N^2 = (kx + ky)/J,   J = Ag + Bg - Cg,   nearly,
  *
  *  both cancel and the rotor is free [CRAIG1972]: two input axes from one wheel. A rebalance loop
  *  keeps the rotor in line with the shaft by torques about the other axis, and these are the
- * reading.
+ *  reading.
  *
  *  In axes that turn with the shaft (1 along the flexures of the shaft, 2 along those of the
- * rotor), with the tilt (f1, f2) of the rotor, the rate (W1, W2) of the case in these axes, and the
- *  torque (T1, T2) on the rotor, all small but N:
+ *  rotor), with the tilt (f1, f2) of the rotor, the rate (W1, W2) of the case in these axes, and
+ *  the torque (T1, T2) on the rotor, all small but N:
  *
  *      (A + Ag) f1'' + d f1' + [(C - A - Bg + Cg) N^2 + kx] f1 + (C - 2A) N f2'
  *                                = T1 - (A + Ag) W1' - (C - A - Bg + Cg) N W2
@@ -25,13 +25,13 @@
  *  rate about the shaft turns with a tilted rotor: w_x - w_z th_y, w_y + w_z th_x.
  *
  *  Case axes: x and y input, z along the shaft. Output 0 is the rate about x, output 1 about y;
- * their slow errors and noise are independent. Tilts are small: nothing here limits them.
+ *  their slow errors and noise are independent. Tilts are small: nothing here limits them.
  *
  *  Levels: full, as above, each step exact; slow, the mean over a turn of the shaft without delay.
  *
  *  The default design is chosen, not copied: 12000 rpm, 0.01 kg m^2/s, a figure of merit C/J of
- * 200, time constant 100 s, 100 deg/s, and a bias of the class "tactical", the size of small tuned
- * gyros of strapdown systems. */
+ *  200, time constant 100 s, 100 deg/s, and a bias of the class "tactical", the size of small tuned
+ *  gyros of strapdown systems. */
 #ifndef IMUKIT_TUNED_GYRO_H
 #define IMUKIT_TUNED_GYRO_H
 
@@ -108,7 +108,7 @@ IMK_API double imk_tuned_gyro_nutation(const imk_tuned_gyro *design);
 IMK_API double imk_tuned_gyro_vibration_drift(const imk_tuned_gyro *design);
 
 /** Error model of the x axis by closed forms, with the tilt th = -pickoff offset that the loop
- * keeps, D = N d and K the residual spring:
+ *  keeps, D = N d and K the residual spring:
  *
  *      scale factor  (H/designed H)/(1 + torquer error) - 1, and -d(torquer error)/dT
  *      bias          [torque + K offset_y - D offset_x]/H
@@ -118,7 +118,7 @@ IMK_API double imk_tuned_gyro_vibration_drift(const imk_tuned_gyro *design);
  *      N             torque noise/H;  bandwidth, damping of the loop;  range limit/H
  *
  *  Not in the error model: the drift by vibration at 2N, and the noise of the pickoffs, which is
- * the derivative of a bounded angle. */
+ *  the derivative of a bounded angle. */
 IMK_API void imk_tuned_gyro_reduce(const imk_tuned_gyro *design, imk_model *model);
 
 /** "tuned_gyro" */

@@ -29,7 +29,7 @@
  *  slow, the envelope of y with the drive locked. A run of the full level begins at rest: the loops
  *  of the drive need some 10 ms. Exposures are held over a sample; with more than fd/4 samples a
  *  second one is taken per cycle, so vibration at the carrier itself is not followed. Theory, with
- * every key of the design: docs/physics/tuning_fork.md. */
+ *  every key of the design: docs/physics/tuning_fork.md. */
 #ifndef IMUKIT_TUNING_FORK_H
 #define IMUKIT_TUNING_FORK_H
 
@@ -104,9 +104,9 @@ typedef struct imk_tuning_fork {
 } imk_tuning_fork;
 
 /** A surface-micromachined gyro of the kind of the ADXRS150. Its data sheet [ADXRS150] gives the
- * resonance (14 kHz), the bandwidth (40 Hz, one pole), the range (150 deg/s), the noise (0.05
- * deg/s/sqrt(Hz)) and the effect of acceleration (0.2 deg/s/g), its designers the Allan floor (50
- * deg/h) [GEEN2002]. Mass, amplitude, both Q (of a device in air), split, quadrature and the
+ *  resonance (14 kHz), the bandwidth (40 Hz, one pole), the range (150 deg/s), the noise (0.05
+ *  deg/s/sqrt(Hz)) and the effect of acceleration (0.2 deg/s/g), its designers the Allan floor (50
+ *  deg/h) [GEEN2002]. Mass, amplitude, both Q (of a device in air), split, quadrature and the
  *  temperature coefficients are not published: plausible values were chosen, and with them the
  *  pickoff noise, the asymmetry and the instability of the phase that give those figures. */
 IMK_API imk_tuning_fork imk_tuning_fork_default(void);

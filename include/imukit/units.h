@@ -42,7 +42,7 @@ typedef struct imk_unit {
  *  s2; roots are sqrt(…), √, rt- and root-. Only listed multiples exist (mg is a thousandth of g,
  *  min a minute); names are case-sensitive. degC has its offset only by itself: in degC/min it is a
  *  kelvin. g, mg and ug are accelerations: a mass is in kg, gram, milligram or microgram. dB is
- * that of a power, ln(10)/10 in the exponent, so that dB/km is an attenuation.
+ *  that of a power, ln(10)/10 in the exponent, so that dB/km is an attenuation.
  *
  *  @param begin,end  the text, blanks around it allowed
  *  @return IMK_ERROR_UNIT_MISSING for blank text, IMK_ERROR_UNIT_UNKNOWN (error.found is the part

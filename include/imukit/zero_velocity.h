@@ -72,10 +72,10 @@ IMK_API void imk_zero_velocity_default(imk_zero_velocity_settings *settings);
  *
  *  White noise, quantization, random walk and Gauss-Markov terms are taken as they are. Flicker
  *  (bias instability B) becomes Gauss-Markov processes with correlation times of 10, 100, 1000 and
- *  10^4 s, each of variance B^2 ln(10)/pi: its spectrum within 12 % from 0.1 to 10 mHz. What
- * is constant while the unit stands joins the constant part: repeatability, the sigma of the fixed
- * bias, and the uncertain scale factors, misalignments and g-sensitivity times the means of rate
- * and force. Fixed values count as taken out (imukit compensate).
+ *  10^4 s, each of variance B^2 ln(10)/pi: its spectrum within 12 % from 0.1 to 10 mHz. What is
+ *  constant while the unit stands joins the constant part: repeatability, the sigma of the fixed
+ *  bias, and the uncertain scale factors, misalignments and g-sensitivity times the means of rate
+ *  and force. Fixed values count as taken out (imukit compensate).
  *  @param rate,force  means at the start, body axes [rad/s], [m/s^2]
  *  @return IMK_ERROR_UNSUPPORTED (a triad is missing or has not three axes) */
 IMK_API imk_status imk_zero_velocity_describe(const imk_model *model, imk_vector3 rate,
@@ -86,9 +86,9 @@ IMK_API imk_status imk_zero_velocity_describe(const imk_model *model, imk_vector
 /** Fill `alignment`, and what of its covariance the biases do not explain, for a unit that aligned
  *  itself: e_N = -a_E/g, e_E = a_N/g, e_D = -w_E/(W cos L) + a_E tan(L)/g, with a and w the biases
  *  turned to north, east and down, W the Earth's rate, L the latitude. An alignment in inertial
- * axes is that of the middle of its time, carried on by the gyros for the other half: w_D times it
- * is added to e_D, and w_N times it to e_N unless the method is fine. After the gyro and accel
- * fields.
+ *  axes is that of the middle of its time, carried on by the gyros for the other half: w_D times it
+ *  is added to e_D, and w_N times it to e_N unless the method is fine. After the gyro and accel
+ *  fields.
  *  @param heading  false: the heading in `alignment` was given, not found: e_D is independent
  *  @return IMK_ERROR_NO_CONVERGENCE, IMK_ERROR_NOT_FINITE (a covariance that is none) */
 IMK_API imk_status imk_zero_velocity_aligned(const imk_alignment_result *alignment,

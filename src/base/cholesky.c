@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Cholesky factorisation A = L L^T of a small symmetric positive definite matrix, by rows:
  *
- *     l[i][j] = (a[i][j] - sum_{k<j} l[i][k] l[j][k]) / l[j][j],   l[i][i] = sqrt(a[i][i] - sum
- * l^2) [GOLUB2013, sec. 4.2] */
+ *     l[i][j] = (a[i][j] - sum_{k<j} l[i][k] l[j][k]) / l[j][j]
+ *     l[i][i] = sqrt(a[i][i] - sum_{k<i} l[i][k]^2)                    [GOLUB2013, sec. 4.2] */
 #include "imukit/linear_algebra.h"
 
 #include <float.h>

@@ -4,10 +4,11 @@
  * heading is not: (Omega cos(latitude))^2/2 along each direction. Two forms of that:
  *
  *   as a variance   of each gyro reading, and of each turn, as though the headings of all rests
- * were unknown by themselves; as a chain      two unknowns h of each rest that turns join. Gyros at
- * rest read them; a turn of length T carries the vertical n from there to D (n + T h x n); and at
- * its end they are  h' = D h,  to some hundredths by the gyros' own errors. Only where no turn
- * leads to is (Omega cos(latitude))^2/2 all that is known.
+ *                   were unknown by themselves;
+ *   as a chain      two unknowns h of each rest that turns join. Gyros at rest read them; a turn of
+ *                   length T carries the vertical n from there to D (n + T h x n); and at its end
+ *                   they are  h' = D h,  to some hundredths by the gyros' own errors. Only where no
+ *                   turn leads to is (Omega cos(latitude))^2/2 all that is known.
  *
  * The first costs nothing, the second four local unknowns a rest in place of two. It is taken when
  * the first would leave out what matters: when the variance of the heading is above 2 % of the

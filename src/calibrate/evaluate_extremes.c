@@ -3,10 +3,11 @@
  * fitted to them, of the differences between up and down. F is convex and homogeneous: the largest
  * of many linear functions of d. With d = truth + e,
  *
- *     T >= truth + c0.e    of the function c0 that is the largest of the truth, so that the
- * quantile of one function's noise bounds the truth from above, and T <= truth + max c.e over the
- * functions that come near the largest, which bounds it from below. Those within 2.5 sigmas of it
- * are taken to share its place [ANDREWS2010].
+ *     T >= truth + c0.e        of the function c0 that is the largest of the truth, so that the
+ *                              quantile of one function's noise bounds the truth from above, and
+ *     T <= truth + max c.e     over the functions that come near the largest, which bounds it from
+ *                              below. Those within 2.5 sigmas of it are taken to share its place
+ *                              [ANDREWS2010].
  *
  * Where one level stands out both are Student's interval; where several share the largest value the
  * interval is wider than it need be, since the table cannot tell which of them is the largest. The

@@ -5,8 +5,7 @@
  *
  * B and c by least squares for a given lag; the lag by Newton's steps on the remaining residual e,
  *
- *     step = - sum w d e / sum w d^2,     d = sum over j of B_j r_j'(k - lag),   w = 1/variance of
- * e
+ *     step = - sum w d e / sum w d^2,   d = sum over j of B_j r_j'(k - lag),   w = 1/variance of e
  *
  * over all axes. The reference between its samples is Lagrange's polynomial through the six
  * nearest: half-way between samples it loses (5/1024) (w dt)^6 of a sine of angular frequency w. */

@@ -11,8 +11,8 @@
  * Done as defined that is O(n m). Here it is O(n). With the sums U_0 = 0 … U_L = 0 of the stretch
  * (mean and trend off), mirroring makes U odd with period 2L, and m z is its third difference, so
  *
- *     m^2 sum z^2 = sum over a period of 20 U_k^2 - 30 U_k U_{k+m} + 12 U_k U_{k+2m} - 2 U_k
- * U_{k+3m}
+ *     m^2 sum z^2 = sum over a period of
+ *                   20 U_k^2 - 30 U_k U_{k+m} + 12 U_k U_{k+2m} - 2 U_k U_{k+3m}
  *
  * which by symmetry is a form U'BU of products U_k U_{k+l}, l = 0, m, 2m, and U_k U_{t-k}, t = m,
  * 2m, 3m, 4m, 5m, within the stretch. Let V be the running sums of x over a block of stretches, and
@@ -20,10 +20,10 @@
  * k(k-L)/2m^2. Then U'BU = V'BV - 2 q'BV + q'Bq, and
  *
  * - V'BV added over the block: a product V_i V_{i+l} occurs in a known number of stretches; the
- *   V_j that meet V_i in a sum over U_k U_{t-k} are every second one of an interval (|i - j| and i
- * + j are bounded), whose sum is a difference of two running sums;
+ *   V_j that meet V_i in a sum over U_k U_{t-k} are every second one of an interval (|i - j| and
+ *   i + j are bounded), whose sum is a difference of two running sums;
  * - B e is a parabola on each third of the stretch, beside single values at their ends: q'BV
- * follows from running moments of V.
+ *   follows from running moments of V.
  *
  * A block has 4m stretches and has a trend of its own taken off first, so that all terms are of the
  * size of what remains and no digits are lost however long the record is. */

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Amounts, output filter and resonances of a spectrum, fitted jointly.
  *
- * With S the spectrum, D_bi its derivative by the logarithm of parameter i and
- * v the degrees of freedom of a band, information and gradient of the
- * likelihood are
+ * With S the spectrum, D_bi its derivative by the logarithm of parameter i and v the degrees of
+ * freedom of a band, information and gradient of the likelihood are
  *
- *     H = 1/2 sum_b v_b D_b D_b^T/S_b^2,    g = 1/2 sum_b v_b D_b (P_b -
- * S_b)/S_b^2
+ *     H = 1/2 sum_b v_b D_b D_b^T/S_b^2,    g = 1/2 sum_b v_b D_b (P_b - S_b)/S_b^2
  *
- * and a step is (H + lambda diag H)^-1 g, lambda raised until it climbs
- * [MARQUARDT1963]. */
+ * and a step is (H + lambda diag H)^-1 g, lambda raised until it climbs [MARQUARDT1963]. */
 #include "joint_shape_internal.h"
 
 #include "imukit/linear_algebra.h"

@@ -2,8 +2,9 @@
 /* The parts of campaign.h. Two kinds of file hold the numbers of a campaign:
  *
  *   results file  a line of text with size and CRC-32 (campaign_seal.c), then an HDF5 file that
- * ends in the values (campaign_hdf5_write.c, campaign_hdf5_read.c) PATH.part     a line of text, a
- * plain head (campaign_head.c), records of runs as they come (campaign_part.c) */
+ *                 ends in the values (campaign_hdf5_write.c, campaign_hdf5_read.c)
+ *   PATH.part     a line of text, a plain head (campaign_head.c), records of runs as they come
+ *                 (campaign_part.c) */
 #ifndef IMUKIT_CAMPAIGN_INTERNAL_H
 #define IMUKIT_CAMPAIGN_INTERNAL_H
 

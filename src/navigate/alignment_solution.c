@@ -3,7 +3,8 @@
  *
  *   - inertial: all epochs weigh alike;
  *   - fine: as likely as their noise makes them (alignment_whitener.c). The end state of the
- * noise's filter says by how much the attitude has walked since the start, and that is taken off.
+ *     noise's filter says by how much the attitude has walked since the start, and that is taken
+ *     off.
  *
  * The noise is not quite known: a model tells that of its sensors, not how much the unit is
  * disturbed; without a model there is only the data. So there are candidates, and each counts by

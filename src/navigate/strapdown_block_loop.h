@@ -3,8 +3,7 @@
  * strapdown_block_*.c defines first what strapdown_block_kernel.h asks for, and
  *
  *     load_across(channel, j, first, out)      LANES samples of channel j of each lane, from
- * `first` on: out[k] has the k-th of all lanes
- */
+ *                                              `first` on: out[k] has the k-th of all lanes */
 #include "navigate/strapdown_block_kernel.h"
 
 #include <string.h>

@@ -11,9 +11,10 @@
  * A self-alignment over the time A before the start leaves e = M m + noise, m the means of the
  * biases over A. The filter's biases are those at its end. With the part's own statistics, exact:
  *
- *     constant with walk  var m = s^2 + K^2 A/3,  cov(m, end) = s^2 + K^2 A/2,  var end = s^2 + K^2
- * A Gauss-Markov        var m = 2 s^2 (a - 1 + e^-a)/a^2,  cov(m, end) = s^2 (1 - e^-a)/a,  a = A/T
- */
+ *     constant with walk   var m = s^2 + K^2 A/3,  cov(m, end) = s^2 + K^2 A/2,
+ *                          var end = s^2 + K^2 A
+ *     Gauss-Markov         var m = 2 s^2 (a - 1 + e^-a)/a^2,  cov(m, end) = s^2 (1 - e^-a)/a,
+ *                          a = A/T */
 #include "navigate/zero_velocity_internal.h"
 
 #include "imukit/elementary.h"

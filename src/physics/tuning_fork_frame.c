@@ -13,10 +13,10 @@
  *     Im Z = -sum z_j sin t_j/S,        S = (n - r)/2,                 r = sin(n a)/sin a
  *
  * exact for a sinusoid whether or not the frame is a whole cycle, as the products with the sine
- * sum to 0. The
- * phasors are carried as four more states, so that their noise and that of the motion have their
- * exact joint covariance; the noise of the pickoffs, independent from reading to reading, adds to
- * the variance of the phasors. One draw of eight normals then serves a whole frame. */
+ * sum to 0. The phasors are carried as four more states, so that their noise and that of the motion
+ * have their exact joint covariance; the noise of the pickoffs, independent from reading to
+ * reading, adds to the variance of the phasors. One draw of eight normals then serves a whole
+ * frame. */
 #include "physics/tuning_fork_internal.h"
 
 #include "base/linear_system_internal.h"

@@ -87,9 +87,9 @@ static void test_closed_forms(void **state)
 }
 
 /* The full equations against the formula: tilt about x by a, and the rotor drifts about y with
- * -K a/H. Nutation left in
- * the means over 1 s is at most 4.6e-6/100 rad of 1e-3, 5e-5 rad of direction in 3 s; K and H
- * are those of a rotor held still, and one that drifts is led by J/(8 (2A - C)) = 0.4 % of it. */
+ * -K a/H. Nutation left in the means over 1 s is at most 4.6e-6/100 rad of 1e-3, 5e-5 rad of
+ * direction in 3 s; K and H are those of a rotor held still, and one that drifts is led by
+ * J/(8 (2A - C)) = 0.4 % of it. */
 static double drift_of_tilt(double speed_error)
 {
     imk_tuned_gyro d = free_rotor();
