@@ -13,7 +13,7 @@ else()
 endif()
 
 # A sanitized or unoptimised build is several times slower.
-set(imukit_test_timeout 120)
+set(imukit_test_timeout 300)
 if(IMUKIT_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL Debug)
   set(imukit_test_timeout 600)
 endif()

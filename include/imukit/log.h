@@ -55,7 +55,7 @@ typedef struct imk_log_settings {
                         be rewound, such as a pipe, is copied to a temporary file in TMPDIR first,
                         which is read now and by the openings after this, up to the first without
                         `reopened`; false */
-    size_t memory;         /**< bytes that a whole log may take; 0: half of imk_memory_limit() */
+    size_t memory; /**< bytes that a whole log may take; 0: half of imk_memory_limit() */
 } imk_log_settings;
 
 /** Everything from the header of the file. */
@@ -84,7 +84,7 @@ typedef struct imk_log_findings {
 typedef struct imk_log_reader imk_log_reader;
 
 /** Open a log ("-": standard input; also a pipe, or what is compressed) and read its header. The
- * memory needed does not depend on the length of the log; a line beyond 1 MiB is refused.
+ *  memory needed does not depend on the length of the log; a line beyond 1 MiB is refused.
  *
  *  Names, in any case: time (t, timestamp); gyro_, dtheta_, accel_ (acc_), dvel_ followed by x, y,
  *  z or 0 … 7; temperature (temp). Units stand in brackets or parentheses behind the name. Counts
