@@ -6,6 +6,7 @@
 #   make check   format, static analysis, sanitizers, portability, byte identity
 #   make bench   speed against yardsticks: build/bench.csv
 #   make experiments  build the long statistical experiments: build/experiments/*
+#   make experiments-all  run them all and renew experiments/results
 #   make fuzz    feed the parsers with random input for a while
 #   make mpi     build/imukit-mpi too: campaigns on many machines (Open MPI)
 #   make install [PREFIX=/usr/local] [DESTDIR=]
@@ -25,7 +26,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check bench experiments fuzz mpi install deps clean help
+.PHONY: all demo test check bench experiments experiments-all fuzz mpi install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -57,6 +58,10 @@ experiments:
 	@tools/install_dependencies.sh build
 	@$(configure) $(quiet)
 	@$(compile) --target experiments
+
+experiments-all: experiments
+	@$(compile) --target imukit-command
+	@$(alone) BUILD=$(BUILD) experiments/run
 
 fuzz:
 	@tools/install_dependencies.sh build fuzz
