@@ -41,7 +41,7 @@ IMKI_INLINED void window_sums(imki_allan_cursor *c, const double *s)
 IMKI_INLINED void parabolic_block(imki_allan_cursor *c, const double *sums, size_t first,
                                   size_t size)
 {
-    _Alignas(64) double step[IMKI_ALLAN_BLOCK], value[IMKI_ALLAN_BLOCK];
+    _Alignas(64) double step[IMKI_ALLAN_BLOCK], near[IMKI_ALLAN_BLOCK], value[IMKI_ALLAN_BLOCK];
     const size_t m = c->m;
     const double *a = sums + first, *b = a + m, *d = a + 2 * m;
     if (first == 0 || first - c->exact >= (8 * m > REFRESH ? 8 * m : REFRESH)) {
@@ -52,13 +52,16 @@ IMKI_INLINED void parabolic_block(imki_allan_cursor *c, const double *sums, size
         return;
     const double before = 0.5 * ((double)m + 1), after = 0.5 * ((double)m - 1);
     const size_t steps = first + size < c->count ? size : size - 1;
-    for (size_t j = 0; j < steps; j++)
-        step[j] = (b[j] - d[j]) - (a[j] - b[j]);
+    for (size_t j = 0; j < steps; j++) {
+        const double g = a[j] - b[j], next = b[j] - d[j];
+        step[j] = next - g;
+        near[j] = before * g + after * next;
+    }
     const double last = steps == size ? step[size - 1] : 0;
     imki_running(c->window, step, size, value);
     c->window = value[size - 1] + last;
     for (size_t j = 0; j < steps; j++)
-        step[j] = value[j] - (before * (a[j] - b[j]) + after * (b[j] - d[j]));
+        step[j] = value[j] - near[j];
     const double end = steps == size ? step[size - 1] : 0;
     double square = 0;
     c->slope = imki_running_squares(c->slope, step, size, &square) + end;

@@ -31,8 +31,8 @@ static size_t missing_maximum(size_t n)
 size_t imk_identify_workspace_size(size_t n)
 {
     return 64 + 3 * aligned((n + 1) * sizeof(double)) + aligned(sizeof(imki_bands)) +
-           3 * aligned(sizeof(imki_fit)) + aligned(imk_cosine_workspace_size(n)) +
-           imki_missing_size(missing_maximum(n));
+           aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) + 3 * aligned(sizeof(imki_fit)) +
+           aligned(imk_cosine_workspace_size(n)) + imki_missing_size(missing_maximum(n));
 }
 
 static void *take(char **memory, size_t size)
@@ -48,6 +48,7 @@ static void lay_out(imki_work *w, void *workspace, size_t missing)
     w->samples = take(&memory, (w->n + 1) * sizeof(double));
     w->coefficients = take(&memory, (w->n + 1) * sizeof(double));
     w->cumulative = take(&memory, (w->n + 1) * sizeof(double));
+    w->points = take(&memory, IMKI_POINTS_MAX * sizeof(imk_allan_point));
     w->bands = take(&memory, sizeof(imki_bands));
     w->fit = take(&memory, sizeof(imki_fit));
     w->trial = take(&memory, sizeof(imki_fit));

@@ -12,7 +12,8 @@ enum {
     IMKI_BANDS_MAX = 2048,  /* bands in all */
     IMKI_GAUSS_MARKOV_MAX = IMK_TERMS_MAX,
     IMKI_TEMPLATES_MAX = 4 + IMKI_GAUSS_MARKOV_MAX + IMK_TERMS_MAX,
-    IMKI_LINES_MAX = 2 * IMK_TERMS_MAX
+    IMKI_LINES_MAX = 2 * IMK_TERMS_MAX,
+    IMKI_POINTS_MAX = 160 /* of an Allan deviation: ten a decade */
 };
 
 /* Templates by index: the four random terms in the order of imk_noise_term, Gauss-Markov terms,
@@ -191,7 +192,7 @@ typedef struct imki_work {
      * confidence, ascending; 0 of them: as samples. */
     size_t spectrum_count, point_count;
     const imki_spectrum *spectra;
-    const imk_allan_point *points;
+    imk_allan_point *points; /* room for IMKI_POINTS_MAX */
 } imki_work;
 
 /* fast_shape.c: fits the filter and the wide resonances jointly with all amounts, and adds the

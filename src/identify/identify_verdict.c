@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-enum { FACTORS_MAX = 160 };
-
 double imk_identification_allan_variance(const imk_identification *result, double dt, size_t m,
                                          int term)
 {
@@ -58,10 +56,10 @@ static void agreement(const imk_identification *result, double dt, size_t count,
 }
 
 /* Allan deviations of the samples at 99.9 % confidence; 0 when there is no room for them. */
-static size_t measure(imki_work *w, imk_allan_point *points)
+static size_t measure(imki_work *w)
 {
-    size_t factors[FACTORS_MAX], count = imk_allan_factors(IMK_ALLAN_DECADE, w->n, NULL);
-    if (count > FACTORS_MAX)
+    size_t factors[IMKI_POINTS_MAX], count = imk_allan_factors(IMK_ALLAN_DECADE, w->n, NULL);
+    if (count > IMKI_POINTS_MAX)
         return 0;
     imk_allan_factors(IMK_ALLAN_DECADE, w->n, factors);
     while (count > 1 && factors[count - 1] > w->n / 9)
@@ -69,16 +67,15 @@ static size_t measure(imki_work *w, imk_allan_point *points)
     imk_allan_settings settings = imk_allan_default();
     settings.confidence = 0.999;
     imk_allan_sums(w->n, w->samples, w->cumulative, NULL);
-    imk_allan_points(&settings, w->n, w->cumulative, count, factors, points, NULL);
+    imk_allan_points(&settings, w->n, w->cumulative, count, factors, w->points, NULL);
     return count;
 }
 
 static void compare_with_allan(imki_work *w, imk_identification *result)
 {
     const double dt = w->settings->dt;
-    imk_allan_point measured[FACTORS_MAX];
-    const imk_allan_point *points = w->point_count > 0 ? w->points : measured;
-    const size_t count = w->point_count > 0 ? w->point_count : measure(w, measured);
+    const size_t count = w->point_count > 0 ? w->point_count : measure(w);
+    const imk_allan_point *points = w->points;
     if (count == 0)
         return;
     double least = points[0].deviation;

@@ -109,8 +109,8 @@ size_t imki_record_allan_points(const imk_identify_record *r, const double *sums
                                 imk_allan_grid grid, double confidence, size_t last, size_t most,
                                 imk_allan_point *points)
 {
-    size_t factors[IMKI_LONG_POINTS], count = imk_allan_factors(grid, r->samples, NULL), short_ = 0;
-    if (count > IMKI_LONG_POINTS || count > most)
+    size_t factors[IMKI_POINTS_MAX], count = imk_allan_factors(grid, r->samples, NULL), short_ = 0;
+    if (count > IMKI_POINTS_MAX || count > most)
         return 0;
     imk_allan_factors(grid, r->samples, factors);
     for (; short_ < count && factors[short_] < IMKI_STRIDE_ONE && factors[short_] <= last; short_++)

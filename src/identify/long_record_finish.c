@@ -52,8 +52,8 @@ static parts parts_of(const imk_identify_record *r)
     parts p = {.points = transform_length(means)};
     p.transform_size = imk_cosine_workspace_size(p.points);
     p.total = 64 + 2 * aligned((means + 1) * sizeof(double)) + aligned(p.transform_size) +
-              aligned(sizeof(imki_bands)) + 3 * aligned(sizeof(imki_fit)) +
-              aligned(sizeof(imki_record_spectra));
+              aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) + aligned(sizeof(imki_bands)) +
+              3 * aligned(sizeof(imki_fit)) + aligned(sizeof(imki_record_spectra));
     return p;
 }
 
@@ -140,7 +140,7 @@ static size_t transform_means(imk_identify_record *r, const imk_identify_setting
 {
     imk_allan_sums(r->mean_count, r->means, sums, NULL);
     const size_t count = imki_record_allan_points(r, sums, IMK_ALLAN_DECADE, 0.999, r->samples / 9,
-                                                  IMKI_LONG_POINTS, measured);
+                                                  IMKI_POINTS_MAX, measured);
     r->octave_count = imki_record_allan_points(r, sums, IMK_ALLAN_OCTAVE, settings->confidence,
                                                r->samples / 2, IMKI_OCTAVES, r->octave);
     memcpy(coefficients, r->means, points * sizeof(double));
@@ -178,11 +178,10 @@ imk_status imk_identify_record_finish(imk_identify_record *r, const imk_identify
     double *cumulative = take(&memory, (r->mean_count + 1) * sizeof(double));
     void *transform = take(&memory, p.transform_size);
     imki_record_spectra *spectra = take(&memory, sizeof *spectra);
-    imk_allan_point measured[IMKI_LONG_POINTS];
     imki_work work = {.settings = settings, .n = p.points * r->block, .scale = r->scale};
+    work.points = take(&memory, IMKI_POINTS_MAX * sizeof(imk_allan_point));
     work.point_count = transform_means(r, settings, p.points, coefficients, cumulative, transform,
-                                       p.transform_size, measured);
-    work.points = measured;
+                                       p.transform_size, work.points);
     work.spectrum_count = 2;
     work.spectra = spectra->part;
     work.bands = take(&memory, sizeof(imki_bands));

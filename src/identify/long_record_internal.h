@@ -11,7 +11,6 @@ enum {
     IMKI_BLOCK_LEAST = 32,   /* samples to a mean at first */
     IMKI_STRIDE_ONE = 1024,  /* Allan factors below this use every window */
     IMKI_SHORT_FACTORS = 40, /* room for those factors */
-    IMKI_LONG_POINTS = 160,  /* room for ten points a decade */
     IMKI_OCTAVES = 64,
     IMKI_EXTREMES = 4
 };
