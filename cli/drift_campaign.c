@@ -54,8 +54,8 @@ static int read_shard(const char *text, uint64_t *index, uint64_t *count)
 /* Times of the table, for the runs. */
 static double *row_times(const drift_scene *scene)
 {
-    double *time = malloc(scene->row_count * sizeof *time);
-    for (size_t k = 0; time && k < scene->row_count; k++)
+    double *time = command_memory(NULL, scene->row_count * sizeof *time);
+    for (size_t k = 0; k < scene->row_count; k++)
         time[k] = scene->time[scene->row[k]];
     return time;
 }
@@ -111,7 +111,7 @@ int drift_runs(drift_result *r)
     crew c = {.one = &r->cases[r->case_count - 1], .seed = r->options->seed};
     double *time = row_times(scene);
     char *parameters = drift_parameters(scene, &c.one->settings, c.one->model);
-    int code = time && parameters ? -1 : EXIT_FAILED;
+    int code = parameters ? -1 : EXIT_FAILED;
     if (code < 0) {
         c.settings = c.one->settings;
         c.settings.time = time;

@@ -40,6 +40,7 @@ typedef struct reading {
     part part[PARTS];
     uint64_t extent[3]; /* of the values */
     uint64_t values;    /* where they begin; 0: they are not as they must be */
+    bool no_memory;
 } reading;
 
 /* @return false when there are not so many dimensions, or nothing in them */
@@ -106,6 +107,7 @@ static void read_values(reading *r, int index, hid_t id, hid_t type, hid_t space
         p->size > r->size / p->count)
         return;
     p->at = malloc(p->size * p->count);
+    r->no_memory = r->no_memory || !p->at;
     if (!p->at)
         return;
     const herr_t status = is_dataset ? H5Dread(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, p->at)
@@ -250,8 +252,9 @@ imk_status imki_hdf5_read(const char *path, int file, uint64_t file_size, imki_r
                           uint64_t *values, imk_error *error)
 {
     reading r = {.path = path, .number = file, .size = file_size};
-    imki_hdf5_use(read_all, &r);
-    imk_status status = check_version(&r, error);
+    r.no_memory = !imki_hdf5_use(read_all, &r) || r.no_memory;
+    imk_status status = r.no_memory ? imk_error_set(error, IMK_ERROR_MEMORY, path, "", "")
+                                    : check_version(&r, error);
     if (status == IMK_OK)
         status = make_record(&r, record, error);
     for (int index = 0; index < PARTS; index++)

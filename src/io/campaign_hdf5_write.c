@@ -236,7 +236,8 @@ imk_status imki_hdf5_write(const imki_record *record, const char *path, unsigned
                            size_t *size, imk_error *error)
 {
     writing w = {.record = record};
-    imki_hdf5_use(make, &w);
+    if (!imki_hdf5_use(make, &w))
+        return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
     if (!w.done) {
         free(w.image.at);
         return imk_error_set(error, IMK_ERROR_WRITE, path, "libhdf5 does not make such a file",

@@ -139,18 +139,18 @@ static bool view_texts(const char *at, size_t size, size_t count, const char **t
 }
 
 /* The parts of a head as a campaign. */
-static bool view_record(imki_record *r)
+static imk_status view_record(imki_record *r)
 {
     imk_campaign *c = &r->campaign;
     uint64_t numbers[NUMBERS];
     if (r->head_size < FIXED)
-        return false;
+        return IMK_ERROR_FORMAT;
     memcpy(numbers, r->head, sizeof numbers);
     const uint64_t rest = r->head_size - FIXED, most = rest / 8;
     if (numbers[RUNS] == 0 || numbers[TIMES] == 0 || numbers[STATES] == 0 || numbers[RUNS] > most ||
         numbers[TIMES] > most - numbers[RUNS] || numbers[STATES] >= ATTRIBUTE_MAX ||
         numbers[TEXTS] != rest - (numbers[RUNS] + numbers[TIMES]) * 8)
-        return false;
+        return IMK_ERROR_FORMAT;
     c->seed = numbers[SEED];
     c->run_count = numbers[RUN_COUNT];
     c->time_count = (size_t)numbers[TIMES];
@@ -159,26 +159,30 @@ static bool view_record(imki_record *r)
     c->time = (const double *)(const void *)(r->head + FIXED);
     r->run = (const uint64_t *)(const void *)(c->time + c->time_count);
     r->texts = calloc(2 + 2 * c->state_count, sizeof *r->texts);
-    if (!r->texts || !view_texts((const char *)(r->run + r->runs), (size_t)numbers[TEXTS],
-                                 2 + 2 * c->state_count, r->texts))
-        return false;
+    if (!r->texts)
+        return IMK_ERROR_MEMORY;
+    if (!view_texts((const char *)(r->run + r->runs), (size_t)numbers[TEXTS],
+                    2 + 2 * c->state_count, r->texts))
+        return IMK_ERROR_FORMAT;
     c->version = r->texts[0];
     c->parameters = r->texts[1];
     c->state = r->texts + 2;
     c->unit = r->texts + 2 + c->state_count;
-    return true;
+    return runs_are_valid(r) && values_fit(c, r->runs) ? IMK_OK : IMK_ERROR_FORMAT;
 }
 
 imk_status imki_record_read(unsigned char *head, size_t head_size, imki_record *record,
                             imk_error *error)
 {
     imki_record read = {.head = head, .head_size = head_size};
-    if (!view_record(&read) || !runs_are_valid(&read) || !values_fit(&read.campaign, read.runs)) {
-        imki_record_free(&read);
-        return imki_record_refuse(error);
+    const imk_status status = view_record(&read);
+    if (status == IMK_OK) {
+        *record = read;
+        return IMK_OK;
     }
-    *record = read;
-    return IMK_OK;
+    imki_record_free(&read);
+    return status == IMK_ERROR_MEMORY ? imk_error_set(error, status, "", "", "")
+                                      : imki_record_refuse(error);
 }
 
 void imki_record_free(imki_record *record)

@@ -57,12 +57,13 @@ imk_status imki_seal_verify(int file, uint64_t size, imki_seal *seal, imk_error 
 
 /* ---- what libhdf5 writes and reads: campaign_hdf5*.c ---- */
 
-/* Call a function that uses libhdf5: one at a time, and without messages on standard error. */
-void imki_hdf5_use(void (*use)(void *context), void *context);
+/* Call a function that uses libhdf5: one at a time, and without messages on standard error.
+ * @return false: memory is short, and it was not called */
+bool imki_hdf5_use(void (*use)(void *context), void *context);
 /* All of a results file in front of its values, which follow at once: from malloc(). The first
  * IMKI_SEAL_SIZE bytes are the seal's, and zero.
  * @param path  for the error
- * @return IMK_ERROR_WRITE: memory is exhausted, or libhdf5 lays files out in a way of its own */
+ * @return IMK_ERROR_MEMORY; IMK_ERROR_WRITE: libhdf5 lays files out in a way of its own */
 imk_status imki_hdf5_write(const imki_record *record, const char *path, unsigned char **bytes,
                            size_t *size, imk_error *error);
 /* Read what a file is about, after it was verified.

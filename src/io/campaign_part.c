@@ -130,12 +130,15 @@ static imk_status read_head(imki_part *part, const imki_record *own, uint64_t fi
     }
     imki_record there;
     const uint32_t sum = imki_crc(imki_crc(0, begin, sizeof begin), head, size);
-    if (imki_get_number(crc, CRC) != sum || imki_record_read(head, size, &there, error) != IMK_OK) {
-        if (imki_get_number(crc, CRC) != sum)
-            free(head);
-        return belongs_elsewhere(part, "its head is damaged", error);
-    }
-    const imk_status status = compare_heads(part, &there, own, error);
+    imk_status status = IMK_ERROR_FORMAT;
+    if (imki_get_number(crc, CRC) == sum)
+        status = imki_record_read(head, size, &there, error);
+    else
+        free(head);
+    if (status != IMK_OK)
+        return status == IMK_ERROR_MEMORY ? status
+                                          : belongs_elsewhere(part, "its head is damaged", error);
+    status = compare_heads(part, &there, own, error);
     imki_record_free(&there);
     part->end = FILE_HEAD + size + CRC;
     return status;
