@@ -6,18 +6,12 @@
 #define IMUKIT_PARAMETER_INTERNAL_H
 
 #include "document_internal.h"
+#include "growing_text_internal.h"
 
 #include "imukit/parameter_file.h"
 
 /* ---- text being written ---------------------------------------------------------------------- */
 
-typedef struct imki_text {
-    char *bytes; /* ends with a zero */
-    size_t size, capacity;
-    bool failed; /* memory is exhausted */
-} imki_text;
-
-void imki_text_add(imki_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Shortest decimals, `count` of them. */
 void imki_text_numbers(imki_text *text, const double *values, int count, const char *separator);
 /* "[a, b, c]". */

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Text that grows in memory while it is written. */
+#ifndef IMUKI_GROWING_TEXT_INTERNAL_H
+#define IMUKI_GROWING_TEXT_INTERNAL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* From {.bytes = NULL} on; the bytes are freed by whoever has it. */
+typedef struct imki_text {
+    char *bytes; /* ends with a zero */
+    size_t size, capacity;
+    bool failed; /* memory is exhausted */
+} imki_text;
+
+void imki_text_add(imki_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+#endif
