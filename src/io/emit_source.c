@@ -512,8 +512,7 @@ void imki_emit_source(imki_emission *e)
     write_helpers(&s, out);
     imki_emit_prototype(e);
     imki_text_add(out, "\n");
-    for (size_t at = 0; at < s.body.size; at += 512)
-        imki_text_add(out, "%.512s", s.body.bytes + at);
+    imki_text_put_bytes(out, s.body.bytes, s.body.size);
     out->failed = out->failed || s.body.failed || s.table.failed;
     free(s.body.bytes);
     free(s.table.bytes);

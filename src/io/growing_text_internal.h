@@ -13,6 +13,11 @@ typedef struct imki_text {
     bool failed; /* memory is exhausted */
 } imki_text;
 
+void imki_text_put(imki_text *text, const char *words);
+void imki_text_put_char(imki_text *text, char letter);
+void imki_text_put_bytes(imki_text *text, const char *bytes, size_t size);
 void imki_text_add(imki_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The text, which is the caller's; NULL when memory was exhausted. */
+char *imki_text_take(imki_text *text, size_t *size);
 
 #endif

@@ -4,12 +4,12 @@
  * The drawing is in whole tenths of a pixel, so that no decimal point, and no locale, is in it. The
  * walker follows the path by the length s(t) that has been walked (keyPoints); its trail is a dash
  * of the same path, whose offset is w - s(t). Where the path jumps, dots hop instead. */
-#define _POSIX_C_SOURCE 200809L
 #include "markup_internal.h"
 
 #include "imukit/report.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,61 +71,64 @@ static double tick_distance(const axis *a)
 }
 
 /* "0.3", without what rounding adds to a multiple of the distance. */
-static void put_number(FILE *out, double value, double distance)
+static void put_number(imki_text *out, double value, double distance)
 {
     char text[40];
     snprintf(text, sizeof text, "%.6g", fabs(value) < 1e-6 * distance ? 0.0 : value);
     for (char *c = text; *c; c++)
-        fputc(*c == ',' ? '.' : *c, out);
+        imki_text_put_char(out, *c == ',' ? '.' : *c);
 }
 
-static void put_axes(FILE *out, const drawing *d)
+static void put_axes(imki_text *out, const drawing *d)
 {
     const double dx = tick_distance(&d->x), dy = tick_distance(&d->y);
     for (double t = ceil(d->x.low / dx) * dx; t <= d->x.high; t += dx) {
         const int at = place(&d->x, t);
-        fprintf(out, "<path class=\"grid\" d=\"M%d %dV%d\"/><text x=\"%d\" y=\"%d\">", at, TOP,
-                HEIGHT - BOTTOM, at, HEIGHT - BOTTOM + 190);
+        imki_text_add(out, "<path class=\"grid\" d=\"M%d %dV%d\"/><text x=\"%d\" y=\"%d\">", at,
+                      TOP, HEIGHT - BOTTOM, at, HEIGHT - BOTTOM + 190);
         put_number(out, t, dx);
-        fputs("</text>\n", out);
+        imki_text_put(out, "</text>\n");
     }
     for (double t = ceil(d->y.low / dy) * dy; t <= d->y.high; t += dy) {
         const int at = place(&d->y, t);
-        fprintf(out,
-                "<path class=\"grid\" d=\"M%d %dH%d\"/>"
-                "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">",
-                LEFT, at, WIDTH - RIGHT, LEFT - 70, at + 40);
+        imki_text_add(out,
+                      "<path class=\"grid\" d=\"M%d %dH%d\"/>"
+                      "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">",
+                      LEFT, at, WIDTH - RIGHT, LEFT - 70, at + 40);
         put_number(out, t, dy);
-        fputs("</text>\n", out);
+        imki_text_put(out, "</text>\n");
     }
-    fprintf(out, "<path fill=\"none\" stroke=\"#666\" stroke-width=\"10\" d=\"M%d %dV%dH%d\"/>\n",
-            LEFT, TOP, HEIGHT - BOTTOM, WIDTH - RIGHT);
+    imki_text_add(out,
+                  "<path fill=\"none\" stroke=\"#666\" stroke-width=\"10\" d=\"M%d %dV%dH%d\"/>\n",
+                  LEFT, TOP, HEIGHT - BOTTOM, WIDTH - RIGHT);
 }
 
-static void put_text(FILE *out, int x, int y, const char *attributes, const char *text)
+static void put_text(imki_text *out, int x, int y, const char *attributes, const char *text)
 {
-    fprintf(out, "<text x=\"%d\" y=\"%d\"%s>", x, y, attributes);
+    imki_text_add(out, "<text x=\"%d\" y=\"%d\"%s>", x, y, attributes);
     imki_markup_escape(out, text);
-    fputs("</text>\n", out);
+    imki_text_put(out, "</text>\n");
 }
 
-static void put_head(FILE *out, const drawing *d)
+static void put_head(imki_text *out, const drawing *d)
 {
     const int middle = (LEFT + WIDTH - RIGHT) / 2, height = (TOP + HEIGHT - BOTTOM) / 2;
     char turned[60];
-    fprintf(out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\""
-            " width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"",
-            WIDTH / 10, HEIGHT / 10, WIDTH, HEIGHT);
+    imki_text_add(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\""
+        " width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"",
+        WIDTH / 10, HEIGHT / 10, WIDTH, HEIGHT);
     imki_markup_escape(out, d->animation->title);
-    fprintf(out,
-            "\" font-family=\"DejaVu Sans,Verdana,sans-serif\" font-size=\"120\" fill=\"#333\" "
-            "text-anchor=\"middle\">\n"
-            "<style>.grid{stroke:#d4d4d4;stroke-width:8}"
-            "@media (prefers-reduced-motion:reduce){.moving{display:none}}"
-            "@media print{.moving{display:none}}</style>\n"
-            "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
-            WIDTH, HEIGHT);
+    imki_text_add(
+        out,
+        "\" font-family=\"DejaVu Sans,Verdana,sans-serif\" font-size=\"120\" fill=\"#333\" "
+        "text-anchor=\"middle\">\n"
+        "<style>.grid{stroke:#d4d4d4;stroke-width:8}"
+        "@media (prefers-reduced-motion:reduce){.moving{display:none}}"
+        "@media print{.moving{display:none}}</style>\n"
+        "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
+        WIDTH, HEIGHT);
     put_axes(out, d);
     put_text(out, middle, 300, "", d->animation->title);
     put_text(out, middle, HEIGHT - BOTTOM + 430, "", d->animation->x_label);
@@ -134,34 +137,35 @@ static void put_head(FILE *out, const drawing *d)
 }
 
 /* A bar that grows while a round passes. */
-static void put_clock(FILE *out, const drawing *d, int milliseconds)
+static void put_clock(imki_text *out, const drawing *d, int milliseconds)
 {
     const int y = HEIGHT - 130, length = WIDTH - RIGHT - LEFT;
     if (!d->animation->clock || !d->animation->clock[0])
         return;
-    fputs("<g class=\"moving\">\n", out);
-    fprintf(out, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"30\" fill=\"#e6e9eb\"/>\n", LEFT, y,
-            length);
-    fprintf(out,
-            "<rect x=\"%d\" y=\"%d\" width=\"0\" height=\"30\" fill=\"%s\"><animate "
-            "attributeName=\"width\" values=\"0;%d\" dur=\"%dms\" repeatCount=\"indefinite\"/>"
-            "</rect>\n",
-            LEFT, y, orange, length, milliseconds);
+    imki_text_put(out, "<g class=\"moving\">\n");
+    imki_text_add(out, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"30\" fill=\"#e6e9eb\"/>\n",
+                  LEFT, y, length);
+    imki_text_add(
+        out,
+        "<rect x=\"%d\" y=\"%d\" width=\"0\" height=\"30\" fill=\"%s\"><animate "
+        "attributeName=\"width\" values=\"0;%d\" dur=\"%dms\" repeatCount=\"indefinite\"/>"
+        "</rect>\n",
+        LEFT, y, orange, length, milliseconds);
     put_text(out, WIDTH - RIGHT, y - 60, " text-anchor=\"end\" font-size=\"105\"",
              d->animation->clock);
-    fputs("</g>\n", out);
+    imki_text_put(out, "</g>\n");
 }
 
 /* ---- a path that is walked ------------------------------------------------------------------- */
 
 /* A part of one in millionths. */
-static void put_part(FILE *out, double part)
+static void put_part(imki_text *out, double part)
 {
     const long millionths = lround(part * 1e6);
     if (millionths >= 1000000)
-        fputc('1', out);
+        imki_text_put_char(out, '1');
     else
-        fprintf(out, "0.%06ld", millionths);
+        imki_text_add(out, "0.%06ld", millionths);
 }
 
 /* Length walked at a moment, 0 … 1 of the round. */
@@ -181,82 +185,85 @@ static double walked_at(const drawing *d, double moment)
     return d->walked[low] + part * (d->walked[high] - d->walked[low]);
 }
 
-static void put_walk(FILE *out, const drawing *d, int milliseconds)
+static void put_walk(imki_text *out, const drawing *d, int milliseconds)
 {
     const double length = d->walked[d->count - 1], trail = fmin(length / 8, TRAIL_MAX);
-    fprintf(out, "<defs><path id=\"track\" fill=\"none\" stroke-linejoin=\"round\" d=\"M%d %d",
-            d->px[0], d->py[0]);
+    imki_text_add(out,
+                  "<defs><path id=\"track\" fill=\"none\" stroke-linejoin=\"round\" d=\"M%d %d",
+                  d->px[0], d->py[0]);
     for (size_t i = 1; i < d->count; i++)
-        fprintf(out, "l%d %d", d->px[i] - d->px[i - 1], d->py[i] - d->py[i - 1]);
-    fprintf(out,
-            "\"/></defs>\n<use href=\"#track\" xlink:href=\"#track\" stroke=\"%s\" "
-            "stroke-opacity=\"0.5\" stroke-width=\"12\"/>\n<g class=\"moving\">\n",
-            blue);
-    fprintf(out,
-            "<use href=\"#track\" xlink:href=\"#track\" stroke=\"%s\" "
-            "stroke-width=\"24\" stroke-dasharray=\"%ld %ld\" stroke-dashoffset=\"%ld\">"
-            "<animate attributeName=\"stroke-dashoffset\" dur=\"%dms\" "
-            "repeatCount=\"indefinite\" values=\"",
-            orange, lround(trail), lround(length + trail + 10), lround(trail), milliseconds);
+        imki_text_add(out, "l%d %d", d->px[i] - d->px[i - 1], d->py[i] - d->py[i - 1]);
+    imki_text_add(out,
+                  "\"/></defs>\n<use href=\"#track\" xlink:href=\"#track\" stroke=\"%s\" "
+                  "stroke-opacity=\"0.5\" stroke-width=\"12\"/>\n<g class=\"moving\">\n",
+                  blue);
+    imki_text_add(out,
+                  "<use href=\"#track\" xlink:href=\"#track\" stroke=\"%s\" "
+                  "stroke-width=\"24\" stroke-dasharray=\"%ld %ld\" stroke-dashoffset=\"%ld\">"
+                  "<animate attributeName=\"stroke-dashoffset\" dur=\"%dms\" "
+                  "repeatCount=\"indefinite\" values=\"",
+                  orange, lround(trail), lround(length + trail + 10), lround(trail), milliseconds);
     for (int k = 0; k <= KEYS; k++)
-        fprintf(out, "%s%ld", k > 0 ? ";" : "", lround(trail - walked_at(d, (double)k / KEYS)));
-    fprintf(out,
-            "\"/></use>\n<circle r=\"60\" fill=\"%s\" fill-opacity=\"0\">"
-            "<set attributeName=\"fill-opacity\" to=\"1\"/><animateMotion dur=\"%dms\" "
-            "repeatCount=\"indefinite\" calcMode=\"linear\" keyTimes=\"",
-            orange, milliseconds);
+        imki_text_add(out, "%s%ld", k > 0 ? ";" : "",
+                      lround(trail - walked_at(d, (double)k / KEYS)));
+    imki_text_add(out,
+                  "\"/></use>\n<circle r=\"60\" fill=\"%s\" fill-opacity=\"0\">"
+                  "<set attributeName=\"fill-opacity\" to=\"1\"/><animateMotion dur=\"%dms\" "
+                  "repeatCount=\"indefinite\" calcMode=\"linear\" keyTimes=\"",
+                  orange, milliseconds);
     for (int k = 0; k <= KEYS; k++) {
-        fputs(k > 0 ? ";" : "", out);
+        imki_text_put(out, k > 0 ? ";" : "");
         put_part(out, (double)k / KEYS);
     }
-    fputs("\" keyPoints=\"", out);
+    imki_text_put(out, "\" keyPoints=\"");
     for (int k = 0; k <= KEYS; k++) {
-        fputs(k > 0 ? ";" : "", out);
+        imki_text_put(out, k > 0 ? ";" : "");
         put_part(out, walked_at(d, (double)k / KEYS) / length);
     }
-    fputs("\"><mpath href=\"#track\" xlink:href=\"#track\"/></animateMotion></circle>\n</g>\n",
-          out);
+    imki_text_put(
+        out, "\"><mpath href=\"#track\" xlink:href=\"#track\"/></animateMotion></circle>\n</g>\n");
 }
 
 /* ---- a path that jumps ----------------------------------------------------------------------- */
 
-static void put_hops(FILE *out, const drawing *d, const char *attribute, const int *places,
+static void put_hops(imki_text *out, const drawing *d, const char *attribute, const int *places,
                      int milliseconds, int delay)
 {
     const size_t stride = d->count / HOPS_MAX + 1;
-    fprintf(out,
-            "<animate attributeName=\"%s\" calcMode=\"discrete\" dur=\"%dms\" begin=\"%dms\" "
-            "repeatCount=\"indefinite\" values=\"",
-            attribute, milliseconds, delay);
+    imki_text_add(out,
+                  "<animate attributeName=\"%s\" calcMode=\"discrete\" dur=\"%dms\" begin=\"%dms\" "
+                  "repeatCount=\"indefinite\" values=\"",
+                  attribute, milliseconds, delay);
     for (size_t i = 0; i < d->count; i += stride)
-        fprintf(out, "%s%d", i > 0 ? ";" : "", places[i]);
-    fputs("\" keyTimes=\"", out);
+        imki_text_add(out, "%s%d", i > 0 ? ";" : "", places[i]);
+    imki_text_put(out, "\" keyTimes=\"");
     for (size_t i = 0; i < d->count; i += stride) {
-        fputs(i > 0 ? ";" : "", out);
+        imki_text_put(out, i > 0 ? ";" : "");
         put_part(out, (double)d->sample[i] / (double)d->animation->count);
     }
-    fputs("\"/>", out);
+    imki_text_put(out, "\"/>");
 }
 
-static void put_jumps(FILE *out, const drawing *d, int milliseconds)
+static void put_jumps(imki_text *out, const drawing *d, int milliseconds)
 {
     const size_t hops = d->count < HOPS_MAX ? d->count : HOPS_MAX;
     const int hop = milliseconds / (int)hops;
-    fprintf(out,
-            "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.45\" stroke-width=\"50\" "
-            "stroke-linecap=\"round\" d=\"",
-            blue);
+    imki_text_add(out,
+                  "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.45\" stroke-width=\"50\" "
+                  "stroke-linecap=\"round\" d=\"",
+                  blue);
     for (size_t i = 0; i < d->count; i++)
-        fprintf(out, "M%d %dh0", d->px[i], d->py[i]);
-    fputs("\"/>\n<g class=\"moving\">\n", out);
+        imki_text_add(out, "M%d %dh0", d->px[i], d->py[i]);
+    imki_text_put(out, "\"/>\n<g class=\"moving\">\n");
     for (int ghost = GHOSTS; ghost >= 0; ghost--) {
-        fprintf(out, "<circle cx=\"%d\" cy=\"%d\" r=\"%d\" fill=\"%s\" fill-opacity=\"0.%d\">",
-                d->px[0], d->py[0], ghost > 0 ? 55 : 75, orange, ghost > 0 ? 6 - ghost : 95);
+        imki_text_add(out,
+                      "<circle cx=\"%d\" cy=\"%d\" r=\"%d\" fill=\"%s\" fill-opacity=\"0.%d\">",
+                      d->px[0], d->py[0], ghost > 0 ? 55 : 75, orange, ghost > 0 ? 6 - ghost : 95);
         put_hops(out, d, "cx", d->px, milliseconds, ghost * hop);
         put_hops(out, d, "cy", d->py, milliseconds, ghost * hop);
-        fputs("</circle>\n", out);
+        imki_text_put(out, "</circle>\n");
     }
-    fputs("</g>\n", out);
+    imki_text_put(out, "</g>\n");
 }
 
 /* ---- all of it ------------------------------------------------------------------------------- */
@@ -319,16 +326,16 @@ imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t 
                              imk_error *error)
 {
     drawing d;
-    char *text = NULL;
-    size_t length = 0;
+    imki_text text = {.bytes = NULL}, *out = &text;
     imk_status status = check(animation, error);
     if (status != IMK_OK)
         return status;
-    FILE *out = drawing_make(&d, animation) ? open_memstream(&text, &length) : NULL;
-    if (out && d.count < 2)
+    if (!drawing_make(&d, animation))
+        text.failed = true;
+    else if (d.count < 2)
         status = imk_error_set(error, IMK_ERROR_EMPTY, "animation", "nothing moves",
                                "points at different places");
-    if (out && status == IMK_OK) {
+    if (!text.failed && status == IMK_OK) {
         const int milliseconds = (int)lround(1000 * animation->duration);
         put_head(out, &d);
         if (animation->points)
@@ -336,17 +343,15 @@ imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t 
         else
             put_walk(out, &d, milliseconds);
         put_clock(out, &d, milliseconds);
-        fputs("</svg>\n", out);
+        imki_text_put(out, "</svg>\n");
     }
-    if (!out || fclose(out) != 0)
-        status = imk_error_set(error, IMK_ERROR_MEMORY, "animation", NULL, NULL);
     drawing_free(&d);
-    if (status != IMK_OK) {
-        free(text);
+    if (status != IMK_OK)
         return status;
-    }
-    *svg = text;
-    *size = length;
+    char *made = imki_text_take(out, size);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "animation", NULL, NULL);
+    *svg = made;
     return IMK_OK;
 }
 

@@ -2,25 +2,25 @@
 /* Text of the caller inside HTML and SVG. */
 #include "markup_internal.h"
 
-void imki_markup_escape(FILE *out, const char *text)
+void imki_markup_escape(imki_text *out, const char *text)
 {
     for (const char *c = text ? text : ""; *c; c++) {
         switch (*c) {
         case '&':
-            fputs("&amp;", out);
+            imki_text_put(out, "&amp;");
             break;
         case '<':
-            fputs("&lt;", out);
+            imki_text_put(out, "&lt;");
             break;
         case '>':
-            fputs("&gt;", out);
+            imki_text_put(out, "&gt;");
             break;
         case '"':
-            fputs("&quot;", out);
+            imki_text_put(out, "&quot;");
             break;
         default:
             if ((unsigned char)*c >= 0x20 || *c == '\n' || *c == '\t')
-                fputc(*c, out);
+                imki_text_put_char(out, *c);
         }
     }
 }

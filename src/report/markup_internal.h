@@ -3,10 +3,10 @@
 #ifndef IMUKIT_REPORT_MARKUP_INTERNAL_H
 #define IMUKIT_REPORT_MARKUP_INTERNAL_H
 
-#include <stdio.h>
+#include "io/growing_text_internal.h"
 
 /* Written so that nothing in it is markup; control characters, which neither language allows, are
  * left out. NULL is "". */
-void imki_markup_escape(FILE *out, const char *text);
+void imki_markup_escape(imki_text *out, const char *text);
 
 #endif

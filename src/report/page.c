@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A self-contained HTML page: styles and drawings inside, nothing fetched, every text escaped. */
-#define _POSIX_C_SOURCE 200809L
 #include "markup_internal.h"
 
 #include "imukit/report.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The page grows in memory; a failed allocation is remembered by the stream and reported at the
- * end, so that callers need no check after every paragraph. */
+/* The page grows in memory; a failed allocation is remembered and reported at the end, so that
+ * callers need no check after every paragraph. */
 struct imk_page {
-    FILE *stream;
-    char *text;
-    size_t size;
+    imki_text text;
     int figures;
     bool lacks_figures;
     imk_error failure; /* of the first drawing that failed */
@@ -53,9 +49,9 @@ static void element(imk_page *page, const char *open, const char *text, const ch
 {
     if (!page)
         return;
-    fputs(open, page->stream);
-    imki_markup_escape(page->stream, text);
-    fputs(close, page->stream);
+    imki_text_put(&page->text, open);
+    imki_markup_escape(&page->text, text);
+    imki_text_put(&page->text, close);
 }
 
 imk_page *imk_page_create(const char *title, const char *subtitle)
@@ -63,16 +59,11 @@ imk_page *imk_page_create(const char *title, const char *subtitle)
     imk_page *page = calloc(1, sizeof *page);
     if (!page)
         return NULL;
-    page->stream = open_memstream(&page->text, &page->size);
-    if (!page->stream) {
-        free(page);
-        return NULL;
-    }
     element(page,
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
             title, "</title>\n<style>\n");
-    fputs(style, page->stream);
+    imki_text_put(&page->text, style);
     element(page, "</style>\n</head>\n<body>\n<main>\n<h1>", title, "</h1>\n");
     element(page, "<p class=\"subtitle\">", subtitle, "</p>\n");
     return page;
@@ -99,15 +90,15 @@ void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *con
 {
     if (!page)
         return;
-    fputs("<div class=\"table\"><table>\n", page->stream);
+    imki_text_put(&page->text, "<div class=\"table\"><table>\n");
     for (size_t row = 0; row < rows; row++) {
-        fputs("<tr>", page->stream);
+        imki_text_put(&page->text, "<tr>");
         for (size_t column = 0; column < columns; column++)
             element(page, row == 0 ? "<th>" : "<td>", cells[row * columns + column],
                     row == 0 ? "</th>" : "</td>");
-        fputs("</tr>\n", page->stream);
+        imki_text_put(&page->text, "</tr>\n");
     }
-    fputs("</table></div>\n", page->stream);
+    imki_text_put(&page->text, "</table></div>\n");
 }
 
 void imk_page_break(imk_page *page)
@@ -149,9 +140,9 @@ static void put_svg(imk_page *page, const char *svg)
                 length = strlen(openings[i]);
         if (length == 0) {
             if (*c)
-                fputc(*c++, page->stream);
+                imki_text_put_char(&page->text, *c++);
         } else {
-            fprintf(page->stream, "%.*sf%d-", (int)length, c, page->figures);
+            imki_text_add(&page->text, "%.*sf%d-", (int)length, c, page->figures);
             c += length;
         }
     }
@@ -181,7 +172,7 @@ void imk_page_figure(imk_page *page, const imk_figure *figure, const char *capti
         fail(page, &error);
         return;
     }
-    fputs("<figure>\n", page->stream);
+    imki_text_put(&page->text, "<figure>\n");
     put_svg(page, svg);
     element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
     free(svg);
@@ -203,7 +194,7 @@ void imk_page_animation(imk_page *page, const imk_animation *animation, const ch
         element(page, "<p class=\"verdict note\">Animation left out: ", error.found, ".</p>\n");
         return;
     }
-    fputs("<figure>\n", page->stream);
+    imki_text_put(&page->text, "<figure>\n");
     put_svg(page, svg);
     element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
     free(svg);
@@ -218,12 +209,10 @@ imk_status imk_page_write(imk_page *page, const char *path, imk_error *error)
 {
     if (!page)
         return path ? imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL) : IMK_OK;
-    fputs("<footer>Made by imukit " IMK_VERSION ".</footer>\n</main>\n</body>\n</html>\n",
-          page->stream);
-    bool bad = ferror(page->stream) != 0;
-    bad = fclose(page->stream) != 0 || bad;
+    imki_text_put(&page->text,
+                  "<footer>Made by imukit " IMK_VERSION ".</footer>\n</main>\n</body>\n</html>\n");
     imk_status status = IMK_OK;
-    if (path && bad) {
+    if (path && page->text.failed) {
         status = imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
     } else if (path && page->failure.status != IMK_OK) {
         status = page->failure.status;
@@ -233,11 +222,11 @@ imk_status imk_page_write(imk_page *page, const char *path, imk_error *error)
         imk_output_file *file;
         status = imk_output_file_open(path, &file, error);
         if (status == IMK_OK) {
-            imk_output_file_write(file, page->text, page->size);
+            imk_output_file_write(file, page->text.bytes, page->text.size);
             status = imk_output_file_commit(file, error);
         }
     }
-    free(page->text);
+    free(page->text.bytes);
     free(page);
     return status;
 }
