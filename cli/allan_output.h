@@ -12,7 +12,7 @@ typedef struct allan_options {
     const char *statistic, *tau, *output, *plot, *report;
     double confidence;
     bool json;
-    uint64_t threads;
+    option_integer threads;
 } allan_options;
 
 /* What was found: one curve per channel and statistic. */

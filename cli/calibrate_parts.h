@@ -25,10 +25,10 @@ typedef struct calibrate_options {
     /* NaN: not given. */
     double gravity, placement, mounting, turn_angle, initial_rest, window, minimum, trim, settle;
     double reference_temperature, soak;
-    uint64_t temperature_order; /* 0: chosen */
-    int frame, table_axis;      /* -1: not given */
-    int robust;                 /* 0 yes, 1 no */
-    int estimator;              /* 0 maximum likelihood, 1 closed form */
+    option_integer temperature_order;
+    int frame, table_axis; /* -1: not given */
+    int robust;            /* 0 yes, 1 no */
+    int estimator;         /* 0 maximum likelihood, 1 closed form */
     bool no_earth, plan, anyway, poses, json, strict;
 } calibrate_options;
 

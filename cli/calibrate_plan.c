@@ -376,8 +376,8 @@ static int set_up(plan *p)
     p->settings.turn_angle = b->log[0].settings.turn_angle;
     if (!isnan(o->soak))
         p->settings.soak = o->soak;
-    if (o->temperature_order > 0)
-        p->settings.temperature_order = (int)o->temperature_order;
+    if (o->temperature_order.given)
+        p->settings.temperature_order = (int)o->temperature_order.value;
     if (o->log.rate > 0)
         p->settings.rate = o->log.rate;
     return parse_wishes(p);

@@ -237,7 +237,7 @@ static int settle(const bench *b, bench_log *log)
     set_if(&s.trim, o->trim);
     set_if(&s.settle, o->settle);
     set_if(&s.reference_temperature, o->reference_temperature);
-    s.temperature_order = (int)o->temperature_order;
+    s.temperature_order = (int)o->temperature_order.value;
     log->settings = s;
     return bench_switch_terms(o, log->procedure, &log->settings);
 }
@@ -292,7 +292,7 @@ static int check_used(const bench *b)
         return command_misused(none, "table-axis", o->procedure, "rate-table");
     if (!isnan(o->turn_angle) && !ferraris)
         return command_misused(none, "turn-angle", o->procedure, "ferraris");
-    if (o->temperature_order > 0 && !thermal)
+    if (o->temperature_order.given && !thermal)
         return command_misused(none, "temperature-order", o->procedure, "thermal");
     if (!isnan(o->reference_temperature) && !thermal)
         return command_misused(none, "reference-temperature", o->procedure, "thermal");

@@ -118,8 +118,9 @@ static void collect_term(const bench *b, int sensor, int term, parameter_list *l
     const imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
     const bool powers = term == IMK_MODEL_BIAS_TEMPERATURE || term == IMK_MODEL_SCALE_TEMPERATURE;
     const bool pairs = term == IMK_MODEL_MISALIGNMENT || term == IMK_MODEL_CROSS_AXIS;
-    const int order = (int)b->options->temperature_order;
-    const int elements = powers ? (order > 0 ? order : 3) : imk_model_term_elements(sensor, term);
+    const option_integer order = b->options->temperature_order;
+    const int elements =
+        powers ? (order.given ? (int)order.value : 3) : imk_model_term_elements(sensor, term);
     for (int axis = 0; axis < triad->axis_count; axis++)
         for (int element = 0; element < elements; element++) {
             const imk_model_parameter p = {(uint8_t)sensor, (uint8_t)term, (uint8_t)axis,

@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VECTORS_MAX = 1000000 };
-
 const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
     {"emit-c", 0, OPTION_FILE, "DIR", NULL, NULL,
      "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c",
@@ -21,7 +19,7 @@ const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
     {"prefix", 0, OPTION_TEXT, "NAME", NULL, NULL,
      "of its files and names; default: imukit_ and the name of the model",
      offsetof(compensate_emission, prefix)},
-    {"vectors", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"vectors", 0, OPTION_INTEGER, "N", NULL, "1-1000000",
      "samples in its self-test, 1 to 1000000; default 64", offsetof(compensate_emission, vectors)},
 };
 
@@ -109,7 +107,7 @@ static int emit(const compensate_options *o, const char *model_name, const imk_m
     settings.rate_limit = o->rate_limit;
     settings.force_limit = o->force_limit;
     files.name = o->emission.prefix;
-    files.vectors = (uint32_t)o->emission.vectors;
+    files.vectors = (uint32_t)o->emission.vectors.value;
     if (imk_firmware_plan(plan, model, &settings, &error) != IMK_OK)
         return command_error(&error, model_name);
     imk_firmware_terms(plan, whole, &taken_out, &left_in);
@@ -138,9 +136,6 @@ static int check(const compensate_options *o, const char *second)
                                "--emit-c DIR");
     if (o->output)
         return command_misused("--emit-c writes into its directory: leave --output out");
-    if (o->emission.vectors < 1 || o->emission.vectors > VECTORS_MAX)
-        return command_misused("--vectors %llu: expected 1 to 1000000",
-                               (unsigned long long)o->emission.vectors);
     return -1;
 }
 

@@ -14,7 +14,7 @@
 typedef struct compensate_emission {
     const char *directory, *prefix;
     int arithmetic; /* imk_firmware_arithmetic */
-    uint64_t vectors;
+    option_integer vectors;
 } compensate_emission;
 enum { COMPENSATE_EMIT_OPTIONS = 4 };
 extern const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS];
@@ -23,7 +23,7 @@ typedef struct compensate_options {
     log_input log;
     const char *output, *to_gyro_unit, *to_accel_unit;
     double temperature, temperature_time, powered_for, rate_limit, force_limit;
-    uint64_t decimals, threads;
+    option_integer decimals, threads;
     bool flags, json, strict;
     term_selection terms;
     compensate_emission emission;

@@ -95,9 +95,9 @@ static int create(stream *s)
     imk_error error;
     for (size_t k = 0; k < columns->count; k++) {
         bool flags = columns->content[k].source < 0 && columns->content[k].sensor == 2;
-        decimals[k] = flags ? 0 : (int)o->decimals;
+        decimals[k] = flags ? 0 : (int)o->decimals.value;
     }
-    bool fixed = o->decimals <= 17;
+    bool fixed = o->decimals.given;
     if (imk_log_create(o->output ? o->output : "-", columns->count, columns->column,
                        fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST, fixed ? decimals : NULL, 0,
                        &s->writer, &error) != IMK_OK)
@@ -256,7 +256,7 @@ int compensate_stream(const compensate_options *o, compensation *c, const char *
     if (!memory)
         return command_failed("memory is exhausted");
     c->counts.stretches = 1;
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads);
+    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
     imk_executor executor = imk_thread_pool_executor(pool);
     int code = copy(&s, log, name, &executor);
     imk_thread_pool_destroy(pool);

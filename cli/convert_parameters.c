@@ -34,11 +34,11 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
      "random-walk|gauss-markov|two-gauss-markov|left-out",
      "--to filter: what stands for bias instability, which no filter state is",
      offsetof(parameter_options, flicker)},
-    {"tau-from", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+    {"tau-from", 0, OPTION_QUANTITY, "TIME", "s", "positive",
      "--to filter: shortest averaging time at which that has to hold; default 1 s",
      offsetof(parameter_options, tau_from)},
-    {"tau-to", 0, OPTION_QUANTITY, "TIME", "s", NULL, "--to filter: the longest; default 1000 s",
-     offsetof(parameter_options, tau_to)},
+    {"tau-to", 0, OPTION_QUANTITY, "TIME", "s", "positive",
+     "--to filter: the longest; default 1000 s", offsetof(parameter_options, tau_to)},
 };
 
 /* Files that may hold parameters; logs are not looked into. */

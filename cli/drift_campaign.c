@@ -90,7 +90,7 @@ static int run_campaign(drift_result *r, crew *c, imk_campaign *campaign)
         return command_misused("--shard %s: there is no run in it; --monte-carlo %llu has fewer "
                                "runs than shards",
                                o->shard, (unsigned long long)campaign->run_count);
-    c->threads = campaign_threads(o->threads);
+    c->threads = campaign_threads(o->threads.value);
     c->memory = calloc(c->threads, sizeof *c->memory);
     if (!c->memory)
         return command_failed("memory is exhausted");
@@ -108,7 +108,7 @@ static int run_campaign(drift_result *r, crew *c, imk_campaign *campaign)
 int drift_runs(drift_result *r)
 {
     const drift_scene *scene = r->scene;
-    crew c = {.one = &r->cases[r->case_count - 1], .seed = r->options->seed};
+    crew c = {.one = &r->cases[r->case_count - 1], .seed = r->options->seed.value};
     double *time = row_times(scene);
     char *parameters = drift_parameters(scene, &c.one->settings, c.one->model);
     int code = parameters ? -1 : EXIT_FAILED;
@@ -120,7 +120,7 @@ int drift_runs(drift_result *r)
         imk_campaign campaign = {.version = IMK_VERSION,
                                  .parameters = parameters,
                                  .seed = c.seed,
-                                 .run_count = r->options->monte_carlo,
+                                 .run_count = r->options->monte_carlo.value,
                                  .time_count = scene->row_count,
                                  .time = time,
                                  .state_count = IMK_DRIFT_STATES,

@@ -207,7 +207,7 @@ static json_t *json_of_inputs(const drift_result *r)
     if (s->alignment == IMK_ALIGNED_SELF)
         json_object_set_new(inputs, "alignment_time", json_quantity(s->alignment_time, "s"));
     if (r->found)
-        json_object_set_new(inputs, "seed", json_integer((json_int_t)r->options->seed));
+        json_object_set_new(inputs, "seed", json_integer((json_int_t)r->options->seed.value));
     return inputs;
 }
 

@@ -15,7 +15,7 @@
 
 typedef struct drift_options {
     double duration, rate, align_time, latitude, height, roll, pitch, yaw;
-    uint64_t monte_carlo, seed, threads;
+    option_integer monte_carlo, seed, threads;
     int aligned, vertical; /* in the order of the choices */
     bool compensated, json;
     const char *times, *motion, *initial_position, *initial_velocity, *initial_attitude;

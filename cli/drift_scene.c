@@ -30,7 +30,7 @@ static int open_motion(const drift_options *o, drift_scene *s)
         return code;
     const imk_geodetic place = {s->settings.latitude, 0.0, s->settings.height};
     imk_status status = imk_motion_read(o->motion, NULL, isnan(o->latitude) ? NULL : &place,
-                                        o->seed, &s->motion, &error);
+                                        o->seed.value, &s->motion, &error);
     if (status != IMK_OK)
         return command_error(&error, o->motion);
     const imk_motion *motion = imk_motion_file_motion(s->motion);

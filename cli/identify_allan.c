@@ -17,7 +17,7 @@ static imk_allan_fit_settings settings_of(const identification *i, const imk_ide
     settings.confidence = i->options->confidence;
     settings.significance = i->options->significance;
     settings.tolerance = i->options->tolerance;
-    settings.gauss_markov_max = (int)i->options->gauss_markov;
+    settings.gauss_markov_max = (int)i->options->gauss_markov.value;
     settings.filter = r->filter;
     settings.sinusoid_count = r->sinusoid_count;
     for (int k = 0; k < r->sinusoid_count; k++)

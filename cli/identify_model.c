@@ -168,7 +168,7 @@ static imk_status simulate_twin(identification *i, const imk_model *noise,
 {
     imk_simulation simulation = imk_simulation_default();
     simulation.rate = 1 / i->channels.dt;
-    simulation.seed = i->options->seed;
+    simulation.seed = i->options->seed.value;
     simulation.earth = false;
     size_t n = i->channels.rows, channels = i->channels.count;
     size_t size = imk_simulator_size(noise, &simulation);

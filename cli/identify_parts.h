@@ -22,7 +22,7 @@ typedef struct identify_options {
     log_input log;
     const char *output, *into, *name, *report, *plot, *truth, *keep, *plan, *want;
     double confidence, significance, duration, tolerance;
-    uint64_t seed, threads, gauss_markov;
+    option_integer seed, threads, gauss_markov;
     int method; /* identify_method */
     bool twin, json, strict, runs, devices, curve, plain;
 } identify_options;

@@ -102,8 +102,6 @@ static int check_numbers(const navigate_options *o)
 {
     if (!isnan(o->align) && !(o->align >= 1))
         return command_misused("--align must be 1 s or more");
-    if (!(o->samples >= 1 && o->samples <= 4))
-        return command_misused("--coning %llu: expected 1 to 4", (unsigned long long)o->samples);
     if (!(o->interval > 0))
         return command_misused("--interval must be positive");
     if (!(o->still_velocity > 0))

@@ -16,7 +16,7 @@ typedef struct navigate_options {
     const char *position, *attitude, *heading, *model, *zero_velocity, *output, *plot, *report;
     /* NaN: not given, of align, stop and still_rotation */
     double align, stop, still_velocity, still_rotation, interval, standard_gravity;
-    uint64_t samples;
+    option_integer samples;
     int method, vertical; /* method -1: not given */
     bool json, strict, gravity_free;
 } navigate_options;

@@ -31,7 +31,7 @@ static int describe_errors(navigation *n)
     imk_error error;
     imk_zero_velocity_default(s);
     s->hold_height = o->vertical == 0;
-    s->samples = (int)o->samples;
+    s->samples = (int)o->samples.value;
     s->velocity_sigma = o->still_velocity;
     s->rotation_sigma = isnan(o->still_rotation) ? 0.0 : o->still_rotation;
     if (n->aligned)

@@ -5,6 +5,7 @@
 #include "command.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -46,22 +47,35 @@ static int unknown_option(const verb *v, const char *name, size_t length)
     return command_misused("there is no option --%s", given);
 }
 
-static int set_integer(const option *o, const char *text, uint64_t *target)
+/* "1-5" */
+static void read_range(const option *o, uint64_t *least, uint64_t *most)
 {
-    uint64_t value = 0;
+    char *end = NULL;
+    *least = o->choices ? strtoull(o->choices, &end, 10) : 0;
+    *most = end ? strtoull(end + 1, NULL, 10) : UINT64_MAX;
+}
+
+static int set_integer(const option *o, const char *text, option_integer *target)
+{
+    uint64_t value = 0, least, most;
+    bool beyond = false;
     const char *c = text;
+    read_range(o, &least, &most);
     for (; *c >= '0' && *c <= '9'; c++) {
-        uint64_t digit = (uint64_t)(*c - '0');
-        if (value > (UINT64_MAX - digit) / 10)
-            return command_misused("--%s %s: the number is too large; at most "
-                                   "18446744073709551615",
-                                   o->name, text);
+        const uint64_t digit = (uint64_t)(*c - '0');
+        beyond = beyond || value > (UINT64_MAX - digit) / 10;
         value = value * 10 + digit;
     }
     if (c == text || *c)
-        return command_misused("--%s %s: expected a whole number, such as --%s 1", o->name, text,
-                               o->name);
-    *target = value;
+        return command_misused("--%s %s: expected a whole number, such as --%s %llu", o->name, text,
+                               o->name, (unsigned long long)(least > 0 ? least : 1));
+    if (o->choices && (beyond || value < least || value > most))
+        return command_misused("--%s %s: expected %llu to %llu", o->name, text,
+                               (unsigned long long)least, (unsigned long long)most);
+    if (beyond)
+        return command_misused("--%s %s: the number is too large; at most 18446744073709551615",
+                               o->name, text);
+    *target = (option_integer){value, true};
     return -1;
 }
 
@@ -99,6 +113,8 @@ static int set_quantity(const option *o, const char *text, double *target)
                                                 : imk_status_text(status),
                                imk_dimension_name(unit.dimension),
                                imk_dimension_examples(unit.dimension));
+    if (o->choices && !(value > 0))
+        return command_misused("--%s %s: expected more than 0", o->name, text);
     *target = value;
     return -1;
 }

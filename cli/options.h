@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 typedef enum option_kind {
@@ -13,11 +14,17 @@ typedef enum option_kind {
     OPTION_TEXT,     /* const char * */
     OPTION_FILE,     /* const char *: completed as a file name */
     OPTION_OUTPUT,   /* the same, of a file that is written: no operand, and no other output */
-    OPTION_INTEGER,  /* uint64_t */
+    OPTION_INTEGER,  /* option_integer */
     OPTION_QUANTITY, /* double, SI: a number with a unit of the dimension of `unit` */
     OPTION_FRACTION, /* double in (0, 1): "0.95" or "95%" */
     OPTION_CHOICE    /* int: position in `choices` */
 } option_kind;
+
+/* A whole number, and whether it was given: no value stands for that it was not. */
+typedef struct option_integer {
+    uint64_t value; /* the default otherwise */
+    bool given;
+} option_integer;
 
 typedef struct option {
     const char *name; /* without the dashes */
@@ -25,7 +32,8 @@ typedef struct option {
     option_kind kind;
     const char *value;   /* what --help calls the value: "RATE" */
     const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages */
-    const char *choices; /* OPTION_CHOICE: "octave|decade|all" */
+    const char *choices; /* OPTION_CHOICE: "octave|decade|all"; OPTION_INTEGER: "1-5", the least and
+                            the most, NULL: any; OPTION_QUANTITY: "positive" refuses 0 and less */
     const char *help;    /* a clause */
     size_t offset;       /* of the value in the settings of the group */
 } option;

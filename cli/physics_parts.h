@@ -18,7 +18,7 @@ typedef struct physics_options {
     double temperature, temperature_rate, duration, output_rate, step, signal_rate;
     double view_duration, view_rate; /* of --view; NaN: the view's own */
     int level;
-    uint64_t seed, run, threads;
+    option_integer seed, run, threads;
     const char *output, *signals, *plot, *report, *view, *animate;
 } physics_options;
 

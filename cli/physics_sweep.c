@@ -26,7 +26,7 @@ int physics_laboratory_make(const physics *p, physics_laboratory *laboratory)
     void *workspace = aligned_alloc(64, (size + 63) / 64 * 64);
     if (!workspace)
         return command_failed("memory is exhausted");
-    imk_thread_pool *pool = imk_thread_pool_create(p->options->threads);
+    imk_thread_pool *pool = imk_thread_pool_create(p->options->threads.value);
     const imk_executor executor = imk_thread_pool_executor(pool);
     const imk_status status =
         imk_laboratory_run(&settings, workspace, size, &executor, &laboratory->result, &error);

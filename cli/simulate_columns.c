@@ -139,6 +139,6 @@ int log_layout_make(const simulate_options *o, const imk_model *model, const sce
     }
     for (size_t c = 0; c < layout->count; c++)
         layout->decimals[c] =
-            c == 0 ? time_decimals(s->simulation.rate, s->start) : (int)o->decimals;
+            c == 0 ? time_decimals(s->simulation.rate, s->start) : (int)o->decimals.value;
     return -1;
 }

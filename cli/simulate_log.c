@@ -84,7 +84,7 @@ static int stream(recording *r, const char *label)
 static int create(const simulate_options *o, recording *r, const char *path)
 {
     imk_error error;
-    bool fixed = o->decimals != decimals_shortest;
+    bool fixed = o->decimals.given;
     if (imk_log_create(path, r->layout->count, r->layout->column,
                        fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST, fixed ? r->layout->decimals : NULL,
                        r->drops ? 0 : r->scene->rows, &r->writer, &error) != IMK_OK)

@@ -11,14 +11,12 @@
 
 typedef struct simulate_options {
     double rate, duration, latitude, height, roll, pitch, yaw;
-    uint64_t seed, run, runs, decimals, threads, substeps;
+    option_integer seed, run, runs, decimals, threads, substeps;
     bool no_earth, increments;
     const char *output, *format, *gyro_unit, *accel_unit;
     const char *motion, *temperature, *truth;
     term_selection terms;
 } simulate_options;
-
-extern const uint64_t decimals_shortest; /* of the option --decimals */
 
 /* ---- simulate_scene.c ---- */
 

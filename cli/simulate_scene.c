@@ -45,11 +45,12 @@ static int open_motion(const simulate_options *o, scene *s)
     const imk_geodetic *stated = isnan(o->latitude) ? NULL : &place;
     imk_log_settings settings = imk_log_settings_default();
     settings.reopened = true;
-    imk_status status = imk_motion_read(o->motion, &settings, stated, o->seed, &s->motion, &error);
+    imk_status status =
+        imk_motion_read(o->motion, &settings, stated, o->seed.value, &s->motion, &error);
     if (status != IMK_OK && lacks_rate(&error) && o->rate > 0) {
         /* A table without time has the rate of the log. */
         settings.rate = o->rate;
-        status = imk_motion_read(o->motion, &settings, stated, o->seed, &s->motion, &error);
+        status = imk_motion_read(o->motion, &settings, stated, o->seed.value, &s->motion, &error);
     }
     if (status != IMK_OK)
         return table_error(&error, o->motion);
@@ -116,7 +117,7 @@ static void warn_of_vibration(const simulate_options *o, const scene *s)
 {
     const imk_trajectory *trajectory = s->simulation.motion.trajectory;
     const double rate = s->simulation.rate;
-    if (!trajectory || o->substeps > 0)
+    if (!trajectory || o->substeps.given)
         return;
     size_t parts = imk_trajectory_substeps(trajectory, 1 / rate);
     if (parts > IMK_SUBSTEPS_MAX)
@@ -162,15 +163,15 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
         return command_misused("--latitude %g deg: expected -90deg to 90deg",
                                place.latitude * 90 / quarter_turn);
     s->simulation = imk_simulation_default();
-    s->simulation.seed = o->seed;
-    s->simulation.run = (uint32_t)o->run;
+    s->simulation.seed = o->seed.value;
+    s->simulation.run = (uint32_t)o->run.value;
     s->simulation.earth = !o->no_earth;
     s->simulation.latitude = place.latitude;
     s->simulation.height = place.height;
     s->simulation.roll = o->roll;
     s->simulation.pitch = o->pitch;
     s->simulation.yaw = o->yaw;
-    s->simulation.substeps = o->substeps;
+    s->simulation.substeps = o->substeps.value;
     int code = o->motion ? open_motion(o, s) : -1;
     if (code < 0)
         code = check_clock(o, model, s);

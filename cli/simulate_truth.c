@@ -180,7 +180,7 @@ int simulate_truth(const simulate_options *o, const imk_model *model, const scen
         code = command_failed("memory is exhausted");
     } else {
         t->scene = s;
-        t->random = imk_random_seeded(o->seed);
+        t->random = imk_random_seeded(o->seed.value);
         t->trajectory = simulation->motion.trajectory;
         if (!t->trajectory && !simulation->motion.recorded) {
             imk_geodetic place = {simulation->latitude, 0.0, simulation->height};

@@ -14,7 +14,7 @@ typedef struct spectrum_options {
     double resolution, from, to, confidence, false_alarm;
     const char *output, *plot, *report;
     bool trend, json;
-    uint64_t threads;
+    option_integer threads;
 } spectrum_options;
 
 enum { SPECTRUM_LINES_MAX = 64, SPECTRUM_PLOTTED_PER_DECADE = 100, SPECTRUM_TABLE_PER_DECADE = 4 };

@@ -41,7 +41,7 @@ static const option allan_option_table[] = {
      "write one self-contained page: plot and tables", offsetof(allan_options, report)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of a table",
      offsetof(allan_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL, "threads to use; default: all processors",
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
      offsetof(allan_options, threads)},
 };
 
@@ -333,7 +333,7 @@ static int run(int count, char **words)
     if (code < 0)
         code = log_input_load(&o.log, r->path, &r->channels);
     if (code < 0) {
-        imk_thread_pool *pool = imk_thread_pool_create(o.threads);
+        imk_thread_pool *pool = imk_thread_pool_create(o.threads.value);
         imk_executor executor = imk_thread_pool_executor(pool);
         code = compute(r, &executor);
         imk_thread_pool_destroy(pool);

@@ -125,7 +125,7 @@ static const option log_options[] = {
     {"table-axis", 0, OPTION_CHOICE, "AXIS", NULL, "x|y|z",
      "of the unit, about which a column table_rate [deg/s] turns it",
      offsetof(calibrate_options, table_axis)},
-    {"temperature-order", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"temperature-order", 0, OPTION_INTEGER, "N", NULL, "1-5",
      "thermal: order of the bias, 1 to 5; default: chosen by cross-validation",
      offsetof(calibrate_options, temperature_order)},
     {"reference-temperature", 0, OPTION_QUANTITY, "T", "degC", NULL,
@@ -134,6 +134,8 @@ static const option log_options[] = {
 };
 
 #define COUNT(table) (sizeof(table) / sizeof *(table))
+
+_Static_assert(IMK_TEMPERATURE_ORDER_MAX == 5, "as the range of --temperature-order says");
 
 static int run(int count, char **words);
 
@@ -236,9 +238,6 @@ static int check(const calibrate_options *o)
         return command_misused("--want is of --plan");
     if (!isnan(o->soak) && (!o->plan || !(o->soak >= 0)))
         return command_misused("--soak is of --plan, 0 s or more");
-    if (o->temperature_order > IMK_TEMPERATURE_ORDER_MAX)
-        return command_misused("--temperature-order %llu: expected 1 to 5",
-                               (unsigned long long)o->temperature_order);
     return command_check_plot(o->plot);
 }
 

@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const uint64_t decimals_shortest = UINT64_MAX;
-
 static const option compensate_option_table[] = {
     {"output", 'o', OPTION_OUTPUT, "LOG", NULL, NULL,
      "where to write: .csv (also .gz, .zst) or .npy; - (the default) is standard output",
@@ -24,18 +22,18 @@ static const option compensate_option_table[] = {
     {"powered-for", 0, OPTION_QUANTITY, "TIME", "s", NULL,
      "how long the unit was on before the first row, for warm-up; default 0s",
      offsetof(compensate_options, powered_for)},
-    {"rate-limit", 0, OPTION_QUANTITY, "RATE", "deg/s", NULL,
+    {"rate-limit", 0, OPTION_QUANTITY, "RATE", "deg/s", "positive",
      "largest rate, where the model has nonlinear terms and no range",
      offsetof(compensate_options, rate_limit)},
-    {"force-limit", 0, OPTION_QUANTITY, "FORCE", "g", NULL, "largest specific force, likewise",
-     offsetof(compensate_options, force_limit)},
+    {"force-limit", 0, OPTION_QUANTITY, "FORCE", "g", "positive",
+     "largest specific force, likewise", offsetof(compensate_options, force_limit)},
     {"to-gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
      "of the rates written; default: as read, rad/s for counts",
      offsetof(compensate_options, to_gyro_unit)},
     {"to-accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
      "of the forces written; default: as read, m/s^2 for counts",
      offsetof(compensate_options, to_accel_unit)},
-    {"decimals", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
      "digits after the point, 0 to 17; default: as many as the number needs",
      offsetof(compensate_options, decimals)},
     {"flags", 0, OPTION_FLAG, NULL, NULL, NULL,
@@ -45,7 +43,7 @@ static const option compensate_option_table[] = {
      offsetof(compensate_options, strict)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL,
      "print the summary as JSON; the log goes to a file then", offsetof(compensate_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
      "threads to use; default: all processors. The bytes do not depend on it",
      offsetof(compensate_options, threads)},
 };
@@ -225,9 +223,6 @@ static int compensate(const compensate_options *o, compensation *c, const char *
 
 static int check(const compensate_options *o)
 {
-    if (o->decimals != decimals_shortest && o->decimals > 17)
-        return command_misused("--decimals %llu: expected 0 to 17",
-                               (unsigned long long)o->decimals);
     if (o->json && !o->emission.directory && (!o->output || strcmp(o->output, "-") == 0))
         return command_misused("--json and the log cannot both go to standard output: add -o LOG");
     if (!isnan(o->temperature) && !(o->temperature >= 0))
@@ -236,19 +231,13 @@ static int check(const compensate_options *o)
         return command_misused("--temperature-time must be positive");
     if (!(o->powered_for >= 0))
         return command_misused("--powered-for must not be negative");
-    if (!(o->rate_limit >= 0))
-        return command_misused("--rate-limit must be positive");
-    if (!(o->force_limit >= 0))
-        return command_misused("--force-limit must be positive");
     return -1;
 }
 
 static int run(int count, char **words)
 {
-    compensate_options o = {.temperature = (double)NAN,
-                            .temperature_time = 30,
-                            .decimals = decimals_shortest,
-                            .emission = {.vectors = 64}};
+    compensate_options o = {
+        .temperature = (double)NAN, .temperature_time = 30, .emission = {.vectors = {.value = 64}}};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&compensate_verb, count, words, &o, operands);
     if (code < 0)

@@ -16,10 +16,8 @@ typedef struct convert_options {
     parameter_options parameters;
     convert_motion_options motion;
     const char *to_gyro_unit, *to_accel_unit, *to_time_unit, *to_temperature_unit, *select;
-    uint64_t decimals, threads;
+    option_integer decimals, threads;
 } convert_options;
-
-static const uint64_t decimals_shortest = UINT64_MAX;
 
 static const option convert_option_table[] = {
     {"select", 0, OPTION_TEXT, "NAMES", NULL, NULL,
@@ -35,10 +33,10 @@ static const option convert_option_table[] = {
     {"to-temperature-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
      "of the temperature column written; default: as read",
      offsetof(convert_options, to_temperature_unit)},
-    {"decimals", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
      "digits after the point, 0 to 17; default: as many as the number needs",
      offsetof(convert_options, decimals)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL, "threads to use; default: all processors",
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
      offsetof(convert_options, threads)},
 };
 
@@ -239,16 +237,16 @@ static int write_log(const convert_options *o, imk_log_reader *reader, convert_m
                      const conversion *c, const char *in, const char *out)
 {
     int decimals[IMK_LOG_COLUMNS_MAX];
-    bool fixed = o->decimals != decimals_shortest;
+    bool fixed = o->decimals.given;
     imk_error error;
     imk_log_writer *writer;
     for (size_t k = 0; k < c->count; k++)
-        decimals[k] = (int)o->decimals;
+        decimals[k] = (int)o->decimals.value;
     if (imk_log_create(out, c->count, c->column, fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST,
                        fixed ? decimals : NULL, 0, &writer, &error) != IMK_OK)
         return command_error(&error, NULL);
     imk_log_write_labels(writer, label_of, reader);
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads);
+    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
     imk_executor executor = imk_thread_pool_executor(pool);
     int code = copy_rows(reader, motion, writer, c, in, &executor);
     imk_thread_pool_destroy(pool);
@@ -278,14 +276,12 @@ static int convert_log(const convert_options *o, const char *in, const char *out
 
 static int run(int count, char **words)
 {
-    convert_options o = {.decimals = decimals_shortest, .motion = convert_motion_default()};
+    convert_options o = {.motion = convert_motion_default()};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&convert_verb, count, words, &o, operands);
     if (code >= 0)
         return code;
     operands[1] = options_output_name(operands[1]);
-    if (o.decimals != decimals_shortest && o.decimals > 17)
-        return command_misused("--decimals %llu: expected 0 to 17", (unsigned long long)o.decimals);
     if (parameters_wanted(&o.parameters, operands[0]))
         return convert_parameters(&o.parameters, o.log.rate, operands[0], operands[1]);
     if (o.parameters.json || o.parameters.sensor || o.parameters.density)

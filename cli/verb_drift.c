@@ -63,7 +63,7 @@ static const option place_option_table[] = {
 };
 
 static const option output_option_table[] = {
-    {"monte-carlo", 'n', OPTION_INTEGER, "N", NULL, NULL,
+    {"monte-carlo", 'n', OPTION_INTEGER, "N", NULL, "1-4294967295",
      "simulate and navigate so many runs as well, without linearising",
      offsetof(drift_options, monte_carlo)},
     {"seed", 's', OPTION_INTEGER, "N", NULL, NULL,
@@ -72,7 +72,7 @@ static const option output_option_table[] = {
     {"shard", 0, OPTION_TEXT, "I/N", NULL, NULL,
      "only part I of N of the runs, for imukit merge; with -o PART.h5",
      offsetof(drift_options, shard)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
      "threads to use; default: all processors. The results do not depend on it",
      offsetof(drift_options, threads)},
     {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
@@ -134,10 +134,6 @@ static bool is_csv(const char *path)
 
 static int check_runs(const drift_options *o, size_t models)
 {
-    if (o->monte_carlo == 0)
-        return command_misused("--monte-carlo 0: expected at least 1 run");
-    if (o->monte_carlo > (uint64_t)UINT32_MAX)
-        return command_misused("--monte-carlo: expected at most %u runs", UINT32_MAX);
     if (models > 1)
         return command_misused("--monte-carlo is of one model at a time");
     if (o->shard && !o->output)
@@ -221,7 +217,7 @@ static void show_shard(const drift_options *o, const drift_result *r)
 static int drift(const drift_options *o, drift_result *r, bool runs)
 {
     drift_answer answer = {0};
-    imk_thread_pool *pool = imk_thread_pool_create(campaign_threads(o->threads));
+    imk_thread_pool *pool = imk_thread_pool_create(campaign_threads(o->threads.value));
     const imk_executor executor = imk_thread_pool_executor(pool);
     int code = drift_analyse(r, &executor);
     if (code < 0 && r->scene->want.asked)
@@ -240,19 +236,17 @@ static int drift(const drift_options *o, drift_result *r, bool runs)
 static int run(int count, char **words)
 {
     const double missing = (double)NAN;
-    const uint64_t no_runs = UINT64_MAX;
     drift_options o = {.duration = missing,
                        .rate = missing,
                        .align_time = missing,
                        .latitude = missing,
-                       .seed = 1,
-                       .monte_carlo = no_runs};
+                       .seed = {.value = 1}};
     const char *operands[DRIFT_MODELS_MAX + 1] = {NULL};
     drift_scene scene = {.time = NULL};
     int code = options_parse(&drift_verb, count, words, &o, operands);
     if (code >= 0)
         return code;
-    const bool runs = o.monte_carlo != no_runs;
+    const bool runs = o.monte_carlo.given;
     size_t models = 0;
     while (models < DRIFT_MODELS_MAX && operands[models])
         models++;

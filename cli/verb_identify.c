@@ -50,7 +50,7 @@ static const option identify_option_table[] = {
      offsetof(identify_options, strict)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
      offsetof(identify_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL, "threads to use; default: all processors",
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
      offsetof(identify_options, threads)},
 };
 
@@ -62,7 +62,7 @@ static const option plan_option_table[] = {
     {"want", 0, OPTION_TEXT, "LIST", NULL, NULL,
      "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected 95%\"",
      offsetof(identify_options, want)},
-    {"duration", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+    {"duration", 0, OPTION_QUANTITY, "TIME", "s", "positive",
      "of the planned record, or of the one behind a curve", offsetof(identify_options, duration)},
 };
 
@@ -82,11 +82,13 @@ static const option allan_option_table[] = {
      "error of the model admitted in each deviation, beside what chance explains: 2% for a curve "
      "read from a page",
      offsetof(identify_options, tolerance)},
-    {"gauss-markov", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"gauss-markov", 0, OPTION_INTEGER, "N", NULL, "0-8",
      "Gauss-Markov terms looked for in the Allan deviations; default 0 (the likelihood looks by "
      "itself)",
      offsetof(identify_options, gauss_markov)},
 };
+
+_Static_assert(IMK_TERMS_MAX == 8, "as the range of --gauss-markov says");
 
 static int run(int count, char **words);
 
@@ -209,8 +211,8 @@ static int identify_log(identification *i, const char *path, const imk_executor 
 static int identify_table_of_deviations(identification *i, const imk_executor *executor)
 {
     const identify_options *o = i->options;
-    const identify_curve_input input = {o->log.rate, o->duration, o->tolerance, o->gauss_markov,
-                                        o->plain};
+    const identify_curve_input input = {o->log.rate, o->duration, o->tolerance,
+                                        o->gauss_markov.value, o->plain};
     int code = identify_curve(i, &input);
     if (code < 0)
         code = present(i, executor);
@@ -241,11 +243,9 @@ static int check_allan(const identify_options *o)
         return command_misused("--duration goes with --plan or --curve: a log has its own");
     if (o->plain && !o->curve)
         return command_misused("--plain goes with --curve");
-    if ((o->tolerance > 0 || o->gauss_markov > 0) && !o->curve && o->method != METHOD_ALLAN)
+    if ((o->tolerance > 0 || o->gauss_markov.given) && !o->curve && o->method != METHOD_ALLAN)
         return command_misused("%s goes with --method allan or --curve",
                                o->tolerance > 0 ? "--tolerance" : "--gauss-markov");
-    if (o->gauss_markov > IMK_TERMS_MAX)
-        return command_misused("--gauss-markov: at most %d terms", IMK_TERMS_MAX);
     if (o->tolerance > 0.5)
         return command_misused("--tolerance: at most 50%%");
     return -1;
@@ -295,7 +295,7 @@ static int identify_operands(const identify_options *o, size_t logs, const char 
     if (code < 0)
         code = o->truth ? command_model(o->truth, &i->truth, NULL) : -1;
     if (code < 0) {
-        imk_thread_pool *pool = imk_thread_pool_create(o->threads);
+        imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
         imk_executor executor = imk_thread_pool_executor(pool);
         code = logs > 1   ? identify_several(o, logs, operands, take_out, &i->truth, &executor)
                : o->curve ? identify_table_of_deviations(i, &executor)
@@ -310,7 +310,7 @@ static int run(int count, char **words)
 {
     identify_options o = {.confidence = 0.95,
                           .significance = 0.01,
-                          .seed = 1,
+                          .seed = {.value = 1},
                           .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
     const char *operands[IMK_JOINT_RECORDS_MAX];
     size_t logs = 0;

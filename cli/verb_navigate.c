@@ -46,7 +46,7 @@ static const option navigate_option_table[] = {
     {"vertical", 0, OPTION_CHOICE, "CHOICE", NULL, "slaved|free",
      "height held as at the start (the default), or free: it then runs away within minutes",
      offsetof(navigate_options, vertical)},
-    {"coning", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"coning", 0, OPTION_INTEGER, "N", NULL, "1-4",
      "samples that coning and sculling are computed from, 1 to 4; default 3",
      offsetof(navigate_options, samples)},
     {"standard-gravity", 0, OPTION_QUANTITY, "G", "m/s^2", NULL,
@@ -171,7 +171,7 @@ static int run(int count, char **words)
                           .still_rotation = (double)NAN,
                           .interval = 1.0,
                           .standard_gravity = 9.80665,
-                          .samples = 3,
+                          .samples = {.value = 3},
                           .method = -1};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&navigate_verb, count, words, &o, operands);

@@ -51,7 +51,7 @@ static const option run_option_table[] = {
     {"level", 0, OPTION_CHOICE, "LEVEL", NULL, "full|slow",
      "the dynamics of all parts (the default), or a map or envelope without the fast part",
      offsetof(physics_options, level)},
-    {"step", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+    {"step", 0, OPTION_QUANTITY, "TIME", "s", "positive",
      "longest internal step; default: what the instrument's accuracy needs. A step that would give "
      "wrong results is refused",
      offsetof(physics_options, step)},
@@ -60,10 +60,10 @@ static const option run_option_table[] = {
     {"seed", 's', OPTION_INTEGER, "N", NULL, NULL,
      "the same seed makes the same bytes on every machine; default 1",
      offsetof(physics_options, seed)},
-    {"run", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"run", 0, OPTION_INTEGER, "N", NULL, "0-4294967295",
      "another run of the same instrument: other noise, other constants of the run; default 0",
      offsetof(physics_options, run)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
      "threads of --sweep; default: all processors. The result does not depend on it",
      offsetof(physics_options, threads)},
 };
@@ -180,12 +180,8 @@ static int check_numbers(const physics_options *o)
         return command_misused("--output-rate: expected a rate above 0");
     if (!(o->signal_rate > 0))
         return command_misused("--signal-rate: expected a rate above 0");
-    if (!(o->step >= 0))
-        return command_misused("--step: expected a time above 0");
     if (!isnan(o->duration) && o->duration * fmax(o->output_rate, o->signal_rate) > 9e15)
         return command_misused("--duration %g s: too many samples", o->duration);
-    if (o->run > UINT32_MAX)
-        return command_misused("--run: expected at most %u", UINT32_MAX);
     const size_t length = o->animate ? strlen(o->animate) : 0;
     if (o->animate && (length < 5 || strcmp(o->animate + length - 4, ".svg") != 0))
         return command_misused("--animate %s: expected a name ending in .svg", o->animate);
@@ -410,8 +406,8 @@ static int start(const physics_options *o, const char *operand)
     p.settings.rate = o->output_rate;
     p.settings.step = o->step;
     p.settings.noise = !o->no_noise;
-    p.settings.seed = o->seed;
-    p.settings.run = (uint32_t)o->run;
+    p.settings.seed = o->seed.value;
+    p.settings.run = (uint32_t)o->run.value;
     int code = open_design(&p);
     if (code < 0)
         code = physics_input_make(o, &p.input);
@@ -436,7 +432,7 @@ static int run(int count, char **words)
                          .view_duration = missing,
                          .output_rate = missing,
                          .signal_rate = missing,
-                         .seed = 1};
+                         .seed = {.value = 1}};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&physics_verb, count, words, &o, operands);
     if (code >= 0)

@@ -11,9 +11,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-const uint64_t decimals_shortest = UINT64_MAX;
-static const uint64_t no_runs = UINT64_MAX; /* of the option --runs */
-
 static const option simulate_option_table[] = {
     {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", NULL,
      "sample rate, such as 100Hz; required unless a recorded motion has one",
@@ -27,10 +24,10 @@ static const option simulate_option_table[] = {
     {"seed", 's', OPTION_INTEGER, "N", NULL, NULL,
      "the same seed makes the same bytes on every machine; default 1",
      offsetof(simulate_options, seed)},
-    {"run", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"run", 0, OPTION_INTEGER, "N", NULL, "0-4294967295",
      "another run of the same sensor: other noise, other run-to-run biases; default 0",
      offsetof(simulate_options, run)},
-    {"runs", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"runs", 0, OPTION_INTEGER, "N", NULL, "1-4294967295",
      "so many runs, from --run on, into DIR/run_000.csv and so on",
      offsetof(simulate_options, runs)},
     {"format", 0, OPTION_TEXT, "EXTENSION", NULL, NULL,
@@ -42,7 +39,7 @@ static const option simulate_option_table[] = {
     {"increments", 0, OPTION_FLAG, NULL, NULL, NULL,
      "write increments of angle and velocity (dtheta_x, dvel_x) instead of rates",
      offsetof(simulate_options, increments)},
-    {"decimals", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
      "digits after the point, 0 to 17; default: as many as the number needs",
      offsetof(simulate_options, decimals)},
     {"gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
@@ -51,7 +48,7 @@ static const option simulate_option_table[] = {
     {"accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
      "of the accelerometer columns; default m/s^2, or m/s for increments",
      offsetof(simulate_options, accel_unit)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
      "threads to use; default: all processors. The bytes do not depend on it",
      offsetof(simulate_options, threads)},
 };
@@ -64,7 +61,7 @@ static const option motion_option_table[] = {
     {"temperature", 't', OPTION_TEXT, "PROFILE", NULL, NULL,
      "a constant such as 25degC, a profile (.yaml), or a table of time and temperature",
      offsetof(simulate_options, temperature)},
-    {"substeps", 0, OPTION_INTEGER, "N", NULL, NULL,
+    {"substeps", 0, OPTION_INTEGER, "N", NULL, "1-512",
      "parts into which a sample is divided, for vibration and bandwidth; default: as needed",
      offsetof(simulate_options, substeps)},
     {"latitude", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL, "geodetic; default 45deg",
@@ -80,6 +77,8 @@ static const option motion_option_table[] = {
     {"no-earth", 0, OPTION_FLAG, NULL, NULL, NULL, "without Earth rate and gravity",
      offsetof(simulate_options, no_earth)},
 };
+
+_Static_assert(IMK_SUBSTEPS_MAX == 512, "as the range of --substeps says");
 
 static int run(int count, char **words);
 
@@ -122,16 +121,16 @@ static int simulate_runs(const simulate_options *o, const imk_model *model, scen
                          const log_layout *layout, const imk_executor *executor)
 {
     const size_t length = strlen(o->output);
-    for (uint64_t i = 0; i < o->runs; i++) {
+    for (uint64_t i = 0; i < o->runs.value; i++) {
         char path[4096], label[64];
-        const uint64_t number = o->run + i;
+        const uint64_t number = o->run.value + i;
         int written = snprintf(path, sizeof path, "%s%srun_%03llu.%s", o->output,
                                o->output[length - 1] == '/' ? "" : "/", (unsigned long long)number,
                                o->format ? o->format : "csv");
         if (written < 0 || (size_t)written >= sizeof path)
             return command_failed("%s: the name is too long", o->output);
         snprintf(label, sizeof label, "run %llu (%llu of %llu)", (unsigned long long)number,
-                 (unsigned long long)i + 1, (unsigned long long)o->runs);
+                 (unsigned long long)i + 1, (unsigned long long)o->runs.value);
         s->simulation.run = (uint32_t)number;
         int code = simulate_log(o, model, s, layout, executor, &(log_target){path, label});
         if (code != EXIT_DONE)
@@ -147,7 +146,7 @@ static int write_logs(const simulate_options *o, const imk_model *model, scene *
     int code = o->truth ? simulate_truth(o, model, s, executor, o->truth) : -1;
     if (code >= 0)
         return code;
-    if (o->runs != no_runs)
+    if (o->runs.given)
         return simulate_runs(o, model, s, layout, executor);
     return simulate_log(o, model, s, layout, executor,
                         &(log_target){o->output ? o->output : "-", "simulating"});
@@ -160,10 +159,10 @@ static int simulate(const simulate_options *o, const imk_model *model)
     int code = scene_open(o, model, &s);
     if (code < 0)
         code = log_layout_make(o, model, &s, &layout);
-    if (code < 0 && o->runs != no_runs && mkdir(o->output, 0777) != 0 && errno != EEXIST)
+    if (code < 0 && o->runs.given && mkdir(o->output, 0777) != 0 && errno != EEXIST)
         code = command_failed("%s: %s", o->output, strerror(errno));
     if (code < 0) {
-        imk_thread_pool *pool = imk_thread_pool_create(o->threads);
+        imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
         imk_executor executor = imk_thread_pool_executor(pool);
         code = write_logs(o, model, &s, &layout, &executor);
         imk_thread_pool_destroy(pool);
@@ -177,18 +176,16 @@ static int check_outputs(const simulate_options *o)
 {
     static const char *const formats[] = {"csv", "csv.gz", "csv.zst", "npy"};
     const char *output = o->output ? o->output : "-";
-    if (o->runs == 0)
-        return command_misused("--runs 0: expected at least 1");
-    if (o->runs != no_runs && !is_directory(o->output))
+    if (o->runs.given && !is_directory(o->output))
         return command_misused("--runs writes one log per run into a directory: add -o DIR/");
-    if (o->runs == no_runs && *output && output[strlen(output) - 1] == '/')
+    if (!o->runs.given && *output && output[strlen(output) - 1] == '/')
         return command_misused("-o %s is a directory: name a file, or add --runs N", output);
     bool known = !o->format;
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
         known = known || strcmp(o->format, formats[i]) == 0;
     if (!known)
         return command_misused("--format %s: expected csv, csv.gz, csv.zst or npy", o->format);
-    if (o->format && o->runs == no_runs)
+    if (o->format && !o->runs.given)
         return command_misused("--format is for --runs: a single log has it in its name, -o LOG.%s",
                                o->format);
     if (o->truth && strcmp(o->truth, "-") == 0 && strcmp(output, "-") == 0)
@@ -199,26 +196,16 @@ static int check_outputs(const simulate_options *o)
 
 static int check(const simulate_options *o)
 {
-    if (o->decimals != decimals_shortest && o->decimals > 17)
-        return command_misused("--decimals %llu: expected 0 to 17",
-                               (unsigned long long)o->decimals);
-    if (o->run > UINT32_MAX || (o->runs != no_runs && o->runs > UINT32_MAX - o->run + 1))
+    if (o->runs.given && o->runs.value > UINT32_MAX - o->run.value + 1)
         return command_misused("run numbers: expected at most %u", UINT32_MAX);
-    if (o->substeps > IMK_SUBSTEPS_MAX)
-        return command_misused("--substeps %llu: expected at most %d",
-                               (unsigned long long)o->substeps, IMK_SUBSTEPS_MAX);
     return check_outputs(o);
 }
 
 static int run(int count, char **words)
 {
     double missing = (double)NAN;
-    simulate_options o = {.rate = missing,
-                          .duration = missing,
-                          .latitude = missing,
-                          .seed = 1,
-                          .runs = no_runs,
-                          .decimals = decimals_shortest};
+    simulate_options o = {
+        .rate = missing, .duration = missing, .latitude = missing, .seed = {.value = 1}};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&simulate_verb, count, words, &o, operands);
     if (code < 0)

@@ -10,7 +10,7 @@ static const option spectrum_option_table[] = {
      "averaged windowed segments (the default), or Slepian tapers, for records too short to be "
      "cut up",
      offsetof(spectrum_options, method)},
-    {"resolution", 0, OPTION_QUANTITY, "BANDWIDTH", "Hz", NULL,
+    {"resolution", 0, OPTION_QUANTITY, "BANDWIDTH", "Hz", "positive",
      "how far two lines must be apart to be told from each other; default: 31 segments, or one for "
      "multitaper",
      offsetof(spectrum_options, resolution)},
@@ -30,7 +30,7 @@ static const option spectrum_option_table[] = {
     {"from", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", NULL,
      "lowest frequency the noise parameters are fitted to; default: the lowest resolved",
      offsetof(spectrum_options, from)},
-    {"to", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", NULL,
+    {"to", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "positive",
      "highest; set it below the sensor's own filter; default: half the sample rate",
      offsetof(spectrum_options, to)},
     {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
@@ -46,7 +46,7 @@ static const option spectrum_option_table[] = {
      "write one self-contained page: plot and tables", offsetof(spectrum_options, report)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
      offsetof(spectrum_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, NULL, "threads to use; default: all processors",
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
      offsetof(spectrum_options, threads)},
 };
 
@@ -274,7 +274,7 @@ static int run(int count, char **words)
     r->path = operands[0];
     code = log_input_load(&o.log, r->path, &r->channels);
     if (code < 0) {
-        imk_thread_pool *pool = imk_thread_pool_create(o.threads);
+        imk_thread_pool *pool = imk_thread_pool_create(o.threads.value);
         imk_executor executor = imk_thread_pool_executor(pool);
         code = compute(r, &executor);
         imk_thread_pool_destroy(pool);

@@ -121,13 +121,112 @@ static void test_units_of_quantities(void **state)
     assert_int_equal(sweep(), 0);
 }
 
+/* Every option that takes a whole number: what it refuses, and the largest number that it takes,
+ * which is given like any other. */
+static void test_whole_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *verb, *option, *least, *most; /* NULL: any number */
+    } options[] = {
+        {"allan x.csv", "threads", "1", "65536"},
+        {"calibrate x.csv", "temperature-order", "1", "5"},
+        {"compensate x.csv AHRS", "decimals", "0", "17"},
+        {"compensate x.csv AHRS", "threads", "1", "65536"},
+        {"compensate AHRS --emit-c d", "vectors", "1", "1000000"},
+        {"convert x.csv y.csv", "decimals", "0", "17"},
+        {"convert x.csv y.csv", "threads", "1", "65536"},
+        {"drift tactical", "monte-carlo", "1", "4294967295"},
+        {"drift tactical", "seed", NULL, NULL},
+        {"drift tactical", "threads", "1", "65536"},
+        {"identify x.csv", "seed", NULL, NULL},
+        {"identify x.csv", "threads", "1", "65536"},
+        {"identify x.csv", "gauss-markov", "0", "8"},
+        {"navigate x.csv", "coning", "1", "4"},
+        {"physics ring_laser", "seed", NULL, NULL},
+        {"physics ring_laser", "run", "0", "4294967295"},
+        {"physics ring_laser", "threads", "1", "65536"},
+        {"simulate AHRS", "seed", NULL, NULL},
+        {"simulate AHRS", "run", "0", "4294967295"},
+        {"simulate AHRS", "runs", "1", "4294967295"},
+        {"simulate AHRS", "decimals", "0", "17"},
+        {"simulate AHRS", "threads", "1", "65536"},
+        {"simulate AHRS", "substeps", "1", "512"},
+        {"spectrum x.csv", "threads", "1", "65536"},
+    };
+    static const char *const no_numbers[] = {"-1", "+5", "1e3", "0x10", "''", "' 1'", "1.0", "inf"};
+    static const char *const beyond[] = {"18446744073709551615", "18446744073709551616",
+                                         "99999999999999999999999"};
+    char line[200], says[200];
+    for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
+        const char *name = options[i].option;
+        for (size_t k = 0; k < sizeof no_numbers / sizeof no_numbers[0]; k++) {
+            snprintf(line, sizeof line, "$I %s --%s %s", options[i].verb, name, no_numbers[k]);
+            assert_int_equal(run(line), 2);
+            check_contains(err, ": expected a whole number, such as --", line);
+        }
+        for (size_t k = 0; k < sizeof beyond / sizeof beyond[0]; k++) {
+            snprintf(line, sizeof line, "$I %s --%s %s", options[i].verb, name, beyond[k]);
+            if (!options[i].most && k == 0)
+                continue; /* the largest seed */
+            snprintf(says, sizeof says,
+                     options[i].most ? "--%s %s: expected %s to %s\n"
+                                     : "--%s %s: the number is too large",
+                     name, beyond[k], options[i].least, options[i].most);
+            assert_int_equal(run(line), 2);
+            check_contains(err, says, line);
+        }
+        if (options[i].least && options[i].least[0] == '1') {
+            snprintf(line, sizeof line, "$I %s --%s 0", options[i].verb, name);
+            snprintf(says, sizeof says, "--%s 0: expected 1 to %s\n", name, options[i].most);
+            assert_int_equal(run(line), 2);
+            check_contains(err, says, line);
+        }
+    }
+    /* No option was forgotten. */
+    assert_int_equal(run("for v in allan calibrate compensate convert devices drift evaluate grade "
+                         "identify merge navigate physics simulate spectrum; do $I $v --help; done "
+                         "| grep -c -e '--[a-z-]* N  *[A-Za-z]' -e '--[a-z-]* N$'"),
+                     0);
+    assert_int_equal(atoi(out), sizeof options / sizeof options[0]);
+}
+
+/* The numbers that once stood for "not given", and 0 where a quantity is to be above it. */
+static void test_given_is_no_value(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 1Hz --duration 2s --seed 18446744073709551615"),
+                     0);
+    assert_int_equal(
+        run("$I simulate AHRS --rate 1Hz --duration 2s --decimals 0 | tail -1 | grep -c "
+            "[.]"),
+        1); /* no point */
+    check_message("$I drift tactical -n 18446744073709551615", 2,
+                  "imukit drift: error: --monte-carlo 18446744073709551615: expected 1 to "
+                  "4294967295\n" TRY("drift"));
+    static const char *const zeros[] = {"allan x.csv --rate 0Hz",
+                                        "identify --plan AHRS --duration 0s",
+                                        "spectrum x.csv --resolution 0Hz",
+                                        "spectrum x.csv --to 0Hz",
+                                        "compensate x.csv AHRS --rate-limit 0deg/s",
+                                        "compensate x.csv AHRS --force-limit '0 g'",
+                                        "convert m.yaml f.yaml --to filter --tau-from 0s",
+                                        "convert m.yaml f.yaml --to filter --tau-to 0s",
+                                        "physics ring_laser -d 1s --step 0s"};
+    char line[200];
+    for (size_t i = 0; i < sizeof zeros / sizeof zeros[0]; i++) {
+        snprintf(line, sizeof line, "$I %s", zeros[i]);
+        assert_int_equal(run(line), 2);
+        check_contains(err, ": expected more than 0\n", line);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_newcomer),
-        cmocka_unit_test(test_help_of_every_verb),
-        cmocka_unit_test(test_wrong_usage),
-        cmocka_unit_test(test_units_of_quantities),
+        cmocka_unit_test(test_newcomer),      cmocka_unit_test(test_help_of_every_verb),
+        cmocka_unit_test(test_wrong_usage),   cmocka_unit_test(test_units_of_quantities),
+        cmocka_unit_test(test_whole_numbers), cmocka_unit_test(test_given_is_no_value),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

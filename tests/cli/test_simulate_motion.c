@@ -372,7 +372,7 @@ static void test_refusals(void **state)
     REFUSED("AHRS $D --runs 2", "--runs writes one log per run into a directory: add -o DIR/");
     REFUSED("AHRS $D --runs 2 -o log.csv",
             "--runs writes one log per run into a directory: add -o DIR/");
-    REFUSED("AHRS $D --runs 0", "--runs 0: expected at least 1");
+    REFUSED("AHRS $D --runs 0", "--runs 0: expected 1 to 4294967295");
     REFUSED("AHRS $D --runs 2 --run 4294967295 -o x/", "run numbers: expected at most 4294967295");
     REFUSED("AHRS $D -o x/", "-o x/ is a directory: name a file, or add --runs N");
     REFUSED("AHRS $D --format npy",
