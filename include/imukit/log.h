@@ -93,7 +93,7 @@ typedef struct imk_log_reader imk_log_reader;
  *
  *  The message of every refusal ends with the exact option to add.
  *  @return IMK_ERROR_OPEN, _READ, _WRITE (a copy), _EMPTY, _FORMAT, _COMPRESSED, _COLUMN,
- * _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, … */
+ *          _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, … */
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
