@@ -6,6 +6,7 @@
 
 #include "imukit/allan_fit.h"
 #include "imukit/distributions.h"
+#include "imukit/samples.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -198,7 +199,7 @@ static int fit_curves(identification *i, const identify_curve_input *input,
                               i->path, fits->count, input->rate, input->duration);
     for (size_t k = 0; k < fits->count; k++)
         fits->tau[k] = (double)factor[k] / input->rate;
-    const size_t length = (size_t)(input->duration * input->rate + 0.5);
+    const size_t length = imk_samples_in(input->duration, 1 / input->rate);
     imk_allan_table table = {.dt = 1 / input->rate,
                              .count = fits->count,
                              .factors = factor,

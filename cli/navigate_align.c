@@ -3,6 +3,8 @@
  * gravity and the Earth's rotation. */
 #include "navigate_parts.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -132,7 +134,7 @@ static void check_rotation(const navigation *n)
 static void check_start(const navigation *n)
 {
     const double g = imk_normal_gravity(n->place.latitude, n->place.height), tolerance = 0.05;
-    const size_t second = n->dt < 1.0 ? (size_t)(1.0 / n->dt) : 1;
+    const size_t second = n->dt < 1.0 ? imk_samples_in(1.0, n->dt) : 1;
     const imk_vector3 force = mean_of_rows(n, 1, second < n->rows ? second : n->rows);
     imk_vector3 acceleration =
         imk_matrix3_apply(imk_matrix3_from_euler(n->euler[0], n->euler[1], n->euler[2]), force);

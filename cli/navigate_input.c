@@ -3,6 +3,8 @@
 #include "navigate_parts.h"
 #include "place_text.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -218,7 +220,7 @@ static int prepare(navigation *n)
     if (code >= 0)
         return code;
     if (n->options->align > 0) {
-        n->first = (size_t)llround(n->options->align / n->dt);
+        n->first = imk_samples_in(n->options->align, n->dt);
         if (n->first + 1 > n->rows)
             return command_failed("%s is %.6g s long: nothing is left after --align %.6gs", n->path,
                                   n->dt * (double)n->rows, n->options->align);

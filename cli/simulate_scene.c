@@ -136,6 +136,10 @@ static int choose_length(const simulate_options *o, scene *s)
         return command_misused("the length is missing: add --duration 1h");
     if (isnan(o->duration)) {
         const imk_recorded_motion *recorded = s->simulation.motion.recorded;
+        if (!recorded && !(length * rate < 1e15))
+            return command_misused("the motion's %g s at %g Hz are %.3g rows: expected up to 1e15; "
+                                   "add --duration, or a lower rate",
+                                   length, rate, length * rate);
         s->rows = recorded ? recorded->count : (uint64_t)floor(length * rate + 1e-6) + 1;
         return -1;
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file samples.h
- *  What counts as a sample of a record: which numbers are readings, and which steps of time leave
- *  samples out. Every verb and procedure goes by these two rules. */
+ *  What counts as a sample of a record: which numbers are readings, which steps of time leave
+ *  samples out, and how many there are in a time. Every verb and procedure goes by these rules. */
 #ifndef IMUKIT_SAMPLES_H
 #define IMUKIT_SAMPLES_H
 
@@ -24,6 +24,10 @@ IMK_API bool imk_step_is_gap(double step, double interval);
 /** How many intervals a step of time is: 0 when it is not positive, 1 when it is no gap, else the
  *  nearest number, up to 1e15. */
 IMK_API size_t imk_step_intervals(double step, double interval);
+
+/** Samples in a time: the nearest number, 0 when it is not positive, up to 1e15, which is more than
+ *  there can be. */
+IMK_API size_t imk_samples_in(double time, double interval);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Steps of time as numbers of intervals. */
+/* Times as numbers of intervals. */
 #include "imukit/samples.h"
 
 #include <math.h>
@@ -11,10 +11,13 @@ bool imk_step_is_gap(double step, double interval)
 
 size_t imk_step_intervals(double step, double interval)
 {
-    if (!(step > 0.0))
+    return step > 0.0 && !imk_step_is_gap(step, interval) ? 1 : imk_samples_in(step, interval);
+}
+
+size_t imk_samples_in(double time, double interval)
+{
+    if (!(time > 0.0))
         return 0;
-    if (!imk_step_is_gap(step, interval))
-        return 1;
-    const double intervals = floor(step / interval + 0.5);
-    return intervals < 1e15 ? (size_t)intervals : (size_t)1e15;
+    const double samples = floor(time / interval + 0.5);
+    return samples < 1e15 ? (size_t)samples : (size_t)1e15;
 }

@@ -7,6 +7,8 @@
  * variance of u in the log, at least one sample. */
 #include "calibrate/reference_internal.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 
 enum { BLOCKS_MAX = 20000, FIT_SAMPLES = 200000 };
@@ -50,9 +52,9 @@ static double relative_steps(const imk_test_record *record, const double *const 
 static size_t block_length(const imki_procedure_call *call, const imk_test_record *record,
                            const double *const *channel)
 {
-    const double wanted = call->settings->sine_block / record->dt;
-    if (wanted > 0.0)
-        return wanted > 1.0 ? (size_t)floor(wanted + 0.5) : 1;
+    const size_t wanted = imk_samples_in(call->settings->sine_block, record->dt);
+    if (call->settings->sine_block > 0.0)
+        return wanted > 1 ? wanted : 1;
     const double length = sqrt(12.0 * 1e-4 / fmax(relative_steps(record, channel), 1e-12));
     return length > 1.0 ? (size_t)length : 1;
 }

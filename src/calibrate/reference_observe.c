@@ -19,6 +19,7 @@
 #include "base/workspace_internal.h"
 #include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
+#include "imukit/samples.h"
 
 #include <math.h>
 
@@ -52,8 +53,8 @@ typedef struct observed {
 static size_t stretches_possible(const imk_test_record *record,
                                  const imk_procedure_settings *settings)
 {
-    const double shortest = floor(settings->minimum / record->dt + 0.5);
-    return record->count / (shortest > 2.0 ? (size_t)shortest : 2) + 1;
+    const size_t shortest = imk_samples_in(settings->minimum, record->dt);
+    return record->count / (shortest > 2 ? shortest : 2) + 1;
 }
 
 static size_t scratch_size(const imk_test_record *record)

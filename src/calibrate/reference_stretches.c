@@ -199,16 +199,11 @@ typedef struct lengths {
     size_t head, tail, least;
 } lengths;
 
-static size_t samples_of(double time, double dt)
-{
-    return (size_t)floor(time / dt + 0.5);
-}
-
 static lengths lengths_of(const imk_test_record *record, const imk_procedure_settings *settings)
 {
-    lengths l = {.head = samples_of(settings->trim + settings->settle, record->dt),
-                 .tail = samples_of(settings->trim, record->dt),
-                 .least = samples_of(settings->minimum, record->dt)};
+    lengths l = {.head = imk_samples_in(settings->trim + settings->settle, record->dt),
+                 .tail = imk_samples_in(settings->trim, record->dt),
+                 .least = imk_samples_in(settings->minimum, record->dt)};
     l.least = l.least > 2 ? l.least : 2;
     return l;
 }
@@ -262,7 +257,8 @@ imk_status imk_reference_stretches(const imk_test_record *record,
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
                              "imk_reference_stretches_workspace_size() bytes");
     const double part = settings->minimum / WINDOWS / record->dt;
-    s.window = part > 1.0 ? (size_t)part : 1;
+    const size_t most = record->count > 1 ? record->count : 1;
+    s.window = !(part > 1.0) ? 1 : part < (double)most ? (size_t)part : most;
     for (int c = 0; c < CHANNELS; c++) {
         const double *channel = c < 3 ? record->reference_rate[c] : record->reference_force[c - 3];
         if (!channel)

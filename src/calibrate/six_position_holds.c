@@ -10,6 +10,7 @@
 #include "calibrate/six_position_internal.h"
 
 #include "imukit/attitude.h"
+#include "imukit/samples.h"
 
 #include <math.h>
 #include <string.h>
@@ -76,8 +77,8 @@ static bool section_stretch(const imk_test_record *record, const imk_procedure_s
         return false;
     const bool turn = label.kind == IMKI_LABEL_TURN;
     if (!turn) {
-        const size_t tail = (size_t)(settings->trim / record->dt + 0.5);
-        const size_t head = (size_t)((settings->trim + settings->settle) / record->dt + 0.5);
+        const size_t tail = imk_samples_in(settings->trim, record->dt);
+        const size_t head = imk_samples_in(settings->trim + settings->settle, record->dt);
         if ((double)(end - begin) * record->dt <
             settings->minimum + 2.0 * settings->trim + settings->settle)
             return false;

@@ -17,6 +17,8 @@
 #include "base/workspace_internal.h"
 #include "static_internal.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 
 enum { COOKIE = 0x1DE70021, SAMPLES_MIN = 64, WINDOW_SAMPLES_MIN = 16, LEVELS_MAX = 3 };
@@ -78,17 +80,12 @@ typedef struct lengths {
     size_t guard, minimum; /* samples */
 } lengths;
 
-static size_t samples_of(double time, double dt)
-{
-    return (size_t)(time / dt + 0.5);
-}
-
 static lengths lengths_of(const imki_static_job *job, const imk_static_settings *settings)
 {
     lengths l;
     l.guard = settings->guard < 0.0 ? job->blocks.length * IMKI_WINDOW_BLOCKS
-                                    : samples_of(settings->guard, job->record->dt);
-    l.minimum = samples_of(settings->minimum, job->record->dt);
+                                    : imk_samples_in(settings->guard, job->record->dt);
+    l.minimum = imk_samples_in(settings->minimum, job->record->dt);
     l.minimum = l.minimum < 2 ? 2 : l.minimum;
     return l;
 }
@@ -146,7 +143,7 @@ static bool learn_again(imki_static_job *job)
 static bool given_rest(imki_static_job *job, double initial_rest)
 {
     const imki_static_blocks *b = &job->blocks;
-    size_t end = samples_of(initial_rest, job->record->dt) / b->length;
+    size_t end = imk_samples_in(initial_rest, job->record->dt) / b->length;
     end = end < b->count ? end : b->count;
     imki_static_run longest = {0, 0}, r = {0, 0};
     for (size_t k = 0; k < end; k++) {

@@ -5,6 +5,8 @@
  * covariance of all of them is handled as a whole. */
 #include "calibrate/thermal_internal.h"
 
+#include "imukit/samples.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -322,7 +324,8 @@ size_t imki_thermal_turned(const imk_test_record *record, const imk_model *model
 {
     const double cosine = 0.98; /* of 0.2 rad */
     const size_t least = 16;
-    const size_t window = record->dt * (double)least < 1.0 ? (size_t)(1.0 / record->dt) : least;
+    const size_t window =
+        record->dt * (double)least < 1.0 ? imk_samples_in(1.0, record->dt) : least;
     double first[3] = {0.0}, sum[3], length_first = 0.0;
     if (record->axis_count[IMK_ACCEL] != 3 || record->reference_force[0])
         return record->count;

@@ -33,11 +33,26 @@ static void test_what_is_no_step(void **state)
     assert_int_equal(imk_step_intervals(1e300, 1e-300), 1000000000000000);
 }
 
+static void test_samples_in_a_time(void **state)
+{
+    (void)state;
+    assert_int_equal(imk_samples_in(1.0, 0.01), 100);
+    assert_int_equal(imk_samples_in(0.4999, 1.0), 0);
+    assert_int_equal(imk_samples_in(0.5, 1.0), 1);
+    assert_int_equal(imk_samples_in(0.0, 1.0), 0);
+    assert_int_equal(imk_samples_in(-1.0, 1.0), 0);
+    assert_int_equal(imk_samples_in((double)NAN, 1.0), 0);
+    assert_int_equal(imk_samples_in(1e14, 0.1), 1000000000000000);
+    assert_int_equal(imk_samples_in(1.0, 1e-20), 1000000000000000);
+    assert_int_equal(imk_samples_in(1e300, 0.0), 1000000000000000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gaps_from_one_and_a_half),
         cmocka_unit_test(test_what_is_no_step),
+        cmocka_unit_test(test_samples_in_a_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -121,6 +121,23 @@ static void test_broken_stretches(void **state)
             CHECK_CLOSE(stretch[i].rate[j], 0.0, 1e-4);
 }
 
+/* Rates at which any time is more samples than an integer holds: nothing is found in so short a
+ * record, and nothing divided by what overflowed to 0. */
+static void test_absurd_rates(void **state)
+{
+    (void)state;
+    static imk_reference_stretch stretch[4];
+    static const double rates[] = {1e18, 1e20, 1e160, 1e300};
+    for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+        start(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps);
+        bench_log(shared, 4, 0.0);
+        shared->record.dt = 1.0 / rates[i];
+        assert_int_equal(stretches_of(shared, stretch, 4), 0);
+        assert_true(imk_procedure_workspace_size(IMK_PROCEDURE_RATE_TABLE, &shared->record,
+                                                 &shared->settings) > 0);
+    }
+}
+
 static void test_without_reference(void **state)
 {
     (void)state;
@@ -631,25 +648,16 @@ static void test_script(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stretches),
-        cmocka_unit_test(test_broken_stretches),
-        cmocka_unit_test(test_without_reference),
-        cmocka_unit_test(test_offset),
-        cmocka_unit_test(test_ambiguous_offset),
-        cmocka_unit_test(test_offset_refused),
-        cmocka_unit_test(test_rate_table),
-        cmocka_unit_test(test_sine),
-        cmocka_unit_test(test_tumble),
-        cmocka_unit_test(test_centrifuge),
-        cmocka_unit_test(test_spin),
-        cmocka_unit_test(test_undetermined),
-        cmocka_unit_test(test_three_attitudes),
-        cmocka_unit_test(test_counts),
-        cmocka_unit_test(test_wrong_units),
-        cmocka_unit_test(test_saturated),
-        cmocka_unit_test(test_lag),
-        cmocka_unit_test(test_spin_alone),
-        cmocka_unit_test(test_script),
+        cmocka_unit_test(test_stretches),      cmocka_unit_test(test_broken_stretches),
+        cmocka_unit_test(test_absurd_rates),   cmocka_unit_test(test_without_reference),
+        cmocka_unit_test(test_offset),         cmocka_unit_test(test_ambiguous_offset),
+        cmocka_unit_test(test_offset_refused), cmocka_unit_test(test_rate_table),
+        cmocka_unit_test(test_sine),           cmocka_unit_test(test_tumble),
+        cmocka_unit_test(test_centrifuge),     cmocka_unit_test(test_spin),
+        cmocka_unit_test(test_undetermined),   cmocka_unit_test(test_three_attitudes),
+        cmocka_unit_test(test_counts),         cmocka_unit_test(test_wrong_units),
+        cmocka_unit_test(test_saturated),      cmocka_unit_test(test_lag),
+        cmocka_unit_test(test_spin_alone),     cmocka_unit_test(test_script),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
