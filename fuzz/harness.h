@@ -20,7 +20,12 @@ void require_told(imk_status status, const imk_error *error);
 /* A number that chooses settings: the sum of the bytes, so that a file as it is can be an input. */
 uint32_t choice_of(const uint8_t *data, size_t size);
 
-/* The bytes as files, for readers that take a path: in memory, each name one file. */
+/* Where the files below are; cmake/fuzz.cmake says it, but not to tools that look at one file. */
+#ifndef FUZZ_FILES
+#define FUZZ_FILES "."
+#endif
+
+/* The bytes as files, for readers that take a path: in memory, one for each name. */
 typedef enum input_file {
     INPUT_TABLE,         /* table: a log, compressed or not */
     INPUT_SCRIPT,        /* script.yaml */
