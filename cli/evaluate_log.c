@@ -178,19 +178,24 @@ static int take_record(evaluation *v, const bench_log *log)
 int evaluate_load_log(evaluation *v, const char *path)
 {
     imk_error error;
-    bench b = {.options = &v->options->bench, .motion = v->motion};
+    bench *b = calloc(1, sizeof *b); /* holds models: 157 kB */
     bench_log log = {.path = path};
     int code = -1;
-    if (b.options->motion && !b.motion &&
-        imk_motion_read(b.options->motion, NULL, NULL, 1, &b.motion, &error) != IMK_OK)
-        code = command_error(&error, b.options->motion);
+    if (!b)
+        return command_failed("memory is exhausted");
+    b->options = &v->options->bench;
+    b->motion = v->motion;
+    if (b->options->motion && !b->motion &&
+        imk_motion_read(b->options->motion, NULL, NULL, 1, &b->motion, &error) != IMK_OK)
+        code = command_error(&error, b->options->motion);
     if (code < 0)
-        code = bench_load(&b, &log);
+        code = bench_load(b, &log);
     if (code < 0)
-        code = bench_reference(&b, &log);
+        code = bench_reference(b, &log);
     if (code < 0)
         code = take_record(v, &log);
     bench_log_free(&log);
-    v->motion = b.motion;
+    v->motion = b->motion;
+    free(b);
     return code;
 }

@@ -14,7 +14,8 @@ typedef struct imk_thread_pool imk_thread_pool;
 
 /** Start `threads` - 1 workers (the caller is the other); 0 takes one per processor this process
  *  may use (its affinity mask, as taskset and containers set it). Workers sleep while there is no
- *  work and block all signals but SIGPIPE, so that handlers run on the caller's threads.
+ *  work and block all signals but SIGPIPE, so that handlers run on the caller's threads. Each has a
+ *  stack of 1 MiB, whatever the limits of the process are.
  *  @return NULL when so many threads cannot be made */
 IMK_API imk_thread_pool *imk_thread_pool_create(size_t threads);
 /** Ends the workers and waits for them. NULL is allowed. */

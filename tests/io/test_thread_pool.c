@@ -124,6 +124,7 @@ static void items_run_at_the_same_time(void **state)
 typedef struct mask_work {
     pthread_t caller;
     atomic_int workers_seen, unblocked, deaf; /* to a pipe that is closed */
+    atomic_size_t stack;
 } mask_work;
 
 static void look_at_mask(void *context, size_t item)
@@ -158,6 +159,40 @@ static void workers_block_signals(void **state)
     imk_thread_pool_destroy(pool);
 }
 
+#if defined(__linux__)
+static void look_at_stack(void *context, size_t item)
+{
+    mask_work *w = context;
+    (void)item;
+    pthread_attr_t attributes;
+    void *lowest;
+    size_t size;
+    if (!pthread_equal(pthread_self(), w->caller)) {
+        assert_int_equal(pthread_getattr_np(pthread_self(), &attributes), 0);
+        assert_int_equal(pthread_attr_getstack(&attributes, &lowest, &size), 0);
+        pthread_attr_destroy(&attributes);
+        atomic_store(&w->stack, size);
+        atomic_fetch_add(&w->workers_seen, 1);
+    }
+    while (atomic_load(&w->workers_seen) == 0)
+        sched_yield();
+}
+#endif
+
+/* Left to the system, it is 8 MiB here, 128 KiB there. */
+static void workers_have_a_stack_of_a_mebibyte(void **state)
+{
+    (void)state;
+#if defined(__linux__)
+    imk_thread_pool *pool = imk_thread_pool_create(2);
+    const imk_executor executor = imk_thread_pool_executor(pool);
+    mask_work w = {.caller = pthread_self()};
+    imk_execute(&executor, 2, look_at_stack, &w);
+    assert_in_range(atomic_load(&w.stack), 1 << 20, (1 << 20) + (1 << 16));
+    imk_thread_pool_destroy(pool);
+#endif
+}
+
 int main(void)
 {
     /* a deadlock ends the program with SIGALRM instead of hanging the suite */
@@ -170,6 +205,7 @@ int main(void)
         cmocka_unit_test(default_is_the_affinity_mask),
         cmocka_unit_test(items_run_at_the_same_time),
         cmocka_unit_test(workers_block_signals),
+        cmocka_unit_test(workers_have_a_stack_of_a_mebibyte),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
