@@ -55,10 +55,17 @@ static bool may_be_parameters(const char *path)
     return false;
 }
 
-bool parameters_wanted(const parameter_options *options, const char *in)
+int parameters_wanted(const parameter_options *options, const char *in, bool *wanted)
 {
-    return options->from > 0 || options->to > 0 ||
-           (may_be_parameters(in) && imk_parameter_format_detect(in) != IMK_PARAMETERS_UNKNOWN);
+    imk_error error;
+    imk_parameter_format format;
+    *wanted = options->from > 0 || options->to > 0;
+    if (*wanted || !may_be_parameters(in))
+        return -1;
+    if (imk_parameter_format_detect(in, &format, &error) != IMK_OK)
+        return command_error(&error, in);
+    *wanted = format != IMK_PARAMETERS_UNKNOWN;
+    return -1;
 }
 
 /* What was left out is a warning; what was assumed is worth a line. */
@@ -107,8 +114,8 @@ static int read_source(const parameter_options *o, const imk_parameter_settings 
     imk_error error;
     imk_parameter_settings reading = *settings;
     reading.format = (imk_parameter_format)o->from;
-    if (o->from == 0)
-        reading.format = imk_parameter_format_detect(in);
+    if (o->from == 0 && imk_parameter_format_detect(in, &reading.format, &error) != IMK_OK)
+        return command_error(&error, in);
     *format = reading.format;
     if (reading.format == IMK_PARAMETERS_UNKNOWN)
         return command_model(in, model, NULL);

@@ -17,8 +17,9 @@ typedef struct parameter_options {
 enum { PARAMETER_OPTIONS = 8 };
 extern const option parameter_option_table[PARAMETER_OPTIONS];
 
-/* Is this a conversion of parameters: by the options, or by what the file holds? */
-bool parameters_wanted(const parameter_options *options, const char *in);
+/* Is this a conversion of parameters: by the options, or by what the file holds?
+ * @return -1 or the exit code, the message printed */
+int parameters_wanted(const parameter_options *options, const char *in, bool *wanted);
 
 /* @param rate  [Hz], 0: not given. @return the exit code, messages printed */
 int convert_parameters(const parameter_options *options, double rate, const char *in,

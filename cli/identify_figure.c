@@ -79,6 +79,7 @@ static void fill(panel_data *d, const identification *i, size_t channel, double 
     const imk_identification *r = &i->result[channel];
     double dt = i->channels.dt;
     size_t *factors = allan_factors_of_grid(IMK_ALLAN_DECADE, i->channels.rows, &d->smooth_count);
+    (void)command_unless_memory(factors ? IMK_OK : IMK_ERROR_MEMORY);
     d->octave_count = i->curve[channel].count;
     *memory = command_memory(
         NULL, ((2 + IMK_NOISE_TERMS) * d->smooth_count + 12 * d->octave_count) * sizeof **memory);

@@ -282,7 +282,11 @@ static int run(int count, char **words)
     if (code >= 0)
         return code;
     operands[1] = options_output_name(operands[1]);
-    if (parameters_wanted(&o.parameters, operands[0]))
+    bool wanted;
+    code = parameters_wanted(&o.parameters, operands[0], &wanted);
+    if (code >= 0)
+        return code;
+    if (wanted)
         return convert_parameters(&o.parameters, o.log.rate, operands[0], operands[1]);
     if (o.parameters.json || o.parameters.sensor || o.parameters.density)
         return command_misused("%s: --json, --sensor and --density are for parameter files; "

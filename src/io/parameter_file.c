@@ -3,6 +3,7 @@
  *
  * Writing ends with reading back what was written: whatever does not return as it was is noted as
  * lost, so that no format can drop something silently. */
+#define _POSIX_C_SOURCE 200809L
 #include "imukit/parameter_file.h"
 
 #include "input_stream_internal.h"
@@ -13,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* ---- formats --------------------------------------------------------------------------------- */
 
@@ -208,15 +210,19 @@ static imk_status read_all(const char *path, bool reopened, char **text, size_t 
     return IMK_OK;
 }
 
-imk_parameter_format imk_parameter_format_detect(const char *path)
+imk_status imk_parameter_format_detect(const char *path, imk_parameter_format *format,
+                                       imk_error *error)
 {
     char *text = NULL;
     size_t size;
-    if (read_all(path, true, &text, &size, NULL) != IMK_OK)
-        return IMK_PARAMETERS_UNKNOWN;
-    imk_parameter_format format = recognise(text, size);
+    const imk_status status = read_all(path, true, &text, &size, error);
+    const bool is_missing = status == IMK_ERROR_OPEN && access(path, F_OK) != 0;
+    if (status == IMK_ERROR_READ || status == IMK_ERROR_MEMORY ||
+        (status == IMK_ERROR_OPEN && !is_missing))
+        return status;
+    *format = status == IMK_OK ? recognise(text, size) : IMK_PARAMETERS_UNKNOWN;
     free(text);
-    return format;
+    return IMK_OK;
 }
 
 static imk_status check_settings(const imk_parameter_settings *settings, imk_error *error)

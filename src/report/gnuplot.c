@@ -241,9 +241,10 @@ static int slurp(const char *path, char **text, size_t *size)
 {
     FILE *file = fopen(path, "rb");
     struct stat about;
-    if (!file || fstat(fileno(file), &about) != 0 || about.st_size == 0) {
-        if (file)
-            fclose(file);
+    if (!file)
+        return errno;
+    if (fstat(fileno(file), &about) != 0 || about.st_size == 0) {
+        fclose(file);
         return ENOENT;
     }
     const size_t length = (size_t)about.st_size;

@@ -109,13 +109,16 @@ static void test_recognition(void **state)
 {
     (void)state;
     char path[512];
+    imk_parameter_format format;
     for (int i = 0; i < SAMPLES; i++) {
         snprintf(path, sizeof path, "%s/fuzz/corpus/parameters/%s", SOURCE_DIRECTORY,
                  samples[i].file);
-        assert_string_equal(imk_parameter_format_name(imk_parameter_format_detect(path)),
-                            samples[i].format);
+        CHECK_OK(imk_parameter_format_detect(path, &format, NULL));
+        assert_string_equal(imk_parameter_format_name(format), samples[i].format);
     }
-    assert_int_equal(imk_parameter_format_detect("/nowhere/imu.yaml"), IMK_PARAMETERS_UNKNOWN);
+    CHECK_OK(imk_parameter_format_detect("/nowhere/imu.yaml", &format, NULL));
+    assert_int_equal(format, IMK_PARAMETERS_UNKNOWN);
+    CHECK_STATUS(imk_parameter_format_detect("/", &format, NULL), IMK_ERROR_OPEN);
     CHECK_STATUS(read("imukit: 1\ngyro: {}\n"), IMK_ERROR_FORMAT);
     CHECK_STATUS(read("time [s],gyro_x [deg/s]\n0,1\n"), IMK_ERROR_FORMAT);
     check_says("kalibr, gazebo, matlab");
