@@ -192,13 +192,13 @@ int allan_print_json(const allan_result *result)
         for (size_t k = 0; k < result->statistic_count; k++) {
             const imk_log_column *column = log_channel_column(channels, c);
             json_array_append_new(
-                list, json_pack("{s:s, s:s, s:o}", "name", column->name, "statistic",
+                list, json_pack("{s:o, s:s, s:o}", "name", json_text(column->name), "statistic",
                                 imk_allan_name(result->statistic[k]), "points",
                                 json_points(&result->curve[c][k],
                                             plain_unit(result, column, result->statistic[k]))));
         }
     json_t *inputs =
-        json_pack("{s:s, s:I, s:o, s:s, s:f, s:s, s:s}", "log", result->path, "rows",
+        json_pack("{s:o, s:I, s:o, s:s, s:f, s:s, s:s}", "log", json_text(result->path), "rows",
                   (json_int_t)channels->rows, "interval", json_quantity(channels->dt, "s"),
                   "statistic", o->statistic ? o->statistic : "oadev", "confidence", o->confidence,
                   "edf", o->edf ? "greenhall-riley" : "exact", "bias", biases[o->bias]);

@@ -7,6 +7,8 @@
 #include "calibrate_parts.h"
 #include "model_changes.h"
 
+#include "imukit/utf8.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -141,14 +143,19 @@ static bool estimated(const bench *b, int sensor)
     return b->runs && b->runs->axis_count[sensor] > 0;
 }
 
+static size_t add_text(const char *more, char *text, size_t size, size_t used)
+{
+    return used < size ? used + imk_utf8_clean(more, text + used, size - used) : used;
+}
+
 /* Names of the logs, and how they were used. */
 static void describe(const bench *b, imk_evidence *evidence)
 {
     size_t used = 0;
-    evidence->source[0] = '\0';
-    for (size_t k = 0; k < b->log_count && used < sizeof evidence->source; k++)
-        used += (size_t)snprintf(evidence->source + used, sizeof evidence->source - used, "%s%s",
-                                 k > 0 ? ", " : "", b->log[k].record.name);
+    for (size_t k = 0; k < b->log_count; k++) {
+        used = add_text(k > 0 ? ", " : "", evidence->source, sizeof evidence->source, used);
+        used = add_text(b->log[k].record.name, evidence->source, sizeof evidence->source, used);
+    }
     if (b->runs) {
         snprintf(evidence->method, sizeof evidence->method,
                  "imukit %s calibrate: repeatability of %zu runs", IMK_VERSION, b->run_count);
@@ -175,32 +182,10 @@ static void describe(const bench *b, imk_evidence *evidence)
              b->calibration->gravity);
 }
 
-/* Cut a text that was shortened in the middle of a UTF-8 character. */
-static void end_at_character(char *text)
-{
-    size_t length = strlen(text);
-    size_t begin = length;
-    while (begin > 0 && ((unsigned char)text[begin - 1] & 0xC0) == 0x80)
-        begin--;
-    if (begin == 0 || (unsigned char)text[begin - 1] < 0xC0)
-        return;
-    const unsigned char first = (unsigned char)text[begin - 1];
-    const size_t due = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-    if (length - (begin - 1) < due)
-        text[begin - 1] = '\0';
-}
-
-/* ---- model ----------------------------------------------------------------------------------- */
-
 static void name_model(const bench *b, imk_model *model)
 {
-    const char *name = b->log[0].record.name;
-    const size_t length = strcspn(name, ".");
-    if (b->options->name)
-        snprintf(model->name, sizeof model->name, "%s", b->options->name);
-    else if (!model->name[0] || !b->options->into)
-        snprintf(model->name, sizeof model->name, "%.*s", (int)(length < 90 ? length : 90), name);
-    end_at_character(model->name);
+    if (b->options->name || !model->name[0] || !b->options->into)
+        command_model_name(b->options->name, b->log[0].path, model->name, sizeof model->name);
 }
 
 /* What temperature does besides the polynomials that were solved for. */
@@ -240,8 +225,6 @@ void bench_make_model(bench *b)
         if (b->runs)
             round_repeatability(model, sensor);
         describe(b, evidence[sensor]);
-        end_at_character(evidence[sensor]->source);
-        end_at_character(evidence[sensor]->method);
     }
     name_model(b, model);
 }

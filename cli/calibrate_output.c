@@ -122,8 +122,8 @@ static json_t *poses_json(const bench *b)
         const imk_test_record *record = c->record[o->record];
         const double begin = record->time ? record->time[o->begin] : (double)o->begin * record->dt;
         json_array_append_new(
-            list, json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "log", record->name,
-                            "begin", json_quantity(begin, "s"), "length",
+            list, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "log",
+                            json_text(record->name), "begin", json_quantity(begin, "s"), "length",
                             json_quantity((double)(o->end - o->begin) * record->dt, "s"), "force",
                             vector_json(o->knowledge == IMK_INPUT_GRAVITY ? o->vertical : o->force),
                             "accel_residual", vector_json(o->residual[1]), "gyro_residual",
@@ -231,11 +231,12 @@ static json_t *logs_json(const bench *b)
     for (size_t k = 0; k < b->log_count; k++) {
         const bench_log *log = &b->log[k];
         json_array_append_new(
-            list, json_pack("{s:s, s:s, s:I, s:I, s:o, s:I, s:o}", "log", log->path, "procedure",
-                            b->runs ? "repeatability" : imk_procedure_name(log->procedure), "rows",
-                            (json_int_t)log->record.count, "left_out", (json_int_t)log->dropped,
-                            "interval", json_quantity(log->record.dt, "s"), "intervals_at_rest",
-                            (json_int_t)log->interval_count, "thermal", thermal_json(log)));
+            list,
+            json_pack("{s:o, s:s, s:I, s:I, s:o, s:I, s:o}", "log", json_text(log->path),
+                      "procedure", b->runs ? "repeatability" : imk_procedure_name(log->procedure),
+                      "rows", (json_int_t)log->record.count, "left_out", (json_int_t)log->dropped,
+                      "interval", json_quantity(log->record.dt, "s"), "intervals_at_rest",
+                      (json_int_t)log->interval_count, "thermal", thermal_json(log)));
     }
     return list;
 }
@@ -247,15 +248,15 @@ int bench_json(const bench *b, int code)
     json_t *sentences = json_array();
     for (size_t k = 0; k < b->sentence_count; k++)
         json_array_append_new(
-            sentences, json_pack("{s:s, s:s, s:s}", "level", levels[b->sentence[k].level], "code",
-                                 b->sentence[k].code, "message", b->sentence[k].text));
+            sentences, json_pack("{s:s, s:s, s:o}", "level", levels[b->sentence[k].level], "code",
+                                 b->sentence[k].code, "message", json_text(b->sentence[k].text)));
     bench_verdict(b, text, sizeof text);
     json_t *inputs = json_pack("{s:o, s:o, s:o}", "logs", logs_json(b), "gravity",
                                json_quantity(b->calibration->gravity, "m/s^2"), "latitude",
                                json_quantity(b->calibration->latitude, "rad"));
     json_t *result =
-        json_pack("{s:s, s:s, s:o, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "verdict", text, "level",
-                  levels[bench_level(b)], "sentences", sentences, "frame",
+        json_pack("{s:o, s:s, s:o, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "verdict", json_text(text),
+                  "level", levels[bench_level(b)], "sentences", sentences, "frame",
                   imk_triad_frame_name(b->calibration->frame), "parameters", parameters_json(b),
                   "correlation", correlation_json(b), "fit", fit_json(b), "poses", poses_json(b),
                   "repeatability", runs_json(b), "closed_form", closed_form_json(b));

@@ -315,7 +315,7 @@ static int print_json(const plan *p, const char *model, int code)
                                         "temperature", json_quantity(s->temperature, "K"),
                                         "duration", json_quantity(s->duration, "s")));
     }
-    json_t *inputs = json_pack("{s:s, s:s}", "model", model, "procedure",
+    json_t *inputs = json_pack("{s:o, s:s}", "model", json_text(model), "procedure",
                                imk_procedure_name(p->settings.procedure));
     return json_print("calibrate", inputs,
                       json_pack("{s:o, s:o, s:o}", "steps", steps, "wishes", wishes, "duration",

@@ -5,6 +5,7 @@
 
 #include "imukit/names.h"
 #include "imukit/output_file.h"
+#include "imukit/utf8.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -147,6 +148,15 @@ int command_log_error(const imk_error *error, const char *path)
     fprintf(stderr, "Next: %s %.*s\n", command_line(),
             (int)(reason ? reason - options : (long)strlen(options)), options);
     return code;
+}
+
+void command_model_name(const char *given, const char *path, char *name, size_t size)
+{
+    const char *slash = strrchr(path, '/');
+    const char *base = slash ? slash + 1 : path;
+    char stem[256]; /* no file has a longer name */
+    snprintf(stem, sizeof stem, "%.*s", (int)strcspn(base, "."), base);
+    imk_utf8_clean(given ? given : stem, name, size);
 }
 
 int command_model(const char *name, imk_model *model, imk_document **document)

@@ -38,6 +38,8 @@ _Noreturn void command_end(int code);
 void *command_memory(void *at, size_t size);
 /* The same of what the library reports: the status, unless it is that memory failed. */
 imk_status command_unless_memory(imk_status status);
+/* The name of a model that is made: the one given, or the file's without its endings. */
+void command_model_name(const char *given, const char *path, char *name, size_t size);
 /* Open a model file or a catalogue entry. @return -1 or the exit code, the message printed */
 int command_model(const char *name, imk_model *model, imk_document **document);
 /* The same for a log that cannot be read as it is; when an option would help, the whole command to

@@ -61,9 +61,13 @@ static int print_json(const compensate_options *o, const imk_firmware *plan, con
 {
     json_t *files = json_array(), *bound = json_object();
     static const char *const endings[3] = {".h", ".c", "_test.c"};
-    for (int i = 0; i < 3; i++)
-        json_array_append_new(files,
-                              json_sprintf("%s/%s%s", o->emission.directory, name, endings[i]));
+    const size_t size = strlen(o->emission.directory) + strlen(name) + 16;
+    char *path = command_memory(NULL, size);
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, size, "%s/%s%s", o->emission.directory, name, endings[i]);
+        json_array_append_new(files, json_text(path));
+    }
+    free(path);
     for (int sensor = 0; sensor < 2; sensor++)
         if (plan->axis_count[sensor] > 0)
             json_object_set_new(bound, motions[sensor],
@@ -71,11 +75,12 @@ static int print_json(const compensate_options *o, const imk_firmware *plan, con
     json_t *cost =
         json_pack("{s:i, s:i, s:i}", "multiplications", plan->cost.multiplications, "additions",
                   plan->cost.additions, "comparisons", plan->cost.comparisons);
-    json_t *result = json_pack("{s:o, s:s, s:s, s:i, s:o, s:o, s:o, s:o}", "files", files,
-                               "function", name, "arithmetic", arithmetics[plan->arithmetic],
-                               "iterations", plan->iterations, "bound", bound, "cost", cost,
-                               "taken_out", json_keys(taken_out), "left_in", json_keys(left_in));
-    return json_print("compensate", json_pack("{s:s}", "model", model_name), result, EXIT_DONE);
+    json_t *result = json_pack(
+        "{s:o, s:o, s:s, s:i, s:o, s:o, s:o, s:o}", "files", files, "function", json_text(name),
+        "arithmetic", arithmetics[plan->arithmetic], "iterations", plan->iterations, "bound", bound,
+        "cost", cost, "taken_out", json_keys(taken_out), "left_in", json_keys(left_in));
+    return json_print("compensate", json_pack("{s:o}", "model", json_text(model_name)), result,
+                      EXIT_DONE);
 }
 
 static void print_summary(const compensate_options *o, const imk_firmware *plan, const char *name)

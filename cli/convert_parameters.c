@@ -83,9 +83,9 @@ static void print_notes(const imk_parameter_notes *notes)
 static void add_notes(json_t *list, const imk_parameter_notes *notes)
 {
     for (size_t i = 0; i < notes->count; i++)
-        json_array_append_new(list, json_pack("{s:s, s:s}", "kind",
+        json_array_append_new(list, json_pack("{s:s, s:o}", "kind",
                                               notes->note[i].lost ? "lost" : "assumed", "text",
-                                              notes->note[i].text));
+                                              json_text(notes->note[i].text)));
 }
 
 /* What the two halves of a conversion have to say. */
@@ -101,9 +101,10 @@ static int print_json(const parameter_options *o, imk_parameter_format from, con
     add_notes(list, &notes->written);
     const char *source = imk_parameter_format_name(from);
     const char *target = imk_parameter_format_name((imk_parameter_format)o->to);
-    json_t *inputs = json_pack("{s:s, s:s}", "file", in, "format", source ? source : "model");
-    json_t *result = json_pack("{s:s, s:s, s:o}", "file", out, "format", target ? target : "model",
-                               "notes", list);
+    json_t *inputs =
+        json_pack("{s:o, s:s}", "file", json_text(in), "format", source ? source : "model");
+    json_t *result = json_pack("{s:o, s:s, s:o}", "file", json_text(out), "format",
+                               target ? target : "model", "notes", list);
     return json_print("convert", inputs, result, EXIT_DONE);
 }
 

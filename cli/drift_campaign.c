@@ -150,10 +150,11 @@ static int print_results_json(const drift_result *r, const imk_campaign_results 
 {
     const imk_campaign *c = &results->campaign;
     json_t *parameters = json_loads(c->parameters, 0, NULL);
-    json_t *inputs = json_pack(
-        "{s:s, s:s, s:I, s:I, s:I, s:I, s:o}", "results", r->name[0], "version", c->version, "seed",
-        (json_int_t)c->seed, "runs", (json_int_t)c->run_count, "first", (json_int_t)results->run[0],
-        "count", (json_int_t)results->runs, "parameters", parameters ? parameters : json_null());
+    json_t *inputs =
+        json_pack("{s:o, s:s, s:I, s:I, s:I, s:I, s:o}", "results", json_text(r->name[0]),
+                  "version", c->version, "seed", (json_int_t)c->seed, "runs",
+                  (json_int_t)c->run_count, "first", (json_int_t)results->run[0], "count",
+                  (json_int_t)results->runs, "parameters", parameters ? parameters : json_null());
     return json_print("drift", inputs, json_pack("{s:o}", "monte_carlo", drift_runs_json(r)),
                       EXIT_DONE);
 }

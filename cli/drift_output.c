@@ -148,7 +148,7 @@ static json_t *json_of_case(const drift_result *r, const drift_case *one)
     }
     for (size_t i = 0; i < one->analysis->omitted_count; i++)
         json_array_append_new(omitted, json_string(one->analysis->omitted[i]));
-    return json_pack("{s:s, s:b, s:o, s:o, s:o, s:o}", "model", one->name, "compensated",
+    return json_pack("{s:o, s:b, s:o, s:o, s:o, s:o}", "model", json_text(one->name), "compensated",
                      one->settings.compensated, "times", times, "budget_time",
                      json_quantity(scene->time[at], "s"), "budget", json_of_budget(one, at, wish),
                      "omitted", omitted);
@@ -186,14 +186,14 @@ static json_t *json_of_inputs(const drift_result *r)
     const imk_drift_settings *s = &r->scene->settings;
     json_t *models = json_array(), *initial = json_array();
     for (size_t m = 0; m < r->model_count; m++)
-        json_array_append_new(models, json_string(r->name[m]));
+        json_array_append_new(models, json_text(r->name[m]));
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         json_array_append_new(initial, json_quantity(s->initial_sigma[i], i < 3   ? "m"
                                                                           : i < 6 ? "m/s"
                                                                                   : "rad"));
     json_t *inputs =
         json_pack("{s:o, s:o, s:o, s:s, s:s, s:o}", "models", models, "motion",
-                  r->scene->motion ? json_string(r->options->motion) : json_null(), "rate",
+                  r->scene->motion ? json_text(r->options->motion) : json_null(), "rate",
                   json_quantity(s->rate, "Hz"), "vertical",
                   s->vertical == IMK_VERTICAL_FREE ? "free" : "slaved", "aligned",
                   s->alignment == IMK_ALIGNED_SELF ? "self" : "given", "initial_sigma", initial);

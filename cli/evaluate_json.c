@@ -19,7 +19,7 @@ static json_t *figures_json(const evaluation *v, size_t count, const evaluate_ro
         if (row[k].level >= 0)
             json_object_set_new(figure, "level", json_integer(row[k].level));
         if (verdict != VERDICT_NONE) {
-            json_object_set_new(figure, "limit", json_string(text));
+            json_object_set_new(figure, "limit", json_text(text));
             json_object_set_new(figure, "verdict", json_string(evaluate_verdict_text(verdict)));
         }
         json_object_set_new(figures, row[k].key, figure);
@@ -62,9 +62,9 @@ static json_t *channel_json(const evaluation *v, const evaluate_channel *c)
     for (int k = 0; k < 3 && r->alternation[k] >= 0; k++)
         json_array_append_new(alternation, json_integer(r->alternation[k]));
     return json_pack(
-        "{s:s, s:I, s:I, s:o, s:s, s:o, s:s, s:s, s:o, s:o, s:o, s:o, s:o}", "name", c->name,
-        "readings", (json_int_t)c->count, "runs", (json_int_t)r->runs, "full_scale",
-        json_quantity(r->full_scale, reference), "noise_from", sources[r->source],
+        "{s:o, s:I, s:I, s:o, s:s, s:o, s:s, s:s, s:o, s:o, s:o, s:o, s:o}", "name",
+        json_text(c->name), "readings", (json_int_t)c->count, "runs", (json_int_t)r->runs,
+        "full_scale", json_quantity(r->full_scale, reference), "noise_from", sources[r->source],
         "degrees_of_freedom", json_number(r->freedom), "reference_unit", reference, "reading_unit",
         reading, "figures", figures_json(v, count, row), "least_squares_line", line_json(&r->line),
         "best_line", line_json(&r->best), "alternation", alternation, "levels", levels_json(c));
@@ -74,16 +74,17 @@ int evaluate_json(const evaluation *v, int code)
 {
     json_t *files = json_array(), *channels = json_array(), *rest = json_array();
     for (size_t k = 0; k < v->path_count; k++)
-        json_array_append_new(files, json_string(v->path[k]));
+        json_array_append_new(files, json_text(v->path[k]));
     for (size_t k = 0; k < v->channel_count; k++)
         json_array_append_new(channels, channel_json(v, &v->channel[k]));
     for (size_t k = 0; k < v->rest_count; k++) {
         evaluate_row row[EVALUATE_ROWS];
         const size_t count = evaluate_rest_figures(&v->rest[k], row);
-        json_array_append_new(rest, json_pack("{s:s, s:o}", "name", v->rest[k].name, "figures",
-                                              figures_json(v, count, row)));
+        json_array_append_new(rest, json_pack("{s:o, s:o}", "name", json_text(v->rest[k].name),
+                                              "figures", figures_json(v, count, row)));
     }
-    json_t *inputs = json_pack("{s:o, s:s?, s:f}", "files", files, "static", v->options->rest,
+    json_t *inputs = json_pack("{s:o, s:o, s:f}", "files", files, "static",
+                               v->options->rest ? json_text(v->options->rest) : json_null(),
                                "confidence", v->options->confidence);
     json_t *result = json_pack("{s:o, s:o, s:b}", "channels", channels, "static", rest,
                                "limits_met", !v->missed);

@@ -66,8 +66,8 @@ static json_t *case_json(const grade_case *one)
     const bool known = t->limiting[0];
     const imk_grade_row *row = imk_grade_table(t->overall);
     return json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:o}", "model", one->operand,
-        "overall", name_or_null(known, t->overall), "gyro",
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:o}", "model",
+        json_text(one->operand), "overall", name_or_null(known, t->overall), "gyro",
         name_or_null(!isnan(t->gyro_bias), t->gyro), "accel",
         name_or_null(!isnan(t->accel_bias), t->accel), "gyro_bias",
         json_quantity(t->gyro_bias, "rad/s"), "accel_bias", json_quantity(t->accel_bias, "m/s^2"),
@@ -75,7 +75,7 @@ static json_t *case_json(const grade_case *one)
         json_quantity(one->accel_scale, "1"), "limiting", t->limiting, "position_performance",
         known && row ? json_string(row->position_performance) : json_null(), "position",
         computed_json(one), "no_position",
-        one->has_position ? json_null() : json_string(one->no_position));
+        one->has_position ? json_null() : json_text(one->no_position));
 }
 
 int grade_print_json(const grade_result *r)
@@ -83,7 +83,7 @@ int grade_print_json(const grade_result *r)
     json_t *models = json_array(), *names = json_array();
     for (size_t m = 0; m < r->count; m++) {
         json_array_append_new(models, case_json(&r->cases[m]));
-        json_array_append_new(names, json_string(r->cases[m].operand));
+        json_array_append_new(names, json_text(r->cases[m].operand));
     }
     return json_print("grade", json_pack("{s:o}", "models", names),
                       json_pack("{s:o}", "models", models), EXIT_DONE);

@@ -4,6 +4,7 @@
 #include "model_changes.h"
 
 #include "imukit/simulate.h"
+#include "imukit/utf8.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -51,7 +52,7 @@ static void store_kind(const identification *i, channel_kind kind, imk_model *mo
     triad->axis_count = axes;
     if (fabs(i->options->confidence - 0.95) > 1e-12)
         evidence->interval_count = 0; /* the file's intervals are of 95 % */
-    snprintf(evidence->source, sizeof evidence->source, "%s", identify_base_name(i->path));
+    imk_utf8_clean(identify_base_name(i->path), evidence->source, sizeof evidence->source);
     char length[60];
     format_duration(identify_duration(i), length, sizeof length);
     snprintf(evidence->method, sizeof evidence->method, "imukit %s identify: %s, %s at %.6g Hz",
@@ -68,12 +69,7 @@ void identify_noise_model(const identification *i, imk_model *model)
     store_kind(i, CHANNEL_GYRO, model);
     store_kind(i, CHANNEL_ACCEL, model);
     identify_round_model(model);
-    const char *base = identify_base_name(i->path);
-    if (i->options->name)
-        snprintf(model->name, sizeof model->name, "%s", i->options->name);
-    else
-        snprintf(model->name, sizeof model->name, "%.*s",
-                 (int)(strcspn(base, ".") < 90 ? strcspn(base, ".") : 90), base);
+    command_model_name(i->options->name, i->path, model->name, sizeof model->name);
 }
 
 /* Replace the noise, the output filter and the evidence of a triad, and nothing else. */
@@ -109,7 +105,7 @@ static int write_into(identification *i, imk_model *noise)
     if (code < 0)
         code = merge_kind(i, CHANNEL_ACCEL, noise);
     if (code < 0 && i->options->name)
-        snprintf(i->model.name, sizeof i->model.name, "%s", i->options->name);
+        imk_utf8_clean(i->options->name, i->model.name, sizeof i->model.name);
     if (code < 0)
         model_print_changes(i->options->into, before, &i->model, document);
     if (code < 0 && i->options->output &&

@@ -180,14 +180,14 @@ int identify_plan_json(identify_plan *p, int code)
         const plan_wish *wish = &p->wish[k];
         char name[64];
         snprintf(name, sizeof name, "%s.%s", kind_of(&p->row[wish->row]), p->row[wish->row].key);
-        json_t *item = json_pack("{s:s, s:s, s:o}", "wish", wish->text, "term", name, "duration",
-                                 json_quantity(wish->duration, "s"));
+        json_t *item = json_pack("{s:o, s:s, s:o}", "wish", json_text(wish->text), "term", name,
+                                 "duration", json_quantity(wish->duration, "s"));
         json_object_set_new(item, wish->relative > 0 ? "relative_sigma" : "found",
                             json_number(wish->relative > 0 ? wish->relative : wish->detection));
         json_array_append_new(wishes, item);
     }
     return json_print("identify",
-                      json_pack("{s:s, s:o}", "model", p->request->model, "rate",
+                      json_pack("{s:o, s:o}", "model", json_text(p->request->model), "rate",
                                 json_quantity(p->request->rate, "Hz")),
                       json_pack("{s:o, s:o}", "wishes", wishes, "records", cells_json(p)), code);
 }

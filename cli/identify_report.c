@@ -140,16 +140,16 @@ json_t *identify_channel_json(const identification *i, size_t channel)
         double scale = channel_kind_of(column) == CHANNEL_OTHER ? plain.scale : 1;
         json_object_set_new(terms, display.key, estimate_json(&r->term[term], display.si, scale));
     }
-    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o}", "name",
-                     column->name, "terms", terms, "extras", extras_json(r, &plain), "mean",
-                     json_quantity(r->mean / plain.scale, plain.text), "allan_minimum_over_0.664",
-                     json_quantity(r->minimum_floor / plain.scale, plain.text), "resolution",
-                     json_quantity(r->resolution / plain.scale, plain.text), "valid_from",
-                     json_quantity(r->valid_from, "s"), "five_terms_from",
-                     json_quantity(r->five_terms_from, "s"), "valid_to",
-                     json_quantity(r->valid_to, "s"), "missing", (json_int_t)r->missing,
-                     "largest_gap", json_quantity(r->largest_gap, "s"), "screening",
-                     identify_screen_json(i, channel));
+    return json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o}", "name",
+        json_text(column->name), "terms", terms, "extras", extras_json(r, &plain), "mean",
+        json_quantity(r->mean / plain.scale, plain.text), "allan_minimum_over_0.664",
+        json_quantity(r->minimum_floor / plain.scale, plain.text), "resolution",
+        json_quantity(r->resolution / plain.scale, plain.text), "valid_from",
+        json_quantity(r->valid_from, "s"), "five_terms_from",
+        json_quantity(r->five_terms_from, "s"), "valid_to", json_quantity(r->valid_to, "s"),
+        "missing", (json_int_t)r->missing, "largest_gap", json_quantity(r->largest_gap, "s"),
+        "screening", identify_screen_json(i, channel));
 }
 
 json_t *identify_verdict_json(const identification *i)
@@ -157,9 +157,9 @@ json_t *identify_verdict_json(const identification *i)
     json_t *verdict = json_array();
     for (size_t k = 0; k < i->verdict_count; k++) {
         static const char *const levels[] = {"good", "note", "warning"};
-        json_array_append_new(verdict,
-                              json_pack("{s:s, s:s, s:s}", "level", levels[i->verdict[k].level],
-                                        "code", i->verdict[k].code, "message", i->verdict[k].text));
+        json_array_append_new(
+            verdict, json_pack("{s:s, s:s, s:o}", "level", levels[i->verdict[k].level], "code",
+                               i->verdict[k].code, "message", json_text(i->verdict[k].text)));
     }
     return verdict;
 }
@@ -169,10 +169,10 @@ int identify_json(const identification *i, int code)
     json_t *channels = json_array();
     for (size_t c = 0; c < i->channels.count; c++)
         json_array_append_new(channels, identify_channel_json(i, c));
-    json_t *inputs =
-        json_pack("{s:s, s:I, s:I, s:o, s:f}", "log", i->path, "rows", (json_int_t)i->channels.rows,
-                  "bridged", (json_int_t)i->channels.bridged, "interval",
-                  json_quantity(i->channels.dt, "s"), "confidence", i->options->confidence);
+    json_t *inputs = json_pack(
+        "{s:o, s:I, s:I, s:o, s:f}", "log", json_text(i->path), "rows",
+        (json_int_t)i->channels.rows, "bridged", (json_int_t)i->channels.bridged, "interval",
+        json_quantity(i->channels.dt, "s"), "confidence", i->options->confidence);
     return json_print(
         "identify", inputs,
         json_pack("{s:o, s:o}", "channels", channels, "verdict", identify_verdict_json(i)), code);

@@ -326,7 +326,7 @@ static json_t *joint_channel_json(const several_logs *s, size_t channel)
         json_object_del(root, of_samples[k]);
     json_t *most = json_null();
     if (a->record >= 0 && a->term >= 0)
-        most = json_pack("{s:s, s:s, s:f}", "log", s->label[a->record], "term",
+        most = json_pack("{s:o, s:s, s:f}", "log", json_text(s->label[a->record]), "term",
                          identify_term(column, (imk_noise_term)a->term).key, "sigmas", a->sigmas);
     json_object_set_new(root, "agreement",
                         json_pack("{s:o, s:I, s:o, s:o}", "chi_square", json_number(a->chi_square),
@@ -366,7 +366,7 @@ static json_t *population_json(const several_logs *s, size_t channel)
         json_object_set_new(terms, display.key,
                             device_term_json(&s->term[channel][term], display.si, scale));
     }
-    return json_pack("{s:s, s:o}", "name", column->name, "population", terms);
+    return json_pack("{s:o, s:o}", "name", json_text(column->name), "population", terms);
 }
 
 static json_t *log_json(const identification *i)
@@ -374,7 +374,7 @@ static json_t *log_json(const identification *i)
     json_t *channels = json_array();
     for (size_t c = 0; c < i->channels.count; c++)
         json_array_append_new(channels, identify_channel_json(i, c));
-    return json_pack("{s:s, s:I, s:o, s:o, s:o}", "log", i->path, "rows",
+    return json_pack("{s:o, s:I, s:o, s:o, s:o}", "log", json_text(i->path), "rows",
                      (json_int_t)i->channels.rows, "interval", json_quantity(i->channels.dt, "s"),
                      "channels", channels, "verdict", identify_verdict_json(i));
 }
@@ -387,7 +387,7 @@ int several_json(const several_logs *s, int code)
                               s->options->runs ? joint_channel_json(s, c) : population_json(s, c));
     for (size_t r = 0; r < s->count; r++) {
         json_array_append_new(logs, log_json(s->log[r]));
-        json_array_append_new(paths, json_string(s->log[r]->path));
+        json_array_append_new(paths, json_text(s->log[r]->path));
     }
     json_t *inputs =
         json_pack("{s:o, s:s, s:f}", "logs", paths, "together",

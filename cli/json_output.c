@@ -3,6 +3,8 @@
  * to the same double, which jansson's own writer cannot do. */
 #include "json_output.h"
 
+#include "imukit/utf8.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,9 +23,19 @@ json_t *json_number(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
+json_t *json_text(const char *text)
+{
+    const size_t size = imk_utf8_clean(text, NULL, 0) + 1;
+    char *clean = command_memory(NULL, size);
+    imk_utf8_clean(text, clean, size);
+    json_t *made = json_string(clean);
+    free(clean);
+    return made;
+}
+
 json_t *json_quantity(double value, const char *unit)
 {
-    return json_pack("{s:o, s:s}", "value", json_number(value), "unit", unit);
+    return json_pack("{s:o, s:o}", "value", json_number(value), "unit", json_text(unit));
 }
 
 static void put_scalar(const json_t *value)
@@ -41,7 +53,7 @@ static void put_scalar(const json_t *value)
 
 static void put_name(const char *name)
 {
-    json_t *text = json_string(name);
+    json_t *text = json_text(name);
     put_scalar(text);
     json_decref(text);
     fputs(": ", stdout);
@@ -94,8 +106,8 @@ int json_print(const char *command, json_t *inputs, json_t *result, int code)
     json_t *warnings = json_array();
     for (size_t i = 0; i < command_warning_count(); i++) {
         const command_warning *warning = command_warning_get(i);
-        json_array_append_new(
-            warnings, json_pack("{s:s, s:s}", "code", warning->code, "message", warning->message));
+        json_array_append_new(warnings, json_pack("{s:s, s:o}", "code", warning->code, "message",
+                                                  json_text(warning->message)));
     }
     json_t *document = json_pack("{s:s, s:s, s:o, s:o, s:o}", "imukit", IMK_VERSION, "command",
                                  command, "inputs", inputs, "result", result, "warnings", warnings);

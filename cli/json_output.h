@@ -15,6 +15,8 @@ void json_begin(void);
 
 /* A number, or null when it is not finite. */
 json_t *json_number(double value);
+/* A text that was given, or read: what is no UTF-8 in it becomes U+FFFD. */
+json_t *json_text(const char *text);
 /* {"value": …, "unit": …} */
 json_t *json_quantity(double value, const char *unit);
 

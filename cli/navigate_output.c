@@ -260,8 +260,8 @@ int navigate_json(const navigation *n, int code)
         "gyro_bias", json_three(n->end.gyro_bias.v, "rad/s"), "accel_bias",
         json_three(n->end.accel_bias.v, "m/s^2"), "updates", updates);
     json_t *inputs = json_pack(
-        "{s:s, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "log", n->path, "model",
-        n->has_model ? json_string(n->options->model) : json_null(), "rows", (json_int_t)n->rows,
+        "{s:o, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "log", json_text(n->path), "model",
+        n->has_model ? json_text(n->options->model) : json_null(), "rows", (json_int_t)n->rows,
         "bridged", (json_int_t)n->channels.bridged, "interval", json_quantity(n->dt, "s"),
         "latitude", json_quantity(n->place.latitude, "rad"), "longitude",
         json_quantity(n->place.longitude, "rad"), "height", json_quantity(n->place.height, "m"),

@@ -134,7 +134,7 @@ int physics_overview(const physics *p)
 {
     const imk_instrument *instrument = p->file.instrument;
     if (p->options->json)
-        return json_print("physics", json_pack("{s:s}", "design", p->source),
+        return json_print("physics", json_pack("{s:o}", "design", json_text(p->source)),
                           json_pack("{s:o, s:o, s:o}", "instrument",
                                     physics_instrument_json(instrument), "design",
                                     physics_design_json(p), "reduced",

@@ -328,8 +328,8 @@ static json_t *channel_json(const spectrum_result *result, size_t channel)
         json_array_append_new(bands, band_json(&f->table[i], scale, density));
     for (size_t i = 0; i < f->line_count; i++)
         json_array_append_new(lines, line_json(&f->line[i], unit));
-    return json_pack("{s:s, s:I, s:o, s:o, s:o, s:o, s:o}", "name", column->name, "segments",
-                     (json_int_t)f->spectrum.segments, "resolution",
+    return json_pack("{s:o, s:I, s:o, s:o, s:o, s:o, s:o}", "name", json_text(column->name),
+                     "segments", (json_int_t)f->spectrum.segments, "resolution",
                      json_quantity(f->spectrum.noise_bandwidth, "Hz"), "fraction_used",
                      json_number(f->spectrum.fraction_used), "bands", bands, "lines", lines,
                      "parameters", parameters_json(f, column));
@@ -343,7 +343,7 @@ int spectrum_print_json(const spectrum_result *result)
     for (size_t c = 0; c < channels->count; c++)
         json_array_append_new(list, channel_json(result, c));
     json_t *inputs = json_pack(
-        "{s:s, s:I, s:o, s:s, s:s, s:f, s:f}", "log", result->path, "rows",
+        "{s:o, s:I, s:o, s:s, s:s, s:f, s:f}", "log", json_text(result->path), "rows",
         (json_int_t)channels->rows, "interval", json_quantity(channels->dt, "s"), "method",
         o->method ? "multitaper" : "welch", "density", spectrum_sides_text(result), "confidence",
         o->confidence, "false_alarm", o->false_alarm);

@@ -149,8 +149,8 @@ static int print_json(const compensation *c, const char *log, const char *name, 
         "rate_bound", json_quantity(correction->bound[IMK_GYRO], "rad/s"), "force_bound",
         json_quantity(correction->bound[IMK_ACCEL], "m/s^2"), "taken_out", json_list(&taken_out),
         "left_in", json_list(&left));
-    json_t *inputs = json_pack("{s:s, s:s, s:o}", "log", log, "model", name, "interval",
-                               json_quantity(c->compensator.dt, "s"));
+    json_t *inputs = json_pack("{s:o, s:o, s:o}", "log", json_text(log), "model", json_text(name),
+                               "interval", json_quantity(c->compensator.dt, "s"));
     return json_print("compensate", inputs, result, code);
 }
 

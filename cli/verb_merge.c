@@ -75,18 +75,19 @@ static int print_json(const merge_options *o, size_t count, const char *const *p
 {
     json_t *inputs = json_array(), *left_out = json_array();
     for (size_t i = 0; i < count; i++)
-        json_array_append_new(inputs, json_string(paths[i]));
+        json_array_append_new(inputs, json_text(paths[i]));
     for (size_t i = 0; i < r->complaint_count; i++) {
         char text[900];
         imk_error_text(&r->complaint[i].error, NULL, text, sizeof text);
-        json_array_append_new(
-            left_out, json_pack("{s:s, s:s}", "file", r->complaint[i].path, "reason", text));
+        json_array_append_new(left_out, json_pack("{s:o, s:s}", "file",
+                                                  json_text(r->complaint[i].path), "reason", text));
     }
     json_t *result =
-        json_pack("{s:s?, s:I, s:I, s:s, s:I, s:s, s:o}", "output",
-                  code == EXIT_DONE ? o->output : NULL, "run_count", (json_int_t)r->run_count,
-                  "runs", (json_int_t)r->present, "missing_runs", r->missing, "shard_count",
-                  (json_int_t)r->shard_count, "missing_shards", r->shards, "left_out", left_out);
+        json_pack("{s:o, s:I, s:I, s:s, s:I, s:s, s:o}", "output",
+                  code == EXIT_DONE ? json_text(o->output) : json_null(), "run_count",
+                  (json_int_t)r->run_count, "runs", (json_int_t)r->present, "missing_runs",
+                  r->missing, "shard_count", (json_int_t)r->shard_count, "missing_shards",
+                  r->shards, "left_out", left_out);
     return json_print("merge", json_pack("{s:o}", "shards", inputs), result, code);
 }
 

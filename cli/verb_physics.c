@@ -233,7 +233,7 @@ static json_t *inputs_json(const physics *p)
 {
     const imk_exposure *e = &p->input.exposure;
     json_t *inputs =
-        json_pack("{s:s, s:s, s:o, s:s, s:b, s:I}", "design", p->source, "instrument",
+        json_pack("{s:o, s:s, s:o, s:s, s:b, s:I}", "design", json_text(p->source), "instrument",
                   p->file.instrument->name, "output_rate", json_quantity(p->settings.rate, "Hz"),
                   "level", p->settings.level == IMK_LEVEL_FULL ? "full" : "slow", "noise",
                   p->settings.noise, "seed", (json_int_t)p->settings.seed);

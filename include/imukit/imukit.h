@@ -66,6 +66,7 @@
 #include "imukit/tuned_gyro.h"
 #include "imukit/tuning_fork.h"
 #include "imukit/units.h"
+#include "imukit/utf8.h"
 #include "imukit/vibrating_beam.h"
 #include "imukit/zero_velocity.h"
 

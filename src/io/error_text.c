@@ -14,6 +14,7 @@
  * been meant. */
 #include "imukit/decimal.h"
 #include "imukit/io.h"
+#include "imukit/utf8.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -30,18 +31,8 @@ typedef struct sentence {
 static size_t character_length(const char *at)
 {
     const unsigned char *byte = (const unsigned char *)at;
-    if (byte[0] < 0x80)
-        return byte[0] >= 0x20 && byte[0] != 0x7F;
-    const size_t length = byte[0] >= 0xF0 && byte[0] < 0xF5   ? 4
-                          : byte[0] >= 0xE0 && byte[0] < 0xF0 ? 3
-                          : byte[0] >= 0xC2 && byte[0] < 0xE0 ? 2
-                                                              : 0;
-    for (size_t i = 1; i < length; i++)
-        if ((byte[i] & 0xC0) != 0x80)
-            return 0;
-    if (length == 2 && byte[0] == 0xC2 && byte[1] < 0xA0)
-        return 0; /* control characters U+0080 … U+009F */
-    return length;
+    const bool control = byte[0] < 0x20 || byte[0] == 0x7F || (byte[0] == 0xC2 && byte[1] < 0xA0);
+    return control ? 0 : imk_utf8_length(at);
 }
 
 /* Add text. What a terminal could take for a command, and bytes that are no text, become "?". */

@@ -10,6 +10,7 @@
 
 #include "imukit/names.h"
 #include "imukit/output_file.h"
+#include "imukit/utf8.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -80,37 +81,15 @@ imk_status imk_model_read(const char *path, imk_model *model, imk_document **doc
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-/* Length of a well-formed UTF-8 character (Unicode 15, table 3-7); 0 when it is not one. */
-static size_t utf8_length(const unsigned char *c)
-{
-    static const struct {
-        unsigned char first, last, second_from, second_to, length;
-    } forms[] = {
-        {0x01, 0x7F, 0, 0, 1},       {0xC2, 0xDF, 0x80, 0xBF, 2}, {0xE0, 0xE0, 0xA0, 0xBF, 3},
-        {0xE1, 0xEC, 0x80, 0xBF, 3}, {0xED, 0xED, 0x80, 0x9F, 3}, {0xEE, 0xEF, 0x80, 0xBF, 3},
-        {0xF0, 0xF0, 0x90, 0xBF, 4}, {0xF1, 0xF3, 0x80, 0xBF, 4}, {0xF4, 0xF4, 0x80, 0x8F, 4}};
-    for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
-        if (c[0] < forms[i].first || c[0] > forms[i].last)
-            continue;
-        if (forms[i].length > 1 && (c[1] < forms[i].second_from || c[1] > forms[i].second_to))
-            return 0;
-        for (size_t j = 2; j < forms[i].length; j++)
-            if ((c[j] & 0xC0) != 0x80)
-                return 0;
-        return forms[i].length;
-    }
-    return 0;
-}
-
 static imk_status check_texts(const imk_model *model, imk_error *error)
 {
     imki_item item;
     for (size_t i = 0; imki_item_at(i, &item); i++) {
         if (item.type != IMKI_ITEM_TEXT || imki_item_absent(&item, model))
             continue;
-        const unsigned char *c = (const unsigned char *)model + item.offset;
+        const char *c = (const char *)model + item.offset;
         while (*c) {
-            size_t length = utf8_length(c);
+            size_t length = imk_utf8_length(c);
             if (length == 0)
                 return imk_error_set(error, IMK_ERROR_ARGUMENT, item.path, "", "text in UTF-8");
             c += length;

@@ -10,6 +10,7 @@
 #include "io/growing_text_internal.h"
 
 #include "imukit/decimal.h"
+#include "imukit/utf8.h"
 
 #include <math.h>
 
@@ -99,16 +100,31 @@ imk_status imki_figure_check(const imk_figure *figure, imk_error *error)
 }
 
 /* Text in single quotes, where a quote is doubled and nothing else is special; control characters
- * become blanks. */
+ * become blanks, and bytes that are no UTF-8 its replacement character. */
 static void quote(imki_text *out, const char *text)
 {
+    size_t length;
     imki_text_put_char(out, '\'');
-    for (const char *c = text ? text : ""; *c; c++) {
+    for (const char *c = text ? text : ""; *c; c += length > 0 ? length : 1) {
+        length = imk_utf8_length(c);
         if (*c == '\'')
             imki_text_put(out, "''");
+        else if (length == 0)
+            imki_text_put(out, IMK_UTF8_REPLACEMENT);
+        else if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            imki_text_put_char(out, ' ');
         else
-            imki_text_put_char(out, (unsigned char)*c < 0x20 || *c == 0x7f ? ' ' : *c);
+            imki_text_put_bytes(out, c, length);
     }
+    imki_text_put_char(out, '\'');
+}
+
+/* The name of a file, to the byte, whatever it is. */
+static void quote_name(imki_text *out, const char *name)
+{
+    imki_text_put_char(out, '\'');
+    for (const char *c = name; *c; c++)
+        imki_text_put(out, *c == '\'' ? "''" : (const char[]){*c, '\0'});
     imki_text_put_char(out, '\'');
 }
 
@@ -181,7 +197,7 @@ static void write_curve(imki_text *out, const imk_curve *curve, size_t index, co
 {
     const char *color = palette[(unsigned)curve->color % PALETTE_SIZE];
     bool text = d->terminal == IMKI_TERMINAL_TEXT;
-    quote(out, d->data);
+    quote_name(out, d->data);
     imki_text_add(out, " index %zu ", index);
     bool bars = curve->lower && curve->upper;
     switch (curve->style) {
@@ -201,7 +217,7 @@ static void write_curve(imki_text *out, const imk_curve *curve, size_t index, co
                 "using 1:3:(0):($4-$3) with vectors nohead linewidth 1.2 linecolor rgb '%s' "
                 "notitle, \\\n     ",
                 color);
-            quote(out, d->data);
+            quote_name(out, d->data);
             imki_text_add(out, " index %zu ", index);
         }
         imki_text_add(out, "using 1:2 with points %slinecolor rgb '%s'",
@@ -353,7 +369,7 @@ static void write_terminal(imki_text *out, const imk_figure *figure, const imki_
         break;
     }
     imki_text_put(out, "set output ");
-    quote(out, drawing->output);
+    quote_name(out, drawing->output);
     imki_text_put_char(out, '\n');
 }
 

@@ -4,6 +4,8 @@
 #define _DEFAULT_SOURCE
 #include "figure_internal.h"
 
+#include "imukit/utf8.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,11 +78,14 @@ static bool has_control(const char *text)
     return *text != '\0';
 }
 
-/* A word as a shell takes it. @return false when it does not fit */
+/* A word as a shell takes it. @return false when it does not fit, or cannot be shown */
 static bool shell_word(const char *text, char *word, size_t size)
 {
     size_t used = 0;
     word[used++] = '\'';
+    for (const char *c = text; *c; c += imk_utf8_length(c))
+        if (imk_utf8_length(c) == 0)
+            return false;
     for (; *text; text++) {
         const char letter[2] = {*text, '\0'};
         const char *piece = *text == '\'' ? "'\\''" : letter;

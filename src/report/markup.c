@@ -2,9 +2,13 @@
 /* Text of the caller inside HTML and SVG. */
 #include "markup_internal.h"
 
+#include "imukit/utf8.h"
+
 void imki_markup_escape(imki_text *out, const char *text)
 {
-    for (const char *c = text ? text : ""; *c; c++) {
+    size_t length;
+    for (const char *c = text ? text : ""; *c; c += length > 0 ? length : 1) {
+        length = imk_utf8_length(c);
         switch (*c) {
         case '&':
             imki_text_put(out, "&amp;");
@@ -19,8 +23,10 @@ void imki_markup_escape(imki_text *out, const char *text)
             imki_text_put(out, "&quot;");
             break;
         default:
-            if ((unsigned char)*c >= 0x20 || *c == '\n' || *c == '\t')
-                imki_text_put_char(out, *c);
+            if (length == 0)
+                imki_text_put(out, IMK_UTF8_REPLACEMENT);
+            else if ((unsigned char)*c >= 0x20 || *c == '\n' || *c == '\t')
+                imki_text_put_bytes(out, c, length);
         }
     }
 }

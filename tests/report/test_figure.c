@@ -82,6 +82,23 @@ static void test_script_quotes_texts(void **state)
     free(script);
 }
 
+/* What is no UTF-8 becomes the replacement character in a text, and stays in the name of a file. */
+static void test_script_is_utf8(void **state)
+{
+    (void)state;
+    imki_drawing drawing = {IMKI_TERMINAL_SVG, "a\xF6.svg", "d\xFF.dat", 0, 0, false};
+    imk_panel odd = panel;
+    odd.title = "l\xF6g";
+    const imk_figure one = {"", 1, 1, &odd};
+    size_t size = 0;
+    char *script = imki_figure_script(&one, &drawing, &size);
+    assert_non_null(script);
+    assert_non_null(strstr(script, "set title 'l\xEF\xBF\xBDg' noenhanced\n"));
+    assert_non_null(strstr(script, "set output 'a\xF6.svg'\n"));
+    assert_non_null(strstr(script, "'d\xFF.dat' index 0"));
+    free(script);
+}
+
 /* The axes span the points and their bars (0.0795 to 1.1), not the line at 1e-9. Air of 7 % of the
  * decades on either side: from 0.0795/1.2 to 1.1*1.2. */
 static void test_axes_span_points_only(void **state)
@@ -248,6 +265,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_script_quotes_texts),
+        cmocka_unit_test(test_script_is_utf8),
         cmocka_unit_test(test_axes_span_points_only),
         cmocka_unit_test(test_draws_svg_and_png),
         cmocka_unit_test(test_regions),

@@ -43,7 +43,7 @@ static void test_texts_are_escaped(void **state)
     imk_page_heading(page, "a < b");
     imk_page_text(page, "<script>alert(1)</script>\x01");
     imk_page_verdict(page, 2, "5 > 4");
-    imk_page_code(page, "key: <value>");
+    imk_page_code(page, "key: <value> \xE2\x82\xAC \xF6");
     const char *cells[] = {"term", "x", "N", "<1 \xc2\xb1 2>"};
     imk_page_table(page, 2, 2, cells);
     char *text = written(page);
@@ -51,7 +51,7 @@ static void test_texts_are_escaped(void **state)
     assert_non_null(strstr(text, "<h2>a &lt; b</h2>"));
     assert_non_null(strstr(text, "<p>&lt;script&gt;alert(1)&lt;/script&gt;</p>"));
     assert_non_null(strstr(text, "<p class=\"verdict warning\">5 &gt; 4</p>"));
-    assert_non_null(strstr(text, "<pre>key: &lt;value&gt;</pre>"));
+    assert_non_null(strstr(text, "<pre>key: &lt;value&gt; \xE2\x82\xAC \xEF\xBF\xBD</pre>"));
     assert_non_null(strstr(text, "<tr><th>term</th><th>x</th></tr>"));
     assert_non_null(strstr(text, "<tr><td>N</td><td>&lt;1 \xc2\xb1 2&gt;</td></tr>"));
     assert_null(strstr(text, "<script"));
