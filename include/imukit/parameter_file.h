@@ -37,7 +37,7 @@ IMK_API const char *imk_parameter_format_name(imk_parameter_format format);
 /** Format of a name; IMK_PARAMETERS_UNKNOWN when there is none. */
 IMK_API imk_parameter_format imk_parameter_format_find(const char *name);
 /** Format of a file by its name and content, IMK_PARAMETERS_UNKNOWN when it is none of them, or not
- * there. A pipe is copied to a temporary file, which the next opening in this process reads.
+ *  there. A pipe is copied to a temporary file, which the next opening in this process reads.
  *  @return IMK_ERROR_OPEN, IMK_ERROR_READ, IMK_ERROR_MEMORY */
 IMK_API imk_status imk_parameter_format_detect(const char *path, imk_parameter_format *format,
                                                imk_error *error);
