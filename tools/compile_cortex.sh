@@ -1,0 +1,15 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# libimukit for a Cortex-M4F in build-check/cortex-m4, each object with the compiler's call graph and
+# frames (.ci) beside it; nothing to do when it is newer than what it is made of.
+set -eu
+cd "$(dirname "$0")/.."
+modules="base model noise motion simulate identify physics compensate calibrate navigate"
+out=build-check/cortex-m4
+made_of=(include tools/compile_core.sh tools/compile_cortex.sh $(printf 'src/%s ' $modules))
+[ -e "$out/made" ] && [ -z "$(find "${made_of[@]}" -newer "$out/made" -print -quit)" ] && exit
+touch build-check/cortex-m4.begun
+tools/compile_core.sh "$out" "$modules" arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb \
+    -mfloat-abi=hard -mfpu=fpv4-sp-d16 -O2 -Wdouble-promotion -ffunction-sections -fdata-sections \
+    -fcallgraph-info=su
+mv build-check/cortex-m4.begun "$out/made"
