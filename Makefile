@@ -7,6 +7,7 @@
 #   make bench   speed against yardsticks: build/bench.csv
 #   make experiments  build the long statistical experiments: build/experiments/*
 #   make experiments-all  run them all and renew experiments/results
+#   make faults  let memory, files and the disk fail, call by call, under every verb: some minutes
 #   make fuzz    feed the parsers with random input for a while
 #   make mpi     build/imukit-mpi too: campaigns on many machines (Open MPI)
 #   make install [PREFIX=/usr/local] [DESTDIR=]
@@ -26,7 +27,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check bench experiments experiments-all fuzz mpi install deps clean help
+.PHONY: all demo test check bench experiments experiments-all faults fuzz mpi install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -62,6 +63,12 @@ experiments:
 experiments-all: experiments
 	@$(compile) --target imukit-command
 	@$(alone) BUILD=$(BUILD) experiments/run
+
+faults:
+	@tools/install_dependencies.sh build test
+	@$(configure) $(quiet)
+	@$(compile) --target imukit-command $(quiet)
+	@$(alone) BUILD=$(BUILD) tools/run_faults
 
 fuzz:
 	@tools/install_dependencies.sh build fuzz

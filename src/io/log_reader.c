@@ -134,7 +134,11 @@ void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *si
 {
     const imki_log_text *text = &reader->text;
     if (text->buffer) {
+        const uint64_t consumed = text->taken + (uint64_t)(text->next - text->base);
+        const uint64_t fetched = text->taken + (uint64_t)(text->end - text->base);
         imki_input_progress(text->input, done, size);
+        if (*done == fetched) /* it is not compressed */
+            *done = consumed;
     } else {
         *done = (uint64_t)(text->next - text->base);
         *size = (uint64_t)(text->end - text->base);

@@ -761,6 +761,38 @@ static void count_progress(void *context, uint64_t done, uint64_t total)
     last[1]++;
 }
 
+/* Not what has been fetched ahead, which depends on how much the system gives at a time. */
+static void progress_is_what_was_consumed(void **state)
+{
+    (void)state;
+    enum { ROWS = 20000, ROW = 15, TAKEN = 777 };
+    const char *path = temporary_path("long.csv"), head[] = "gyro_x [rad/s]\n";
+    const size_t begin = sizeof head - 1;
+    char *text = malloc(begin + ROWS * ROW + 1);
+    assert_non_null(text);
+    memcpy(text, head, begin);
+    for (size_t row = 0; row < ROWS; row++)
+        assert_int_equal(snprintf(text + begin + row * ROW, ROW + 1, "%.12f\n", 1e-5 * (double)row),
+                         ROW);
+    write_file(path, text, begin + ROWS * ROW);
+    imk_log_settings settings = imk_log_settings_default();
+    settings.rate = 100;
+    imk_log_reader *reader;
+    static double values[TAKEN];
+    double *const columns[] = {values};
+    size_t rows;
+    uint64_t done, size;
+    CHECK_OK(imk_log_open(path, &settings, &reader, NULL));
+    CHECK_OK(imk_log_read(reader, TAKEN, columns, &rows, NULL));
+    assert_int_equal(rows, TAKEN);
+    imk_log_progress(reader, &done, &size);
+    assert_int_equal(done, begin + TAKEN * ROW);
+    assert_int_equal(size, begin + ROWS * ROW);
+    imk_log_close(reader);
+    remove(path);
+    free(text);
+}
+
 static void real_log_loads_whole(void **state)
 {
     (void)state;
@@ -807,6 +839,7 @@ int main(void)
         cmocka_unit_test(cut_logs_give_whole_rows),
         cmocka_unit_test(memory_of_exact_size_is_enough),
         cmocka_unit_test(matrices_are_read),
+        cmocka_unit_test(progress_is_what_was_consumed),
         cmocka_unit_test(real_log_loads_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
