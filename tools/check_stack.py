@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The deepest path of calls below any public function of libimukit takes at most 48 KiB of stack.
 
-    check_stack.py                  the Cortex-M4F objects of check_portable
+    check_stack.py                  the objects of tools/compile_cortex.sh
     check_stack.py DIR [OBJDUMP]    other objects, compiled with -ffunction-sections,
                                     -fdata-sections, -fno-pie and -fcallgraph-info=su
 
@@ -217,8 +217,11 @@ def declared():
 
 
 def main():
-    folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else
-                          ROOT / "build-check/portable/cortex-m4")
+    if len(sys.argv) > 1:
+        folder = pathlib.Path(sys.argv[1])
+    else:
+        folder = ROOT / "build-check/cortex-m4"
+        subprocess.run([ROOT / "tools/compile_cortex.sh"], check=True)
     objdump = sys.argv[2] if len(sys.argv) > 2 else "arm-none-eabi-objdump"
     graph, complaints = Graph(), []
     for path in sorted(folder.glob("*.ci")):
