@@ -23,7 +23,6 @@
 #include <time.h>
 #include <unistd.h>
 
-
 /* A figure takes a second; the fonts of a new system, once, up to a minute. */
 static const double usual_limit = 120; /* [s] */
 
