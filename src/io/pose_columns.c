@@ -48,10 +48,12 @@ static const column_set sets[SETS] = {
     [EULER] = {"attitude",
                3,
                {{{"roll"}, "rad", 1e7}, {{"pitch"}, "rad", 1e7}, {{"yaw", "heading"}, "rad", 1e7}}},
-    [QUATERNION] =
-        {"attitude",
-         4,
-         {{{"q_w", "qw"}, "1"}, {{"q_x", "qx"}, "1"}, {{"q_y", "qy"}, "1"}, {{"q_z", "qz"}, "1"}}},
+    [QUATERNION] = {"attitude",
+                    4,
+                    {{{"q_w", "qw"}, "1", 0.0},
+                     {{"q_x", "qx"}, "1", 0.0},
+                     {{"q_y", "qy"}, "1", 0.0},
+                     {{"q_z", "qz"}, "1", 0.0}}},
 };
 
 static const double degree = 3.14159265358979323846 / 180.0;
