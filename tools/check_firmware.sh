@@ -7,12 +7,10 @@
 set -eu
 cd "$(dirname "$0")/.."
 out=build-check/firmware
-build=build-check/identity/gcc-O3 # which check_identity.sh has built already
+build=${BUILD:-build}
 rm -rf "$out"
 mkdir -p "$out"
-cmake -S . -B "$build" -DCMAKE_C_COMPILER=gcc -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_C_FLAGS_RELEASE="-O3 -DNDEBUG" -DIMUKIT_SHARED=OFF -DIMUKIT_TESTS=OFF \
-    -DIMUKIT_EXAMPLES=OFF >/dev/null
+cmake -S . -B "$build" >/dev/null
 cmake --build "$build" -j "$(nproc)" --target imukit-command >"$out/build.log" 2>&1 ||
     { cat "$out/build.log"; exit 1; }
 
