@@ -16,12 +16,14 @@ typedef struct local_spectrum {
     double frequency[WINDOW_BANDS], power[WINDOW_BANDS], degrees[WINDOW_BANDS];
 } local_spectrum;
 
-/* Log-likelihood at (f0, q), and the variance of the resonance there. */
+/* Log-likelihood at (f0, q), and the variance of the resonance there: none where (f0, q) is no
+ * resonance, as q <= 1/2. */
 static double local_likelihood(const local_spectrum *w, double frequency, double q,
                                double *variance)
 {
     double shape[WINDOW_BANDS], level = HUGE_VAL, amount = 0;
     imk_arma unit;
+    *variance = 0;
     if (imk_resonance_arma((imk_resonance){1, frequency, q}, w->dt, &unit) != IMK_OK)
         return -HUGE_VAL;
     for (size_t b = 0; b < w->count; b++) {
