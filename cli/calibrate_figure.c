@@ -97,7 +97,7 @@ static size_t thin(const bench_log *log, double *x, double *y)
 static void activity_panel(calibrate_figure *f, const bench_log *log)
 {
     const size_t p = f->figure.panel_count;
-    if (!log->activity || p == PANELS_MAX)
+    if (!log->activity || log->record.count == 0 || p == PANELS_MAX)
         return;
     free(f->memory[p]);
     f->memory[p] = command_memory(NULL, (2 * (size_t)POINTS_MAX + 4) * sizeof(double));

@@ -220,7 +220,7 @@ void bench_make_model(bench *b)
     for (int sensor = 0; sensor < 2; sensor++) {
         if (!estimated(b, sensor))
             continue;
-        for (int term = 0; term < IMK_MODEL_TERMS; term++)
+        for (int term = 0; b->result && term < IMK_MODEL_TERMS; term++)
             state_interval(b, model, sensor, term);
         if (b->runs)
             round_repeatability(model, sensor);

@@ -65,7 +65,7 @@ term_list compensate_taken_out(const imk_model *model);
 term_list compensate_left_in(const imk_model *model, const imk_model *whole);
 /* --emit-c: the model of the first operand as C code. @return the exit code */
 int compensate_emit(const compensate_options *o, const char *const *operands);
-/* The first term that needs a temperature, or NULL. */
-const char *compensate_temperature_term(const imk_model *model);
+/* Whether a term needs a temperature, and the name of the first. */
+bool compensate_temperature_term(const imk_model *model, char *name, size_t size);
 
 #endif

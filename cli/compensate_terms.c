@@ -159,21 +159,14 @@ int compensate_select(const compensate_options *o, imk_model *model)
     return code;
 }
 
-const char *compensate_temperature_term(const imk_model *model)
+bool compensate_temperature_term(const imk_model *model, char *name, size_t size)
 {
-    static const char *const gyro[] = {"gyro.bias.temperature", "gyro.bias.temperature_rate",
-                                       "gyro.scale_factor.temperature"};
-    static const char *const accel[] = {"accel.bias.temperature", "accel.bias.temperature_rate",
-                                        "accel.scale_factor.temperature"};
-    size_t found = 0;
-    for (size_t i = 0; i < TERM_COUNT; i++) {
-        if (!terms[i].needs_temperature)
-            continue;
-        if (model->gyro.present && is_there(&model->gyro, &terms[i]))
-            return gyro[found];
-        if (model->accel.present && is_there(&model->accel, &terms[i]))
-            return accel[found];
-        found++;
-    }
-    return NULL;
+    const imk_triad *triads[2] = {&model->gyro, &model->accel};
+    for (size_t i = 0; i < TERM_COUNT; i++)
+        for (int sensor = 0; sensor < 2 && terms[i].needs_temperature; sensor++)
+            if (triads[sensor]->present && is_there(triads[sensor], &terms[i])) {
+                snprintf(name, size, "%s.%s", sensor == 0 ? "gyro" : "accel", terms[i].name);
+                return true;
+            }
+    return false;
 }

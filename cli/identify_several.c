@@ -109,10 +109,12 @@ static int start_joint(several_logs *s, const imk_model *truth)
     j->path = s->path;
     j->joint = true;
     j->truth = *truth;
-    j->channels = s->log[0]->channels;
     for (size_t r = 0; r < s->count; r++) {
         const log_channels *channels = &s->log[r]->channels;
-        j->channels.rows = channels->rows > j->channels.rows ? channels->rows : j->channels.rows;
+        const size_t longest = j->channels.rows;
+        if (r == 0)
+            j->channels = *channels;
+        j->channels.rows = channels->rows > longest ? channels->rows : longest;
         j->duration += channels->dt * (double)channels->rows;
     }
     return -1;

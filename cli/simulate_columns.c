@@ -24,7 +24,7 @@ static int parse_unit(const char *option_name, const char *text, const char *fal
 static void name_axis(imk_log_column *column, const char *sensor, int axis)
 {
     static const char letters[] = "xyz";
-    if (axis < 3)
+    if (axis >= 0 && axis < 3)
         snprintf(column->name, sizeof column->name, "%s_%c", sensor, letters[axis]);
     else
         snprintf(column->name, sizeof column->name, "%s_%d", sensor, axis);

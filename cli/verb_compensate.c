@@ -174,12 +174,13 @@ static int report(const compensate_options *o, const compensation *c, const char
 static int check_model(const compensate_options *o, const compensation *c, const char *log,
                        const char *name)
 {
-    const char *term = compensate_temperature_term(c->model);
-    if (term && c->columns.temperature < 0 && isnan(o->temperature))
+    char term[64];
+    const bool needs = compensate_temperature_term(c->model, term, sizeof term);
+    if (needs && c->columns.temperature < 0 && isnan(o->temperature))
         return command_failed("%s depends on temperature (%s) and %s has no temperature column: "
                               "add --temperature 25degC",
                               name, term, log);
-    if (term && isnan(o->temperature)) {
+    if (needs && isnan(o->temperature)) {
         const imk_log_column *column =
             imk_log_column_get(c->reader, (size_t)c->columns.temperature);
         if (imk_dimension_equal(column->unit.dimension, imk_unit_of("count").dimension))

@@ -118,8 +118,9 @@ static char *write_big_integer(char *text, uint64_t significand, int exponent)
     imki_big_shift_left(&big, exponent);
     uint32_t group[36];
     int count = 0;
-    while (big.count > 0)
+    do
         group[count++] = imki_big_divide_by_billion(&big);
+    while (big.count > 0);
     text = write_integer(text, group[--count]);
     while (count > 0)
         text = write_digits(text, group[--count], 9);

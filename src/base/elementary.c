@@ -150,15 +150,11 @@ double imk_ln(double x)
 static unsigned quadrant_of(double x, imki_precise *rest)
 {
     static const double scales[] = {0x1p40, 0x1p20, 1.0}; /* of n; a multiple of 4 or 1 */
-    static const double reach[] = {1e15, 0x1p40, 0x1p20}; /* of each and the smaller ones */
     *rest = (imki_precise){x, 0.0};
     if (fabs(x) <= 0.785)
         return 0;
-    int i = 2;
-    while (fabs(x) > reach[i])
-        i--;
     double n = 0.0;
-    for (; i < 3; i++) {
+    for (int i = fabs(x) > 0x1p40 ? 0 : fabs(x) > 0x1p20 ? 1 : 2; i < 3; i++) {
         n = imki_nearest_integer(rest->high * (0.63661977236758134 / scales[i]));
         *rest = imki_less_quarter_turns(*rest, n * scales[i]);
     }

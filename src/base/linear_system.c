@@ -25,6 +25,13 @@ static void multiply(int n, const double *a, const double *b, double *product)
         }
 }
 
+static void add(int n, const double *a, double *sum)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            sum[i * n + j] += a[i * n + j];
+}
+
 /* Powers of two d that make the off-diagonal row and column sums of D^-1 A D alike, so that the
  * norm tells how fast the system is whatever the units of its states are [OSBORNE1960]. */
 static void balance(int n, double *a, double *d)
@@ -95,14 +102,16 @@ static double power_of_half(int count)
 static void series(int n, const double *a, double h, double *phi)
 {
     double term[N * N], next[N * N];
-    for (int i = 0; i < n * n; i++)
-        phi[i] = term[i] = i % (n + 1) == 0 ? 1.0 : 0.0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            phi[i * n + j] = term[i * n + j] = i == j ? 1.0 : 0.0;
     for (int k = 1; k <= TAYLOR_TERMS; k++) {
         multiply(n, term, a, next);
-        for (int i = 0; i < n * n; i++) {
-            term[i] = next[i] * (h / k);
-            phi[i] += term[i];
-        }
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++) {
+                term[i * n + j] = next[i * n + j] * (h / k);
+                phi[i * n + j] += term[i * n + j];
+            }
     }
 }
 
@@ -144,15 +153,15 @@ void imki_discretise(int n, int m, const double *a, const double *b, double h, d
 static void covariance_series(int n, const double *a, const double *w, double h, double *q)
 {
     double term[N * N], next[N * N];
-    for (int i = 0; i < n * n; i++)
-        q[i] = term[i] = w[i] * h;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            q[i * n + j] = term[i * n + j] = w[i * n + j] * h;
     for (int k = 2; k <= TAYLOR_TERMS; k++) {
         multiply(n, a, term, next);
         for (int i = 0; i < n; i++)
             for (int j = 0; j < n; j++)
                 term[i * n + j] = (next[i * n + j] + next[j * n + i]) * (h / k);
-        for (int i = 0; i < n * n; i++)
-            q[i] += term[i];
+        add(n, term, q);
     }
 }
 
@@ -177,8 +186,7 @@ void imki_step_covariance(int n, const double *a, const double *w, double h, dou
                     sum += half[i * n + k] * phi[j * n + k];
                 whole[i * n + j] = sum;
             }
-        for (int i = 0; i < n * n; i++)
-            q[i] += whole[i];
+        add(n, whole, q);
         multiply(n, phi, phi, whole);
         memcpy(phi, whole, (size_t)(n * n) * sizeof *phi);
     }

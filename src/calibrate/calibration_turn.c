@@ -76,7 +76,7 @@ static double polynomial(const imk_temperature_polynomial *p, int axis, double t
 }
 
 /* P of a triad, scaled for the record's readings. Not a number when its axes span no space. */
-static void invert(const turn_model *turn, int sensor, const imk_triad *triad, inverse *out)
+static inverse invert(const turn_model *turn, int sensor, const imk_triad *triad)
 {
     const imk_test_record *record = turn->record;
     const int count = record->axis_count[sensor];
@@ -98,17 +98,18 @@ static void invert(const turn_model *turn, int sensor, const imk_triad *triad, i
             for (int k = 0; k < 3; k++)
                 normal.m[j][k] += row[i][j] * row[i][k];
     }
-    *out = (inverse){.count = count};
+    inverse out = {.count = count};
     const bool spans = imk_matrix3_inverse(normal, &inverse_normal) == IMK_OK;
     for (int j = 0; j < 3; j++)
         for (int i = 0; i < count; i++) {
-            out->p[j][i] = !spans ? (double)NAN
-                                  : inverse_normal.m[j][0] * row[i][0] +
-                                        inverse_normal.m[j][1] * row[i][1] +
-                                        inverse_normal.m[j][2] * row[i][2];
-            out->weight[j][i] = out->p[j][i] * unit[i];
-            out->constant[j] += out->p[j][i] * offset[i];
+            out.p[j][i] = !spans ? (double)NAN
+                                 : inverse_normal.m[j][0] * row[i][0] +
+                                       inverse_normal.m[j][1] * row[i][1] +
+                                       inverse_normal.m[j][2] * row[i][2];
+            out.weight[j][i] = out.p[j][i] * unit[i];
+            out.constant[j] += out.p[j][i] * offset[i];
         }
+    return out;
 }
 
 static bool axis_is_nonlinear(const imk_triad *gyro, int i)
@@ -144,7 +145,7 @@ static void prepare(turn_model *turn, const imk_calibration *calibration, const 
     turn->model = model;
     turn->record = calibration->record[calibration->observation[which->from].record];
     find_temperature(turn, which->begin, which->end);
-    invert(turn, IMK_GYRO, &model->gyro, &turn->gyro);
+    turn->gyro = invert(turn, IMK_GYRO, &model->gyro);
     turn->nonlinear = turn->forces = turn->force_changes = turn->force_products = false;
     for (size_t p = 0; p < calibration->parameter_count; p++) {
         const imk_model_parameter parameter = calibration->parameter[p];
@@ -170,7 +171,7 @@ static void prepare(turn_model *turn, const imk_calibration *calibration, const 
     turn->forces = (turn->forces || turn->force_changes || turn->nonlinear) &&
                    turn->record->axis_count[IMK_ACCEL] >= 3;
     if (turn->forces)
-        invert(turn, IMK_ACCEL, &model->accel, &turn->accel);
+        turn->accel = invert(turn, IMK_ACCEL, &model->accel);
     turn->force_changes = turn->force_changes && turn->forces;
     turn->nonlinear = turn->nonlinear || (turn->forces && turn->force_products);
 }

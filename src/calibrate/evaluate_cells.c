@@ -48,7 +48,7 @@ static void infer_sides(imki_evaluation *e)
 {
     int level[IMK_EVALUATION_RUNS_MAX];
     signed char side[IMK_EVALUATION_RUNS_MAX];
-    for (int run = 0; run < e->runs; run++)
+    for (int run = 0; run < IMK_EVALUATION_RUNS_MAX; run++)
         level[run] = -1, side[run] = 1;
     for (size_t row = 0; row < e->rows; row++) {
         const int run = imki_run_of(e, row), here = e->level_of[row];

@@ -78,7 +78,7 @@ static int eliminate(double *matrix, int size, double *effect)
 /* Bring the readings of all runs to what their mean would have read. @return the rank */
 static int level_runs(imki_evaluation *e)
 {
-    double effect[2 * IMK_EVALUATION_RUNS_MAX], share[IMK_EVALUATION_RUNS_MAX] = {0.0};
+    double effect[2 * IMK_EVALUATION_RUNS_MAX] = {0.0}, share[IMK_EVALUATION_RUNS_MAX] = {0.0};
     const int runs = e->runs, size = 2 * runs;
     double zero = 0.0, slope = 0.0;
     for (int k = 0; k < size * (size + 1); k++)

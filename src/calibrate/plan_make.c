@@ -17,6 +17,9 @@
 
 enum { LINE = 64, SEARCH_STEPS = 14, ADDED_AT_ONCE = 4, STEPS_MOST = 10000 };
 
+/* No candidate. */
+static const size_t NONE = SIZE_MAX;
+
 imk_plan_settings imk_plan_default(imk_procedure procedure)
 {
     return (imk_plan_settings){.cookie = IMKI_PLAN_COOKIE,
@@ -133,22 +136,22 @@ static const double *of_candidate(const plan_job *job, size_t candidate)
     return job->of_candidate + candidate * job->n * job->n;
 }
 
-/* What a candidate after another adds: its hold, and the turn between. Into trial. */
-static imk_status addition(plan_job *job, const imk_plan_step *last, size_t last_candidate,
-                           size_t candidate)
+/* What a candidate after another, or NONE, adds: its hold, and the turn between. Into trial. */
+static imk_status addition(plan_job *job, size_t last, size_t candidate)
 {
     const size_t n = job->n;
     const double hold = job->settings->hold_minimum;
-    if (!last || job->settings->procedure != IMK_PROCEDURE_MULTIPOSITION) {
+    if (last == NONE || job->settings->procedure != IMK_PROCEDURE_MULTIPOSITION) {
         memcpy(job->trial, of_candidate(job, candidate), n * n * sizeof(double));
         return IMK_OK;
     }
+    const imk_plan_step *from = &job->candidate[last];
     imki_plan_clear(&job->plan);
-    imki_plan_append(&job->plan, NULL, last, hold);
-    imki_plan_append(&job->plan, last, &job->candidate[candidate], hold);
+    imki_plan_append(&job->plan, NULL, from, hold);
+    imki_plan_append(&job->plan, from, &job->candidate[candidate], hold);
     const imk_status status = imki_plan_information(&job->plan, job->trial, job->error);
     if (status == IMK_OK)
-        add(n, of_candidate(job, last_candidate), -1.0, job->trial);
+        add(n, of_candidate(job, last), -1.0, job->trial);
     return status;
 }
 
@@ -163,7 +166,7 @@ static imk_status look_at_candidates(plan_job *job)
         imki_plan_append(&job->plan, NULL, &job->candidate[k], job->settings->hold_minimum);
         status = imki_plan_information(&job->plan, job->of_candidate + k * n * n, job->error);
         if (status == IMK_OK)
-            status = addition(job, k > 0 ? &job->candidate[0] : NULL, 0, k);
+            status = addition(job, k > 0 ? 0 : NONE, k);
         for (size_t p = 0; p < n && status == IMK_OK; p++)
             most[p] = fmax(most[p], fmax(job->trial[p * n + p], job->before[p * n + p]));
     }
@@ -273,13 +276,12 @@ static double score(plan_job *job, bool by_wishes)
 /* Take the best candidate; job->sum holds the information of those taken. */
 static imk_status take_best(plan_job *job, size_t *last, bool by_wishes)
 {
-    const imk_plan_step *previous = job->steps > 0 ? &job->step[job->steps - 1] : NULL;
     double best = -(double)INFINITY;
     size_t chosen = 0;
     for (size_t k = 0; k < job->candidates; k++) {
-        if (previous && k == *last)
+        if (k == *last)
             continue; /* no turn */
-        const imk_status status = addition(job, previous, *last, k);
+        const imk_status status = addition(job, *last, k);
         if (status != IMK_OK)
             return status;
         add(job->n, job->sum, 1.0, job->trial);
@@ -289,7 +291,7 @@ static imk_status take_best(plan_job *job, size_t *last, bool by_wishes)
             chosen = k;
         }
     }
-    const imk_status status = addition(job, previous, *last, chosen);
+    const imk_status status = addition(job, *last, chosen);
     if (status == IMK_OK)
         add(job->n, job->trial, 1.0, job->sum);
     job->step[job->steps++] = job->candidate[chosen];
@@ -349,7 +351,7 @@ static imk_status choose(plan_job *job, double *hold)
     const imk_plan_settings *s = job->settings;
     const size_t batch = imki_plan_is_list(s->procedure) ? job->candidates : ADDED_AT_ONCE;
     const size_t needed = steps_needed(job);
-    size_t last = 0;
+    size_t last = NONE;
     job->steps = 0;
     memcpy(job->sum, job->before, job->n * job->n * sizeof(double));
     if ((imki_plan_is_list(s->procedure) ? job->candidates : needed) > s->steps_maximum)

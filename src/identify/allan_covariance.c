@@ -43,7 +43,7 @@ size_t imki_allan_combinations(size_t terms)
 
 static double squares(size_t length, size_t factor, size_t stride)
 {
-    return length < 2 * factor ? 0 : (double)((length - 2 * factor) / stride + 1);
+    return stride < 1 || length < 2 * factor ? 0 : (double)((length - 2 * factor) / stride + 1);
 }
 
 size_t imki_allan_stride(const imk_allan_table *table, size_t i)

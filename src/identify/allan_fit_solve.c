@@ -250,7 +250,8 @@ void imki_allan_solve(const imki_allan_problem *problem, imki_allan_state *state
                       double value)
 {
     const size_t terms = problem->terms;
-    double b[IMKI_ALLAN_TERMS], square = 0, next[IMKI_ALLAN_TERMS], last_next[IMKI_ALLAN_TERMS];
+    double b[IMKI_ALLAN_TERMS] = {0}, square = 0, next[IMKI_ALLAN_TERMS],
+           last_next[IMKI_ALLAN_TERMS];
     double step[IMKI_ALLAN_TERMS], last_step[IMKI_ALLAN_TERMS], weights[IMKI_ALLAN_TERMS];
     bool start = !problem->held;
     for (size_t t = 0; t < terms; t++) {

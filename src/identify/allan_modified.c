@@ -37,11 +37,13 @@ IMKI_INLINED void modified_block(imki_allan_cursor *c, const double *sums, size_
         c->window = window_sum(s, m);
     }
     /* The step out of the last term there is would read beyond the record. */
-    const size_t steps = first + size < c->count ? size : size - 1;
+    const bool whole = first + size < c->count;
+    const size_t steps = whole ? size : size - 1;
     const double *a = s, *b = s + m, *d = s + 2 * m, *e = s + 3 * m;
     for (size_t j = 0; j < steps; j++)
         step[j] = (e[j] - a[j]) - 3 * (d[j] - b[j]);
-    const double last = steps == size ? step[size - 1] : 0;
+    const double last =
+        whole ? (e[steps - 1] - a[steps - 1]) - 3 * (d[steps - 1] - b[steps - 1]) : 0;
     double square = 0;
     c->window = imki_running_squares(c->window, step, size, &square) + last;
     c->total += square;

@@ -150,6 +150,7 @@ static void take_chunk(imk_allan_stream *stream, size_t count, const double *sam
     blocks tiers[2];
     tiers[0].number = stream->next;
     tiers[0].count = count;
+    tiers[1].count = 0;
     take_samples(stream, count, samples, tiers[0].value);
     for (unsigned tier = 0; tier < IMK_ALLAN_STREAM_TIERS; tier++) {
         blocks *b = &tiers[tier & 1];

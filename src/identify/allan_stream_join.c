@@ -110,7 +110,7 @@ imk_status imk_allan_stream_join(imk_allan_stream *stream, const imk_allan_strea
 {
     if (following->first != stream->next || stream->next == UINT64_MAX)
         return IMK_ERROR_ARGUMENT;
-    border tiers[2];
+    border tiers[2] = {{0}};
     for (unsigned tier = 0; tier < IMK_ALLAN_STREAM_TIERS; tier++) {
         border *g = &tiers[tier & 1];
         const border *below = &tiers[(tier + 1) & 1];

@@ -176,7 +176,7 @@ static bool displaces_white(const imki_joint_fit *j, const shape_state *before, 
 static bool add_resonance(imki_joint_fit *j, double widest, double *white)
 {
     imki_fit *fit = j->w->fit;
-    imk_resonance candidate;
+    imk_resonance candidate = {0, 0, 0};
     if (j->result->resonance_count == IMK_TERMS_MAX ||
         best_resonance(j, widest, &candidate) < GAIN_TRIED)
         return false;

@@ -260,18 +260,19 @@ static bool climb(imki_joint_fit *j, double *lambda)
     const double before = likelihood(j);
     double start[IMKI_SHAPE_PARAMETERS], next[IMKI_SHAPE_PARAMETERS];
     imki_joint_fit_linearise(j);
-    for (size_t i = 0; i < j->count; i++)
+    const size_t count = j->count;
+    for (size_t i = 0; i < count; i++)
         start[i] = *place_of(j, i);
     for (; *lambda < 1e6; *lambda *= 10) {
         double scale[IMKI_SHAPE_PARAMETERS], step[IMKI_SHAPE_PARAMETERS];
         if (!imki_joint_fit_factor(j, *lambda, scale))
             continue;
-        for (size_t i = 0; i < j->count; i++)
+        for (size_t i = 0; i < count; i++)
             step[i] = j->gradient[i] * scale[i];
-        imk_cholesky_solve(j->count, imki_joint_fit_row(j, IMKI_SHAPE_FACTOR), step);
-        for (size_t i = 0; i < j->count; i++)
+        imk_cholesky_solve(count, imki_joint_fit_row(j, IMKI_SHAPE_FACTOR), step);
+        for (size_t i = 0; i < count; i++)
             next[i] = moved(j, i, start[i], step[i] * scale[i]);
-        for (size_t i = 0; i < j->count; i++)
+        for (size_t i = 0; i < count; i++)
             *place_of(j, i) = next[i];
         imki_joint_fit_update(j);
         const double gain = likelihood(j) - before;
@@ -279,7 +280,7 @@ static bool climb(imki_joint_fit *j, double *lambda)
             *lambda = fmax(1e-6, 0.1 * *lambda);
             return gain > j->enough;
         }
-        for (size_t i = 0; i < j->count; i++)
+        for (size_t i = 0; i < count; i++)
             *place_of(j, i) = start[i];
     }
     imki_joint_fit_update(j);

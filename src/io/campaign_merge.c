@@ -357,7 +357,7 @@ static imk_status read_runs(void *context, uint64_t place, uint64_t count, doubl
 static imk_status write_runs(merge *m, const imk_campaign *campaign, const char *output,
                              imk_error *error)
 {
-    uint64_t *run = malloc(m->report->present * sizeof *run), there = 0;
+    uint64_t *run = malloc(campaign->run_count * sizeof *run), there = 0;
     if (!run)
         return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
     for (uint64_t k = 0; k < campaign->run_count; k++) {

@@ -213,7 +213,8 @@ static imk_status take_event(builder *b, const yaml_event_t *event)
         return open_collection(b, event, IMKI_NODE_MAPPING);
     case YAML_SEQUENCE_END_EVENT:
     case YAML_MAPPING_END_EVENT:
-        b->document->node[b->open[--b->depth]].end = byte_of(b, event->end_mark.index);
+        if (b->depth > 0) /* as many end as begin */
+            b->document->node[b->open[--b->depth]].end = byte_of(b, event->end_mark.index);
         return IMK_OK;
     case YAML_ALIAS_EVENT:
         return kind_error(b, event->start_mark, "an alias (*)",

@@ -253,9 +253,12 @@ static imk_status read_block(imk_log_reader *reader, size_t max_rows, double *co
 {
     const imki_log_layout_read *layout = &reader->layout;
     double *time = NULL, *out[IMK_LOG_COLUMNS_MAX];
+    for (size_t i = 0; i < IMK_LOG_COLUMNS_MAX; i++)
+        out[i] = reader->spare;
     for (size_t i = 0; i < layout->cell_count; i++) {
         const int column = layout->cell_column[i];
-        out[i] = column >= 0 && columns[column] ? columns[column] : reader->spare;
+        if (column >= 0 && columns[column])
+            out[i] = columns[column];
         if (column >= 0 && column == layout->time_column)
             time = out[i] = columns[column] ? columns[column] : reader->time;
     }
@@ -271,7 +274,7 @@ imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *
 {
     size_t done = 0;
     while (done < max_rows && !reader->failed) {
-        double *place[IMK_LOG_COLUMNS_MAX];
+        double *place[IMK_LOG_COLUMNS_MAX] = {NULL};
         for (size_t j = 0; j < reader->layout.column_count; j++)
             place[j] = columns[j] ? columns[j] + done : NULL;
         const size_t left = max_rows - done;

@@ -14,11 +14,19 @@ typedef struct imki_reader {
     imk_density density;
 } imki_reader;
 
-const imki_node *imki_reader_node(const imki_reader *r, int node);
+static inline const imki_node *imki_reader_node(const imki_reader *r, int node)
+{
+    return &r->document->node[node];
+}
 
 /* An error at a node: found is the node's text. */
-imk_status imki_reader_fail(const imki_reader *r, int node, imk_status status,
-                            const char *expected);
+static inline imk_status imki_reader_fail(const imki_reader *r, int node, imk_status status,
+                                          const char *expected)
+{
+    const imki_node *n = imki_reader_node(r, node);
+    return imki_document_error(r->document, node, status,
+                               n->kind == IMKI_NODE_SCALAR ? n->text : "", expected, r->error);
+}
 
 /* IMK_ERROR_SYNTAX unless the node is of this kind. */
 imk_status imki_reader_require(const imki_reader *r, int node, imki_node_kind kind,

@@ -20,18 +20,6 @@ typedef struct quantity {
     size_t count;
 } quantity;
 
-const imki_node *imki_reader_node(const imki_reader *r, int node)
-{
-    return &r->document->node[node];
-}
-
-imk_status imki_reader_fail(const imki_reader *r, int node, imk_status status, const char *expected)
-{
-    const imki_node *n = imki_reader_node(r, node);
-    return imki_document_error(r->document, node, status,
-                               n->kind == IMKI_NODE_SCALAR ? n->text : "", expected, r->error);
-}
-
 imk_status imki_reader_require(const imki_reader *r, int node, imki_node_kind kind,
                                const char *expected)
 {

@@ -139,34 +139,29 @@ static imk_status read_text(imki_reader *r, int node, char *target, size_t size)
     return IMK_OK;
 }
 
-/* "noise.gauss_markov[1].sigma" is key "noise.gauss_markov.sigma", instance 1. */
-static imk_status split_key(imki_reader *r, int key, imk_interval *interval,
-                            const imki_field **field)
+/* "noise.gauss_markov[1].sigma" is key "noise.gauss_markov.sigma", instance 1. @return the field
+ * of a key that has intervals, NULL of others */
+static const imki_field *split_key(const imki_reader *r, int key, imk_interval *interval)
 {
-    const imki_field *list;
+    const imki_field *list, *field = NULL;
     const char *text = imki_reader_node(r, key)->text;
     const char *bracket = strchr(text, '[');
     *interval = (imk_interval){.instance = 0};
-    *field = NULL;
     if (!bracket && strlen(text) < sizeof interval->key) {
         snprintf(interval->key, sizeof interval->key, "%s", text);
-        *field = imki_field_find(interval->key, r->kind, &list);
-        if (*field && list)
-            *field = NULL;
+        field = imki_field_find(interval->key, r->kind, &list);
+        if (field && list)
+            field = NULL;
     } else if (bracket && bracket[1] >= '0' && bracket[1] < '0' + IMK_TERMS_MAX &&
                bracket[2] == ']' && strlen(text) < sizeof interval->key) {
         snprintf(interval->key, sizeof interval->key, "%.*s%s", (int)(bracket - text), text,
                  bracket + 3);
         interval->instance = bracket[1] - '0';
-        *field = imki_field_find(interval->key, r->kind, &list);
-        if (*field && !list)
-            *field = NULL;
+        field = imki_field_find(interval->key, r->kind, &list);
+        if (field && !list)
+            field = NULL;
     }
-    if (!*field || (*field)->shape != IMKI_AXES || ((*field)->flags & IMKI_FLOOR))
-        return imki_reader_fail(r, key, IMK_ERROR_KEY_UNKNOWN,
-                                "the path of a parameter with one number per axis, like "
-                                "noise.bias_instability or noise.gauss_markov[0].sigma");
-    return IMK_OK;
+    return field && field->shape == IMKI_AXES && !(field->flags & IMKI_FLOOR) ? field : NULL;
 }
 
 static imk_status read_interval(imki_reader *r, int key, bool is_bound, imk_evidence *evidence)
@@ -175,10 +170,12 @@ static imk_status read_interval(imki_reader *r, int key, bool is_bound, imk_evid
     if (evidence->interval_count == IMK_INTERVALS_MAX)
         return imki_reader_fail(r, key, IMK_ERROR_RANGE, "at most 24 intervals");
     imk_interval *interval = &evidence->interval[evidence->interval_count];
-    const imki_field *field;
-    imk_status status = split_key(r, key, interval, &field);
-    if (status != IMK_OK)
-        return status;
+    const imki_field *field = split_key(r, key, interval);
+    if (!field)
+        return imki_reader_fail(r, key, IMK_ERROR_KEY_UNKNOWN,
+                                "the path of a parameter with one number per axis, like "
+                                "noise.bias_instability or noise.gauss_markov[0].sigma");
+    imk_status status = IMK_OK;
     int upper = node;
     if (!is_bound) {
         if (imki_reader_node(r, node)->kind != IMKI_NODE_SEQUENCE ||

@@ -60,34 +60,43 @@ static void temperature_name(char *name, size_t size, int kind, int imu)
     snprintf(name, size, "INS_%s%d_CALTEMP", kind == IMKI_GYRO ? "GYR" : "ACC", imu + 1);
 }
 
-/* The three of a name that ends in X, Y or Z. */
-static double *axis_target(const char *name, const char *pattern, double values[3])
+/* Axis of a name that is the pattern but for its last letter, X, Y or Z; -1 for others. */
+static int axis_of(const char *name, const char *pattern)
 {
     const size_t length = strlen(pattern) - 1;
     for (int axis = 0; axis < 3; axis++)
         if (strncmp(name, pattern, length) == 0 && name[length] == axis_letters[axis] &&
             name[length + 1] == '\0')
-            return &values[axis];
-    return NULL;
+            return axis;
+    return -1;
 }
 
-static double *sensor_target(ardupilot_sensor *s, const char *name, int kind, int imu)
+static bool find_target(ardupilot_sensor *s, const char *name, int kind, int imu, double **target)
 {
     char pattern[32];
-    double *target;
+    int offset, scale = -1;
     offset_name(pattern, sizeof pattern, kind, imu, "OFFS", 0);
-    target = axis_target(name, pattern, s->offset);
-    if (!target && kind == IMKI_ACCEL) {
+    offset = axis_of(name, pattern);
+    if (kind == IMKI_ACCEL) {
         offset_name(pattern, sizeof pattern, kind, imu, "SCAL", 0);
-        target = axis_target(name, pattern, s->scale);
+        scale = axis_of(name, pattern);
     }
-    s->there = s->there || target;
-    for (int k = 0; k < ORDER && !target; k++) {
+    if (offset >= 0 || scale >= 0) {
+        s->there = true;
+        *target = offset >= 0 ? &s->offset[offset] : &s->scale[scale];
+        return true;
+    }
+    for (int k = 0; k < ORDER; k++) {
         thermal_name(pattern, sizeof pattern, kind, imu, k + 1, 0);
-        target = axis_target(name, pattern, s->coefficient[k]);
+        const int axis = axis_of(name, pattern);
+        if (axis >= 0) {
+            *target = &s->coefficient[k][axis];
+            return true;
+        }
     }
     temperature_name(pattern, sizeof pattern, kind, imu);
-    return !target && strcmp(name, pattern) == 0 ? &s->temperature : target;
+    *target = &s->temperature;
+    return strcmp(name, pattern) == 0;
 }
 
 /* Where the value of a parameter goes; NULL when it is none of ours. */
@@ -98,8 +107,8 @@ static double *target_of(ardupilot_imu *imus, const char *name, size_t line)
         ardupilot_imu *m = &imus[imu];
         double *const targets[3] = {&m->enable, &m->minimum, &m->maximum};
         for (int kind = 0; kind < 2; kind++) {
-            double *target = sensor_target(&m->sensor[kind], name, kind, imu);
-            if (target) {
+            double *target;
+            if (find_target(&m->sensor[kind], name, kind, imu, &target)) {
                 m->sensor[kind].line = line;
                 m->any = true;
                 return target;

@@ -23,7 +23,6 @@ typedef enum set_kind { GEODETIC, EARTH_FIXED, LOCAL, EULER, QUATERNION, SETS } 
 /* Columns that belong together. */
 typedef struct column_set {
     const char *what;
-    size_t count;
     struct {
         const char *name[SPELLINGS]; /* in lower case */
         const char *si;
@@ -33,28 +32,28 @@ typedef struct column_set {
 
 static const column_set sets[SETS] = {
     [GEODETIC] = {"position",
-                  3,
                   {{{"latitude", "lat"}, "rad", 90.0},
                    {{"longitude", "lon"}, "rad", 360.0},
                    {{"height", "altitude", "alt", "h"}, "m", 1e7}}},
     [EARTH_FIXED] = {"position",
-                     3,
                      {{{"ecef_x", "x_ecef"}, "m", 1.64e7},
                       {{"ecef_y", "y_ecef"}, "m", 1.64e7},
                       {{"ecef_z", "z_ecef"}, "m", 1.64e7}}},
     [LOCAL] = {"position",
-               3,
                {{{"x", "north"}, "m", 1e7}, {{"y", "east"}, "m", 1e7}, {{"z", "down"}, "m", 1e7}}},
     [EULER] = {"attitude",
-               3,
                {{{"roll"}, "rad", 1e7}, {{"pitch"}, "rad", 1e7}, {{"yaw", "heading"}, "rad", 1e7}}},
     [QUATERNION] = {"attitude",
-                    4,
                     {{{"q_w", "qw"}, "1", 0.0},
                      {{"q_x", "qx"}, "1", 0.0},
                      {{"q_y", "qy"}, "1", 0.0},
                      {{"q_z", "qz"}, "1", 0.0}}},
 };
+
+static size_t members(const column_set *set)
+{
+    return set == &sets[QUATERNION] ? 4 : 3;
+}
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
@@ -92,7 +91,7 @@ static int find_column(const imk_log *log, const column_set *set, size_t member,
 static bool has_set(const imk_log *log, const column_set *set)
 {
     bool unused;
-    for (size_t i = 0; i < set->count; i++)
+    for (size_t i = 0; i < members(set); i++)
         if (find_column(log, set, i, &unused) >= 0)
             return true;
     return false;
@@ -110,16 +109,16 @@ bool imki_has_poses(const imk_log *log)
 static imk_status take_set(const imk_log *log, const column_set *set, const double **column,
                            imk_error *error)
 {
-    for (size_t i = 0; i < set->count; i++) {
+    const size_t count = members(set);
+    for (size_t i = 0; i < count; i++) {
         bool twice = false;
         const char *name = set->column[i].name[0];
         const int found = find_column(log, set, i, &twice);
         char expected[96];
         if (found < 0) {
             snprintf(expected, sizeof expected, "the columns %s, %s%s%s and %s go together",
-                     set->column[0].name[0], set->column[1].name[0], set->count == 4 ? ", " : "",
-                     set->count == 4 ? set->column[2].name[0] : "",
-                     set->column[set->count - 1].name[0]);
+                     set->column[0].name[0], set->column[1].name[0], count == 4 ? ", " : "",
+                     count == 4 ? set->column[2].name[0] : "", set->column[count - 1].name[0]);
             return imk_error_set(error, IMK_ERROR_COLUMN, name, "this column is missing", expected);
         }
         if (twice)
@@ -239,7 +238,7 @@ static imk_status check_turn(const pose_table *t, size_t row, imk_error *error)
 static imk_status check_limits(size_t rows, const column_set *set, const double *const *column,
                                imk_error *error)
 {
-    for (size_t i = 0; i < set->count; i++) {
+    for (size_t i = 0; i < members(set); i++) {
         const double limit = set->column[i].limit;
         const bool is_angle = strcmp(set->column[i].si, "rad") == 0;
         const double unit = is_angle ? degree : 1.0;
@@ -288,8 +287,8 @@ static imk_status convert(pose_table *t, imk_error *error)
 static void note(const imk_log *log, const pose_table *t, imk_motion_file *file)
 {
     size_t used = imk_log_find(log, IMK_QUANTITY_TIME, -1) >= 0 ? 1 : 0;
-    used += t->position == SETS ? 0 : sets[t->position].count;
-    used += t->attitude == SETS ? 0 : sets[t->attitude].count;
+    used += t->position == SETS ? 0 : members(&sets[t->position]);
+    used += t->attitude == SETS ? 0 : members(&sets[t->attitude]);
     const size_t others = log->column_count - used;
     char ignored[64] = "";
     if (others > 0)

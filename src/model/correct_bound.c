@@ -80,7 +80,7 @@ static imk_status invert_own(imki_inversion *v, int sensor, double (*coupling)[3
 imk_status imki_invert_middle(imki_inversion *inversion, int *sensor)
 {
     imki_inversion *v = inversion;
-    double unused[IMK_AXES_MAX][3], coupling[IMK_AXES_MAX][3];
+    double unused[IMK_AXES_MAX][3], coupling[IMK_AXES_MAX][3] = {{0.0}};
     const int axes = v->distortion->axis_count[IMK_GYRO];
     memset(v->inverse, 0, sizeof v->inverse);
     for (*sensor = IMK_GYRO; *sensor <= IMK_ACCEL; ++*sensor)

@@ -3,7 +3,6 @@
 #include "imukit/model.h"
 
 #include <math.h>
-#include <stddef.h>
 
 #define DEGREES_PER_HOUR (3.14159265358979323846 / 180 / 3600) /* [rad/s] */
 #define MICRO_G (9.80665e-6)                                   /* [m/s^2] */
@@ -48,11 +47,11 @@ static double remaining_bias(const imk_triad *triad)
     return worst > 0 ? sqrt(worst) : (double)NAN;
 }
 
-static imk_grade grade_of(double bias, size_t limit_offset)
+static imk_grade grade_of(double bias, bool gyro)
 {
     for (int grade = 0; grade < (int)IMK_GRADE_NONE; grade++) {
-        const char *row = (const char *)&grade_rows[grade];
-        double limit = *(const double *)(const void *)(row + limit_offset);
+        const imk_grade_row *row = &grade_rows[grade];
+        double limit = gyro ? row->gyro_bias_limit : row->accel_bias_limit;
         /* "< 0.005 deg/h" and "< 30 ug" exclude the limit itself; the others are listed values. */
         bool within =
             grade == IMK_GRADE_STRATEGIC ? bias * rounding < limit : bias <= limit * rounding;
@@ -67,8 +66,8 @@ imk_grade_result imk_grade_model(const imk_model *model)
     imk_grade_result result;
     result.gyro_bias = remaining_bias(&model->gyro);
     result.accel_bias = remaining_bias(&model->accel);
-    result.gyro = grade_of(result.gyro_bias, offsetof(imk_grade_row, gyro_bias_limit));
-    result.accel = grade_of(result.accel_bias, offsetof(imk_grade_row, accel_bias_limit));
+    result.gyro = grade_of(result.gyro_bias, true);
+    result.accel = grade_of(result.accel_bias, false);
     bool has_gyro = !isnan(result.gyro_bias), has_accel = !isnan(result.accel_bias);
     /* Of two equal classes the gyro decides: its bias makes the error that grows. */
     bool gyro_decides = has_gyro && (!has_accel || result.gyro >= result.accel);

@@ -151,7 +151,7 @@ static imk_status start_motion(crew *c, unsigned char **memory, imk_error *error
     const imk_status status = imki_drift_motion(c->settings, &c->motion, error);
     c->moves = c->settings->motion != NULL;
     c->trajectory = &c->motion.trajectory;
-    if (pieces > 0)
+    if (c->moves && pieces > 0)
         add_standstill(c, piece);
     c->start = c->moves ? c->trajectory->piece[0].start : 0.0;
     return status;

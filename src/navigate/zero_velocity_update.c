@@ -211,7 +211,7 @@ static bool zero_velocity(imk_zero_velocity *f)
 static bool zero_rotation(imk_zero_velocity *f)
 {
     enum { STATES_MAX = ERRORS + 6 * IMK_BIAS_PARTS_MAX };
-    double h[3 * STATES_MAX] = {0}, cross[3 * STATES_MAX], z[3], noise[3][3] = {{0}};
+    double h[3 * STATES_MAX] = {0}, cross[3 * STATES_MAX] = {0}, z[3], noise[3][3] = {{0}};
     const size_t n = f->states;
     const double time = f->stand;
     for (size_t r = 0; r < 3; r++) {

@@ -28,6 +28,7 @@ enum { N = IMKI_FORK_STATES, ROWS = IMKI_FORK_ROWS };
 
 /* What the readings of one frame are weighted with. */
 typedef struct weights {
+    int steps;
     double cosine[IMKI_FORK_STEPS_MAX], sine[IMKI_FORK_STEPS_MAX]; /* (cos t_j - c)/C, -sin t_j/S */
     double force_cosine[IMKI_FORK_STEPS_MAX], force_sine[IMKI_FORK_STEPS_MAX];
     double variance[2]; /* of Re Z and Im Z for readings of unit variance */
@@ -35,6 +36,7 @@ typedef struct weights {
 
 static void weights_design(int steps, double angle, double hold, weights *w)
 {
+    w->steps = steps;
     const double n = (double)steps, centre = 0.5 * (n + 1.0);
     const double ripple = imk_sin(n * angle) / imk_sin(angle);
     const double mean = imk_sin(0.5 * n * angle) / (n * imk_sin(0.5 * angle));
@@ -111,7 +113,7 @@ static void response(imki_fork_frame *frame, const weights *w)
         double z[N] = {0.0}, force[5] = {0.0}, *column = frame->column[c], u[2];
         double phasor[4] = {0.0};
         *(c < N ? &z[c] : &force[c - N]) = 1.0;
-        for (int j = 0; j < frame->steps; j++) {
+        for (int j = 0; j < w->steps; j++) {
             accelerations(w, force, j, u);
             advance(frame, u[0], u[1], z);
             phasor[0] += w->cosine[j] * z[0];
@@ -158,7 +160,7 @@ static void frame_covariance(const imki_fork_frame *frame, const weights *w, con
                              double whole[ROWS * ROWS])
 {
     double p[N * N] = {0.0}, x[N * N] = {0.0}, s[N * N] = {0.0};
-    for (int j = 0; j < frame->steps; j++) {
+    for (int j = 0; j < w->steps; j++) {
         const double d[N] = {w->cosine[j], w->sine[j], w->cosine[j], w->sine[j]};
         covariance_step(frame->phi, q, p, x);
         for (int a = 0; a < N; a++)
