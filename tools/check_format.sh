@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 mapfile -t files < <(find include src cli tests bench fuzz examples -name '*.[ch]' -o -name '*.cpp')
-if ! clang-format --dry-run -Werror "${files[@]}"; then
+if ! printf '%s\0' "${files[@]}" | xargs -0 -P "$(nproc)" -n 50 clang-format --dry-run -Werror; then
     echo "to mend: clang-format -i FILE"
     exit 1
 fi

@@ -5,15 +5,12 @@ set -u
 cd "$(dirname "$0")/.."
 status=0
 headers=$(cd include && ls imukit/*.h)
-compile() { # TEXT
-    printf '%s\n' "$1" | gcc -std=c17 -Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only \
-        -x c - || status=1
-    printf '%s\n' "$1" | g++ -std=c++17 -Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only \
-        -x c++ - || status=1
+compile() { # COMPILER LANGUAGE STANDARD: each header on standard input; then all
+    local flags="-x $2 -std=$3 -Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only /dev/null"
+    xargs -P "$(nproc)" -I{} "$1" -include {} $flags <<<"$headers" || status=1
+    "$1" $(printf -- '-include %s ' $headers) $flags || status=1
 }
-for header in $headers; do
-    compile "#include \"$header\""
-done
-compile "$(printf '#include "%s"\n' $headers)"
-echo "$(echo $headers | wc -w) headers"
+compile gcc c c17
+compile g++ c++ c++17
+echo "$(wc -w <<<"$headers") headers"
 exit $status

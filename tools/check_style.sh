@@ -11,10 +11,16 @@ mapfile -t code < <(find include src cli tests bench fuzz examples tools .ci cma
     CMakeLists.txt -type f \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.sh' -o -name '*.py' \
     -o -name '*.cmake' -o -name CMakeLists.txt -o -name Makefile -o -path 'tools/*' \
     -o -path '.ci/*' \) ! -name '*.txt' ! -name '*.pyc' ; echo CMakeLists.txt)
-for file in "${code[@]}"; do
-    head -n 3 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' ||
-        complain "$file: no SPDX line at the head"
-done
+awk 'FNR > 3 { nextfile }
+    /SPDX-License-Identifier: Apache-2.0/ { has[FILENAME] }
+    END {
+        for (i = 1; i < ARGC; i++)
+            if (!(ARGV[i] in has)) {
+                print ARGV[i] ": no SPDX line at the head"
+                failed = 1
+            }
+        exit failed
+    }' "${code[@]}" || status=1
 
 # A name says what is inside; two files of the same name would not. The header of a module may have
 # the name of its source file.
