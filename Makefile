@@ -4,6 +4,7 @@
 #   make demo    a first result: simulate a sensor, identify it, see the report
 #   make test    build and run every test
 #   make check   format, static analysis, sanitizers, portability, byte identity
+#   make tidy-deep  what `make check` reads with clang's analyzer, read ten times as long
 #   make bench   speed against yardsticks: build/bench.csv
 #   make experiments  build the long statistical experiments: build/experiments/*
 #   make experiments-all  run them all and renew experiments/results
@@ -27,7 +28,7 @@ quiet = >$(BUILD)/make.log 2>&1 || { cat $(BUILD)/make.log; exit 1; }
 configure = mkdir -p $(BUILD) && $(alone) cmake -S . -B $(BUILD) -D CMAKE_BUILD_TYPE=Release
 compile = $(alone) cmake --build $(BUILD) -j $(JOBS)
 
-.PHONY: all demo test check bench experiments experiments-all faults fuzz mpi install deps clean help
+.PHONY: all demo test check tidy-deep bench experiments experiments-all faults fuzz mpi install deps clean help
 
 all:
 	@tools/install_dependencies.sh build
@@ -50,6 +51,10 @@ test:
 check:
 	@tools/install_dependencies.sh build run test check
 	@$(alone) BUILD=$(BUILD) tools/check
+
+tidy-deep:
+	@tools/install_dependencies.sh build check
+	@tools/check_tidy.py --deep
 
 bench:
 	@tools/install_dependencies.sh build bench

@@ -12,7 +12,7 @@
 static void require_same(const imk_design_file *a, const imk_design_file *b)
 {
     const imk_instrument *instrument = a->instrument;
-    require(b->instrument == instrument);
+    require(b->design && b->instrument == instrument);
     for (size_t i = 0; i < instrument->field_count; i++) {
         const imk_design_field *field = &instrument->fields[i];
         const size_t bytes = field->kind == IMK_DESIGN_NUMBER   ? sizeof(double)

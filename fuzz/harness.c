@@ -20,12 +20,6 @@
 #include <sys/types.h>
 #include <unistd.h>
 
-void require(bool condition)
-{
-    if (!condition)
-        abort();
-}
-
 void require_told(imk_status status, const imk_error *error)
 {
     char text[1024];

@@ -6,12 +6,17 @@
 #include "imukit/status.h"
 
 #include <stdbool.h>
+#include <stdlib.h>
 
 /* Called by libFuzzer, and by replay.c. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 /* What must hold whatever the bytes are. */
-void require(bool condition);
+static inline void require(bool condition)
+{
+    if (!condition)
+        abort();
+}
 
 /* A refusal carries its status and makes a sentence; what was read left the error alone. The error
  * is begun as (imk_error){.status = IMK_OK}. */
