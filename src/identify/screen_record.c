@@ -34,24 +34,25 @@ static imk_status check(const imk_screen_settings *s, size_t workspace_size, siz
     return IMK_OK;
 }
 
-/* Of those that are there, 0 when they are all the same. The distances from the first one are
- * scaled: their squares neither overflow nor vanish. */
+/* Of those that are there, 0 when they are all the same. Scaled to below 1, so that squares neither
+ * overflow nor vanish. */
 static double deviation_of(size_t n, const double *samples, size_t present)
 {
-    double shift = (double)NAN, span = 0, sum = 0, squares = 0;
+    double shift = (double)NAN, size = 0, sum = 0, squares = 0;
     int exponent;
     for (size_t i = 0; i < n; i++) {
         shift = isnan(shift) ? samples[i] : shift;
-        span = fmax(span, fabs(samples[i] - shift)); /* the number, when one of them is none */
+        size = fmax(size, fabs(samples[i])); /* the number, when one of them is none */
     }
-    frexp(span, &exponent);
+    frexp(size, &exponent);
+    const double scale = ldexp(1, exponent < -1000 ? 1000 : -exponent);
     for (size_t i = 0; i < n; i++) {
-        const double distance = isnan(samples[i]) ? 0 : ldexp(samples[i] - shift, -exponent);
+        const double distance = isnan(samples[i]) ? 0 : samples[i] * scale - shift * scale;
         sum += distance;
         squares += distance * distance;
     }
     const double count = (double)present, variance = (squares - sum * sum / count) / count;
-    return variance > 0 ? ldexp(sqrt(variance), exponent) : 0;
+    return variance > 0 ? sqrt(variance) / scale : 0;
 }
 
 /* Copy what is there, and count what is not. */

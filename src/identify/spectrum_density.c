@@ -495,8 +495,8 @@ imk_status imk_spectrum_estimate(const imk_spectrum_settings *settings, size_t n
     finish(&e, &s, &u);
     for (size_t bin = 0; bin < s.count; bin++)
         if (!(density[bin] < HUGE_VAL))
-            return imk_error_set(error, IMK_ERROR_NOT_FINITE, "samples", "their squares overflow",
-                                 "smaller samples: leave out those that are no readings");
+            return imk_error_set(error, IMK_ERROR_NOT_FINITE, "samples", "",
+                                 "leave out samples whose squares overflow");
     *spectrum = s;
     return IMK_OK;
 }

@@ -112,6 +112,32 @@ static void test_outliers(void **state)
     }
 }
 
+/* Three values in turn, -half, 0 and half, around sample `middle`: 1.4826 half of spread. */
+static void put_stretch(size_t middle, double half)
+{
+    for (size_t i = middle - 30; i <= middle + 30; i++)
+        rate[i] = (double)(i % 3) * half - half;
+}
+
+/* Far from what is around it is beyond nine times its spread, and beyond the scatter of the whole
+ * record: of 20000 normals 5.45 sigma by a false alarm of 1e-3 in all, and 3.6/64 more. */
+static void test_what_is_far(void **state)
+{
+    (void)state;
+    static const struct {
+        double half, value;
+        size_t outliers;
+    } cases[] = {{5.0, 60.0, 0}, {5.0, 73.0, 1}, {0.3, 5.3, 0}, {0.3, 6.3, 1}, {0.3, -6.3, 1}};
+    const imk_screen_settings settings = settings_of();
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        make(7, 1, 0, 0);
+        put_stretch(9000, cases[i].half);
+        rate[9000] = cases[i].value;
+        const imk_screen s = look(&settings);
+        assert_int_equal(s.outliers.count, cases[i].outliers);
+    }
+}
+
 /* An outlier whose square overflows is one like any other, and no reason to call the record
  * constant; nor are readings whose squares vanish. */
 static void test_extreme_sizes(void **state)
@@ -274,10 +300,15 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sound_records), cmocka_unit_test(test_outliers),
-        cmocka_unit_test(test_extreme_sizes), cmocka_unit_test(test_stuck_saturated_missing),
-        cmocka_unit_test(test_repeated),      cmocka_unit_test(test_warm_up),
-        cmocka_unit_test(test_temperature),   cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_sound_records),
+        cmocka_unit_test(test_outliers),
+        cmocka_unit_test(test_what_is_far),
+        cmocka_unit_test(test_extreme_sizes),
+        cmocka_unit_test(test_stuck_saturated_missing),
+        cmocka_unit_test(test_repeated),
+        cmocka_unit_test(test_warm_up),
+        cmocka_unit_test(test_temperature),
+        cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

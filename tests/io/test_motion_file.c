@@ -510,6 +510,10 @@ static const struct {
     {"steps: [hold 1e9 s, pose 180 45 0 deg in 1 us]",
      "m.yaml:2:21: steps[1]: \"pose 180 45 0 deg in 1 us\" is outside its valid range; expected a "
      "step that is not lost beside the time so far"},
+    {"steps: [hold 1 s]\nvibration: [sine roll 0.11 rad at 30 Hz]",
+     "m.yaml:3:23: vibration[0]: \"0.11 rad\" is outside its valid range; expected a rotation "
+     "below "
+     "0.1 rad; write a step swing for larger ones"},
     {"steps: []",
      "m.yaml:2:8: steps: \"[]\" cannot be read; expected at least one step, such as hold 10 s"},
     {"steps: hold 10 s",

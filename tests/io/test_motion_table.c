@@ -273,6 +273,12 @@ static const struct {
     {"time [s],q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0.5,0,0,0\n",
      "m.csv: q_w, row 2: \"0.5\" is the length of the quaternion; expected a length of 1, up to "
      "the rounding of the digits"},
+    {"time [s],q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0.988,0,0,0\n",
+     "m.csv: q_w, row 2: \"0.988\" is the length of the quaternion; expected a length of 1, up to "
+     "the rounding of the digits"},
+    {"time [s]," ANGLES "\n0,0,0,0\n1,122,0,0\n", "m.csv: attitude, row 2: \"122 deg\" is the turn "
+                                                  "from the row before; expected at most 120 deg "
+                                                  "from row to row, so that the way is known"},
     {"time [s],q_w,q_x,q_z\n0,1,0,0\n1,1,0,0\n",
      "m.csv: q_y: this column is missing; the columns q_w, q_x, q_y and q_z go together"},
     {"time [s]," ANGLES ",q_w,q_x,q_y,q_z\n0,1,2,3,1,0,0,0\n1,1,2,3,1,0,0,0\n",
@@ -305,6 +311,9 @@ static const struct {
     {"time [s]," SIX "\n0,1,2,3,4,5,6\n0.01,1,2,3,4,5,6\n0.03,1,2,3,4,5,6\n0.04,1,2,3,4,5,6\n",
      "m.csv: time, row 3: it is 0.02 s after the row before, not 0.01 s; recorded rates and forces "
      "must be in equal steps; resample them, or give a table of poses"},
+    {"time [s]," SIX "\n0,1,2,3,4,5,6\n0.01,1,2,3,4,5,6\n0.020120,1,2,3,4,5,6\n0.03,1,2,3,4,5,6\n",
+     "m.csv: time, row 3: it is 0.01012 s after the row before, not 0.01 s; recorded rates and "
+     "forces must be in equal steps; resample them, or give a table of poses"},
     {"time [s],gyro_x [deg/s],gyro_y [deg/s]\n0,1,2\n1,1,2\n",
      "m.csv: gyro_z: this column is missing; recorded motion has gyro_x, gyro_y, gyro_z, accel_x, "
      "accel_y and accel_z"},
@@ -319,6 +328,25 @@ static const struct {
     {"time [s],roll [deg],pitch [deg],yaw [deg]\n0,a,b,c\n1,a,b,c\n",
      "m.csv: roll: this column contains texts; expected a column of numbers"},
 };
+
+/* Just within what is refused above. */
+static void tables_within_the_tolerances(void **state)
+{
+    (void)state;
+    static const char *const tables[] = {
+        "time [s],q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0.992,0,0,0\n",
+        "time [s]," ANGLES "\n0,0,0,0\n1,118,0,0\n",
+        "time [s]," SIX
+        "\n0,1,2,3,4,5,6\n0.01,1,2,3,4,5,6\n0.020080,1,2,3,4,5,6\n0.03,1,2,3,4,5,6\n",
+    };
+    for (size_t i = 0; i < COUNT(tables); i++) {
+        imk_motion_file *file = NULL;
+        imk_error error;
+        write_table(tables[i]);
+        CHECK_STATUS(imk_motion_read(table_path, NULL, NULL, 0, &file, &error), IMK_OK);
+        imk_motion_file_free(file);
+    }
+}
 
 static void bad_tables_are_refused(void **state)
 {
@@ -394,6 +422,7 @@ int main(void)
         cmocka_unit_test(earth_fixed_rows_are_met),
         cmocka_unit_test(what_is_missing_is_at_rest),
         cmocka_unit_test(recorded_truth_is_kept),
+        cmocka_unit_test(tables_within_the_tolerances),
         cmocka_unit_test(bad_tables_are_refused),
         cmocka_unit_test(groves_profile_is_read),
     };

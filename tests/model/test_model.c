@@ -136,6 +136,10 @@ static void wrong_structure_is_refused(void **state)
     REFUSED(model.gyro.axis_count = 0, IMK_ERROR_RANGE, "gyro.axis_count");
     REFUSED(model.gyro.axis_count = 9, IMK_ERROR_RANGE, "gyro.axis_count");
     REFUSED(model.gyro.direction[0][1] = 0.1, IMK_ERROR_RANGE, "gyro.direction");
+    REFUSED(model.gyro.direction[0][0] = 1 + 2e-9, IMK_ERROR_RANGE, "gyro.direction");
+    REFUSED(model.gyro.direction[0][0] = 1 - 2e-9, IMK_ERROR_RANGE, "gyro.direction");
+    REFUSED(model.accel.nonlinearity.pendulous_axis[1][2] = 1 + 2e-9, IMK_ERROR_RANGE,
+            "accel.pendulous_axis");
     REFUSED(model.accel.nonlinearity.pendulous_axis[1][2] = 1.1, IMK_ERROR_RANGE,
             "accel.pendulous_axis");
     REFUSED(model.accel.nonlinearity.pendulous_axis[1][1] = 1, IMK_ERROR_RANGE, /* along y */

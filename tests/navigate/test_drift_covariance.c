@@ -671,6 +671,11 @@ static void what_is_not_valid_is_refused(void **state)
     CHECK_OK(imk_drift_validate(&model, &good, NULL));
     s = good, s.cookie = 0;
     expect(IMK_ERROR_UNINITIALISED, &model, &s);
+    const double longest[2] = {1, 1e8}, too_long[2] = {1, 1.1e8};
+    s = good, s.time = longest;
+    CHECK_OK(imk_drift_validate(&model, &s, NULL));
+    s = good, s.time = too_long;
+    expect(IMK_ERROR_RANGE, &model, &s);
     s = good, s.time = backwards;
     expect(IMK_ERROR_TIME_ORDER, &model, &s);
     s = good, s.rate = 0;
@@ -703,6 +708,35 @@ static void what_is_not_valid_is_refused(void **state)
         IMK_ERROR_ARGUMENT);
 }
 
+/* A unit that aligns itself stands still: it turns by less than a thousandth of the Earth's
+ * rotation, which the alignment would not see, and not by a hundredth. */
+static void alignment_needs_a_rest(void **state)
+{
+    (void)state;
+    const double time[1] = {1};
+    const imk_model model = perfect();
+    const double level[3] = {0, 0, 0};
+    imk_trajectory_piece piece;
+    imk_trajectory trajectory;
+    imk_drift_settings s = imk_drift_default();
+    s.time = time;
+    s.time_count = 1;
+    s.alignment = IMK_ALIGNED_SELF;
+    s.motion = &trajectory;
+    for (int k = 0; k < 2; k++) {
+        const double turning = (k == 0 ? 0.5e-3 : 1e-2) * IMK_EARTH_RATE;
+        CHECK_OK(imk_trajectory_standstill((imk_geodetic){0.8, 0, 0}, level, true, &piece,
+                                           &trajectory, NULL));
+        /* q' = q (0, 0, 0, w)/2 */
+        piece.length = 10;
+        piece.quaternion[0][1] = -0.5 * turning * piece.quaternion[3][0];
+        piece.quaternion[1][1] = 0.5 * turning * piece.quaternion[2][0];
+        piece.quaternion[2][1] = -0.5 * turning * piece.quaternion[1][0];
+        piece.quaternion[3][1] = 0.5 * turning * piece.quaternion[0][0];
+        CHECK_STATUS(imk_drift_validate(&model, &s, NULL), k == 0 ? IMK_OK : IMK_ERROR_CONFLICT);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -721,6 +755,7 @@ int main(void)
         cmocka_unit_test(names_are_those_of_the_model),
         cmocka_unit_test(compensation_turns_values_into_sigmas),
         cmocka_unit_test(poles_and_perfection),
+        cmocka_unit_test(alignment_needs_a_rest),
         cmocka_unit_test(what_is_not_valid_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
