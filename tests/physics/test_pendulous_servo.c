@@ -335,6 +335,13 @@ static void impossible_designs_are_refused(void **state)
     d.integral = d.proportional * 8000.0; /* b/J is 7037/s */
     CHECK_STATUS(imk_pendulous_servo_validate(&d, &error), IMK_ERROR_CONFLICT);
     assert_string_equal(error.field, "controller.integral");
+    /* The torque must grow with the current, with some to spare: a quarter at the largest. */
+    d = imk_pendulous_servo_default();
+    d.torquer_quadratic = -0.245 / d.largest_current;
+    CHECK_OK(imk_pendulous_servo_validate(&d, &error));
+    d.torquer_quadratic = -0.255 / d.largest_current;
+    CHECK_STATUS(imk_pendulous_servo_validate(&d, &error), IMK_ERROR_CONFLICT);
+    assert_string_equal(error.field, "torquer.quadratic");
     memset(&d, 0, sizeof d);
     CHECK_STATUS(imk_pendulous_servo_validate(&d, &error), IMK_ERROR_UNINITIALISED);
     d = imk_pendulous_servo_default();

@@ -4,6 +4,7 @@
 
 #include "imukit/units.h"
 #include "imukit/vibrating_beam.h"
+#include "physics/vibrating_beam_internal.h"
 
 #define G IMK_STANDARD_GRAVITY
 static const imk_instrument *const beam = &imk_vibrating_beam_instrument;
@@ -75,6 +76,25 @@ static void the_law_of_squares_is_a_clamped_beam(void **state)
         CHECK_CLOSE(exact_ratio(tension) - 1.0, 0.0245775186348646 * tension,
                     2e-5 * tension * tension + 1e-12);
     }
+}
+
+/* The mass that moves with the middle: of the mode cosh k x - cos k x - s (sinh k x - sin k x) of a
+ * clamped beam, by Simpson's rule. */
+static void the_modal_mass_is_that_of_the_shape(void **state)
+{
+    (void)state;
+    const double k = 4.730040744862704, s = (cosh(k) - cos(k)) / (sinh(k) - sin(k));
+    enum { PARTS = 1000 };
+    double sum = 0.0, middle = 0.0;
+    for (int i = 0; i <= PARTS; i++) {
+        const double x = k * i / PARTS;
+        const double shape = cosh(x) - cos(x) - s * (sinh(x) - sin(x));
+        sum += (i == 0 || i == PARTS ? 1.0 : i % 2 ? 4.0 : 2.0) * shape * shape / (3.0 * PARTS);
+        middle = i == PARTS / 2 ? shape : middle;
+    }
+    const imk_vibrating_beam d = plain();
+    const double mass = d.density * d.length * d.width * d.thickness;
+    CHECK_RELATIVE(imki_beam_mass(&d), mass * sum / (middle * middle), 1e-9);
 }
 
 /* 40 kHz, 80 Hz/g, +-50 g: a pair read by the difference of its frequencies deviates by 5090 ppm of
@@ -336,6 +356,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_default_has_its_figures),
+        cmocka_unit_test(the_modal_mass_is_that_of_the_shape),
         cmocka_unit_test(the_law_of_squares_is_a_clamped_beam),
         cmocka_unit_test(nonlinearity_of_a_pair),
         cmocka_unit_test(a_single_beam_rectifies),
