@@ -714,10 +714,11 @@ static void alignment_needs_a_rest(void **state)
 {
     (void)state;
     const double time[1] = {1};
-    const imk_model model = perfect();
+    imk_model model;
     const double level[3] = {0, 0, 0};
     imk_trajectory_piece piece;
     imk_trajectory trajectory;
+    imk_model_default(&model);
     imk_drift_settings s = imk_drift_default();
     s.time = time;
     s.time_count = 1;
