@@ -352,7 +352,7 @@ static int detect(const bench *b, bench_log *log)
     size_t capacity = INTERVALS;
     imk_status status = IMK_ERROR_MEMORY;
     if (drawn)
-        log->activity = malloc(log->record.count * sizeof *log->activity);
+        log->activity = command_memory(NULL, log->record.count * sizeof *log->activity);
     for (int attempt = 0; workspace && attempt < 2; attempt++) {
         free(log->interval);
         log->interval = malloc(capacity * sizeof *log->interval);

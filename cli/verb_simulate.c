@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static const option simulate_option_table[] = {
     {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", NULL,
@@ -159,7 +160,8 @@ static int simulate(const simulate_options *o, const imk_model *model)
     int code = scene_open(o, model, &s);
     if (code < 0)
         code = log_layout_make(o, model, &s, &layout);
-    if (code < 0 && o->runs.given && mkdir(o->output, 0777) != 0 && errno != EEXIST)
+    const bool made = code < 0 && o->runs.given && mkdir(o->output, 0777) == 0;
+    if (code < 0 && o->runs.given && !made && errno != EEXIST)
         code = command_failed("%s: %s", o->output, strerror(errno));
     if (code < 0) {
         imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
@@ -167,6 +169,8 @@ static int simulate(const simulate_options *o, const imk_model *model)
         code = write_logs(o, model, &s, &layout, &executor);
         imk_thread_pool_destroy(pool);
     }
+    if (made && code != EXIT_DONE)
+        (void)rmdir(o->output); /* it stays when a log is in it */
     scene_free(&s);
     return code;
 }

@@ -4,6 +4,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "emit_internal.h"
+#include "output_file_internal.h"
 #include "system_error_internal.h"
 
 #include "imukit/output_file.h"
@@ -13,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { FILES = 3, PATH_SIZE = 4096, VECTORS_MAX = 1000000 };
 
@@ -96,9 +98,10 @@ static imk_status check_owner(const char *path, imk_error *error)
                          "give another --prefix or directory");
 }
 
-static imk_status make_directory(const char *directory, imk_error *error)
+static imk_status make_directory(const char *directory, bool *made, imk_error *error)
 {
-    if (mkdir(directory, 0777) == 0 || errno == EEXIST)
+    *made = mkdir(directory, 0777) == 0;
+    if (*made || errno == EEXIST)
         return IMK_OK;
     return imki_system_error(error, IMK_ERROR_OPEN, directory, errno);
 }
@@ -108,7 +111,8 @@ static imk_status write_files(const char *directory, const char *name, const imk
 {
     char path[FILES][PATH_SIZE];
     imk_output_file *file[FILES] = {NULL};
-    imk_status status = make_directory(directory, error);
+    bool made;
+    imk_status status = make_directory(directory, &made, error);
     for (int i = 0; i < FILES && status == IMK_OK; i++) {
         const int length = snprintf(path[i], PATH_SIZE, "%s/%s%s", directory, name, endings[i]);
         status = length >= PATH_SIZE
@@ -121,12 +125,20 @@ static imk_status write_files(const char *directory, const char *name, const imk
         if (status == IMK_OK)
             (void)imk_output_file_write(file[i], texts[i].bytes, texts[i].size);
     }
+    /* All are made ready before the first appears: they belong together. */
+    for (int i = 0; i < FILES && status == IMK_OK; i++) {
+        status = imki_output_file_prepare(file[i], error);
+        if (status != IMK_OK)
+            file[i] = NULL;
+    }
     for (int i = 0; i < FILES; i++) {
         if (status == IMK_OK)
             status = imk_output_file_commit(file[i], error);
         else
             imk_output_file_abandon(file[i]);
     }
+    if (made && status != IMK_OK)
+        (void)rmdir(directory); /* it stays when a file is in it */
     return status;
 }
 
