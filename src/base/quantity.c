@@ -138,7 +138,7 @@ static imk_status convert(const source *s, const imk_unit *unit, size_t count, d
             return refuse(s, IMK_ERROR_NOT_FINITE, s->begin, "is not finite", "finite numbers");
     }
     for (size_t i = 0; i < sigma_count; i++) {
-        sigmas[i] *= unit->scale;
+        sigmas[i] = sigmas[i] * unit->scale + 0.0; /* -0 is 0 */
         if (!isfinite(sigmas[i]))
             return refuse(s, IMK_ERROR_NOT_FINITE, s->begin, "is not finite", "finite numbers");
         if (!(sigmas[i] >= 0.0))

@@ -150,25 +150,50 @@ static imk_status read_gzip(imki_input *input, unsigned char *target, size_t cap
     return IMK_OK;
 }
 
+static bool is_zstd(const unsigned char *at)
+{
+    return at[1] == 0xB5 && at[2] == 0x2F && at[3] == 0xFD && at[0] == 0x28;
+}
+
+static bool is_skippable(const unsigned char *at)
+{
+    return at[1] == 0x2A && at[2] == 0x4D && at[3] == 0x18 && (at[0] & 0xF0) == 0x50;
+}
+
+/* After a zstd frame: another one, or the end. Frames of the formats before RFC 8878 are not handed
+ * to the library, which gives bytes away that it never set when such a frame is damaged. */
+static imk_status next_frame(imki_input *input)
+{
+    const imk_status status = fill(input, 4);
+    if (status != IMK_OK)
+        return status;
+    const unsigned char *at = input->raw + input->raw_begin;
+    const size_t left = input->raw_end - input->raw_begin;
+    if (left == 0)
+        return IMK_OK;
+    if (left < 4 || !(is_zstd(at) || is_skippable(at)))
+        return damaged(input, "bytes that are not zstd follow the zstd data");
+    input->inside = true;
+    return IMK_OK;
+}
+
 static imk_status read_zstd(imki_input *input, unsigned char *target, size_t capacity, size_t *got)
 {
     while (*got == 0) {
-        imk_status status = fill(input, 1);
+        imk_status status = input->inside ? fill(input, 1) : next_frame(input);
         if (status != IMK_OK)
             return status;
-        if (!input->inside && input->raw_begin == input->raw_end)
+        if (!input->inside)
             return IMK_OK;
         ZSTD_inBuffer in = {input->raw + input->raw_begin, input->raw_end - input->raw_begin, 0};
         ZSTD_outBuffer out = {target, capacity, 0};
         const size_t result = ZSTD_decompressStream(input->zstd, &out, &in);
-        *got = out.pos;
         input->raw_begin += in.pos;
-        if (ZSTD_isError(result)) {
-            status = ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation
-                         ? no_memory(input)
-                         : damaged(input, ZSTD_getErrorName(result));
-            return *got > 0 ? IMK_OK : status;
-        }
+        if (ZSTD_isError(result))
+            return ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation
+                       ? no_memory(input)
+                       : damaged(input, ZSTD_getErrorName(result));
+        *got = out.pos;
         input->inside = result != 0;
         if (*got == 0 && input->inside && in.pos == 0 && input->file_ended)
             return damaged(input, "the zstd data is cut short");

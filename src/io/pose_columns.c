@@ -258,6 +258,20 @@ static imk_status check_limits(size_t rows, const column_set *set, const double 
     return IMK_OK;
 }
 
+/* As imk_trajectory_validate() has it: gravity is known there. */
+static imk_status check_place(const pose_table *t, size_t row, imk_vector3 relative,
+                              imk_error *error)
+{
+    const double radius = imk_vector3_norm(imk_vector3_add(t->origin, relative));
+    if (radius >= 6.34e6 && radius <= 1.64e7)
+        return IMK_OK;
+    char found[80];
+    snprintf(found, sizeof found, "\"%.10g km\" is the distance from the centre of the Earth",
+             radius / 1000.0);
+    return imki_table_row_error("position", IMK_ERROR_RANGE, row + 1, found,
+                                "6340 km to 16400 km", error);
+}
+
 static imk_status convert(pose_table *t, imk_error *error)
 {
     if (t->position == GEODETIC)
@@ -268,7 +282,9 @@ static imk_status convert(pose_table *t, imk_error *error)
         imk_matrix3 axes;
         const imk_vector3 position = position_of(t, row, &axes);
         imk_quaternion q_nb;
-        imk_status status = attitude_of(t, row, &q_nb, error);
+        imk_status status = check_place(t, row, position, error);
+        if (status == IMK_OK)
+            status = attitude_of(t, row, &q_nb, error);
         if (status != IMK_OK)
             return status;
         for (int i = 0; i < 3; i++)

@@ -366,6 +366,7 @@ static void quantities_are_read(void **state)
         {"25 ± 2 degC", "K", 1, {298.15}, {2}},
         {" 4778 count/(rad/s) ", "count*s/rad", 1, {4778}, {0}},
         {"5 min", "s", 1, {300}, {0}},
+        {"8 ± -0 degC", "K", 1, {281.15}, {0}},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
         double values[3] = {0}, sigmas[3] = {0};
@@ -377,6 +378,7 @@ static void quantities_are_read(void **state)
         for (size_t k = 0; k < count; k++) {
             CHECK_RELATIVE(values[k], cases[i].values[k], 1e-15);
             CHECK_RELATIVE(sigmas[k], cases[i].sigmas[k], 1e-15);
+            assert_false(signbit(sigmas[k]));
         }
     }
 }

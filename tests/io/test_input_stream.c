@@ -207,8 +207,20 @@ static void damaged_zstd(void **state)
     check_damaged(path, 6, "cut short");
     memcpy(packed + size, "junk!", 5);
     check_damaged(path, size + 5, "at byte");
+    check_damaged(path, size + 3, "not zstd");
     packed[size - 1] ^= 1;
     check_damaged(path, size, "checksum");
+}
+
+/* A damaged frame of the format of 2016: libzstd says that it filled the whole buffer, which it did
+ * not touch. */
+static void old_zstd(void **state)
+{
+    (void)state;
+    static const char bytes[] = "P*M\x18\4\0\0\0skip"
+                                "\x26\xB5\x2F\xFD\x04\x1D\0}\0 ";
+    memcpy(packed, bytes, sizeof bytes - 1);
+    assert_int_equal(check_damaged(path_of("damaged.zst"), sizeof bytes - 1, "not zstd"), 0);
 }
 
 /* Standard input is a pipe that delivers little at a time. */
@@ -328,10 +340,15 @@ static int remove_directory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_file),   cmocka_unit_test(gzip_members_and_padding),
-        cmocka_unit_test(zstd_frames),  cmocka_unit_test(damaged_gzip),
-        cmocka_unit_test(damaged_zstd), cmocka_unit_test(pipes),
-        cmocka_unit_test(memory),       cmocka_unit_test(refusals_name_the_reason),
+        cmocka_unit_test(plain_file),
+        cmocka_unit_test(gzip_members_and_padding),
+        cmocka_unit_test(zstd_frames),
+        cmocka_unit_test(damaged_gzip),
+        cmocka_unit_test(damaged_zstd),
+        cmocka_unit_test(old_zstd),
+        cmocka_unit_test(pipes),
+        cmocka_unit_test(memory),
+        cmocka_unit_test(refusals_name_the_reason),
     };
     return cmocka_run_group_tests(tests, make_text, remove_directory);
 }

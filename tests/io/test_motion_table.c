@@ -298,6 +298,10 @@ static const struct {
     {"time [s],x [m],y [m],z [m]\n0,1,2,3\n1,1,-2e7,3\n",
      "m.csv: y, row 2: \"-20000000 m\" is beyond the limit; expected between -10000000 m and "
      "10000000 m"},
+    {"time [s],ecef_x [m],ecef_y [m],ecef_z [m]\n0,6378137,0,0\n1,6339068,0,0\n",
+     "m.csv: position, row 2: \"6339.068 km\" is the distance from the centre of the Earth; "
+     "expected "
+     "6340 km to 16400 km"},
     {"time [s]," ANGLES "\n0,1,2,3\n1e-320,1,2,3\n1,1,2,3\n",
      "m.csv: time, row 2: \"9.99989e-321 s\" is the step from the row before; expected a step of "
      "time "
