@@ -3,7 +3,7 @@
 """clang-tidy (.clang-tidy) on the libraries, the command, the examples and the fuzz entry points.
 
     tools/check_tidy.py          the analyzer gives up on a function after 10,000 steps
-    tools/check_tidy.py --deep   after 225,000, its own limit: ten times as long (make tidy-deep)
+    tools/check_tidy.py --deep   after 225,000, its own limit: five minutes (make tidy-deep)
 
 Nearly all the time is the analyzer's. It follows calls within a file either way: a fault that takes
 two functions, such as a pointer that one leaves unset and the other frees, is seen within few steps.
