@@ -53,19 +53,16 @@ typedef struct log_stream {
     imk_error error[IMK_LOG_COLUMNS_MAX];
 } log_stream;
 
-static bool make_block(const log_stream *s, row_block *block)
+static void make_block(const log_stream *s, row_block *block)
 {
     const log_channels *channels = &s->all->channels;
     const size_t columns = channels->count + (s->time_column >= 0 ? 1 : 0);
-    block->memory = malloc(columns * ROWS * sizeof(double));
-    if (!block->memory)
-        return false;
+    block->memory = command_memory(NULL, columns * ROWS * sizeof(double));
     double *place = block->memory;
     for (size_t c = 0; c < channels->count; c++, place += ROWS)
         block->column[channels->column[c]] = place;
     if (s->time_column >= 0)
         block->column[s->time_column] = place;
-    return true;
 }
 
 static void read_block(log_stream *s, row_block *block)
@@ -206,9 +203,9 @@ static bool begin_records(log_stream *s)
     const double expected = (double)first->rows * ((double)size / (double)done);
     for (size_t c = 0; c < s->all->channels.count; c++) {
         const size_t bytes = imk_identify_record_size((size_t)expected);
-        s->memory[c] = malloc(bytes);
-        if (!s->memory[c] || imk_identify_record_begin((size_t)expected, s->memory[c], bytes,
-                                                       &s->record[c], NULL) != IMK_OK)
+        s->memory[c] = command_memory(NULL, bytes);
+        if (imk_identify_record_begin((size_t)expected, s->memory[c], bytes, &s->record[c], NULL) !=
+            IMK_OK)
             return false;
     }
     return true;
@@ -308,18 +305,12 @@ static int finish(log_stream *s, const imk_executor *executor, bool *taken)
     return -1;
 }
 
-/* Open the log and read its first block; false where it is to be loaded: it is short, or something
- * is wrong with it that loading tells best. */
-static bool start(log_stream *s, const char *path)
+/* The log opened and its channels chosen; false where it is short. */
+static bool begin(log_stream *s)
 {
     identification *i = s->all;
     log_channels *channels = &i->channels;
-    imk_log_settings settings = log_input_settings(&i->options->log);
-    settings.reopened = true; /* for who loads it */
-    imk_error error;
     uint64_t done, size;
-    if (imk_log_open(path, &settings, &s->reader, &error) != IMK_OK)
-        return false;
     imk_log_progress(s->reader, &done, &size);
     if (size < (uint64_t)IMK_IDENTIFY_RECORD_ADVISED * ROW_BYTES_LEAST)
         return false;
@@ -328,23 +319,52 @@ static bool start(log_stream *s, const char *path)
         channels->log.column[c] = *imk_log_column_get(s->reader, c);
     log_choose_channels(channels);
     s->time_column = imk_log_column_find(s->reader, IMK_QUANTITY_TIME, -1);
-    if (channels->count == 0 || !make_block(s, &s->block[0]) || !make_block(s, &s->block[1]))
+    if (channels->count == 0)
         return false;
+    make_block(s, &s->block[0]);
+    make_block(s, &s->block[1]);
     read_block(s, &s->block[0]);
+    if (s->block[0].rows < ROWS)
+        read_block(s, &s->block[1]); /* says why it ended there */
     const double interval = imk_log_findings_get(s->reader).interval;
     channels->dt = i->options->log.rate > 0 ? 1 / i->options->log.rate : interval;
     return is_long(s, &s->block[0]) && channels->dt > 0 && begin_records(s);
 }
 
+/* What is wrong with the log itself, loading it tells best. What the system refuses may be given
+ * when asked again, and then a long log would be treated as a short one. */
+static bool is_of_system(imk_status status)
+{
+    return status == IMK_ERROR_OPEN || status == IMK_ERROR_READ || status == IMK_ERROR_MEMORY;
+}
+
+/* Open the log and read its first block. @return -1, or the exit code
+ * @param long_log  false where it is to be loaded */
+static int start(log_stream *s, const char *path, bool *long_log)
+{
+    imk_log_settings settings = log_input_settings(&s->all->options->log);
+    settings.reopened = true; /* for who loads it */
+    imk_error error;
+    const imk_status status = imk_log_open(path, &settings, &s->reader, &error);
+    *long_log = status == IMK_OK && begin(s);
+    if (is_of_system(status))
+        return command_log_error(&error, path);
+    for (int b = 0; b < 2; b++)
+        if (is_of_system(s->block[b].status))
+            return command_log_error(&s->block[b].error, path);
+    return -1;
+}
+
 int identify_stream(identification *i, const imk_executor *executor, bool *taken)
 {
     log_stream *s = calloc(1, sizeof *s);
-    int code = -1;
     *taken = false;
     if (!s)
         return command_failed("memory is exhausted");
     s->all = i;
-    if (start(s, i->path)) {
+    bool long_log;
+    int code = start(s, i->path, &long_log);
+    if (code < 0 && long_log) {
         imk_error error;
         const imk_status status = pass_log(s, i->path, executor, &error);
         *taken = !s->uneven;

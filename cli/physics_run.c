@@ -33,8 +33,7 @@ int physics_start(const physics *p, const imk_physics_settings *settings, void *
     imk_error error = {.status = IMK_OK};
     const imk_instrument *instrument = p->file.instrument;
     *state = aligned_alloc(64, (instrument->state_size + 63) / 64 * 64);
-    if (!*state)
-        return command_failed("memory is exhausted");
+    (void)command_unless_memory(*state ? IMK_OK : IMK_ERROR_MEMORY);
     if (instrument->init(p->file.design, settings, *state, &error) == IMK_OK)
         return -1;
     free(*state);

@@ -294,6 +294,8 @@ static imk_status open_regular(imki_input *input, const char *path, bool kept)
     if (input->file < 0 || fstat(input->file, &about) != 0)
         return imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, errno);
     const off_t begin = lseek(input->file, 0, SEEK_CUR); /* stdin may stand in the middle */
+    if (begin < 0 && errno != ESPIPE)
+        return imki_system_error(&input->failure, IMK_ERROR_READ, input->path, errno);
     if (begin >= 0 && about.st_size > begin)
         input->file_size = (uint64_t)(about.st_size - begin);
     if (kept && input->standard)

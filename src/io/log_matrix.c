@@ -3,8 +3,10 @@
  * line in FILE.npy.columns, as `gyro_x [deg/s]`, or come from the settings. */
 #define _POSIX_C_SOURCE 200809L
 #include "io/log_reader_internal.h"
+#include "io/system_error_internal.h"
 #include "io/text_file_internal.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,6 +27,8 @@ static imk_status read_names(const char *path, char names[NAMES_SIZE], imk_error
     imk_status status = IMK_OK;
     if (access(names_path, F_OK) == 0)
         status = imki_text_file_read(names_path, NAMES_SIZE - 2, &text, &size, error);
+    else if (errno != ENOENT && errno != ENAMETOOLONG)
+        status = imki_system_error(error, IMK_ERROR_OPEN, names_path, errno);
     if (status == IMK_OK && size > 0)
         memcpy(names, text, size);
     names[size] = '\0';
