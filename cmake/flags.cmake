@@ -20,6 +20,12 @@ if(IMUKIT_SANITIZE)
        -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${IMUKIT_SANITIZE})
 endif()
+# With sanitizers, optimising code takes twice as long as compiling it: tests, command and files are
+# run too little to give that back.
+set(imukit_seldom_run "")
+if(IMUKIT_SANITIZE AND NOT IMUKIT_FUZZ)
+  set(imukit_seldom_run -O0)
+endif()
 # What a fuzzer meets in the library guides it: edges are counted there too.
 if(IMUKIT_FUZZ)
   list(APPEND imukit_flags -fsanitize=fuzzer-no-link)

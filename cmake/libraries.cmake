@@ -29,6 +29,10 @@ if(IMUKIT_FUZZ)
   set_property(SOURCE ${kernel_sources} APPEND PROPERTY COMPILE_OPTIONS "-fno-sanitize=all")
 endif()
 
+set(seldom_run_sources ${io_sources})
+list(FILTER seldom_run_sources EXCLUDE REGEX "/(log_|npy|input_)")
+set_property(SOURCE ${seldom_run_sources} APPEND PROPERTY COMPILE_OPTIONS ${imukit_seldom_run})
+
 set(imukit_soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
 # imukit_library(NAME SOURCES <file>... OURS <library>... PUBLIC <library>... PRIVATE <library>...)

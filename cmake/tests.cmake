@@ -55,10 +55,7 @@ foreach(target ${test_targets})
     SOURCE_DIRECTORY="${PROJECT_SOURCE_DIR}"
     SHARED_DIRECTORY="${PROJECT_SOURCE_DIR}/../shared")
 endforeach()
-# What the tests themselves compute is little beside what the sanitizers' optimiser costs.
-if(IMUKIT_SANITIZE)
-  target_compile_options(imukit-tests PRIVATE -O0)
-endif()
+target_compile_options(imukit-tests PRIVATE ${imukit_seldom_run})
 if(TARGET imukit-command)
   add_dependencies(imukit-tests imukit-command)
   target_compile_definitions(imukit-tests PRIVATE IMUKIT_COMMAND="$<TARGET_FILE:imukit-command>")
