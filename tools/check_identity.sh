@@ -18,7 +18,7 @@ complain() { echo "$*"; status=1; }
 
 {
     cmake -S . -B "$build" && cmake --build "$build" -j "$(nproc)" --target imukit-command
-    cmake --preset sanitize && cmake --build --preset sanitize -j "$(nproc)" --target imukit-command
+    tools/sanitized_build.sh --target imukit-command
 } >"$out/build.log" 2>&1 || { cat "$out/build.log"; exit 1; }
 
 # simulate COMMAND THREADS: the sum of two logs' bytes, with the environment as it is

@@ -3,8 +3,7 @@
 # Every test, with the address, leak and undefined-behaviour sanitizers.
 set -eu
 cd "$(dirname "$0")/.."
-cmake --preset sanitize >/dev/null
-cmake --build --preset sanitize -j "$(nproc)" >/dev/null
+tools/sanitized_build.sh >/dev/null
 
 # Not detect_stack_use_after_return: gcc 12 misaligns 64-byte vectors on the stack it makes for that.
 export ASAN_OPTIONS=strict_string_checks=1

@@ -268,8 +268,8 @@ static imk_status check_place(const pose_table *t, size_t row, imk_vector3 relat
     char found[80];
     snprintf(found, sizeof found, "\"%.10g km\" is the distance from the centre of the Earth",
              radius / 1000.0);
-    return imki_table_row_error("position", IMK_ERROR_RANGE, row + 1, found,
-                                "6340 km to 16400 km", error);
+    return imki_table_row_error("position", IMK_ERROR_RANGE, row + 1, found, "6340 km to 16400 km",
+                                error);
 }
 
 static imk_status convert(pose_table *t, imk_error *error)
