@@ -25,7 +25,7 @@
 #include <zstd.h>
 #include <zstd_errors.h>
 
-enum { RAW_SIZE = 1 << 18 };
+enum { RAW_SIZE = 1 << 18, FRAME_HEAD = 18 /* the longest of zstd */ };
 
 typedef enum encoding { ENCODING_MEMORY, ENCODING_PLAIN, ENCODING_GZIP, ENCODING_ZSTD } encoding;
 
@@ -43,7 +43,9 @@ struct imki_input {
     unsigned char *raw;
     size_t raw_begin, raw_end; /* not yet used */
     bool file_ended;
-    bool inside; /* a gzip member or zstd frame has begun and not ended */
+    bool inside;                   /* a gzip member or zstd frame has begun and not ended */
+    unsigned long long frame_size; /* of a zstd frame, as its head says it, or that it does not */
+    unsigned long long frame_done;
     z_stream gzip;
     ZSTD_DStream *zstd;
     imk_error failure; /* kept: a failed input stays failed */
@@ -164,7 +166,7 @@ static bool is_skippable(const unsigned char *at)
  * to the library, which gives bytes away that it never set when such a frame is damaged. */
 static imk_status next_frame(imki_input *input)
 {
-    const imk_status status = fill(input, 4);
+    const imk_status status = fill(input, FRAME_HEAD);
     if (status != IMK_OK)
         return status;
     const unsigned char *at = input->raw + input->raw_begin;
@@ -173,6 +175,8 @@ static imk_status next_frame(imki_input *input)
         return IMK_OK;
     if (left < 4 || !(is_zstd(at) || is_skippable(at)))
         return damaged(input, "bytes that are not zstd follow the zstd data");
+    input->frame_size = ZSTD_getFrameContentSize(at, left);
+    input->frame_done = 0;
     input->inside = true;
     return IMK_OK;
 }
@@ -193,8 +197,13 @@ static imk_status read_zstd(imki_input *input, unsigned char *target, size_t cap
             return ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation
                        ? no_memory(input)
                        : damaged(input, ZSTD_getErrorName(result));
-        *got = out.pos;
         input->inside = result != 0;
+        input->frame_done += out.pos;
+        /* libzstd does not look at this where the last block is empty. */
+        if (!input->inside && input->frame_size < ZSTD_CONTENTSIZE_ERROR &&
+            input->frame_size != input->frame_done)
+            return damaged(input, "the zstd data has another size than its frame says");
+        *got = out.pos;
         if (*got == 0 && input->inside && in.pos == 0 && input->file_ended)
             return damaged(input, "the zstd data is cut short");
     }

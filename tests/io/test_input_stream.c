@@ -212,6 +212,19 @@ static void damaged_zstd(void **state)
     check_damaged(path, size, "checksum");
 }
 
+/* A frame that ends before the size in its head, by a block without bytes: where there is no room
+ * for all of it, libzstd takes it for whole. */
+static void short_zstd(void **state)
+{
+    (void)state;
+    static const char head[] = "\x28\xB5\x2F\xFD\x80\0\0\0\x10\0" /* 1 MiB, window of 1 KiB */
+                               "\x18\0";                          /* a block of 3 bytes */
+    memcpy(packed, head, sizeof head);
+    memcpy(packed + sizeof head, text, 3);
+    memcpy(packed + sizeof head + 3, "\1\0", 3); /* the last block */
+    check_damaged(path_of("damaged.zst"), sizeof head + 6, "another size");
+}
+
 /* A damaged frame of the format of 2016: libzstd says that it filled the whole buffer, which it did
  * not touch. */
 static void old_zstd(void **state)
@@ -340,15 +353,11 @@ static int remove_directory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_file),
-        cmocka_unit_test(gzip_members_and_padding),
-        cmocka_unit_test(zstd_frames),
-        cmocka_unit_test(damaged_gzip),
-        cmocka_unit_test(damaged_zstd),
-        cmocka_unit_test(old_zstd),
-        cmocka_unit_test(pipes),
-        cmocka_unit_test(memory),
-        cmocka_unit_test(refusals_name_the_reason),
+        cmocka_unit_test(plain_file),   cmocka_unit_test(gzip_members_and_padding),
+        cmocka_unit_test(zstd_frames),  cmocka_unit_test(damaged_gzip),
+        cmocka_unit_test(damaged_zstd), cmocka_unit_test(short_zstd),
+        cmocka_unit_test(old_zstd),     cmocka_unit_test(pipes),
+        cmocka_unit_test(memory),       cmocka_unit_test(refusals_name_the_reason),
     };
     return cmocka_run_group_tests(tests, make_text, remove_directory);
 }
