@@ -19,6 +19,14 @@ if(IMUKIT_SANITIZE)
   list(APPEND imukit_flags -fsanitize=${IMUKIT_SANITIZE} -fno-sanitize-recover=all
        -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${IMUKIT_SANITIZE})
+  # What starts 2000 times in the tests has to start fast: without half a million addresses to
+  # relocate, and without a description of each place that could go wrong. Undefined behaviour then
+  # ends in an illegal instruction, of which a debugger tells the line.
+  if(NOT IMUKIT_FUZZ AND CMAKE_C_COMPILER_ID STREQUAL GNU)
+    set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
+    list(APPEND imukit_flags -fno-pie -fsanitize-undefined-trap-on-error)
+    add_link_options(-no-pie)
+  endif()
 endif()
 # With sanitizers, optimising code takes twice as long as compiling it: tests, command and files are
 # run too little to give that back.

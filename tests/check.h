@@ -76,6 +76,13 @@ static inline bool check_quick(void)
     return getenv("IMUKIT_TEST_RUNS") != NULL;
 }
 
+/** Whether case number i of many alike is left out there: all but one in n. The usual build runs
+ *  them all. */
+static inline bool check_skips(size_t i, size_t n)
+{
+    return check_quick() && i % n != 0;
+}
+
 /** |actual - expected| <= tolerance */
 #define CHECK_CLOSE(actual, expected, tolerance)                                                   \
     check_close((actual), (expected), (tolerance), #actual, __FILE__, __LINE__)

@@ -32,7 +32,7 @@ uint32_t imki_crc(uint32_t crc, const void *bytes, size_t size)
 
 int imki_crc_at(int file, uint64_t offset, uint64_t size, uint32_t *crc)
 {
-    enum { BLOCK = 1 << 18 }; /* bytes: stays in the second-level cache */
+    enum { BLOCK = 1 << 16 }; /* bytes: stays in the first caches */
     unsigned char *block = malloc(BLOCK);
     int number = block ? 0 : ENOMEM;
     while (size > 0 && number == 0) {

@@ -25,7 +25,7 @@
 #include <zstd.h>
 #include <zstd_errors.h>
 
-enum { RAW_SIZE = 1 << 18, FRAME_HEAD = 18 /* the longest of zstd */ };
+enum { RAW_SIZE = 1 << 16, FRAME_HEAD = 18 /* the longest of zstd */ };
 
 typedef enum encoding { ENCODING_MEMORY, ENCODING_PLAIN, ENCODING_GZIP, ENCODING_ZSTD } encoding;
 

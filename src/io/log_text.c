@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WINDOW = 1 << 18 };
+enum { WINDOW = 1 << 16 };
 
 /* The last newline at or after `from`. */
 static void find_lines_end(imki_log_text *text, const char *from)

@@ -190,6 +190,8 @@ static void a_damaged_file_is_refused(void **state)
     unsigned char *bytes = read_bytes("x.h5", &size);
     const int file = open("x.h5", O_RDWR);
     for (size_t trial = 0; trial < 1000; trial++) {
+        if (check_skips(trial, 5))
+            continue;
         /* The head above all, then places among the values; one bit, or a whole byte. */
         const size_t place = trial < 700 ? trial * 3 % size : trial * 7919 % size;
         const unsigned change = trial % 2 ? 0xFFu : 1u << trial % 8;
@@ -236,6 +238,8 @@ static long load_forged(unsigned char *bytes, size_t size, size_t head, size_t *
     for (size_t place = IMKI_SEAL_SIZE; place < head; place++) {
         const unsigned char kept = bytes[place], others[] = {0, 0xFF, (unsigned char)(kept + 1)};
         for (size_t k = 0; k < sizeof others; k++) {
+            if (check_skips(place + k, 3))
+                continue;
             imk_campaign_results *r = NULL;
             bytes[place] = others[k];
             seal(bytes, size);

@@ -295,6 +295,8 @@ static void long_lists_end_in_dots(void **state)
         compute_shard(names[i], &campaign, 100000 + 20000 * i, 1);
     }
     for (size_t shift = 0; shift < SHIFTS; shift++) {
+        if (check_skips(shift, 4))
+            continue;
         CHECK_STATUS(
             imk_campaign_merge(FILES - shift, paths + shift, "all.h5", false, &report, &error),
             IMK_ERROR_CONFLICT);
