@@ -63,13 +63,6 @@ else
     echo "the C library knows no $tunable, or this processor has neither: not checked"
 fi
 
-# The rest clang reads for its warnings only.
-warnings="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes
-    -Wmissing-prototypes -Werror"
-find src/io src/report cli -name '*.c' ! -name '*_mpi.c' -print0 |
-    xargs -0 -n 20 -P "$(nproc)" clang -fsyntax-only -std=c17 -Iinclude -Isrc -mavx2 $warnings \
-        $(pkg-config --cflags hdf5-serial 2>/dev/null || pkg-config --cflags hdf5)
-
 core="base model noise motion simulate physics"
 tools/compile_core.sh "$out/gcc-O0" "$core" gcc -O0
 tools/compile_core.sh "$out/clang-O0" "$core" clang -O0

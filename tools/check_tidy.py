@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""clang-tidy (.clang-tidy) on the libraries, the command, the examples and the fuzz entry points.
+"""clang-tidy (.clang-tidy) on the libraries, the command, the examples and the fuzz entry points, with
+clang's own warnings.
 
     tools/check_tidy.py          the analyzer gives up on a function after 10,000 steps
     tools/check_tidy.py --deep   after 225,000, its own limit: five minutes (make tidy-deep)
@@ -24,6 +25,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 MODELS = pathlib.Path("tools/analyzer_models")
 PASSED = pathlib.Path("build-check/tidy")
 FILES_AT_ONCE = 12
+# clang's own, for what only it warns about: cmake/flags.cmake has gcc's.
+WARNINGS = """-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+    -Wstrict-prototypes -Wmissing-prototypes""".split()
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 
@@ -88,7 +92,7 @@ def stale(files, deep):
         analyzer = f"max-nodes={225000 if deep else 10000}"
         if not defines.search(texts.read(file)): # a function has one body
             analyzer += f",model-path={MODELS}"
-        flags = ["-std=c17", "-Iinclude", "-Isrc", *flags,
+        flags = ["-std=c17", "-Iinclude", "-Isrc", *WARNINGS, *flags,
                  "-Xclang", "-analyzer-config", "-Xclang", analyzer]
         whole = "\0".join([*flags, texts.all_of(file)]).encode()
         key = hashlib.sha256(version + rules + whole).hexdigest()

@@ -49,8 +49,8 @@ void read_text(const char *path, char *text)
     fclose(file);
 }
 
-/* Where statistics are others' (check.h), the sanitizers look for leaks, which takes half the time of
- * a start, after each fifth line only. */
+/* Where statistics are others' (check.h), the sanitizers look for leaks, which takes half the time
+ * of a start, after each fifth line only. */
 static void look_for_leaks_at_times(void)
 {
     static unsigned lines;
