@@ -8,6 +8,9 @@ file(GLOB core_sources CONFIGURE_DEPENDS src/base/*.c src/model/*.c src/noise/*.
      src/simulate/*.c src/identify/*.c src/physics/*.c src/compensate/*.c src/calibrate/*.c
      src/navigate/*.c)
 file(GLOB io_sources CONFIGURE_DEPENDS src/io/*.c src/report/*.c)
+set(IMUKIT_FILE_FILTER "" CACHE STRING "Regular expression: build only files of such names")
+list(FILTER core_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
+list(FILTER io_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
 
 # One file per instruction set, chosen at run time; the rest is compiled for the base machine.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")

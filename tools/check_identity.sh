@@ -17,7 +17,7 @@ status=0
 complain() { echo "$*"; status=1; }
 
 {
-    cmake -S . -B "$build" && cmake --build "$build" -j "$(nproc)" --target imukit-command
+    cmake -S . -B "$build" && cmake --build "$build" -j "$(nproc)" --target imukit-command imukit imukit-io
     tools/sanitized_build.sh --target imukit-command
 } >"$out/build.log" 2>&1 || { cat "$out/build.log"; exit 1; }
 
@@ -63,7 +63,13 @@ else
     echo "the C library knows no $tunable, or this processor has neither: not checked"
 fi
 
-core="base model noise motion simulate physics"
+# Only what the linker takes for the two programs.
+for program in simulate_hash physics_hash; do
+    gcc -std=c17 -O2 -ffp-contract=off -Iinclude -Isrc -c "tests/identity/$program.c" \
+        -o "$out/$program.o"
+done
+core=$(tools/needed_files.sh "$out"/*_hash.o | sed 's/^/-name /; $!s/$/ -o/' | xargs find src)
+core="$core $(echo src/*/*_neon.c)" # which it takes on AArch64
 tools/compile_core.sh "$out/gcc-O0" "$core" gcc -O0
 tools/compile_core.sh "$out/clang-O0" "$core" clang -O0
 tools/compile_core.sh "$out/clang-O3" "$core" clang -O3

@@ -8,13 +8,12 @@
 set -eu
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
-modules="base model noise motion simulate identify physics compensate calibrate navigate"
 out=build-check/portable
 mkdir -p "$out"
 
 tools/compile_cortex.sh
 # Both clang and gcc see each file, so what only one of them warns about is found.
-tools/compile_core.sh "$out/wasm32" "$modules" clang --target=wasm32-wasi -O2
+tools/compile_core.sh "$out/wasm32" "$(tools/core_files.sh)" clang --target=wasm32-wasi -O2
 
 if tools/writable_data.sh arm-none-eabi-objdump build-check/cortex-m4/*.o; then
     echo "writable data (above): make it const, or give it to the caller"

@@ -1,11 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Compiles modules of libimukit apart from the build, without a warning, into DIRECTORY/FILE.o:
+# Compiles files of libimukit apart from the build, without a warning, into DIRECTORY/NAME.o:
 #
-#     tools/compile_core.sh DIRECTORY "MODULE…" COMPILER FLAG…
+#     tools/compile_core.sh DIRECTORY "FILE…" COMPILER FLAG…
 set -eu
 export directory=$1
-modules=$2
+files=$2
 shift 2
 rm -rf "$directory"
 mkdir -p "$directory"
@@ -29,6 +29,4 @@ compile_files() {
 export -f compile_files
 
 # Shuffled, so that the shares of the processors are alike.
-for module in $modules; do
-    printf '%s\0' src/"$module"/*.c
-done | shuf -z --random-source=LICENSE | xargs -0 -n 8 -P "$(nproc)" bash -c 'compile_files "$@"' _
+printf '%s\0' $files | shuf -z --random-source=LICENSE | xargs -0 -n 8 -P "$(nproc)" bash -c 'compile_files "$@"' _

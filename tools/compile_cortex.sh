@@ -4,12 +4,12 @@
 # frames (.ci) beside it; nothing to do when it is newer than what it is made of.
 set -eu
 cd "$(dirname "$0")/.."
-modules="base model noise motion simulate identify physics compensate calibrate navigate"
+files=$(tools/core_files.sh)
 out=build-check/cortex-m4
-made_of=(include tools/compile_core.sh tools/compile_cortex.sh $(printf 'src/%s ' $modules))
+made_of=(include tools/compile_core.sh tools/compile_cortex.sh src)
 [ -e "$out/made" ] && [ -z "$(find "${made_of[@]}" -newer "$out/made" -print -quit)" ] && exit
 touch build-check/cortex-m4.begun
-tools/compile_core.sh "$out" "$modules" arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb \
+tools/compile_core.sh "$out" "$files" arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb \
     -mfloat-abi=hard -mfpu=fpv4-sp-d16 -O2 -Wdouble-promotion -ffunction-sections -fdata-sections \
     -fcallgraph-info=su
 mv build-check/cortex-m4.begun "$out/made"
