@@ -100,8 +100,8 @@ static bool shell_word(const char *text, char *word, size_t size)
 
 static imk_status say_what_is_missing(const char *path, const char *script, imk_error *error)
 {
-    char word[100], expected[160] = "apt install gnuplot-nox, then give it the script that is "
-                                    "written in its place, with its data";
+    char word[96], expected[160] = "apt install gnuplot-nox, then give it the script that is "
+                                   "written in its place, with its data";
     if (shell_word(script, word, sizeof word))
         snprintf(expected, sizeof expected,
                  "apt install gnuplot-nox, then: gnuplot %s (written with its data)", word);
