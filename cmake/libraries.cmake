@@ -35,7 +35,7 @@ endif()
 set(seldom_run_sources ${io_sources})
 list(FILTER seldom_run_sources EXCLUDE REGEX "/(log_|npy|input_)")
 set_property(SOURCE ${seldom_run_sources} APPEND PROPERTY COMPILE_OPTIONS ${imukit_seldom_run})
-if(IMUKIT_SANITIZE) # what every class of every grade goes through, three times as fast so
+if(IMUKIT_SANITIZE AND NOT IMUKIT_FUZZ) # what every class of every grade goes through, three times as fast so
   set_property(SOURCE src/navigate/drift_propagate.c APPEND PROPERTY COMPILE_OPTIONS -O3)
 endif()
 

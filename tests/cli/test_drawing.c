@@ -121,6 +121,25 @@ static void test_without_gnuplot(void **state)
     }
 }
 
+/* The advice is whole, whatever the script's name: it gives the name where there is room for it. */
+static void test_long_name_without_gnuplot(void **state)
+{
+    (void)state;
+    char name[100], line[700];
+    for (int length = 85; length < 99; length++) {
+        memset(name, 'a', sizeof name);
+        name[length] = '\0';
+        snprintf(line, sizeof line, "PATH=/nonexistent %s --plot %s.svg", drawings[0].line, name);
+        assert_int_equal(run(line), 1);
+        check_contains(err,
+                       strstr(err, "then: ") ? ".gp' (written with its data)\n"
+                                             : "in its place, with its data\n",
+                       line);
+        snprintf(line, sizeof line, "rm %s.gp %s.dat", name, name);
+        assert_int_equal(run(line), 0);
+    }
+}
+
 /* Code 1 and no file, neither figure nor page. */
 static void test_without_temporary_folder(void **state)
 {
@@ -327,9 +346,13 @@ static void test_signals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_without_gnuplot),   cmocka_unit_test(test_without_temporary_folder),
-        cmocka_unit_test(test_temporary_folders), cmocka_unit_test(test_names),
-        cmocka_unit_test(test_hung_gnuplot),      cmocka_unit_test(test_failing_gnuplot),
+        cmocka_unit_test(test_without_gnuplot),
+        cmocka_unit_test(test_long_name_without_gnuplot),
+        cmocka_unit_test(test_without_temporary_folder),
+        cmocka_unit_test(test_temporary_folders),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_hung_gnuplot),
+        cmocka_unit_test(test_failing_gnuplot),
         cmocka_unit_test(test_signals),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
