@@ -3,11 +3,11 @@
 #include "options.h"
 
 #include "command.h"
+#include "file_clash.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { NAMES_MAX = 64 };
 
@@ -202,15 +202,6 @@ static int take_option(const verb *v, int count, char **words, int *index, void 
     return set_value(o, group, value, settings);
 }
 
-/* Do two names mean one file? Devices may serve twice. */
-static bool is_same_file(const char *a, const char *b)
-{
-    struct stat one, other;
-    if (stat(a, &one) == 0 && stat(b, &other) == 0)
-        return S_ISREG(one.st_mode) && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
-    return strcmp(a, b) == 0 && strcmp(a, "-") != 0 && strcmp(a, "term") != 0;
-}
-
 /* The option whose output goes to standard output; NULL: none. */
 static const char *stdout_taken_by;
 
@@ -234,42 +225,19 @@ static int take_stdout(const verb *v, const void *settings, const char *name)
                  : -1;
 }
 
-/* The file that an option writes; NULL: none. */
-static const char *output_of(const option_group *group, size_t index, const void *settings)
+/* At most one output goes to standard output. */
+static int check_stdout(const verb *v, const void *settings)
 {
-    const option *o = &group->options[index];
-    const void *at = (const char *)settings + group->offset + o->offset;
-    return o->kind == OPTION_OUTPUT ? *(const char *const *)at : NULL;
-}
-
-/* An output over the operand it was made from, or over another output, would lose that. */
-static int check_outputs(const verb *v, const void *settings, const char **operands)
-{
-    const char *written[NAMES_MAX], *name[NAMES_MAX];
-    size_t count = 0;
+    int code = -1;
     for (size_t g = 0; g < GROUPS_MAX; g++)
-        for (size_t i = 0; i < v->groups[g].count && count < NAMES_MAX; i++) {
-            const char *path = output_of(&v->groups[g], i, settings);
-            if (!path)
-                continue;
-            if (strcmp(path, "-") == 0) {
-                const int code = take_stdout(v, settings, v->groups[g].options[i].name);
-                if (code >= 0)
-                    return code;
-            }
-            for (size_t k = 0; k < v->operands_maximum && operands[k]; k++)
-                if (is_same_file(path, operands[k]))
-                    return command_misused(
-                        "--%s %s would overwrite what is read: give another name",
-                        v->groups[g].options[i].name, path);
-            for (size_t k = 0; k < count; k++)
-                if (is_same_file(path, written[k]))
-                    return command_misused("--%s and --%s both write %s: give another name",
-                                           name[k], v->groups[g].options[i].name, path);
-            name[count] = v->groups[g].options[i].name;
-            written[count++] = path;
+        for (size_t i = 0; i < v->groups[g].count && code < 0; i++) {
+            const option *o = &v->groups[g].options[i];
+            const void *at = (const char *)settings + v->groups[g].offset + o->offset;
+            const char *path = o->kind == OPTION_OUTPUT ? *(const char *const *)at : NULL;
+            if (path && strcmp(path, "-") == 0)
+                code = take_stdout(v, settings, o->name);
         }
-    return -1;
+    return code;
 }
 
 static int check_operands(const verb *v, size_t count)
@@ -306,6 +274,8 @@ int options_parse(const verb *v, int argument_count, char **arguments, void *set
                                    v->operands);
         }
     }
-    const int code = check_operands(v, operand_count);
-    return code < 0 ? check_outputs(v, settings, operands) : code;
+    int code = check_operands(v, operand_count);
+    if (code < 0)
+        code = check_stdout(v, settings);
+    return code < 0 ? file_clash(v, settings, operands) : code;
 }

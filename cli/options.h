@@ -13,7 +13,7 @@ typedef enum option_kind {
     OPTION_FLAG,     /* bool: true when given */
     OPTION_TEXT,     /* const char * */
     OPTION_FILE,     /* const char *: completed as a file name */
-    OPTION_OUTPUT,   /* the same, of a file that is written: no operand, and no other output */
+    OPTION_OUTPUT,   /* the same, of a file that is written: see file_clash.h */
     OPTION_INTEGER,  /* option_integer */
     OPTION_QUANTITY, /* double, SI: a number with a unit of the dimension of `unit` */
     OPTION_FRACTION, /* double in (0, 1): "0.95" or "95%" */
@@ -58,6 +58,7 @@ typedef struct verb {
     const char *summary;  /* one line */
     const char *operands; /* "LOG" */
     size_t operands_minimum, operands_maximum;
+    bool last_is_written; /* the last operand is an output */
     example examples[2];
     const char *description; /* paragraphs separated by blank lines */
     option_group groups[GROUPS_MAX];

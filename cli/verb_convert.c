@@ -48,6 +48,7 @@ const verb convert_verb = {
     .operands = "IN OUT",
     .operands_minimum = 2,
     .operands_maximum = 2,
+    .last_is_written = true,
     .examples =
         {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
           "a log without units becomes one that says everything"},

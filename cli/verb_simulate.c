@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit simulate: model + motion -> log, one run or many. */
+#include "file_clash.h"
 #include "simulate_parts.h"
 
 #include "imukit/model_file.h"
@@ -59,7 +60,7 @@ static const option motion_option_table[] = {
      "a motion script (.yaml), a table of poses, or a log of true rates and forces; default: at "
      "rest as the options below say",
      offsetof(simulate_options, motion)},
-    {"temperature", 't', OPTION_TEXT, "PROFILE", NULL, NULL,
+    {"temperature", 't', OPTION_FILE, "PROFILE", NULL, NULL,
      "a constant such as 25degC, a profile (.yaml), or a table of time and temperature",
      offsetof(simulate_options, temperature)},
     {"substeps", 0, OPTION_INTEGER, "N", NULL, "1-512",
@@ -175,6 +176,22 @@ static int simulate(const simulate_options *o, const imk_model *model)
     return code;
 }
 
+/* A file where the log of a run goes would be lost. */
+static int check_run_folder(const simulate_options *o)
+{
+    const struct {
+        const char *option, *path;
+    } files[] = {{"truth", o->truth}, {"motion", o->motion}, {"temperature", o->temperature}};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        const char *slash = files[i].path ? strrchr(files[i].path, '/') : NULL;
+        const char *name = slash ? slash + 1 : files[i].path;
+        if (name && strncmp(name, "run_", 4) == 0 && file_is_in(files[i].path, o->output))
+            return command_misused("--%s %s has the name of a run in -o %s: give another name",
+                                   files[i].option, files[i].path, o->output);
+    }
+    return -1;
+}
+
 /* Files that would be written one over the other, or into each other. */
 static int check_outputs(const simulate_options *o)
 {
@@ -195,7 +212,7 @@ static int check_outputs(const simulate_options *o)
     if (o->truth && strcmp(o->truth, "-") == 0 && strcmp(output, "-") == 0)
         return command_misused("the log and the truth cannot both go to standard output: add -o "
                                "LOG");
-    return -1;
+    return o->runs.given ? check_run_folder(o) : -1;
 }
 
 static int check(const simulate_options *o)

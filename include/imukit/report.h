@@ -76,7 +76,7 @@ IMK_API bool imk_plot_available(void);
 /** Draw a figure to FILE.svg or FILE.png, or to standard output with "term" (in letters, as large
  *  as the terminal; in colours on a terminal unless NO_COLOR is set). gnuplot runs in a folder of
  *  TMPDIR and sees no name but its own there, so none is a command to it; it has 120 s, or
- *  IMUKIT_GNUPLOT_SECONDS. Without gnuplot FILE.dat and FILE.gp are written instead and
+ *  IMUKIT_GNUPLOT_SECONDS. Without gnuplot FILE.svg.dat and FILE.svg.gp are written instead and
  *  IMK_ERROR_UNSUPPORTED names the package to install.
  *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_FORMAT
  *          (another ending), IMK_ERROR_UNSUPPORTED, IMK_ERROR_OPEN, IMK_ERROR_WRITE */

@@ -46,7 +46,7 @@ static bool ends_with(const char *text, const char *end)
 
 /* ---- without gnuplot ------------------------------------------------------------------------- */
 
-/* The names a script of FILE.svg has to do with: FILE.svg, FILE.dat, FILE.gp. */
+/* The names a script of FILE.svg has to do with: FILE.svg, FILE.svg.dat, FILE.svg.gp. */
 enum { DRAWING, NUMBERS, SCRIPT, NAMES };
 
 /* gnuplot runs what begins with | or < as a command, and takes -, ~ and $ for something else than a
@@ -58,15 +58,14 @@ static const char *harmless_prefix(const char *path)
 
 static bool make_names(const char *path, char *name[NAMES])
 {
-    static const char *const endings[NAMES] = {NULL, ".dat", ".gp"};
-    const size_t stem = strlen(path) - 4, size = stem + 8;
+    static const char *const endings[NAMES] = {"", ".dat", ".gp"};
+    const size_t size = strlen(path) + sizeof "./.dat";
     bool good = true;
     for (int i = 0; i < NAMES; i++) {
         name[i] = malloc(size);
         good = good && name[i];
         if (name[i])
-            snprintf(name[i], size, "%s%.*s%s", harmless_prefix(path), (int)stem, path,
-                     endings[i] ? endings[i] : path + stem);
+            snprintf(name[i], size, "%s%s%s", harmless_prefix(path), path, endings[i]);
     }
     return good;
 }

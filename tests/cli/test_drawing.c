@@ -95,9 +95,9 @@ static void test_without_gnuplot(void **state)
             snprintf(line, sizeof line, "PATH=/nonexistent %s --plot x.svg", drawings[i].line);
             check_says(line, 1,
                        "x.svg: gnuplot is not installed; apt install gnuplot-nox, then: gnuplot "
-                       "'x.gp' (written with its data)\n");
+                       "'x.svg.gp' (written with its data)\n");
             check_absent(line, "x.svg");
-            assert_int_equal(unlink("x.gp") + unlink("x.dat"), 0);
+            assert_int_equal(unlink("x.svg.gp") + unlink("x.svg.dat"), 0);
             snprintf(line, sizeof line, "PATH=/nonexistent %s --plot term", drawings[i].line);
             check_says(line, 1, "gnuplot is not installed; install it: apt install gnuplot-nox\n");
         }
@@ -126,16 +126,16 @@ static void test_long_name_without_gnuplot(void **state)
 {
     (void)state;
     char name[100], line[700];
-    for (int length = 85; length < 99; length++) {
+    for (int length = 81; length < 95; length++) {
         memset(name, 'a', sizeof name);
         name[length] = '\0';
         snprintf(line, sizeof line, "PATH=/nonexistent %s --plot %s.svg", drawings[0].line, name);
         assert_int_equal(run(line), 1);
         check_contains(err,
-                       strstr(err, "then: ") ? ".gp' (written with its data)\n"
+                       strstr(err, "then: ") ? ".svg.gp' (written with its data)\n"
                                              : "in its place, with its data\n",
                        line);
-        snprintf(line, sizeof line, "rm %s.gp %s.dat", name, name);
+        snprintf(line, sizeof line, "rm %s.svg.gp %s.svg.dat", name, name);
         assert_int_equal(run(line), 0);
     }
 }

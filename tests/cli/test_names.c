@@ -137,10 +137,10 @@ static void test_names_of_outputs(void **state)
     assert_int_equal(run("PATH=/nonexistent $I allan \"$N.csv\" --plot \"o$N.svg\""), 1);
     check_contains(err, "give it the script that is written in its place", "no gnuplot");
     if (imk_plot_available()) {
-        assert_int_equal(run("gnuplot \"o$N.gp\""), 0);
+        assert_int_equal(run("gnuplot \"o$N.svg.gp\""), 0);
         assert_int_equal(unlink("o" BAD ".svg"), 0);
     }
-    assert_int_equal(unlink("o" BAD ".gp") + unlink("o" BAD ".dat"), 0);
+    assert_int_equal(unlink("o" BAD ".svg.gp") + unlink("o" BAD ".svg.dat"), 0);
 }
 
 int main(void)

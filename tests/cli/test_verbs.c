@@ -394,9 +394,10 @@ static void test_plots(void **state)
     /* Without gnuplot the script and the data are left, and the message names the package. */
     assert_int_equal(run("PATH=/nonexistent $I allan good.csv --plot c.svg"), 1);
     check_contains(err, "c.svg: gnuplot is not installed; apt install gnuplot-nox", "no gnuplot");
-    assert_int_equal(run("test -s c.dat && test -s c.gp && ! test -e c.svg && gnuplot c.gp && grep "
-                         "-q '</svg>' c.svg"),
-                     0);
+    assert_int_equal(
+        run("test -s c.svg.dat && test -s c.svg.gp && ! test -e c.svg && gnuplot c.svg.gp && grep "
+            "-q '</svg>' c.svg"),
+        0);
     sweep();
 }
 

@@ -225,14 +225,14 @@ static void test_without_gnuplot(void **state)
     assert_non_null(strstr(error.expected, "gnuplot-nox"));
     assert_non_null(strstr(svg_error.expected, "gnuplot-nox"));
     assert_false(exists(path_in_directory("b.svg")));
-    char *data = read_text(path_in_directory("b.dat"));
+    char *data = read_text(path_in_directory("b.svg.dat"));
     assert_non_null(strstr(data, "\n1 1 0.9 1.1\n"));
     free(data);
-    char *script = read_text(path_in_directory("b.gp"));
-    assert_non_null(strstr(script, "b.dat' index 0"));
+    char *script = read_text(path_in_directory("b.svg.gp"));
+    assert_non_null(strstr(script, "b.svg.dat' index 0"));
     free(script);
-    unlink(path_in_directory("b.dat"));
-    unlink(path_in_directory("b.gp"));
+    unlink(path_in_directory("b.svg.dat"));
+    unlink(path_in_directory("b.svg.gp"));
 }
 
 /* Without a temporary folder nothing is drawn, and nothing is freed that was not made. */
