@@ -3,6 +3,7 @@
  * means of its columns is exact, whatever the temperature does within a block; nearly a hundred
  * blocks keep what a polynomial of order 5 and a loop can follow, and are few enough that the
  * covariance of all of them is handled as a whole. */
+#include "calibrate/median_internal.h"
 #include "calibrate/thermal_internal.h"
 
 #include "imukit/samples.h"
@@ -186,17 +187,27 @@ static void scale_columns(imki_thermal_blocks *blocks)
     }
 }
 
-/* The first reading of each axis, as an origin. */
+/* The median of some readings of each axis, as an origin: one that is absurdly large, taken for it,
+ * would leave no digits to the others. */
 static void set_origins(const imk_test_record *record, const imk_model *model,
                         imki_thermal_blocks *blocks)
 {
-    size_t k = 0;
-    while (!imki_thermal_usable(record, model, blocks, k))
-        k++;
+    enum { SOME = 15 };
+    double reading[IMKI_THERMAL_AXES][SOME];
+    size_t count = 0, usable = 0;
+    for (size_t k = 0; k < record->count && count < SOME; k++) {
+        if (!imki_thermal_usable(record, model, blocks, k) ||
+            usable++ < count * (blocks->samples / SOME))
+            continue;
+        for (int a = 0; a < IMKI_THERMAL_AXES; a++)
+            if (blocks->used[a])
+                reading[a][count] =
+                    imki_thermal_reading(record, model, a / IMK_AXES_MAX, a % IMK_AXES_MAX, k);
+        count++;
+    }
     for (int a = 0; a < IMKI_THERMAL_AXES; a++)
         if (blocks->used[a])
-            blocks->mean[a] =
-                imki_thermal_reading(record, model, a / IMK_AXES_MAX, a % IMK_AXES_MAX, k);
+            blocks->mean[a] = imki_median(reading[a], count);
 }
 
 static void sum_pieces(const imk_test_record *record, const imk_model *model,
@@ -224,10 +235,6 @@ static void sum_pieces(const imk_test_record *record, const imk_model *model,
         for (size_t i = 0; i < blocks->count; i++)
             sum += blocks->size[i] * blocks->reading[a][i];
         blocks->scatter[a] = sqrt(fmax(0.0, (square[a] - sum * sum / n) / (n - 1.0)));
-        /* Readings are kept relative to their mean. */
-        for (size_t i = 0; i < blocks->count; i++)
-            blocks->reading[a][i] -= sum / n;
-        blocks->mean[a] += sum / n;
     }
 }
 
@@ -242,6 +249,19 @@ static void merge_mean(const double *size, size_t first, size_t b, double *value
         n += size[p];
     }
     value[b] = sum / n;
+}
+
+/* Keep the readings of an axis relative to their mean, now that no disturbed one is in it. */
+static void centre(imki_thermal_blocks *blocks, int axis)
+{
+    double sum = 0.0, n = 0.0;
+    for (size_t b = 0; b < blocks->count; b++) {
+        sum += blocks->size[b] * blocks->reading[axis][b];
+        n += blocks->size[b];
+    }
+    for (size_t b = 0; b < blocks->count; b++)
+        blocks->reading[axis][b] -= sum / n;
+    blocks->mean[axis] += sum / n;
 }
 
 void imki_thermal_merge(imki_thermal_blocks *blocks)
@@ -268,6 +288,9 @@ void imki_thermal_merge(imki_thermal_blocks *blocks)
     }
     blocks->per_block = (double)blocks->samples / (double)blocks->count;
     scale_columns(blocks);
+    for (int a = 0; a < IMKI_THERMAL_AXES; a++)
+        if (blocks->used[a])
+            centre(blocks, a);
 }
 
 static imk_status too_short(imk_error *error, const char *field, double value, double limit,

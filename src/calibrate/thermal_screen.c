@@ -11,11 +11,11 @@
 
 enum { N = IMKI_THERMAL_COLUMNS, ROUNDS = 8 };
 
-/* Residuals of one axis about the fit of all columns to what is not disturbed; where two columns
- * are one, a ten-millionth of the diagonal keeps them apart, which is far below what is looked for.
- */
+/* The fit of all columns to what is not disturbed, and residuals of one axis about it; where two
+ * columns are one, a ten-millionth of the diagonal keeps them apart, which is far below what is
+ * looked for. */
 static void residuals(const imki_thermal_blocks *blocks, int axis, const bool *disturbed,
-                      double *residual)
+                      double *fitted, double *residual)
 {
     const double ridge = 1e-7;
     double a[N * N], b[N];
@@ -36,9 +36,10 @@ static void residuals(const imki_thermal_blocks *blocks, int axis, const bool *d
     if (fits)
         imk_cholesky_solve(N, a, b);
     for (size_t p = 0; p < blocks->count; p++) {
-        residual[p] = blocks->reading[axis][p];
+        fitted[p] = 0.0;
         for (int i = 0; fits && i < N; i++)
-            residual[p] -= b[i] * blocks->column[i][p];
+            fitted[p] += b[i] * blocks->column[i][p];
+        residual[p] = blocks->reading[axis][p] - fitted[p];
     }
 }
 
@@ -87,11 +88,11 @@ static void screen_axis(imki_thermal_blocks *blocks, int axis)
 {
     const size_t n = blocks->count;
     bool *disturbed = blocks->disturbed[axis], now[IMKI_THERMAL_PIECES];
-    double residual[IMKI_THERMAL_PIECES], level;
+    double fitted[IMKI_THERMAL_PIECES], residual[IMKI_THERMAL_PIECES], level;
     size_t refused = 0;
     bool changed = true;
     for (int round = 0; round < ROUNDS && changed; round++) {
-        residuals(blocks, axis, disturbed, residual);
+        residuals(blocks, axis, disturbed, fitted, residual);
         const double limit = limit_of(n, residual);
         changed = false;
         for (size_t p = 0; p < n; p++) {
@@ -105,7 +106,7 @@ static void screen_axis(imki_thermal_blocks *blocks, int axis)
             continue;
         stands_out(n, residual, disturbed, p, &level);
         if (!isnan(level))
-            blocks->reading[axis][p] += level - residual[p];
+            blocks->reading[axis][p] = fitted[p] + level;
         refused++;
     }
     blocks->refused[axis] = (double)refused / (double)n;

@@ -284,6 +284,39 @@ static void knocks_are_left_out(void **state)
     free(b);
 }
 
+/* A sample as large as no sensor reads, even the first, costs the piece it is in and no digits of
+ * the others. */
+static void an_absurd_sample_is_left_out(void **state)
+{
+    (void)state;
+    static const double absurd[] = {1e12, -1e20, 1e59};
+    const imk_thermal_settings settings = imk_thermal_default();
+    thermal_bench *b = open_bench();
+    assert_true(thermal_run(b, 7, false));
+    const size_t rows[] = {0, b->record.count / 2, b->record.count - 1};
+    CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, b->workspace,
+                                 imk_thermal_workspace_size(), &b->findings, &b->error));
+    const imk_thermal_axis clean = b->findings.axis[0][0];
+    for (size_t i = 0; i < sizeof absurd / sizeof absurd[0]; i++)
+        for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+            const double kept = b->value[0][rows[k]];
+            b->value[0][rows[k]] = absurd[i];
+            CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, b->workspace,
+                                         imk_thermal_workspace_size(), &b->findings, &b->error));
+            b->value[0][rows[k]] = kept;
+            const imk_thermal_axis *x = &b->findings.axis[0][0];
+            assert_int_equal(x->order, clean.order);
+            CHECK_BELOW(0.0, x->refused);
+            CHECK_BELOW(x->refused, 0.01);
+            CHECK_CLOSE(x->constant.value, clean.constant.value, 0.5 * clean.constant.sigma);
+            CHECK_CLOSE(x->constant.sigma, clean.constant.sigma, 0.1 * clean.constant.sigma);
+            CHECK_CLOSE(x->coefficient[0].value, clean.coefficient[0].value,
+                        0.5 * clean.coefficient[0].sigma);
+        }
+    thermal_close(b);
+    free(b);
+}
+
 /* The loop is there in the table of gaps: at a temperature in the middle of the range both branches
  * are developed, and the gap is the width; 5 sigma. What compensation leaves on that axis is half
  * the width, rms over a developed loop. */
@@ -551,6 +584,7 @@ int main(void)
         cmocka_unit_test(findings_go_into_a_model),
         cmocka_unit_test(intervals_hold_the_truth),
         cmocka_unit_test(knocks_are_left_out),
+        cmocka_unit_test(an_absurd_sample_is_left_out),
         cmocka_unit_test(the_gap_is_reported),
         cmocka_unit_test(the_procedure_agrees_with_the_analysis),
         cmocka_unit_test(poses_tell_bias_from_scale),
