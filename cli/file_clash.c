@@ -95,7 +95,7 @@ typedef struct run_file {
     const char *given;  /* as it stands on the command line */
     char *name;         /* the same, or a file that comes with it */
     char *place;        /* NULL: not to be compared */
-    bool written;
+    option_kind kind;   /* OPTION_OUTPUT: written */
 } run_file;
 
 typedef struct run_files {
@@ -111,7 +111,7 @@ static bool ends_with(const char *text, const char *end)
 }
 
 static void add_name(run_files *files, const char *taker, const char *given, const char *ending,
-                     bool written)
+                     option_kind kind)
 {
     if (files->count == files->capacity) {
         const size_t capacity = 2 * files->capacity + 16;
@@ -130,20 +130,20 @@ static void add_name(run_files *files, const char *taker, const char *given, con
         return;
     }
     snprintf(name, size, "%s%s", given, ending);
-    files->file[files->count++] = (run_file){taker, given, name, place_of(name), written};
+    files->file[files->count++] = (run_file){taker, given, name, place_of(name), kind};
 }
 
 /* A file, and those that are read or written with it. */
-static void add(run_files *files, const char *taker, const char *given, bool written)
+static void add(run_files *files, const char *taker, const char *given, option_kind kind)
 {
     if (!given || !*given || strcmp(given, "-") == 0 || strcmp(given, "term") == 0)
         return;
-    add_name(files, taker, given, "", written);
+    add_name(files, taker, given, "", kind);
     if (ends_with(given, ".npy"))
-        add_name(files, taker, given, ".columns", written);
-    if (written && (ends_with(given, ".svg") || ends_with(given, ".png"))) {
-        add_name(files, taker, given, ".gp", written);
-        add_name(files, taker, given, ".dat", written);
+        add_name(files, taker, given, ".columns", kind);
+    if (kind == OPTION_OUTPUT && (ends_with(given, ".svg") || ends_with(given, ".png"))) {
+        add_name(files, taker, given, ".gp", kind);
+        add_name(files, taker, given, ".dat", kind);
     }
 }
 
@@ -154,13 +154,14 @@ static void add_all(run_files *files, const verb *v, const void *settings,
     while (count < v->operands_maximum && operands[count])
         count++;
     for (size_t i = 0; i < count; i++)
-        add(files, NULL, operands[i], v->last_is_written && i + 1 == count);
+        add(files, NULL, operands[i],
+            v->last_is_written && i + 1 == count ? OPTION_OUTPUT : OPTION_FILE);
     for (size_t g = 0; g < GROUPS_MAX; g++)
         for (size_t i = 0; i < v->groups[g].count; i++) {
             const option *o = &v->groups[g].options[i];
             const void *at = (const char *)settings + v->groups[g].offset + o->offset;
-            if (o->kind == OPTION_FILE || o->kind == OPTION_OUTPUT)
-                add(files, o->name, *(const char *const *)at, o->kind == OPTION_OUTPUT);
+            if (o->kind == OPTION_FILE || o->kind == OPTION_INTO || o->kind == OPTION_OUTPUT)
+                add(files, o->name, *(const char *const *)at, o->kind);
         }
 }
 
@@ -173,11 +174,17 @@ static bool is_same(const run_file *a, const run_file *b)
     return a->place && b->place && strcmp(a->place, b->place) == 0;
 }
 
+/* A model that results are put into may be the one that is written. */
+static bool may_replace(const run_file *written, const run_file *read)
+{
+    return read->kind == OPTION_INTO && written->option && strcmp(written->option, "output") == 0;
+}
+
 static int tell(const run_file *written, const run_file *other)
 {
     const char *dashes = written->option ? "--" : "";
     const char *name = written->option ? written->option : "";
-    if (other->written)
+    if (other->kind == OPTION_OUTPUT)
         return command_misused("--%s and --%s both write %s: give another name", name,
                                other->option, written->name);
     if (strcmp(written->name, written->given) != 0)
@@ -193,10 +200,11 @@ static int find_clash(const run_files *files)
     for (size_t i = 0; i < files->count; i++)
         for (size_t k = 0; k < files->count; k++) {
             const run_file *one = &files->file[i], *other = &files->file[k];
-            const bool to_compare =
-                one->written && one->given != other->given && (!other->written || i > k);
+            const bool both = other->kind == OPTION_OUTPUT;
+            const bool to_compare = one->kind == OPTION_OUTPUT && one->given != other->given &&
+                                    (!both || i > k) && !may_replace(one, other);
             if (to_compare && is_same(other, one))
-                return tell(other->written ? other : one, other->written ? one : other);
+                return tell(both ? other : one, both ? one : other);
         }
     return -1;
 }

@@ -154,6 +154,7 @@ static int set_value(const option *o, const option_group *group, const char *tex
         return -1;
     case OPTION_TEXT:
     case OPTION_FILE:
+    case OPTION_INTO:
     case OPTION_OUTPUT:
         if (!*text)
             return command_misused("--%s: the value is empty", o->name);

@@ -13,6 +13,7 @@ typedef enum option_kind {
     OPTION_FLAG,     /* bool: true when given */
     OPTION_TEXT,     /* const char * */
     OPTION_FILE,     /* const char *: completed as a file name */
+    OPTION_INTO,     /* the same, of a file that --output adds to and may replace */
     OPTION_OUTPUT,   /* the same, of a file that is written: see file_clash.h */
     OPTION_INTEGER,  /* option_integer */
     OPTION_QUANTITY, /* double, SI: a number with a unit of the dimension of `unit` */

@@ -13,7 +13,7 @@ static const option result_options[] = {
      offsetof(calibrate_options, procedure)},
     {"output", 'o', OPTION_OUTPUT, "MODEL", NULL, NULL, "write the model here (.yaml or .json)",
      offsetof(calibrate_options, output)},
-    {"into", 0, OPTION_FILE, "MODEL", NULL, NULL,
+    {"into", 0, OPTION_INTO, "MODEL", NULL, NULL,
      "start from this model and replace only what is estimated; the changes are printed",
      offsetof(calibrate_options, into)},
     {"model", 'm', OPTION_FILE, "MODEL", NULL, NULL,

@@ -20,7 +20,7 @@ static const option identify_option_table[] = {
      offsetof(identify_options, twin)},
     {"seed", 0, OPTION_INTEGER, "N", NULL, NULL, "of the twin; default 1",
      offsetof(identify_options, seed)},
-    {"into", 0, OPTION_FILE, "MODEL", NULL, NULL,
+    {"into", 0, OPTION_INTO, "MODEL", NULL, NULL,
      "start from this model and replace only what is identified: noise and output filter; the "
      "changes are printed",
      offsetof(identify_options, into)},

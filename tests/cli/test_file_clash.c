@@ -132,6 +132,7 @@ static void test_no_clash(void **state)
     (void)state;
     assert_int_equal(run("$I allan six.csv -o /dev/null --report /dev/null"), 0);
     assert_int_equal(run("$I allan - -o - <six.csv"), 0);
+    assert_int_equal(run("$I identify six.csv --into unit.yaml -o ./unit.yaml"), 0);
     assert_int_equal(run("$I convert six.csv six2.csv && cmp six.csv six2.csv && rm six2.csv"), 0);
     assert_int_equal(run("$I convert six.npy six2.npy && rm six2.npy six2.npy.columns"), 0);
     assert_int_equal(run("$I simulate AHRS --rate 10Hz -d 10s -o x.csv --truth runs/x.csv && rm "
