@@ -67,20 +67,6 @@ static int unit_missing(const bench *b, const bench_log *log, const imk_error *e
         gyro ? "gyro" : "accel", gyro ? "4778 count/(rad/s)" : "415 count/(m/s^2)");
 }
 
-/* Share of the rows in which a sensor has no number. */
-static double missing_share(const imk_test_record *record)
-{
-    size_t rows = 0;
-    for (size_t row = 0; row < record->count; row++) {
-        bool missing = false;
-        for (int sensor = 0; sensor < 2; sensor++)
-            for (int axis = 0; axis < record->axis_count[sensor]; axis++)
-                missing = missing || !isfinite(record->reading[sensor][axis][row]);
-        rows += missing;
-    }
-    return record->count > 0 ? (double)rows / (double)record->count : 0;
-}
-
 /* Columns without a single number, or rows. */
 static int not_finite(const bench_log *log, const imk_error *error)
 {
@@ -96,13 +82,14 @@ static int not_finite(const bench_log *log, const imk_error *error)
                                       log->path, names[sensor],
                                       axis < 3 ? "xyz"[axis] : '0' + axis);
         }
-    const double missing = missing_share(&log->record);
+    size_t first;
+    const size_t missing = bench_rows_missing(&log->record, &first);
     if (missing > 0)
         return command_failed("%s: %.3g %% of its rows have an empty cell, or one that is no "
                               "number, in a gyro or accelerometer column, and no stretch between "
                               "them is long enough: log all sensors at one rate, or leave a sensor "
                               "out by --columns (- skips a column)",
-                              log->path, 100 * missing);
+                              log->path, 100 * (double)missing / (double)log->record.count);
     return command_error(error, log->path);
 }
 

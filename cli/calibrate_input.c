@@ -34,6 +34,36 @@ static void drop_rows(bench_log *b, int time)
                      b->path, b->dropped);
 }
 
+static bool is_missing(const imk_test_record *record, size_t row)
+{
+    bool missing = record->temperature && !isfinite(record->temperature[row]);
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int axis = 0; axis < record->axis_count[sensor]; axis++)
+            missing = missing || !isfinite(record->reading[sensor][axis][row]);
+    return missing;
+}
+
+size_t bench_rows_missing(const imk_test_record *record, size_t *first)
+{
+    size_t rows = 0;
+    for (size_t row = 0; row < record->count; row++)
+        if (is_missing(record, row) && rows++ == 0)
+            *first = row;
+    return rows;
+}
+
+static void tell_missing(const bench_log *log)
+{
+    size_t first;
+    const size_t rows = bench_rows_missing(&log->record, &first);
+    if (rows > 0)
+        command_warn("not_finite",
+                     "%s: in %zu of %zu rows a reading or the temperature is no finite number, or "
+                     "beyond 1e60, first in row %zu: such rows are left out, or the hold or step "
+                     "that they interrupt",
+                     log->path, rows, log->record.count, first + 1);
+}
+
 /* ---- columns --------------------------------------------------------------------------------- */
 
 static bool in_counts(const imk_log_column *column)
@@ -145,6 +175,8 @@ static int fill_record(const bench *b, bench_log *log)
                               log->path);
     if (code < 0)
         code = take_sections(b, log);
+    if (code < 0)
+        tell_missing(log);
     return code;
 }
 

@@ -97,6 +97,8 @@ typedef struct bench {
 /* calibrate_input.c: a log with its columns as a record. */
 int bench_load(bench *b, bench_log *log);
 void bench_log_free(bench_log *log);
+/* Rows with a reading or a temperature that is no number. @param first  set when there are some */
+size_t bench_rows_missing(const imk_test_record *record, size_t *first);
 /* calibrate_reference.c: what the unit was exposed to, from columns or from --motion. */
 int bench_reference(bench *b, bench_log *log);
 

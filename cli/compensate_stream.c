@@ -164,8 +164,12 @@ static size_t correct_rows(stream *s, size_t rows)
     size_t done = 0, from = s->waiting;
     fill_temperature(s, rows);
     for (size_t r = s->waiting; time && r < rows; r++) {
-        if (isnan(time[r]))
+        if (!isfinite(time[r])) {
+            if (c->counts.times_missing++ == 0)
+                c->counts.first_time_missing = c->counts.rows + (r - s->waiting) + 1;
+            s->last_time += c->compensator.dt;
             continue;
+        }
         if (isnan(s->first_time))
             s->first_time = time[r];
         if (is_break(s, time[r])) {

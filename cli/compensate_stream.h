@@ -8,6 +8,7 @@
 /* What was met on the way; rows count from 1. */
 typedef struct compensate_counts {
     uint64_t rows, any_flag, stretches, first_gap, temperatures_held;
+    uint64_t times_missing, first_time_missing; /* whose time is no number */
     uint64_t flagged[IMK_FLAG_COUNT], first_flagged[IMK_FLAG_COUNT];
 } compensate_counts;
 

@@ -121,6 +121,13 @@ static void warn_of_flags(const compensate_counts *counts)
         command_warn("temperature_held", "no temperature, the last one used: %llu of %llu samples",
                      (unsigned long long)counts->temperatures_held,
                      (unsigned long long)counts->rows);
+    if (counts->times_missing > 0)
+        command_warn(
+            "time_missing",
+            "the time is no finite number: %llu of %llu samples (first: row %llu); each is "
+            "taken for the one after the sample before it",
+            (unsigned long long)counts->times_missing, (unsigned long long)counts->rows,
+            (unsigned long long)counts->first_time_missing);
     if (counts->stretches > 1)
         command_warn("gaps",
                      "gaps and steps back in time: %llu (first: row %llu); each begins a "

@@ -113,6 +113,28 @@ static void other_programmes_are_noticed(void **state)
     sweep();
 }
 
+/* A row that is left out is told, and only such a row. */
+static void missing_readings_are_told(void **state)
+{
+    (void)state;
+    write_turns();
+    static const char told[] = "a reading or the temperature is no finite number, or beyond 1e60";
+    static const char *const values[] = {"nan", "inf", "1e308", ""};
+    char line[300];
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        snprintf(line, sizeof line,
+                 "awk -F, -v OFS=, 'NR==3000 {$5=\"%s\"} 1' turns.csv >gap.csv; "
+                 "$I calibrate gap.csv " POSES " --strict",
+                 values[i]);
+        run(line);
+        check_contains(err, "gap.csv: in 1 of 9500 rows a reading", line);
+        check_contains(err, "first in row 2999", line);
+    }
+    run("$I calibrate turns.csv " POSES);
+    assert_null(strstr(err, told));
+    sweep();
+}
+
 /* What changes in a model is a screen, not its correlations. */
 static void changes_are_few_lines(void **state)
 {
@@ -137,6 +159,7 @@ int main(void)
         cmocka_unit_test(logs_too_short_for_the_options_are_named),
         cmocka_unit_test(rows_without_numbers_are_counted),
         cmocka_unit_test(other_programmes_are_noticed),
+        cmocka_unit_test(missing_readings_are_told),
         cmocka_unit_test(changes_are_few_lines),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

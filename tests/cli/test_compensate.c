@@ -276,11 +276,34 @@ static void test_gravity_free(void **state)
     sweep();
 }
 
+/* Rows without a time are told; the others are where their times say. */
+static void test_missing_times(void **state)
+{
+    (void)state;
+    put("unit.yaml", "imukit: 1\ngyro:\n  bias: {fixed: 1 2 3 deg/s}\n");
+    static const char *const values[] = {"nan", "inf", ""};
+    char line[300];
+    assert_int_equal(run("$I simulate unit.yaml --rate 100Hz -d 10s -o good.csv"), 0);
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        snprintf(line, sizeof line,
+                 "awk -F, -v OFS=, 'NR==9 || NR==12 {$1=\"%s\"} 1' good.csv >log.csv; "
+                 "$I compensate log.csv unit.yaml -o out.csv",
+                 values[i]);
+        assert_int_equal(run(line), 0);
+        check_contains(err, "the time is no finite number: 2 of 1000 samples (first: row 8)", line);
+        assert_null(strstr(err, "gaps"));
+    }
+    assert_int_equal(run("$I compensate good.csv unit.yaml -o out.csv"), 0);
+    assert_null(strstr(err, "the time"));
+    sweep();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_column), cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_loop),         cmocka_unit_test(test_moving_loop),
-        cmocka_unit_test(test_to_point),     cmocka_unit_test(test_gravity_free)};
+        cmocka_unit_test(test_to_point),     cmocka_unit_test(test_gravity_free),
+        cmocka_unit_test(test_missing_times)};
     return cmocka_run_group_tests_name("compensate command", tests, set_up, tear_down);
 }
