@@ -62,6 +62,18 @@ static int apply_counts(const calibrate_options *o, int sensor, imk_triad *triad
     return code;
 }
 
+/* Counts per unit say nothing about readings that have a unit. */
+static int check_counts(const bench *b, int sensor, bool counts)
+{
+    static const char *const names[2] = {"gyro", "accel"};
+    const calibrate_options *o = b->options;
+    if (counts || (!o->sensitivity[sensor] && !o->zero_offset[sensor]))
+        return -1;
+    return command_misused("--%s-%s is for readings in counts, and those of %s have a unit",
+                           names[sensor], o->sensitivity[sensor] ? "sensitivity" : "zero",
+                           b->log[0].path);
+}
+
 /* Axes of the logs; a model that is given must have them. */
 static int match_axes(bench *b, imk_model *model, bool given)
 {
@@ -83,6 +95,9 @@ static int match_axes(bench *b, imk_model *model, bool given)
             axes = here > 0 ? here : axes;
             counts = here > 0 ? record->counts[sensor] : counts;
         }
+        const int code = axes > 0 ? check_counts(b, sensor, counts) : -1;
+        if (code >= 0)
+            return code;
         if (given && axes > 0 && (!triad[sensor]->present || triad[sensor]->axis_count != axes))
             return command_failed("%s has %d %s axes, the log has %d: they cannot be matched",
                                   b->options->into ? b->options->into : b->options->model,

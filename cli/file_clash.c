@@ -209,11 +209,26 @@ static int find_clash(const run_files *files)
     return -1;
 }
 
+static int find_repeated(const run_files *files)
+{
+    for (size_t i = 0; i < files->count; i++)
+        for (size_t k = 0; k < i; k++) {
+            const run_file *one = &files->file[i], *other = &files->file[k];
+            if (!one->option && !other->option && one->given != other->given && is_same(one, other))
+                return command_misused("%s is given twice: its readings would count as those of "
+                                       "two logs",
+                                       one->given);
+        }
+    return -1;
+}
+
 int file_clash(const verb *v, const void *settings, const char *const *operands)
 {
     run_files files = {0};
     add_all(&files, v, settings, operands);
-    const int code = files.exhausted ? command_failed("memory is exhausted") : find_clash(&files);
+    int code = files.exhausted ? command_failed("memory is exhausted") : find_clash(&files);
+    if (code < 0 && v->all_are_evidence)
+        code = find_repeated(&files);
     for (size_t i = 0; i < files.count; i++) {
         free(files.file[i].name);
         free(files.file[i].place);

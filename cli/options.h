@@ -59,7 +59,8 @@ typedef struct verb {
     const char *summary;  /* one line */
     const char *operands; /* "LOG" */
     size_t operands_minimum, operands_maximum;
-    bool last_is_written; /* the last operand is an output */
+    bool last_is_written;  /* the last operand is an output */
+    bool all_are_evidence; /* one operand given twice would count as two */
     example examples[2];
     const char *description; /* paragraphs separated by blank lines */
     option_group groups[GROUPS_MAX];

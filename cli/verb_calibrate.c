@@ -145,6 +145,7 @@ const verb calibrate_verb = {
     .operands = "LOG...",
     .operands_minimum = 1,
     .operands_maximum = IMK_TEST_RECORDS_MAX,
+    .all_are_evidence = true,
     .examples = {{"imukit calibrate poses.csv --procedure multiposition --position \"48.1 deg, "
                   "11.6 deg, 520 m\" -o model.yaml",
                   "a unit turned by hand, resting some seconds in each of 20 or more attitudes"},

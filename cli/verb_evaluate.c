@@ -85,6 +85,7 @@ const verb evaluate_verb = {
     .operands = "FILE...",
     .operands_minimum = 0,
     .operands_maximum = IMK_EVALUATION_RUNS_MAX,
+    .all_are_evidence = true,
     .examples = {{"imukit evaluate table.csv --limit \"linearity 0.05 %\" --report report.html",
                   "a table with the columns reference [deg/s] and reading [deg/s], in the order "
                   "taken"},

@@ -98,6 +98,7 @@ const verb identify_verb = {
     .operands = "LOG... | --plan MODEL",
     .operands_minimum = 0,
     .operands_maximum = IMK_JOINT_RECORDS_MAX,
+    .all_are_evidence = true,
     .examples = {{"imukit identify static.csv -o model.yaml --report report.html",
                   "noise terms of every gyro and accelerometer axis, and a page to look at"},
                  {"imukit identify raw.csv --rate 200Hz --columns gyro_x,gyro_y,gyro_z "

@@ -135,6 +135,20 @@ static void missing_readings_are_told(void **state)
     sweep();
 }
 
+/* Counts per unit are refused where the log has a unit; what was taken would be in the model. */
+static void counts_are_for_logs_in_counts(void **state)
+{
+    (void)state;
+    write_turns();
+    check_says("$I calibrate turns.csv " POSES " --accel-sensitivity '415 count/(m/s^2)'", 2,
+               "--accel-sensitivity is for readings in counts, and those of turns.csv have a unit");
+    check_says("$I calibrate turns.csv " POSES
+               " --gyro-sensitivity '4778 count/(rad/s)' --gyro-zero "
+               "'512 count'",
+               2, "--gyro-sensitivity is for readings in counts");
+    sweep();
+}
+
 /* What changes in a model is a screen, not its correlations. */
 static void changes_are_few_lines(void **state)
 {
@@ -160,6 +174,7 @@ int main(void)
         cmocka_unit_test(rows_without_numbers_are_counted),
         cmocka_unit_test(other_programmes_are_noticed),
         cmocka_unit_test(missing_readings_are_told),
+        cmocka_unit_test(counts_are_for_logs_in_counts),
         cmocka_unit_test(changes_are_few_lines),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

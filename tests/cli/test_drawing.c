@@ -15,8 +15,8 @@ static const struct {
     {allan, "pr"},
     {"$I spectrum one.csv", "pr"},
     {"$I identify one.csv", "pr"},
-    {"$I identify one.csv one.csv --runs", "pr"},
-    {"$I identify one.csv one.csv --devices", "r"},
+    {"$I identify one.csv two.csv --runs", "pr"},
+    {"$I identify one.csv two.csv --devices", "r"},
     {"$I calibrate faces.csv -p sixposition -g 9.81m/s^2", "pr"},
     {"$I evaluate table.csv", "pr"},
     {"$I navigate faces.csv -p '48 deg, 11 deg, 500 m' --attitude '0 0 0 deg'", "pr"},
@@ -56,13 +56,13 @@ static int make_inputs(void **state)
     if (fclose(one) != 0 || fclose(faces) != 0)
         return -1;
     return mkdir("bin", 0700) == 0 && mkdir("tmp", 0700) == 0
-               ? run("mv gnuplot.sh bin/gnuplot && chmod +x bin/gnuplot")
+               ? run("cp one.csv two.csv && mv gnuplot.sh bin/gnuplot && chmod +x bin/gnuplot")
                : -1;
 }
 
 static int remove_inputs(void **state)
 {
-    run("rm -rf bin tmp one.csv faces.csv table.csv");
+    run("rm -rf bin tmp one.csv two.csv faces.csv table.csv");
     return tear_down(state);
 }
 

@@ -126,6 +126,25 @@ static void test_folder_of_runs(void **state)
     assert_int_equal(run(line), 0);
 }
 
+/* What is given twice is not evidence twice. */
+static void test_given_twice(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "identify six.csv six.csv --runs",
+        "identify ./six.csv six.csv --devices",
+        "identify soft.csv turns.csv six.csv --runs",
+        "identify hard.csv six.csv --runs",
+        "calibrate six.csv six.csv -p multiposition",
+        "evaluate six.csv six.csv",
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
+        check_refused(lines[i], "six.csv is given twice: its readings would count as those");
+    assert_int_equal(run("$I grade tactical tactical"), 0);
+    assert_int_equal(run("cp six.csv copy.csv; $I identify six.csv copy.csv --runs; rm copy.csv"),
+                     0);
+}
+
 /* Devices and standard streams may serve twice, and what is only alike is not the same. */
 static void test_no_clash(void **state)
 {
@@ -143,9 +162,8 @@ static void test_no_clash(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_read),
-        cmocka_unit_test(test_two_outputs),
-        cmocka_unit_test(test_folder_of_runs),
+        cmocka_unit_test(test_what_is_read),   cmocka_unit_test(test_two_outputs),
+        cmocka_unit_test(test_folder_of_runs), cmocka_unit_test(test_given_twice),
         cmocka_unit_test(test_no_clash),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);

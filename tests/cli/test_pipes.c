@@ -19,7 +19,7 @@ static const struct {
     {"table.csv", "$I evaluate other.csv @ --json"},
     {"log.csv", "$I evaluate other.csv --static @ --json"},
     {"turns.csv", "$I evaluate @ --motion turns.yaml --json"},
-    {"turns.yaml", "$I evaluate turns.csv turns.csv --motion @ --json"},
+    {"turns.yaml", "$I evaluate turns.csv again.csv --motion @ --json"},
     {"turns.csv", "$I calibrate @ -p rate-table --motion turns.yaml --no-earth -g 9.81m/s^2"},
     {"turns.yaml", "$I calibrate turns.csv -p rate-table --motion @ --no-earth -g 9.81m/s^2"},
     {"unit.yaml", "$I simulate @ --rate 10Hz --duration 10s"},
@@ -64,7 +64,8 @@ static int make_inputs(void **state)
                      "0,0\n-10,-10\n");
     return run("$I simulate tactical --rate 50Hz --duration 12s -o log.csv && "
                "$I simulate tactical --motion turns.yaml --rate 50Hz -o turns.csv && "
-               "cp table.csv other.csv && cut -d, -f1,2 log.csv >second.csv && cp second.csv "
+               "cp table.csv other.csv && cp turns.csv again.csv && cut -d, -f1,2 log.csv "
+               ">second.csv && cp second.csv "
                "one.csv && $I convert log.csv log.npy && rm log.npy.columns && "
                "$I identify log.csv -o unit.yaml >/dev/null && "
                "$I convert unit.yaml kalibr.yaml --to kalibr --rate 100Hz && "
