@@ -32,6 +32,20 @@ static const option *find(const verb *v, const char *name, size_t length, char l
     return NULL;
 }
 
+/* The one name that begins so; NULL: none, or several. */
+static const char *only_name(const char *beginning, size_t count, const char *const *names)
+{
+    const char *only = NULL;
+    for (size_t i = 0; i < count; i++) {
+        if (strncmp(names[i], beginning, strlen(beginning)) != 0)
+            continue;
+        if (only)
+            return NULL;
+        only = names[i];
+    }
+    return only;
+}
+
 static int unknown_option(const verb *v, const char *name, size_t length)
 {
     const char *names[NAMES_MAX];
@@ -41,9 +55,11 @@ static int unknown_option(const verb *v, const char *name, size_t length)
     for (size_t g = 0; g < GROUPS_MAX; g++)
         for (size_t i = 0; i < v->groups[g].count && count < NAMES_MAX; i++)
             names[count++] = v->groups[g].options[i].name;
-    const char *nearest = command_nearest(given, count, names);
-    if (nearest)
-        return command_misused("there is no option --%s; did you mean --%s?", given, nearest);
+    const char *meant = only_name(given, count, names);
+    if (!meant)
+        meant = command_nearest(given, count, names);
+    if (meant)
+        return command_misused("there is no option --%s; did you mean --%s?", given, meant);
     return command_misused("there is no option --%s", given);
 }
 

@@ -64,6 +64,12 @@ static void test_wrong_usage(void **state)
     check_message("$I simulate tactical --durration 1h", 2,
                   "imukit simulate: error: there is no option --durration; did you mean "
                   "--duration?\n" TRY("simulate"));
+    check_message("$I simulate tactical --dur 1h", 2,
+                  "imukit simulate: error: there is no option --dur; did you mean "
+                  "--duration?\n" TRY("simulate"));
+    check_message("$I simulate tactical --ru 2", 2, /* --run and --runs begin so, --run is near */
+                  "imukit simulate: error: there is no option --ru; did you mean "
+                  "--run?\n" TRY("simulate"));
     check_message("$I simulate tactical -Z", 2,
                   "imukit simulate: error: there is no option -Z\n" TRY("simulate"));
     check_message("$I simulate", 2,
