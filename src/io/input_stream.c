@@ -181,6 +181,21 @@ static imk_status next_frame(imki_input *input)
     return IMK_OK;
 }
 
+static imk_status zstd_failed(imki_input *input, size_t result)
+{
+    switch (ZSTD_getErrorCode(result)) {
+    case ZSTD_error_memory_allocation:
+        return no_memory(input);
+    case ZSTD_error_frameParameter_windowTooLarge:
+        return imk_error_set(&input->failure, IMK_ERROR_UNSUPPORTED, input->path,
+                             "the window of the zstd data is larger than 128 MiB",
+                             "compress it again without --long, or unpack it first: zstd -d "
+                             "--long=31 FILE");
+    default:
+        return damaged(input, ZSTD_getErrorName(result));
+    }
+}
+
 static imk_status read_zstd(imki_input *input, unsigned char *target, size_t capacity, size_t *got)
 {
     while (*got == 0) {
@@ -194,9 +209,7 @@ static imk_status read_zstd(imki_input *input, unsigned char *target, size_t cap
         const size_t result = ZSTD_decompressStream(input->zstd, &out, &in);
         input->raw_begin += in.pos;
         if (ZSTD_isError(result))
-            return ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation
-                       ? no_memory(input)
-                       : damaged(input, ZSTD_getErrorName(result));
+            return zstd_failed(input, result);
         input->inside = result != 0;
         input->frame_done += out.pos;
         /* libzstd does not look at this where the last block is empty. */

@@ -327,6 +327,23 @@ static void refusals_name_the_reason(void **state)
         check_refused(path_of("secret.csv"), IMK_ERROR_OPEN, "Permission denied");
 }
 
+/* A frame that needs a window of 2 GiB [RFC8878, 3.1.1.1.2], as of zstd --long=31, is sound. */
+static void large_window(void **state)
+{
+    (void)state;
+    const char *path = path_of("a.zst");
+    save(path, "\x28\xB5\x2F\xFD\x00\xA8\x01\x00\x00", 9);
+    imki_input *input;
+    imk_error error = {0};
+    char byte;
+    size_t got;
+    CHECK_OK(imki_input_open(path, &input, &error));
+    CHECK_STATUS(imki_input_read(input, &byte, 1, &got, &error), IMK_ERROR_UNSUPPORTED);
+    assert_string_equal(error.field, path);
+    assert_string_equal(error.found, "the window of the zstd data is larger than 128 MiB");
+    imki_input_close(input);
+}
+
 /* Text that compresses to about a third, so that the compressed data spans raw buffers. */
 static int make_text(void **state)
 {
@@ -358,6 +375,7 @@ int main(void)
         cmocka_unit_test(damaged_zstd), cmocka_unit_test(short_zstd),
         cmocka_unit_test(old_zstd),     cmocka_unit_test(pipes),
         cmocka_unit_test(memory),       cmocka_unit_test(refusals_name_the_reason),
+        cmocka_unit_test(large_window),
     };
     return cmocka_run_group_tests(tests, make_text, remove_directory);
 }
