@@ -21,6 +21,22 @@ static bool is_text(const char *begin, const char *end)
     return true;
 }
 
+/* Texts of other systems, which other programs convert. @param size  above 0 */
+static imk_status check_encoding(const char *begin, size_t size, imk_error *error)
+{
+    if (size >= 2 && (memcmp(begin, "\xFF\xFE", 2) == 0 || memcmp(begin, "\xFE\xFF", 2) == 0))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the text is UTF-16",
+                             "convert it: iconv -f UTF-16 -t UTF-8 FILE >NEW.csv");
+    if (!is_text(begin, begin + size))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "not a text log",
+                             "CSV (plain, .gz or .zst) or .npy");
+    /* The newline of a last CR may not be seen yet. */
+    if (memchr(begin, '\r', size - 1) && !memchr(begin, '\n', size))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the end of each line is CR alone",
+                             "convert it: tr '\\r' '\\n' <FILE >NEW.csv");
+    return IMK_OK;
+}
+
 static imk_status check_text(imki_log_text *text, imk_error *error)
 {
     imk_status status = imki_log_text_need(text, LOOK, error);
@@ -30,9 +46,9 @@ static imk_status check_text(imki_log_text *text, imk_error *error)
     if (at_hand == 0)
         return imk_error_set(error, IMK_ERROR_EMPTY, "", "the log is empty",
                              "a header and rows of numbers");
-    if (!is_text(text->next, text->next + (at_hand < LOOK ? at_hand : LOOK)))
-        return imk_error_set(error, IMK_ERROR_FORMAT, "", "not a text log",
-                             "CSV (plain, .gz or .zst) or .npy");
+    status = check_encoding(text->next, at_hand < LOOK ? at_hand : LOOK, error);
+    if (status != IMK_OK)
+        return status;
     if (at_hand >= 3 && memcmp(text->next, "\xEF\xBB\xBF", 3) == 0) /* byte-order mark */
         text->next += 3;
     return IMK_OK;

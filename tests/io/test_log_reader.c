@@ -198,10 +198,21 @@ static void binary_junk_is_refused(void **state)
     check_refused(junk, sizeof junk, NULL, IMK_ERROR_FORMAT, 0, "not a text log");
     const char zero[] = "time [s],gyro_x [deg/s]\n0,1\0,2\n";
     check_refused(zero, sizeof zero - 1, NULL, IMK_ERROR_FORMAT, 0, "not a text log");
-    const char wide[] = "\xFF\xFEt\0i\0m\0e\0"; /* UTF-16 */
-    check_refused(wide, sizeof wide - 1, NULL, IMK_ERROR_FORMAT, 0, "not a text log");
     const char npy[] = "\x93NUMPY\x01\x00\xFF\xFF{'descr'";
     check_refused(npy, sizeof npy - 1, NULL, IMK_ERROR_FORMAT, 0, "npy");
+}
+
+/* Texts that other programs make logs of: the message says which. */
+static void other_texts_are_named(void **state)
+{
+    (void)state;
+    const char little[] = "\xFF\xFEt\0i\0m\0e\0", big[] = "\xFE\xFF\0t\0i\0m\0e";
+    check_refused(little, sizeof little - 1, NULL, IMK_ERROR_FORMAT, 0, "iconv -f UTF-16");
+    check_refused(big, sizeof big - 1, NULL, IMK_ERROR_FORMAT, 0, "iconv -f UTF-16");
+    const char old[] = "time [s],gyro_x [deg/s]\r0,1\r1,2\r";
+    check_refused(old, sizeof old - 1, NULL, IMK_ERROR_FORMAT, 0, "tr '\\r' '\\n'");
+    const char header[] = "time [s],gyro_x [deg/s]\r"; /* its newline is missing */
+    check_refused(header, sizeof header - 1, NULL, IMK_ERROR_EMPTY, 0, "no rows");
 }
 
 /* A header, a row and then `size` digits without a newline. */
@@ -822,6 +833,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_texts_are_refused_with_a_remedy),
         cmocka_unit_test(binary_junk_is_refused),
+        cmocka_unit_test(other_texts_are_named),
         cmocka_unit_test(very_long_lines_are_refused),
         cmocka_unit_test(missing_files_and_directories_are_refused),
         cmocka_unit_test(settings_are_checked),
