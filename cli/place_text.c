@@ -18,9 +18,13 @@ int place_parse(const char *text, imk_geodetic *place)
         double sigma;
         size_t count;
         imk_error error;
-        if (imk_quantity_parse(item, item + length, imk_unit_of(unit[i]).dimension, 1, &value[i],
-                               &sigma, &count, NULL, &error) != IMK_OK ||
-            (i < 2) != (item[length] == ','))
+        const bool read = imk_quantity_parse(item, item + length, imk_unit_of(unit[i]).dimension, 1,
+                                             &value[i], &sigma, &count, NULL, &error) == IMK_OK;
+        if (read && i < 2 && !item[length])
+            return command_misused("--position \"%s\": the %s is missing; expected latitude, "
+                                   "longitude, height, such as \"34.25 deg, 108.91 deg, 380 m\"",
+                                   text, name[i + 1]);
+        if (!read || (i < 2) != (item[length] == ','))
             return command_misused("--position \"%s\": the %s cannot be read; expected latitude, "
                                    "longitude, height, such as \"34.25 deg, 108.91 deg, 380 m\"",
                                    text, name[i]);

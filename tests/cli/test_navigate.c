@@ -62,8 +62,8 @@ static void test_refusals(void **state)
                   "imukit navigate: error: the place of the start is missing: add --position "
                   "\"LATITUDE deg, LONGITUDE deg, HEIGHT m\"\n" TRY("navigate"));
     check_message("$I navigate rest.csv --align 10s --position '45 deg, 10 deg'", 2,
-                  "imukit navigate: error: --position \"45 deg, 10 deg\": the longitude cannot be "
-                  "read; expected latitude, longitude, height, such as \"34.25 deg, 108.91 deg, "
+                  "imukit navigate: error: --position \"45 deg, 10 deg\": the height is "
+                  "missing; expected latitude, longitude, height, such as \"34.25 deg, 108.91 deg, "
                   "380 m\"\n" TRY("navigate"));
     check_message("$I navigate rest.csv --align 10s --position '95 deg, 10 deg, 0 m'", 2,
                   "imukit navigate: error: --position \"95 deg, 10 deg, 0 m\": the latitude is "

@@ -183,6 +183,8 @@ static void test_allan_taus(void **state)
         run("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau all -o - | wc -l"),
         0);
     assert_string_equal(out, "501\n");
+    assert_int_equal(run("$I allan x.txt $A --tau 1,nan"), 2);
+    check_contains(err, "\"nan\" is no averaging time", "--tau 1,nan");
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1,2m", 2,
                   "imukit allan: error: --tau 1,2m: \"2m\" is no averaging time; expected octave, "
                   "decade, many, all or a list such as 1,10,100 in seconds\n" TRY("allan"));
