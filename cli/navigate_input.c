@@ -221,6 +221,10 @@ static int prepare(navigation *n)
         return code;
     if (n->options->align > 0) {
         n->first = imk_samples_in(n->options->align, n->dt);
+        if (n->first == 0)
+            return command_failed("%s: no sample falls into --align %.6gs: its rows are %.6g s "
+                                  "apart; align for longer, or correct --rate or the times",
+                                  n->path, n->options->align, n->dt);
         if (n->first + 1 > n->rows)
             return command_failed("%s is %.6g s long: nothing is left after --align %.6gs", n->path,
                                   n->dt * (double)n->rows, n->options->align);
