@@ -102,6 +102,14 @@ int identify_explain(const identification *i, size_t channel, imk_status status,
         return command_failed("%s: column %s is constant in all %zu rows: there is no noise to "
                               "identify; leave it out with --columns, or check the log",
                               i->path, name, i->channels.rows);
+    /* A log read block by block keeps no samples, and is long. */
+    const bool kept = log_channel_data(&i->channels, channel) != NULL;
+    const size_t finite = kept ? log_channel_finite(&i->channels, channel) : i->channels.rows;
+    if (status == IMK_ERROR_TOO_SHORT && finite < i->channels.rows)
+        return command_failed("%s: column %s has %zu finite values in %zu rows: at least 256 are "
+                              "needed to identify noise; leave it out with --columns, or check the "
+                              "log",
+                              i->path, name, finite, i->channels.rows);
     if (status == IMK_ERROR_TOO_SHORT)
         return command_failed("%s: %zu rows are too few to identify noise: at least 256 are "
                               "needed, and minutes to hours are useful",

@@ -127,3 +127,12 @@ double *log_channel_data(const log_channels *channels, size_t channel)
 {
     return channels->log.data[channels->column[channel]];
 }
+
+size_t log_channel_finite(const log_channels *channels, size_t channel)
+{
+    const double *data = log_channel_data(channels, channel);
+    size_t count = 0;
+    for (size_t row = 0; row < channels->rows; row++)
+        count += isfinite(data[row]) != 0;
+    return count;
+}

@@ -49,6 +49,8 @@ void log_forget_faults(imk_log *log);
 
 const imk_log_column *log_channel_column(const log_channels *channels, size_t channel);
 double *log_channel_data(const log_channels *channels, size_t channel);
+/* How many rows of the channel are finite numbers. */
+size_t log_channel_finite(const log_channels *channels, size_t channel);
 
 /* Equal spacing of rows (log_spacing.c, log_grid.c). @return -1 or the exit code, the message
  * printed */

@@ -210,6 +210,10 @@ static int check_constant(const char *path, const log_channels *channels)
         size_t first = 0, i;
         while (first < channels->rows && !isfinite(data[first]))
             first++;
+        if (first == channels->rows)
+            return command_failed("%s: column %s has no finite value in %zu rows; leave it out "
+                                  "with --columns, or check the log",
+                                  path, log_channel_column(channels, c)->name, first);
         i = first;
         while (i < channels->rows && (data[i] == data[first] || !isfinite(data[i])))
             i++;
@@ -236,11 +240,7 @@ static double *running_sums(const allan_options *o, const log_channels *channels
 
 static bool has_missing(const log_channels *channels, size_t channel)
 {
-    const double *data = log_channel_data(channels, channel);
-    size_t i = 0;
-    while (i < channels->rows && isfinite(data[i]))
-        i++;
-    return i < channels->rows;
+    return log_channel_finite(channels, channel) < channels->rows;
 }
 
 static int compute_curve(allan_result *r, size_t channel, size_t k, size_t n, const double *data,

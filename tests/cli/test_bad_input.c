@@ -177,6 +177,25 @@ static void test_no_readings(void **state)
     free(empty);
 }
 
+/* A channel that has too few numbers is named, with how many it has. */
+static void test_few_finite(void **state)
+{
+    (void)state;
+    write_good();
+    assert_int_equal(run("awk -F, 'NR > 100 {$2 = \"nan\"} {print $1 \",\" $2}' good.csv >b.csv"),
+                     0);
+    assert_int_equal(run("$I identify b.csv"), 1);
+    check_contains(
+        err,
+        "b.csv: column gyro_x has 99 finite values in 1000 rows: at least 256 are needed "
+        "to identify noise; leave it out with --columns, or check the log\n",
+        "99 numbers");
+    assert_int_equal(run("sed '2,$s/,.*/,nan/' good.csv >b.csv"), 0);
+    assert_int_equal(run("$I allan b.csv"), 1);
+    check_contains(err, "b.csv: column gyro_x has no finite value in 1000 rows; ", "no number");
+    sweep();
+}
+
 /* A few kilobytes that are rows without end: what loads a log says so before the memory is gone,
  * what passes it on does it in constant memory. The sanitizers need all the address space. */
 static void test_rows_without_end(void **state)
@@ -371,17 +390,12 @@ static void test_unwritable_outputs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bad_logs),
-        cmocka_unit_test(test_refused_logs),
-        cmocka_unit_test(test_gaps_kept),
-        cmocka_unit_test(test_no_readings),
-        cmocka_unit_test(test_rows_without_end),
-        cmocka_unit_test(test_memory_is_limited),
-        cmocka_unit_test(test_grids),
-        cmocka_unit_test(test_next_command),
-        cmocka_unit_test(test_gap_policies),
-        cmocka_unit_test(test_bridging_is_linear),
-        cmocka_unit_test(test_unwritable_outputs),
+        cmocka_unit_test(test_bad_logs),           cmocka_unit_test(test_refused_logs),
+        cmocka_unit_test(test_gaps_kept),          cmocka_unit_test(test_no_readings),
+        cmocka_unit_test(test_few_finite),         cmocka_unit_test(test_rows_without_end),
+        cmocka_unit_test(test_memory_is_limited),  cmocka_unit_test(test_grids),
+        cmocka_unit_test(test_next_command),       cmocka_unit_test(test_gap_policies),
+        cmocka_unit_test(test_bridging_is_linear), cmocka_unit_test(test_unwritable_outputs),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
