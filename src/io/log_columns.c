@@ -134,20 +134,25 @@ static const char *unit_setting(const kind *k, const imk_log_settings *settings)
     return NULL;
 }
 
-static imk_status check_dimension(const kind *k, const imk_log_column *column, imk_error *error)
+static bool has_dimension(const kind *k, const imk_unit *unit)
 {
+    return imk_dimension_equal(unit->dimension, imk_unit_of(k->unit).dimension) ||
+           (k->quantity != IMK_QUANTITY_TIME &&
+            imk_dimension_equal(unit->dimension, imk_unit_of("count").dimension));
+}
+
+static imk_status check_dimension(const kind *k, const imk_unit *unit, const char *field,
+                                  imk_error *error)
+{
+    if (has_dimension(k, unit))
+        return IMK_OK;
     const imk_dimension due = imk_unit_of(k->unit).dimension;
-    if (imk_dimension_equal(column->unit.dimension, due))
-        return IMK_OK;
-    if (k->quantity != IMK_QUANTITY_TIME &&
-        imk_dimension_equal(column->unit.dimension, imk_unit_of("count").dimension))
-        return IMK_OK;
     char found[96], expected[160];
-    snprintf(found, sizeof found, "\"%.47s\" is %.40s", column->unit.text,
-             imk_dimension_name(column->unit.dimension));
+    snprintf(found, sizeof found, "\"%.47s\" is %.40s", unit->text,
+             imk_dimension_name(unit->dimension));
     snprintf(expected, sizeof expected, "%.60s, such as %.80s", imk_dimension_name(due),
              imk_dimension_examples(due));
-    return imk_error_set(error, IMK_ERROR_DIMENSION, column->name, found, expected);
+    return imk_error_set(error, IMK_ERROR_DIMENSION, field, found, expected);
 }
 
 imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *settings,
@@ -183,7 +188,7 @@ imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *set
             snprintf(error->field, sizeof error->field, "%s", field);
         return status;
     }
-    return check_dimension(k, column, error);
+    return check_dimension(k, &column->unit, column->name, error);
 }
 
 /* Turn the columns of the first three axes to forward-right-down. */
@@ -214,6 +219,52 @@ static bool is_doubled(const imki_log_layout_read *layout, size_t index)
             layout->column[i].axis == column->axis)
             return true;
     return false;
+}
+
+/* The kind that the option of `asked` is of and that the unit does not fit; NULL: it fits a column,
+ * or where there is none, a kind that there might be. */
+static const kind *misfit(const imki_log_layout_read *layout, const kind *asked,
+                          const imk_unit *unit)
+{
+    const kind *due = NULL;
+    bool fits = false;
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        const kind *k = &kinds[i];
+        if (strcmp(k->option, asked->option) != 0)
+            continue;
+        fits = fits || has_dimension(k, unit);
+        for (size_t j = 0; j < layout->column_count; j++) {
+            const imk_log_column *column = &layout->column[j];
+            if (column->quantity != k->quantity || column->increment != k->increment)
+                continue;
+            if (has_dimension(k, unit))
+                return NULL;
+            due = due ? due : k;
+        }
+    }
+    return due ? due : fits ? NULL : asked;
+}
+
+/* A unit of the settings is looked at also where each column has its own. */
+static imk_status check_settings(const imki_log_layout_read *layout,
+                                 const imk_log_settings *settings, imk_error *error)
+{
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        const char *text = unit_setting(&kinds[i], settings);
+        imk_unit unit;
+        if (!text)
+            continue;
+        const imk_status status = imk_unit_parse(text, text + strlen(text), &unit, error);
+        if (status != IMK_OK) {
+            if (error)
+                snprintf(error->field, sizeof error->field, "%s", kinds[i].option);
+            return status;
+        }
+        const kind *due = misfit(layout, &kinds[i], &unit);
+        if (due)
+            return check_dimension(due, &unit, due->option, error);
+    }
+    return IMK_OK;
 }
 
 /* Is any column of use? Is the time known? */
@@ -275,6 +326,8 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
         return imk_error_set(error, IMK_ERROR_COLUMN, "columns", "every column is skipped",
                              "at least one name in --columns");
     imk_status status = check_layout(layout, settings, error);
+    if (status == IMK_OK)
+        status = check_settings(layout, settings, error);
     if (status == IMK_OK && settings->axes)
         status = apply_axes(layout, settings->axes, error);
     if (status != IMK_OK)

@@ -274,6 +274,20 @@ static void settings_are_checked(void **state)
     settings.columns = NULL;
     settings.gyro_unit = "nonsense";
     check_refused(text, sizeof text - 1, &settings, IMK_ERROR_UNIT_UNKNOWN, 1, "nonsense");
+    /* A unit that the header leaves without use is read all the same. */
+    const char whole[] = "time [s],gyro_x [deg/s]\n0,1\n1,2\n";
+    check_refused(whole, sizeof whole - 1, &settings, IMK_ERROR_UNIT_UNKNOWN, 1, "nonsense");
+    settings.gyro_unit = "deg";
+    check_refused(whole, sizeof whole - 1, &settings, IMK_ERROR_DIMENSION, 1, "an angular rate");
+    const char increments[] = "time [s],dtheta_x [deg]\n0,1\n1,2\n";
+    settings.gyro_unit = "deg/s";
+    check_refused(increments, sizeof increments - 1, &settings, IMK_ERROR_DIMENSION, 1,
+                  "an angle,");
+    settings.accel_unit = "deg/s"; /* of columns that are not there */
+    check_refused(whole, sizeof whole - 1, &settings, IMK_ERROR_DIMENSION, 1, "--accel-unit");
+    settings.accel_unit = "m/s";
+    CHECK_STATUS(try_text(whole, sizeof whole - 1, &settings, NULL, NULL), IMK_OK);
+    settings.accel_unit = NULL;
     settings.gyro_unit = "deg/s";
     settings.axes = "right-forward";
     check_refused(text, sizeof text - 1, &settings, IMK_ERROR_SYNTAX, 1, "right-forward-up");
