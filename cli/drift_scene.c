@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What is navigated and when to look, from the options. */
 #include "drift_parts.h"
+#include "place_text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -9,7 +10,6 @@
 
 enum { ROWS_MAX = 64, CURVE_POINTS = 96 };
 
-static const double quarter_turn = 1.57079632679489661923; /* [rad] */
 static const double minute = 60, hour = 3600, day = 86400;
 
 /* ---- motion ---- */
@@ -54,6 +54,7 @@ static int open_motion(const drift_options *o, drift_scene *s)
 /* One number for all three axes, or three: north, east, down. */
 static int read_initial(const char *name, const char *text, const char *unit, double sigma[3])
 {
+    const double most = 1e9; /* of any state, SI */
     imk_error error;
     double value[3], spread[3];
     size_t count;
@@ -71,6 +72,9 @@ static int read_initial(const char *name, const char *text, const char *unit, do
                                name, text, unit);
     for (size_t i = 0; i < 3; i++)
         sigma[i] = value[count == 1 ? 0 : i];
+    if (!(fmax(fmax(sigma[0], sigma[1]), sigma[2]) <= most))
+        return command_misused("--%s \"%s\": expected at most %.4g %s", name, text,
+                               most / imk_unit_of(unit).scale, unit);
     return -1;
 }
 
@@ -262,14 +266,12 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
         return command_misused("--rate must be positive");
     if (!(settings->rate >= 1e-3 && settings->rate <= 1e6))
         return command_misused("--rate %g Hz: expected 0.001 Hz to 1 MHz", settings->rate);
-    if (!(o->height >= -1e4 && o->height <= 1e5))
-        return command_misused("--height %g m: expected -10 km to 100 km", o->height);
-    if (!(fabs(settings->latitude) <= quarter_turn))
-        return command_misused("--latitude %g deg: expected -90deg to 90deg",
-                               settings->latitude * 90 / quarter_turn);
     if (!isnan(o->duration) && o->times)
         return command_misused("--duration and --times exclude each other");
-    int code = o->want ? drift_want_parse(o->want, &s->want) : -1;
+    int code =
+        place_check_rest(settings->latitude, o->height, (double[]){o->roll, o->pitch, o->yaw});
+    if (code < 0 && o->want)
+        code = drift_want_parse(o->want, &s->want);
     if (code < 0)
         code = read_start(o, settings);
     if (code < 0 && o->motion)

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Motion, temperature and length of a simulation, from the options. */
+#include "place_text.h"
 #include "simulate_parts.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double quarter_turn = 1.57079632679489661923; /* [rad] */
 
 static imk_geodetic place_of(const simulate_options *o)
 {
@@ -106,6 +105,8 @@ static int choose_rate(const simulate_options *o, scene *s)
         return command_misused("the sample rate is missing: add --rate 100Hz");
     if (!(s->simulation.rate > 0))
         return command_misused("--rate must be positive");
+    if (!(s->simulation.rate >= 1e-9 && s->simulation.rate <= 1e12))
+        return command_misused("--rate %g Hz: expected 1e-9 Hz to 1e12 Hz", s->simulation.rate);
     if (recorded && fabs(s->simulation.rate - recorded->rate) > 1e-9 * recorded->rate)
         return command_misused("--rate %g Hz: the recorded motion has %g Hz; leave the option out",
                                s->simulation.rate, recorded->rate);
@@ -163,9 +164,6 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
 {
     imk_geodetic place = place_of(o);
     memset(s, 0, sizeof *s);
-    if (!(fabs(place.latitude) <= quarter_turn))
-        return command_misused("--latitude %g deg: expected -90deg to 90deg",
-                               place.latitude * 90 / quarter_turn);
     s->simulation = imk_simulation_default();
     s->simulation.seed = o->seed.value;
     s->simulation.run = (uint32_t)o->run.value;
@@ -176,7 +174,10 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
     s->simulation.pitch = o->pitch;
     s->simulation.yaw = o->yaw;
     s->simulation.substeps = o->substeps.value;
-    int code = o->motion ? open_motion(o, s) : -1;
+    int code =
+        place_check_rest(place.latitude, place.height, (double[]){o->roll, o->pitch, o->yaw});
+    if (code < 0 && o->motion)
+        code = open_motion(o, s);
     if (code < 0)
         code = check_clock(o, model, s);
     if (code < 0)

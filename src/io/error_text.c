@@ -138,13 +138,13 @@ static void add_found(sentence *s, const imk_error *error, const wording *w)
     add(s, error->found);
 }
 
-/* `-3 is outside its valid range (limit 0)`. */
+/* `3 is outside its valid range (limit 2)`; a limit of 0 may be none, and error.expected says. */
 static void add_numbers(sentence *s, const imk_error *error, const wording *w)
 {
     add_number(s, error->value, error->limit);
     add(s, " ");
     add(s, w->numbers);
-    if (!w->limit)
+    if (!w->limit || error->limit == 0.0)
         return;
     add(s, " (");
     add(s, w->limit);

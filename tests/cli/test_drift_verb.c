@@ -346,6 +346,10 @@ static void test_messages(void **state)
         {"$I drift tactical --initial-attitude '1 2 deg'",
          "--initial-attitude \"1 2 deg\": expected one or three numbers (north, east, down) that "
          "are not negative, with a unit such as deg"},
+        {"$I drift tactical --initial-attitude '1e20 deg'",
+         "--initial-attitude \"1e20 deg\": expected at most 5.73e+10 deg"},
+        {"$I drift tactical --yaw 1e20deg",
+         "--yaw 1e+20 deg: expected at most 100 turns, 36000deg"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         char message[600];
