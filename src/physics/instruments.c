@@ -186,6 +186,9 @@ imk_status imki_divide_sample(const imk_physics_settings *settings, double longe
     const double parts = ceil(sample / wanted * (1.0 - 1e-9));
     if (settings->step > limit)
         return imki_design_refuse(error, IMK_ERROR_RANGE, "step", settings->step, limit, reason);
+    if (!(parts <= 1e12) && settings->step > 0.0)
+        return imki_design_refuse(error, IMK_ERROR_RANGE, "step", settings->step, 1e-12 * sample,
+                                  "at most 1e12 internal steps to a sample");
     if (!(parts <= 1e12))
         return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, 1e-12 / wanted,
                                   "at most 1e12 internal steps to a sample");

@@ -446,6 +446,9 @@ static void test_refusals(void **state)
     /* a step that would give wrong results, with the instrument's reason */
     assert_int_equal(run("$I physics ring_laser -d 1s --step 1s -o a.csv"), 1);
     check_contains(err, E "--step: \"1 s\" is outside its valid range (limit ", "--step");
+    check_message("$I physics ring_laser -d 0.1s --step 1e-30s -o a.csv", 1,
+                  E "--step: \"1e-30 s\" is outside its valid range (limit 1e-14 s); expected at "
+                    "most 1e12 internal steps to a sample\n");
     assert_int_equal(sweep(), 0);
 }
 
