@@ -16,6 +16,23 @@ static const imk_doubt_finding *reason(const bench *b, const bench_log *log)
     return NULL;
 }
 
+/* Only rows with a temperature above 0 K count. */
+static int few_temperatures(const bench_log *log, const imk_error *error)
+{
+    size_t cold = 0, none = 0;
+    for (size_t row = 0; row < log->record.count; row++) {
+        const double temperature = log->record.temperature[row];
+        cold += temperature <= 0;
+        none += !isfinite(temperature);
+    }
+    if ((double)(log->record.count - cold - none) >= error->limit)
+        return command_error(error, log->path);
+    return command_failed("%s: of %zu rows the temperature is 0 K or less in %zu and no number in "
+                          "%zu; at least %g need one: check the column temperature and its unit "
+                          "(--temperature-unit)",
+                          log->path, log->record.count, cold, none, error->limit);
+}
+
 static int too_short(const bench_log *log, const imk_error *error)
 {
     const char *name = imk_procedure_name(log->procedure);
@@ -34,6 +51,8 @@ static int too_short(const bench_log *log, const imk_error *error)
         return command_failed("%s: the temperature varies by %.3g K; at least %.3g K are needed to "
                               "see what it does",
                               log->path, error->value, error->limit);
+    if (log->procedure == IMK_PROCEDURE_THERMAL && log->record.temperature)
+        return few_temperatures(log, error);
     return command_error(error, log->path);
 }
 

@@ -92,6 +92,21 @@ static void logs_too_short_for_the_options_are_named(void **state)
     sweep();
 }
 
+/* A temperature in each row is not enough: it must be one. */
+static void temperatures_that_are_none_are_counted(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$I simulate AHRS --rate 10Hz --duration 20s -o rest.csv && "
+                         "awk -F, -v OFS=, '{print $0, NR == 1 ? \"temperature [degC]\" : "
+                         "NR <= 51 ? \"nan\" : -300}' rest.csv >cold.csv"),
+                     0);
+    check_says(
+        "$I calibrate cold.csv -p thermal", 1,
+        "cold.csv: of 200 rows the temperature is 0 K or less in 150 and no number in 50; at "
+        "least 96 need one: check the column temperature and its unit (--temperature-unit)");
+    sweep();
+}
+
 static void rows_without_numbers_are_counted(void **state)
 {
     (void)state;
@@ -171,6 +186,7 @@ int main(void)
         cmocka_unit_test(few_holds_are_kept),
         cmocka_unit_test(options_of_other_procedures_are_refused),
         cmocka_unit_test(logs_too_short_for_the_options_are_named),
+        cmocka_unit_test(temperatures_that_are_none_are_counted),
         cmocka_unit_test(rows_without_numbers_are_counted),
         cmocka_unit_test(other_programmes_are_noticed),
         cmocka_unit_test(missing_readings_are_told),
