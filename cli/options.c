@@ -129,8 +129,10 @@ static int set_quantity(const option *o, const char *text, double *target)
                                                 : imk_status_text(status),
                                imk_dimension_name(unit.dimension),
                                imk_dimension_examples(unit.dimension));
-    if (o->choices && !(value > 0))
-        return command_misused("--%s %s: expected more than 0", o->name, text);
+    const bool zero_fits = o->choices && strcmp(o->choices, "not negative") == 0;
+    if (o->choices && !(zero_fits ? value >= 0 : value > 0))
+        return command_misused("--%s %s: expected %s", o->name, text,
+                               zero_fits ? "0 or more" : "more than 0");
     *target = value;
     return -1;
 }

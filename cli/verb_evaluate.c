@@ -67,11 +67,11 @@ static const option test_options[] = {
      "of the unit, about which a column table_rate [deg/s] turns it", BENCH(table_axis)},
     {"section", 0, OPTION_TEXT, "COLUMN", NULL, NULL,
      "column of texts that names the runs of a log", BENCH(section)},
-    {"minimum", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+    {"minimum", 0, OPTION_QUANTITY, "TIME", "s", "positive",
      "shortest stretch of constant reference that counts; default 0.5s", BENCH(minimum)},
-    {"trim", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+    {"trim", 0, OPTION_QUANTITY, "TIME", "s", "not negative",
      "left out at both ends of a stretch; default 0.2s", BENCH(trim)},
-    {"settle", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+    {"settle", 0, OPTION_QUANTITY, "TIME", "s", "not negative",
      "left out at its beginning besides, until filters have settled; default 0s", BENCH(settle)},
 };
 

@@ -27,7 +27,7 @@ static const option spectrum_option_table[] = {
     {"false-alarm", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
      "chance that a channel without lines shows any; default 0.001",
      offsetof(spectrum_options, false_alarm)},
-    {"from", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", NULL,
+    {"from", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "not negative",
      "lowest frequency the noise parameters are fitted to; default: the lowest resolved",
      offsetof(spectrum_options, from)},
     {"to", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "positive",
@@ -232,6 +232,11 @@ static int compute(spectrum_result *r, const imk_executor *executor)
     const spectrum_options *o = r->options;
     if (o->to > 0 && !(o->from < o->to))
         return command_misused("--from %g Hz is not below --to %g Hz", o->from, o->to);
+    const double half_rate = 0.5 / r->channels.dt;
+    if (!(o->from < half_rate))
+        return command_misused("--from %g Hz: the spectrum of %s ends at half its sample rate, "
+                               "%.6g Hz",
+                               o->from, r->path, half_rate);
     imk_execute(executor, r->channels.count, analyse, r);
     for (size_t c = 0; c < r->channels.count; c++)
         if (r->found[c].status != IMK_OK)

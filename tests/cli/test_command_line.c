@@ -216,6 +216,8 @@ static void test_given_is_no_value(void **state)
                                         "identify --plan AHRS --duration 0s",
                                         "spectrum x.csv --resolution 0Hz",
                                         "spectrum x.csv --to 0Hz",
+                                        "calibrate x.csv --minimum 0s",
+                                        "evaluate x.csv --minimum 0s",
                                         "compensate x.csv AHRS --rate-limit 0deg/s",
                                         "compensate x.csv AHRS --force-limit '0 g'",
                                         "convert m.yaml f.yaml --to filter --tau-from 0s",
@@ -226,6 +228,17 @@ static void test_given_is_no_value(void **state)
         snprintf(line, sizeof line, "$I %s", zeros[i]);
         assert_int_equal(run(line), 2);
         check_contains(err, ": expected more than 0\n", line);
+    }
+    static const char *const negative[] = {
+        "calibrate x.csv --trim=-1s",        "calibrate x.csv --settle=-1s",
+        "calibrate x.csv --window=-1s",      "calibrate x.csv --initial-rest=-1s",
+        "calibrate x.csv --placement=-1deg", "calibrate x.csv --mounting=-1deg",
+        "evaluate x.csv --trim=-1s",         "evaluate x.csv --settle=-1s",
+        "spectrum x.csv --from=-1Hz"};
+    for (size_t i = 0; i < sizeof negative / sizeof negative[0]; i++) {
+        snprintf(line, sizeof line, "$I %s", negative[i]);
+        assert_int_equal(run(line), 2);
+        check_contains(err, ": expected 0 or more\n", line);
     }
 }
 

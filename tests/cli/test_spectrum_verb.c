@@ -85,6 +85,20 @@ static void test_values(void **state)
     assert_int_equal(sweep(), 2);
 }
 
+/* Where there is no spectrum, the option is named, not the log. */
+static void test_begin_of_fit(void **state)
+{
+    (void)state;
+    write_line_log();
+    check_message("$I spectrum line.csv --from=-1Hz", 2,
+                  "imukit spectrum: error: --from -1Hz: expected 0 or more\n" TRY("spectrum"));
+    assert_int_equal(run("$I spectrum line.csv --from 1e308Hz"), 2);
+    check_contains(err, "--from 1e+308 Hz: the spectrum of line.csv ends at half its sample rate, ",
+                   "--from 1e308Hz");
+    assert_int_equal(run("$I spectrum line.csv --from 0Hz"), 0);
+    sweep();
+}
+
 static void test_outputs(void **state)
 {
     (void)state;
@@ -136,8 +150,8 @@ static void test_refusals(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values),
-                                       cmocka_unit_test(test_outputs),
-                                       cmocka_unit_test(test_refusals)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values), cmocka_unit_test(test_begin_of_fit),
+        cmocka_unit_test(test_outputs), cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
