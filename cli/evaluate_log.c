@@ -183,6 +183,7 @@ int evaluate_load_log(evaluation *v, const char *path)
     int code = -1;
     if (!b)
         return command_failed("memory is exhausted");
+    v->has_log = true;
     b->options = &v->options->bench;
     b->motion = v->motion;
     if (b->options->motion && !b->motion &&

@@ -79,6 +79,7 @@ typedef struct evaluation {
     evaluate_rest rest[EVALUATE_CHANNELS];
     size_t limit_count;
     evaluate_limit limit[EVALUATE_LIMITS];
+    bool has_log;            /* a file is one, and no table */
     bool missed;             /* a limit */
     imk_motion_file *motion; /* of --motion; NULL until a log asks for it */
 } evaluation;

@@ -131,13 +131,44 @@ static int read_quantity(const char *name, const char *text, imk_dimension dimen
     return -1;
 }
 
+static bool in_counts(const evaluate_channel *c)
+{
+    return imk_dimension_equal(c->reading_unit.dimension, imk_unit_of("count").dimension);
+}
+
+/* Options of counts and of logs mean nothing without them. */
+static int check_company(const evaluation *v)
+{
+    const evaluate_options *o = v->options;
+    const struct {
+        const char *name;
+        bool given;
+    } of_logs[] = {{"motion", o->bench.motion != NULL},
+                   {"motion-offset", o->bench.motion_offset != NULL},
+                   {"table-axis", o->bench.table_axis >= 0},
+                   {"section", o->bench.section != NULL}};
+    bool counts = false;
+    for (size_t k = 0; k < v->channel_count; k++)
+        counts = counts || in_counts(&v->channel[k]);
+    if (o->sensitivity && !counts)
+        return command_misused("--sensitivity is of readings in counts, and there are none");
+    if (o->zero && !o->sensitivity)
+        return command_misused("--zero is of --sensitivity: add it");
+    if (o->bench.motion_offset && !o->bench.motion)
+        return command_misused("--motion-offset is of --motion: add it");
+    for (size_t k = 0; k < sizeof of_logs / sizeof of_logs[0]; k++)
+        if (of_logs[k].given && !v->has_log)
+            return command_misused("--%s is of logs, and there are tables only", of_logs[k].name);
+    return -1;
+}
+
 /* Counts become what they stand for. */
 static int apply_sensitivity(const evaluate_options *o, evaluate_channel *c)
 {
     const imk_dimension counts = imk_unit_of("count").dimension;
     imk_dimension dimension = counts;
     double sensitivity = 0, zero = 0;
-    if (!o->sensitivity || !imk_dimension_equal(c->reading_unit.dimension, counts))
+    if (!o->sensitivity || !in_counts(c))
         return -1;
     for (int k = 0; k < 7; k++)
         dimension.half[k] = (int8_t)(dimension.half[k] - c->reference_unit.dimension.half[k]);
@@ -237,6 +268,8 @@ static int evaluate(evaluation *v)
         code = evaluate_load(v);
     if (code < 0)
         code = evaluate_load_rest(v);
+    if (code < 0)
+        code = check_company(v);
     for (size_t k = 0; code < 0 && k < v->channel_count; k++)
         code = evaluate_channel_table(v->options, &v->channel[k]);
     if (code < 0)

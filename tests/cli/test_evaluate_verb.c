@@ -118,6 +118,27 @@ static void test_runs_and_directions(void **state)
     sweep();
 }
 
+/* What is given is looked at, or refused where it would have no use. */
+static void test_options_without_use(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"--sensitivity garbage", "--sensitivity is of readings in counts, and there are none"},
+        {"--zero nan", "--zero is of --sensitivity: add it"},
+        {"--motion-offset infs", "--motion-offset is of --motion: add it"},
+        {"--motion missing.yaml", "--motion is of logs, and there are tables only"},
+        {"--section run", "--section is of logs, and there are tables only"},
+        {"--table-axis z", "--table-axis is of logs, and there are tables only"}};
+    char line[200], says[200];
+    write_table("t.csv", "reading [deg/s]", 1);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        snprintf(line, sizeof line, "$I evaluate t.csv %s", cases[i][0]);
+        snprintf(says, sizeof says, "imukit evaluate: error: %s\n" TRY("evaluate"), cases[i][1]);
+        check_message(line, 2, says);
+    }
+    sweep();
+}
+
 static void test_limits(void **state)
 {
     (void)state;
@@ -243,10 +264,15 @@ static void test_plot_of_several_channels(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_table),    cmocka_unit_test(test_counts),
-        cmocka_unit_test(test_limits),   cmocka_unit_test(test_runs_and_directions),
-        cmocka_unit_test(test_messages), cmocka_unit_test(test_logs),
-        cmocka_unit_test(test_report),   cmocka_unit_test(test_plot_of_several_channels),
+        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_runs_and_directions),
+        cmocka_unit_test(test_messages),
+        cmocka_unit_test(test_options_without_use),
+        cmocka_unit_test(test_logs),
+        cmocka_unit_test(test_report),
+        cmocka_unit_test(test_plot_of_several_channels),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
