@@ -41,18 +41,29 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
      "--to filter: the longest; default 1000 s", offsetof(parameter_options, tau_to)},
 };
 
-/* Files that may hold parameters; logs are not looked into. */
-static bool may_be_parameters(const char *path)
+/* Does the name end in one of these? */
+static bool has_ending(const char *path, size_t count, const char *const *endings)
 {
-    static const char *const ends[] = {".yaml", ".yml",   ".json",   ".m",     ".sdf", ".xml",
-                                       ".urdf", ".world", ".params", ".param", ".parm"};
     size_t length = strlen(path);
-    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
-        size_t end = strlen(ends[i]);
-        if (length > end && strcmp(path + length - end, ends[i]) == 0)
+    for (size_t i = 0; i < count; i++) {
+        size_t end = strlen(endings[i]);
+        if (length > end && strcmp(path + length - end, endings[i]) == 0)
             return true;
     }
     return false;
+}
+
+bool parameters_or_model(const char *path)
+{
+    static const char *const endings[] = {".yaml", ".yml", ".json"};
+    return has_ending(path, sizeof endings / sizeof endings[0], endings);
+}
+
+static bool only_parameters(const char *path)
+{
+    static const char *const endings[] = {".m",     ".sdf",    ".xml",   ".urdf",
+                                          ".world", ".params", ".param", ".parm"};
+    return has_ending(path, sizeof endings / sizeof endings[0], endings);
 }
 
 int parameters_wanted(const parameter_options *options, const char *in, bool *wanted)
@@ -60,11 +71,12 @@ int parameters_wanted(const parameter_options *options, const char *in, bool *wa
     imk_error error;
     imk_parameter_format format;
     *wanted = options->from > 0 || options->to > 0;
-    if (*wanted || !may_be_parameters(in))
+    /* Logs are not looked into. */
+    if (*wanted || !(only_parameters(in) || parameters_or_model(in)))
         return -1;
     if (imk_parameter_format_detect(in, &format, &error) != IMK_OK)
         return command_error(&error, in);
-    *wanted = format != IMK_PARAMETERS_UNKNOWN;
+    *wanted = format != IMK_PARAMETERS_UNKNOWN || only_parameters(in);
     return -1;
 }
 
@@ -118,7 +130,8 @@ static int read_source(const parameter_options *o, const imk_parameter_settings 
     if (o->from == 0 && imk_parameter_format_detect(in, &reading.format, &error) != IMK_OK)
         return command_error(&error, in);
     *format = reading.format;
-    if (reading.format == IMK_PARAMETERS_UNKNOWN)
+    const bool is_model = reading.format == IMK_PARAMETERS_UNKNOWN && !only_parameters(in);
+    if (is_model)
         return command_model(in, model, NULL);
     if (imk_parameters_read(in, &reading, model, notes, &error) != IMK_OK)
         return command_log_error(&error, in);

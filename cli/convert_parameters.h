@@ -17,6 +17,9 @@ typedef struct parameter_options {
 enum { PARAMETER_OPTIONS = 8 };
 extern const option parameter_option_table[PARAMETER_OPTIONS];
 
+/* By its name: a parameter file, or a model file. */
+bool parameters_or_model(const char *path);
+
 /* Is this a conversion of parameters: by the options, or by what the file holds?
  * @return -1 or the exit code, the message printed */
 int parameters_wanted(const parameter_options *options, const char *in, bool *wanted);

@@ -72,18 +72,6 @@ const verb convert_verb = {
                 offsetof(convert_options, log)}},
     .run = run};
 
-static bool is_model(const char *path)
-{
-    static const char *const ends[] = {".yaml", ".yml", ".json"};
-    size_t length = strlen(path);
-    for (size_t i = 0; i < 3; i++) {
-        size_t end = strlen(ends[i]);
-        if (length > end && strcmp(path + length - end, ends[i]) == 0)
-            return true;
-    }
-    return false;
-}
-
 /* The document is kept only within one format: JSON has no place for comments and layout. */
 static int convert_model(const char *in, const char *out)
 {
@@ -293,7 +281,7 @@ static int run(int count, char **words)
         return command_misused("%s: --json, --sensor and --density are for parameter files; "
                                "--from says which kind it is",
                                operands[0]);
-    bool from_model = is_model(operands[0]), to_model = is_model(operands[1]);
+    bool from_model = parameters_or_model(operands[0]), to_model = parameters_or_model(operands[1]);
     if (from_model != to_model)
         return command_misused("%s is a %s and %s a %s: a log and a model cannot become each "
                                "other; use identify or simulate",

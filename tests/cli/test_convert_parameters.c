@@ -76,12 +76,20 @@ static void test_refused(void **state)
                     "2e-4}\n");
     assert_int_equal(run("$I convert two.yaml out.yaml"), 1);
     check_contains(err, "add --sensor NAME with one of imu0, imu1", "two.yaml");
+    put("world.sdf", "<sdf version='1.6'></sdf>\n"); /* is no log, though no IMU is in it */
+    assert_int_equal(run("$I convert world.sdf out.yaml"), 1);
+    check_contains(err, "world.sdf: the file format is not recognised; expected a parameter file",
+                   "world.sdf");
+    check_contains(err, "(--from says which)", "world.sdf");
+    check_message("$I convert missing.sdf out.yaml", 1,
+                  "imukit convert: error: missing.sdf: the file cannot be opened: No such file or "
+                  "directory\n");
     put("log.csv", "time [s],gyro_x [deg/s]\n0,1\n0.1,2\n");
     assert_int_equal(run("$I convert log.csv out.csv --sensor a"), 2);
     check_contains(err, "are for parameter files", "log.csv");
     assert_int_equal(run("$I convert deg.yaml - --from kalibr --json"), 2);
     assert_int_equal(access("out.yaml", F_OK), -1);
-    assert_int_equal(sweep(), 3);
+    assert_int_equal(sweep(), 4);
 }
 
 /* Every sample becomes a model, and from the model a file that becomes the same model: the second
