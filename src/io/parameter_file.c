@@ -21,18 +21,19 @@
 static const struct format {
     const char *name;
     imki_parameter_function *read, *write;
+    bool has_several; /* a file may be of several sensors */
 } formats[] = {
-    [IMK_PARAMETERS_KALIBR] = {"kalibr", imki_kalibr_read, imki_kalibr_write},
-    [IMK_PARAMETERS_GAZEBO] = {"gazebo", imki_gazebo_read, imki_gazebo_write},
-    [IMK_PARAMETERS_MATLAB] = {"matlab", imki_matlab_read, imki_matlab_write},
+    [IMK_PARAMETERS_KALIBR] = {"kalibr", imki_kalibr_read, imki_kalibr_write, true},
+    [IMK_PARAMETERS_GAZEBO] = {"gazebo", imki_gazebo_read, imki_gazebo_write, true},
+    [IMK_PARAMETERS_MATLAB] = {"matlab", imki_matlab_read, imki_matlab_write, true},
     [IMK_PARAMETERS_GNSS_INS_SIM] = {"gnss-ins-sim", imki_gnss_ins_sim_read,
-                                     imki_gnss_ins_sim_write},
-    [IMK_PARAMETERS_NAVEGO] = {"navego", imki_navego_read, imki_navego_write},
-    [IMK_PARAMETERS_OPENVINS] = {"openvins", imki_openvins_read, imki_openvins_write},
-    [IMK_PARAMETERS_VINS] = {"vins", imki_vins_read, imki_vins_write},
-    [IMK_PARAMETERS_PX4] = {"px4", imki_px4_read, imki_px4_write},
-    [IMK_PARAMETERS_ARDUPILOT] = {"ardupilot", imki_ardupilot_read, imki_ardupilot_write},
-    [IMK_PARAMETERS_FILTER] = {"filter", imki_filter_read, imki_filter_write},
+                                     imki_gnss_ins_sim_write, false},
+    [IMK_PARAMETERS_NAVEGO] = {"navego", imki_navego_read, imki_navego_write, true},
+    [IMK_PARAMETERS_OPENVINS] = {"openvins", imki_openvins_read, imki_openvins_write, false},
+    [IMK_PARAMETERS_VINS] = {"vins", imki_vins_read, imki_vins_write, false},
+    [IMK_PARAMETERS_PX4] = {"px4", imki_px4_read, imki_px4_write, true},
+    [IMK_PARAMETERS_ARDUPILOT] = {"ardupilot", imki_ardupilot_read, imki_ardupilot_write, true},
+    [IMK_PARAMETERS_FILTER] = {"filter", imki_filter_read, imki_filter_write, false},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
@@ -251,6 +252,16 @@ static imk_status check_density(const imk_parameter_settings *settings, imk_para
                          "leave --density out, or divide the numbers by sqrt(2) first");
 }
 
+static imk_status check_sensor(const imk_parameter_settings *settings, imk_parameter_format format,
+                               imk_error *error)
+{
+    if (!settings->sensor || formats[format].has_several)
+        return IMK_OK;
+    char found[96];
+    snprintf(found, sizeof found, "the format %s has one sensor only", formats[format].name);
+    return imk_error_set(error, IMK_ERROR_CONFLICT, "sensor", found, "leave --sensor out");
+}
+
 /* `text` ends with a zero. */
 static imk_status parse_text(const char *text, size_t size, const imk_parameter_settings *settings,
                              imk_model *made, imk_parameter_notes *notes, imk_error *error)
@@ -272,6 +283,8 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
                              "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, "
                              "openvins, vins, px4, ardupilot or filter (--from says which)");
     imk_status status = check_density(settings, format, error);
+    if (status == IMK_OK)
+        status = check_sensor(settings, format, error);
     if (status == IMK_OK)
         status = formats[format].read(&p);
     return status == IMK_OK ? imk_model_validate(made, error) : status;

@@ -92,6 +92,22 @@ static void test_refused(void **state)
     assert_int_equal(sweep(), 4);
 }
 
+/* --sensor chooses among several; where there is one only it was meant for another file. */
+static void test_sensor_of_one(void **state)
+{
+    (void)state;
+    put("dev.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h)}}\n");
+    check_message("$I convert dev.yaml gnss.yaml --to gnss-ins-sim --rate 100Hz --sensor a", 2,
+                  "imukit convert: error: --sensor is of a parameter file with several, and "
+                  "dev.yaml is a model\n" TRY("convert"));
+    assert_int_equal(run("$I convert dev.yaml gnss.yaml --to gnss-ins-sim --rate 100Hz"), 0);
+    check_message(
+        "$I convert gnss.yaml back.yaml --sensor a", 1,
+        "imukit convert: error: gnss.yaml: sensor: the format gnss-ins-sim has one sensor "
+        "only; leave --sensor out\n");
+    assert_int_equal(sweep(), 2);
+}
+
 /* Every sample becomes a model, and from the model a file that becomes the same model: the second
  * file is the first, byte for byte, where no products of matrices are rounded in between. */
 static void test_round_trip(void **state)
@@ -155,7 +171,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_to_model), cmocka_unit_test(test_from_model),
         cmocka_unit_test(test_refused),  cmocka_unit_test(test_round_trip),
-        cmocka_unit_test(test_json),
+        cmocka_unit_test(test_json),     cmocka_unit_test(test_sensor_of_one),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
