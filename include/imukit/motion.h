@@ -40,14 +40,21 @@ typedef struct imk_trajectory_piece {
 
 enum { IMK_VIBRATION_LINES_MAX = 512 };
 
+/** Frequencies of lines [Hz]. */
+#define IMK_VIBRATION_FREQUENCY_MIN 1e-6
+#define IMK_VIBRATION_FREQUENCY_MAX 1e9
+/** Largest sum of the displacement amplitudes along an axis [m]. */
+#define IMK_VIBRATION_DISPLACEMENT_MAX 1e4
+
 /** One line of a vibration: displacement or rotation of the body about its smooth trajectory,
  *  amplitude sin(2 pi (frequency t + phase)) along one body axis. The displacement is along the
  *  axes of the smooth attitude; the rotations follow it, about x, then the new y, then the new z.
  */
 typedef struct imk_vibration_line {
     int axis;         /**< 0 … 2: displacement along x, y, z; 3 … 5: rotation about x, y, z */
-    double amplitude; /**< [m] or [rad]; rotations to 0.1 rad, all about an axis to 1 rad */
-    double frequency; /**< [Hz], > 0 */
+    double amplitude; /**< [m] or [rad]; displacements along an axis to 10 km together, rotations to
+                         0.1 rad, all about an axis to 1 rad */
+    double frequency; /**< [Hz], 1e-6 … 1e9 */
     double phase;     /**< [cycles] */
 } imk_vibration_line;
 
@@ -156,7 +163,8 @@ IMK_API size_t imk_trajectory_poses_workspace(size_t count);
  *  the record never repeats and its density is the given one at the resolution of the parts.
  *
  *  @param axis       0 … 2
- *  @param corners    >= 2; frequency [Hz] increasing, density [(m/s^2)^2/Hz] > 0
+ *  @param corners    >= 2; frequency [Hz] increasing, 1e-6 … 1e9; density [(m/s^2)^2/Hz], 1e-100 …
+ *                    1e100
  *  @param line_count how many lines to make, 8 … IMK_VIBRATION_LINES_MAX
  *  @param stream     of the random source: another one is another draw */
 IMK_API imk_status imk_vibration_from_density(int axis, size_t corners, const double *frequency,

@@ -50,6 +50,7 @@ typedef struct vibration_reader {
     imk_error *error;
     imk_random random;
     uint8_t draws[3]; /* random vibrations so far on each axis: each is another draw */
+    double reach[3];  /* sum of the amplitudes so far along each axis [m] */
 } vibration_reader;
 
 /* Is there room for more lines? */
@@ -59,6 +60,23 @@ static imk_status check_room(const vibration_reader *r, int node, size_t count)
         return imki_document_error(r->document, node, IMK_ERROR_UNSUPPORTED, "too many lines",
                                    "at most 512 lines in all; give the random ones fewer",
                                    r->error);
+    return IMK_OK;
+}
+
+/* Take up the `count` lines that stand behind those of the file, if the body stays on the Earth. */
+static imk_status add_lines(vibration_reader *r, int node, size_t count)
+{
+    const imk_vibration_line *line = r->file->line + r->file->trajectory.line_count;
+    for (size_t i = 0; i < count; i++) {
+        if (line[i].axis >= 3)
+            continue;
+        r->reach[line[i].axis] += line[i].amplitude;
+        if (!(r->reach[line[i].axis] <= IMK_VIBRATION_DISPLACEMENT_MAX))
+            return imki_document_error(r->document, node, IMK_ERROR_CONFLICT,
+                                       "the displacement must stay within 10 km along an axis",
+                                       "raise the frequencies or lower the amplitudes", r->error);
+    }
+    r->file->trajectory.line_count += count;
     return IMK_OK;
 }
 
@@ -92,6 +110,10 @@ static imk_status read_sine(vibration_reader *r, const imki_sentence *s)
 {
     imk_vibration_line line = {.axis = imki_sentence_axis(s)};
     imk_status status = imki_sentence_positive(s, IMKI_PART_AT, "Hz", &line.frequency);
+    if (status == IMK_OK && !(line.frequency >= IMK_VIBRATION_FREQUENCY_MIN &&
+                              line.frequency <= IMK_VIBRATION_FREQUENCY_MAX))
+        status = imki_sentence_refuse(s, IMKI_PART_AT, IMK_ERROR_RANGE,
+                                      "a frequency from 1e-6 Hz to 1e9 Hz");
     if (status == IMK_OK && imki_sentence_has(s, IMKI_PART_PHASE))
         status = imki_sentence_numbers(s, IMKI_PART_PHASE, "rad", 1, &line.phase);
     line.phase /= 2.0 * PI;
@@ -99,9 +121,10 @@ static imk_status read_sine(vibration_reader *r, const imki_sentence *s)
         status = read_amplitude(s, line.axis >= 3, line.frequency, &line.amplitude);
     if (status == IMK_OK)
         status = check_room(r, s->node, 1);
-    if (status == IMK_OK)
-        r->file->line[r->file->trajectory.line_count++] = line;
-    return status;
+    if (status != IMK_OK)
+        return status;
+    r->file->line[r->file->trajectory.line_count] = line;
+    return add_lines(r, s->node, 1);
 }
 
 /* ---- many lines ------------------------------------------------------------------------------ */
@@ -124,8 +147,8 @@ static imk_status add_random(vibration_reader *r, int node, const density *d)
                                         stream, d->lines,
                                         r->file->line + r->file->trajectory.line_count, r->error);
     if (status == IMK_OK)
-        r->file->trajectory.line_count += d->lines;
-    else if (r->error) {
+        return add_lines(r, node, d->lines);
+    if (r->error) {
         r->error->line = r->document->node[node].line;
         r->error->column = r->document->node[node].column;
         r->error->index = -1;

@@ -176,7 +176,7 @@ static imk_status check_height(const imk_trajectory *trajectory, size_t index, d
 
 static imk_status check_lines(const imk_trajectory *trajectory, imk_error *error)
 {
-    double rotation[3] = {0.0, 0.0, 0.0};
+    double sum[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     if (trajectory->line_count > IMK_VIBRATION_LINES_MAX ||
         (trajectory->line_count > 0 && !trajectory->line))
         return refuse(error, IMK_ERROR_ARGUMENT, "vibration", trajectory->line_count,
@@ -186,20 +186,25 @@ static imk_status check_lines(const imk_trajectory *trajectory, imk_error *error
         if (line->axis < 0 || line->axis > 5)
             return refuse(error, IMK_ERROR_RANGE, "vibration.axis", i, line->axis, 5.0,
                           "an axis from 0 to 5");
-        if (!(line->frequency > 0.0 && line->frequency <= 1e9))
-            return refuse(error, IMK_ERROR_RANGE, "vibration.frequency", i, line->frequency, 1e9,
-                          "a positive frequency, up to 1e9 Hz");
+        if (!(line->frequency >= IMK_VIBRATION_FREQUENCY_MIN &&
+              line->frequency <= IMK_VIBRATION_FREQUENCY_MAX))
+            return refuse(error, IMK_ERROR_RANGE, "vibration.frequency", i, line->frequency,
+                          line->frequency > 1.0 ? IMK_VIBRATION_FREQUENCY_MAX
+                                                : IMK_VIBRATION_FREQUENCY_MIN,
+                          "a frequency from 1e-6 Hz to 1e9 Hz");
         if (!(fabs(line->phase) <= 1e9))
             return refuse(error, IMK_ERROR_RANGE, "vibration.phase", i, line->phase, 1e9,
                           "a phase in cycles");
         if (!isfinite(line->amplitude))
             return refuse(error, IMK_ERROR_NOT_FINITE, "vibration.amplitude", i, line->amplitude,
                           0.0, NULL);
-        if (line->axis < 3)
-            continue;
-        double *const sum = &rotation[line->axis - 3];
-        *sum += fabs(line->amplitude);
-        if (!(fabs(line->amplitude) <= 0.1 && *sum <= LARGEST_VIBRATION))
+        sum[line->axis] += fabs(line->amplitude);
+        if (line->axis < 3 && !(sum[line->axis] <= IMK_VIBRATION_DISPLACEMENT_MAX))
+            return refuse(error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude,
+                          IMK_VIBRATION_DISPLACEMENT_MAX,
+                          "displacements up to 10 km, together, along an axis");
+        if (line->axis >= 3 &&
+            !(fabs(line->amplitude) <= 0.1 && sum[line->axis] <= LARGEST_VIBRATION))
             return refuse(error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude, 0.1,
                           "rotations up to 0.1 rad, together up to 1 rad about an axis");
     }

@@ -85,7 +85,9 @@ static imk_status check_density(int axis, size_t corners, const double *frequenc
         if (!(density[i] >= 1e-100 && density[i] <= 1e100))
             return refuse(error, IMK_ERROR_RANGE, "density", i, density[i],
                           "a positive density, up to 1e100 (m/s^2)^2/Hz");
-        if (!(frequency[i] > (i > 0 ? frequency[i - 1] : 1e-6) && frequency[i] <= 1e9))
+        if (!((i == 0 || frequency[i] > frequency[i - 1]) &&
+              frequency[i] >= IMK_VIBRATION_FREQUENCY_MIN &&
+              frequency[i] <= IMK_VIBRATION_FREQUENCY_MAX))
             return refuse(error, IMK_ERROR_RANGE, "frequency", i, frequency[i],
                           "frequencies that increase, from 1e-6 Hz to 1e9 Hz");
     }

@@ -430,6 +430,10 @@ static void random_vibration_has_the_power_of_its_density(void **state)
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
+#define TOO_FAR                                                                                    \
+    "the displacement must stay within 10 km along an axis; raise the frequencies or lower the "   \
+    "amplitudes"
+
 /* Below imukit_motion: 1, so the first line is line 2. */
 static const struct {
     const char *text, *sentence;
@@ -572,6 +576,21 @@ static const struct {
      "like mg, ug, g or m/s^2"},
     {"steps: [hold 1 s]\nvibration: [sine z 0.5 g at 0 Hz]",
      "m.yaml:3:29: vibration[0]: \"0 Hz\" is outside its valid range; expected a number above 0"},
+    {"steps: [hold 1 s]\nvibration: [sine z 2 m/s^2 at 1e-9 Hz]",
+     "m.yaml:3:31: vibration[0]: \"1e-9 Hz\" is outside its valid range; expected a frequency from "
+     "1e-6 Hz to 1e9 Hz"},
+    {"steps: [hold 1 s]\nvibration: [sine z 1 m at 1e12 Hz]",
+     "m.yaml:3:27: vibration[0]: \"1e12 Hz\" is outside its valid range; expected a frequency from "
+     "1e-6 Hz to 1e9 Hz"},
+    {"steps: [hold 1 s]\nvibration: [sine z 1e200 m/s^2 at 1 Hz]",
+     "m.yaml:3:13: vibration[0]: " TOO_FAR},
+    {"steps: [hold 1 s]\nvibration: [sine z 1e300 m/s^2 at 100 Hz]",
+     "m.yaml:3:13: vibration[0]: " TOO_FAR},
+    {"steps: [hold 1 s]\nvibration: [sine z 8 km at 1 Hz, sine x 8 km at 1 Hz, sine z 3 km at 2 "
+     "Hz]",
+     "m.yaml:3:55: vibration[2]: " TOO_FAR},
+    {"steps: [hold 1 s]\nvibration: [random z 1e90 g^2/Hz from 1 Hz to 2 Hz]",
+     "m.yaml:3:13: vibration[0]: " TOO_FAR},
     {"steps: [hold 1 s]\nvibration: [sine roll 10 deg at 1 Hz]",
      "m.yaml:3:23: vibration[0]: \"10 deg\" is outside its valid range; expected a rotation below "
      "0.1 rad; write a step swing for larger ones"},

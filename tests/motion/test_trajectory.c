@@ -313,6 +313,8 @@ static void test_odd_vibration_is_refused(void **state)
         {0, 1e-3, 0.0, 0.0},
         {0, 1e-3, (double)NAN, 0.0},
         {0, (double)INFINITY, 1.0, 0.0},
+        {0, 1e-3, 1e-9, 0.0},
+        {0, 1e5, 1.0, 0.0},
         {3, 0.2, 1.0, 0.0},
         {3, 0.01, 1.0, (double)INFINITY},
     };

@@ -265,6 +265,12 @@ static void test_odd_densities_are_refused(void **state)
                  IMK_ERROR_RANGE);
     CHECK_STATUS(imk_vibration_from_density(0, 3, f, d, random, 0, 513, line, &error),
                  IMK_ERROR_RANGE);
+    f[0] = 1e-6; /* the least: taken */
+    CHECK_OK(imk_vibration_from_density(0, 3, f, d, random, 0, 8, line, &error));
+    f[0] = 0.9e-6;
+    CHECK_STATUS(imk_vibration_from_density(0, 3, f, d, random, 0, 8, line, &error),
+                 IMK_ERROR_RANGE);
+    f[0] = 10.0;
     d[1] = 0.0;
     CHECK_STATUS(imk_vibration_from_density(0, 3, f, d, random, 0, 8, line, &error),
                  IMK_ERROR_RANGE);
