@@ -14,8 +14,13 @@
 
 static const double pi = 3.14159265358979323846;
 
+/* As the steps of a motion script; hotter than this nothing is solid. */
+static const double largest_motion = 1e6; /* [rad/s], [m/s^2] */
+static const double highest_temperature = 1e4;
+
 /* One number is along x, three are x y z. */
-static int read_vector(const char *name, const char *text, const char *unit, double *values)
+static int read_vector(const char *name, const char *text, const char *unit, const char *most,
+                       double *values)
 {
     imk_error error;
     double read[3], sigmas[3];
@@ -35,8 +40,11 @@ static int read_vector(const char *name, const char *text, const char *unit, dou
                                : error.found[0] ? error.found
                                                 : imk_status_text(status),
                                imk_dimension_examples(due));
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++) {
+        if (!(fabs(read[k]) <= largest_motion))
+            return command_misused("--%s %s: expected at most %s", name, text, most);
         values[k] = read[k];
+    }
     return -1;
 }
 
@@ -52,8 +60,13 @@ static int check(const physics_options *o, const physics_input *input)
         return command_misused("--sine %g Hz: the input is held over a sample of %g s, at least "
                                "four of which make a cycle; add --output-rate %gHz or more",
                                o->sine, 1 / o->output_rate, 4 * o->sine);
-    if (!(o->temperature > 0))
-        return command_misused("--temperature: expected more than absolute zero");
+    if (!(o->temperature > 0 && o->temperature <= highest_temperature))
+        return command_misused("--temperature: expected more than absolute zero, and at most "
+                               "10000 K");
+    const double end = isnan(o->duration) ? 0 : o->temperature + o->temperature_rate * o->duration;
+    if (!(fabs(o->temperature_rate) <= highest_temperature && end <= highest_temperature))
+        return command_misused("--temperature-rate: expected at most 10000 K/s, and to end at no "
+                               "more than 10000 K");
     return -1;
 }
 
@@ -67,10 +80,11 @@ int physics_input_make(const physics_options *o, physics_input *input)
     input->exposure.temperature_rate = o->temperature_rate;
     int code = check(o, input);
     if (code < 0 && o->rate)
-        code = read_vector("rate", o->rate, "deg/s", input->exposure.angular_rate);
+        code = read_vector("rate", o->rate, "deg/s", "1e6 rad/s, which is 5.7e7 deg/s",
+                           input->exposure.angular_rate);
     if (code < 0 && o->acceleration)
-        code =
-            read_vector("acceleration", o->acceleration, "m/s^2", input->exposure.specific_force);
+        code = read_vector("acceleration", o->acceleration, "m/s^2", "1e6 m/s^2, which is 102000 g",
+                           input->exposure.specific_force);
     return code;
 }
 

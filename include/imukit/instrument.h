@@ -31,12 +31,13 @@ extern "C" {
 enum { IMK_INSTRUMENT_OUTPUTS_MAX = 8, IMK_INSTRUMENT_SIGNALS_MAX = 16, IMK_VIEW_CURVES_MAX = 4 };
 
 /** What an instrument is exposed to, in the axes of its case: x is the input axis of a single-axis
- *  instrument; each header names y and z. Held constant over a step. */
+ *  instrument; each header names y and z. Held constant over a step. A step refuses nothing: beyond
+ *  these ranges its readings mean nothing, but it takes no longer than at their ends. */
 typedef struct imk_exposure {
-    double angular_rate[3];         /**< of the case in inertial space [rad/s] */
+    double angular_rate[3];         /**< of the case in inertial space, to 1e6 [rad/s] */
     double angular_acceleration[3]; /**< [rad/s^2] */
-    double specific_force[3];       /**< [m/s^2] */
-    double temperature;             /**< [K] */
+    double specific_force[3];       /**< to 1e6 [m/s^2] */
+    double temperature;             /**< above 0, to 1e4 [K] */
     double temperature_rate;        /**< [K/s] */
 } imk_exposure;
 

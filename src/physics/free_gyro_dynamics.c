@@ -252,7 +252,7 @@ static size_t division(const imki_free_gyro_state *state, const imki_free_gyro_d
     double fastest = 0.0;
     for (int k = 0; k < 3; k++)
         fastest += fabs(drive->rate[k]) + 0.5 * state->sample * fabs(drive->acceleration[k]);
-    const double turn = fastest * state->step;
+    const double turn = fmin(fastest, 3.0 * IMKI_EXPOSURE_RATE_MAX) * state->step;
     return turn > largest_turn ? (size_t)ceil(turn / largest_turn) : 1;
 }
 

@@ -165,9 +165,10 @@ imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *
         return imki_design_refuse(error, IMK_ERROR_NOT_FINITE,
                                   isfinite(settings->rate) ? "step" : "rate", settings->rate, 0.0,
                                   NULL);
-    if (!(settings->rate > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, 0.0,
-                                  "a sample rate above 0");
+    if (!(settings->rate >= 1e-9 && settings->rate <= 1e12))
+        return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate,
+                                  settings->rate > 1.0 ? 1e12 : 1e-9,
+                                  "a sample rate from 1e-9 Hz to 1e12 Hz");
     if (!(settings->step >= 0.0))
         return imki_design_refuse(error, IMK_ERROR_RANGE, "step", settings->step, 0.0,
                                   "a step above 0, or 0 for the instrument's own");

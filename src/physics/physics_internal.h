@@ -20,6 +20,9 @@
 /* Vacuum permittivity [F/m], CODATA 2018. */
 #define IMKI_PERMITTIVITY 8.8541878128e-12
 
+/* End of the range of imk_exposure's angular rates [rad/s]. */
+#define IMKI_EXPOSURE_RATE_MAX 1e6
+
 /* Normals of one stream, drawn in blocks. `source` numbers the sources of randomness within an
  * instrument and is fixed for ever. Without noise every draw is 0. */
 enum { IMKI_DRAWS = 256 };

@@ -392,9 +392,12 @@ static void step(void *state, const imk_exposure *exposure, double *readings)
     const imk_ring_laser *design = &gyro->design;
     control_path(gyro, exposure->temperature);
     gyro->null_shift = null_shift(gyro, exposure->temperature);
-    const double rate = exposure->angular_rate[0] +
-                        design->alignment.y * exposure->angular_rate[1] +
-                        design->alignment.z * exposure->angular_rate[2] + gyro->null_shift;
+    const double turning = exposure->angular_rate[0] +
+                           design->alignment.y * exposure->angular_rate[1] +
+                           design->alignment.z * exposure->angular_rate[2];
+    /* so that the fringes can be counted */
+    const double rate =
+        gyro->null_shift + fmin(fmax(turning, -IMKI_EXPOSURE_RATE_MAX), IMKI_EXPOSURE_RATE_MAX);
     gyro->rate = rate;
     if (gyro->level == IMK_LEVEL_SLOW)
         imki_ring_laser_slow(gyro, rate);

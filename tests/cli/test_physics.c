@@ -400,6 +400,18 @@ static void test_refusals(void **state)
          E "--rate: how long? add --duration TIME\n" TRY("physics")},
         {"ring_laser --rate 10 -d 1s -o a.csv", 2,
          E "--rate 10: the unit is missing; write --rate \"10 deg/s\"\n" TRY("physics")},
+        {"free_gyro --rate '1e12 deg/s' -d 50ms -o a.csv", 2,
+         E "--rate 1e12 deg/s: expected at most 1e6 rad/s, which is 5.7e7 deg/s\n" TRY("physics")},
+        {"ring_laser --rate '1e308 deg/s' -d 50ms -o a.csv", 2,
+         E "--rate 1e308 deg/s: expected at most 1e6 rad/s, which is 5.7e7 deg/s\n" TRY("physics")},
+        {"mems_accelerometer --acceleration '0 1e9 0 g' -d 50ms -o a.csv", 2,
+         E "--acceleration 0 1e9 0 g: expected at most 1e6 m/s^2, which is 102000 g\n" TRY(
+             "physics")},
+        {"ring_laser --temperature 1e308K -d 50ms -o a.csv", 2,
+         E "--temperature: expected more than absolute zero, and at most 10000 K\n" TRY("physics")},
+        {"ring_laser --temperature-rate 1e4K/s -d 1min -o a.csv", 2,
+         E "--temperature-rate: expected at most 10000 K/s, and to end at no more than 10000 "
+           "K\n" TRY("physics")},
         {"ring_laser --rate '1 2 deg/s' -d 1s -o a.csv", 2,
          E "--rate 1 2 deg/s: there are two numbers; expected one number about x, or three, and a "
            "unit such as deg/h, deg/s or rad/s\n" TRY("physics")},
@@ -428,7 +440,7 @@ static void test_refusals(void **state)
          E "--json and --output cannot both go to standard output: give a file name\n" TRY(
              "physics")},
         {"ring_laser -d 1s --temperature '-1 K'", 2,
-         E "--temperature: expected more than absolute zero\n" TRY("physics")},
+         E "--temperature: expected more than absolute zero, and at most 10000 K\n" TRY("physics")},
         {"ring_laser -d 1s --level fast", 2,
          E "--level fast: expected one of full|slow\n" TRY("physics")},
         {"ring_laser -d 1s --output-rat 5Hz", 2,

@@ -696,6 +696,23 @@ static void same_bits(void **unused)
     }
 }
 
+/* Beyond the range of rates a step ends, as soon as at the end of it. */
+static void endless_rates(void **state)
+{
+    (void)state;
+    const imk_free_gyro design = imk_free_gyro_default();
+    imk_physics_settings settings = imk_physics_settings_default();
+    settings.rate = 10000.0;
+    const double rates[] = {1e6, 1e14, 1e300, (double)INFINITY};
+    for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
+        imk_exposure exposure = imk_exposure_default();
+        exposure.angular_rate[0] = rates[i];
+        void *running = started(&imk_free_gyro_instrument, &design, &settings);
+        run(&imk_free_gyro_instrument, running, &exposure, 10, 0, NULL);
+        free(running);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -716,6 +733,7 @@ int main(void)
         cmocka_unit_test(stop_holds),
         cmocka_unit_test(refusals),
         cmocka_unit_test(step_refusal),
+        cmocka_unit_test(endless_rates),
         cmocka_unit_test(same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

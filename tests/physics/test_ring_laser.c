@@ -787,6 +787,30 @@ static void same_bits(void **state)
     }
 }
 
+/* Beyond the range of rates as many fringes are counted as at its end: a number that overflows has
+ * another sign. */
+static void endless_rates(void **state)
+{
+    (void)state;
+    const imk_ring_laser design = imk_ring_laser_default();
+    const double most = 1e6 / imk_ring_laser_count_angle(&design) / 100.0; /* in 10 ms */
+    for (int level = 0; level < 2; level++) {
+        imk_physics_settings settings = imk_physics_settings_default();
+        settings.level = (imk_level)level;
+        void *gyro = started(&imk_ring_laser_instrument, &design, &settings);
+        imk_exposure exposure = imk_exposure_default();
+        double readings[IMK_INSTRUMENT_OUTPUTS_MAX];
+        for (int i = 0; i < 3; i++) {
+            const double rates[] = {1e17, 1e300, (double)INFINITY};
+            exposure.angular_rate[0] = rates[i];
+            imk_ring_laser_instrument.step(gyro, &exposure, readings);
+            CHECK_RELATIVE(readings[1], most, 1e-4); /* scale factor error: 5 ppm, 1 sigma */
+            CHECK_CLOSE(readings[0], design.readout.range, 0.0);
+        }
+        free(gyro);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -811,6 +835,7 @@ int main(void)
         cmocka_unit_test(chain),
         cmocka_unit_test(impossible_designs),
         cmocka_unit_test(wrong_settings),
+        cmocka_unit_test(endless_rates),
         cmocka_unit_test(same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
