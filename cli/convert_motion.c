@@ -38,7 +38,7 @@ const option convert_motion_option_table[CONVERT_MOTION_OPTIONS] = {
      offsetof(convert_motion_options, latitude)},
     {"height", 0, OPTION_QUANTITY, "LENGTH", "m", NULL, "above the ellipsoid; default 0m",
      offsetof(convert_motion_options, height)},
-    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL,
+    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000",
      "at first, from north to east, for the Earth's rotation; default 0deg",
      offsetof(convert_motion_options, yaw)},
 };

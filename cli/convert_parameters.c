@@ -34,10 +34,10 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
      "random-walk|gauss-markov|two-gauss-markov|left-out",
      "--to filter: what stands for bias instability, which no filter state is",
      offsetof(parameter_options, flicker)},
-    {"tau-from", 0, OPTION_QUANTITY, "TIME", "s", "positive",
+    {"tau-from", 0, OPTION_QUANTITY, "TIME", "s", "1e-9..1e9",
      "--to filter: shortest averaging time at which that has to hold; default 1 s",
      offsetof(parameter_options, tau_from)},
-    {"tau-to", 0, OPTION_QUANTITY, "TIME", "s", "positive",
+    {"tau-to", 0, OPTION_QUANTITY, "TIME", "s", "1e-9..1e9",
      "--to filter: the longest; default 1000 s", offsetof(parameter_options, tau_to)},
 };
 

@@ -10,7 +10,7 @@
 #include <string.h>
 
 const option log_input_options[LOG_INPUT_OPTIONS] = {
-    {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", "positive",
+    {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", "1e-9..1e9",
      "sample rate, needed when the log has no time column", offsetof(log_input, rate)},
     {"columns", 0, OPTION_TEXT, "NAMES", NULL, NULL,
      "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - skips one",

@@ -111,6 +111,26 @@ static int set_fraction(const option *o, const char *text, double *target)
     return -1;
 }
 
+/* "1e-9..1e9", in the option's unit. */
+static int check_quantity(const option *o, const char *text, double value)
+{
+    const char *end = o->choices + strlen(o->choices), *dots = strstr(o->choices, "..");
+    const imk_unit unit = imk_unit_of(o->unit);
+    double least = 0, most = 0;
+    const bool zero_fits = strcmp(o->choices, "not negative") == 0;
+    if (!dots)
+        return value > 0 || (zero_fits && value == 0)
+                   ? -1
+                   : command_misused("--%s %s: expected %s", o->name, text,
+                                     zero_fits ? "0 or more" : "more than 0");
+    imk_decimal_parse(o->choices, dots, &least);
+    imk_decimal_parse(dots + 2, end, &most);
+    if (value >= least * unit.scale + unit.offset && value <= most * unit.scale + unit.offset)
+        return -1;
+    return command_misused("--%s %s: expected %.*s%s to %s%s", o->name, text,
+                           (int)(dots - o->choices), o->choices, o->unit, dots + 2, o->unit);
+}
+
 static int set_quantity(const option *o, const char *text, double *target)
 {
     imk_error error;
@@ -129,12 +149,8 @@ static int set_quantity(const option *o, const char *text, double *target)
                                                 : imk_status_text(status),
                                imk_dimension_name(unit.dimension),
                                imk_dimension_examples(unit.dimension));
-    const bool zero_fits = o->choices && strcmp(o->choices, "not negative") == 0;
-    if (o->choices && !(zero_fits ? value >= 0 : value > 0))
-        return command_misused("--%s %s: expected %s", o->name, text,
-                               zero_fits ? "0 or more" : "more than 0");
     *target = value;
-    return -1;
+    return o->choices ? check_quantity(o, text, value) : -1;
 }
 
 static int set_choice(const option *o, const char *text, int *target)

@@ -34,8 +34,8 @@ typedef struct option {
     const char *value;   /* what --help calls the value: "RATE" */
     const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages */
     const char *choices; /* OPTION_CHOICE: "octave|decade|all"; OPTION_INTEGER: "1-5", the least and
-                            the most, NULL: any; OPTION_QUANTITY: "positive" refuses 0 and less,
-                            "not negative" less */
+                            the most, NULL: any; OPTION_QUANTITY: the same as "-90..90" in `unit`,
+                            or "positive", which refuses 0 and less, or "not negative" */
     const char *help;    /* a clause */
     size_t offset;       /* of the value in the settings of the group */
 } option;

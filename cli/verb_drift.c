@@ -54,11 +54,11 @@ static const option place_option_table[] = {
      offsetof(drift_options, latitude)},
     {"height", 0, OPTION_QUANTITY, "LENGTH", "m", NULL, "above the ellipsoid; default 0m",
      offsetof(drift_options, height)},
-    {"roll", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL, "default 0deg: level",
+    {"roll", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "default 0deg: level",
      offsetof(drift_options, roll)},
-    {"pitch", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL, "default 0deg: level",
+    {"pitch", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "default 0deg: level",
      offsetof(drift_options, pitch)},
-    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", NULL, "from north to east; default 0deg",
+    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "from north to east; default 0deg",
      offsetof(drift_options, yaw)},
 };
 

@@ -39,8 +39,9 @@ typedef enum imk_filter_flicker {
 typedef struct imk_filter_settings {
     uint32_t cookie;
     imk_filter_flicker flicker;
-    double from, to; /**< averaging times over which the filter's model has to hold [s], from <= to:
-                          from the update interval of its aiding to the longest time without */
+    /** Averaging times over which the filter's model has to hold [s], 1e-9 … 1e9, from <= to:
+     *  from the update interval of its aiding to the longest time without. */
+    double from, to;
 } imk_filter_settings;
 /** A random walk, matched over 1 s … 1000 s. */
 IMK_API imk_filter_settings imk_filter_noise_default(void);
@@ -103,8 +104,8 @@ IMK_API double imk_filter_noise_allan_variance(const imk_filter_noise *noise, do
  *  density Q_c. Either may be NULL. */
 IMK_API void imk_filter_continuous(const imk_filter_noise *noise, double *f, double *q_c);
 
-/** Exact discretisation over dt [s] > 0: x[k+1] = Phi x[k] + w[k], w of covariance Q_d. For a state
- *  of time T, with a = dt/T:
+/** Exact discretisation over dt [s], 1e-9 … 1e9: x[k+1] = Phi x[k] + w[k], w of covariance Q_d.
+ *  For a state of time T, with a = dt/T:
  *
  *      Phi_0b = T (1 - e^-a)       Q_00 = N^2 dt + sum q^2 T^3 [a - 2 (1 - e^-a) + (1 - e^-2a)/2]
  *      Phi_bb = e^-a               Q_0b = q^2 T^2 (1 - e^-a)^2/2,   Q_bb = q^2 T (1 - e^-2a)/2

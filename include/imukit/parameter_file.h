@@ -57,9 +57,9 @@ typedef struct imk_parameter_notes {
 typedef struct imk_parameter_settings {
     uint32_t cookie;
     imk_parameter_format format; /**< UNKNOWN: detect (reading); needed for writing */
-    /** [Hz], 0: not given. Needed where a format states noise per sample (Gazebo without
-     *  update_rate) or an infinite correlation time means white noise per sample (gnss-ins-sim,
-     *  NaveGo). In a VINS file it says that the numbers are per sample. */
+    /** [Hz], 1e-9 … 1e9; 0: not given. Needed where a format states noise per sample (Gazebo
+     *  without update_rate) or an infinite correlation time means white noise per sample
+     *  (gnss-ins-sim, NaveGo). In a VINS file it says that the numbers are per sample. */
     double rate;
     /** Of formats that leave it open: VINS (the numbers are densities, not per sample) and MATLAB
      *  (instead of what imuSensor makes of them). UNSTATED: as the format's program takes it; where

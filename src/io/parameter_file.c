@@ -231,8 +231,9 @@ static imk_status check_settings(const imk_parameter_settings *settings, imk_err
     if (!settings || settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
                              "settings from imk_parameter_settings_default()");
-    if (!(settings->rate >= 0 && settings->rate <= 1e9))
-        return imk_error_set(error, IMK_ERROR_RANGE, "rate", "", "a positive sample rate");
+    if (settings->rate != 0 && !(settings->rate >= 1e-9 && settings->rate <= 1e9))
+        return imk_error_set(error, IMK_ERROR_RANGE, "rate", "",
+                             "a sample rate from 1e-9 Hz to 1e9 Hz");
     if ((int)settings->format < 0 || (int)settings->format >= FORMATS)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "format", "", "one of the formats");
     return IMK_OK;

@@ -189,9 +189,9 @@ static imk_status check(const imk_triad *triad, int axis, const imk_filter_setti
                              "settings from imk_filter_noise_default()");
     if (axis < 0 || axis >= triad->axis_count)
         return imk_error_set(error, IMK_ERROR_RANGE, "axis", "", "an axis of the triad");
-    if (!(settings->from > 0 && settings->to >= settings->from && settings->to < HUGE_VAL))
+    if (!(settings->from >= 1e-9 && settings->to >= settings->from && settings->to <= 1e9))
         return imk_error_set(error, IMK_ERROR_RANGE, "from", "",
-                             "two averaging times, the shorter first");
+                             "two averaging times from 1e-9 s to 1e9 s, the shorter first");
     if ((unsigned)settings->flicker > IMK_FILTER_FLICKER_LEFT_OUT)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "flicker", "", "one of the enumeration");
     return IMK_OK;

@@ -212,16 +212,13 @@ static void test_given_is_no_value(void **state)
     check_message("$I drift tactical -n 18446744073709551615", 2,
                   "imukit drift: error: --monte-carlo 18446744073709551615: expected 1 to "
                   "4294967295\n" TRY("drift"));
-    static const char *const zeros[] = {"allan x.csv --rate 0Hz",
-                                        "identify --plan AHRS --duration 0s",
+    static const char *const zeros[] = {"identify --plan AHRS --duration 0s",
                                         "spectrum x.csv --resolution 0Hz",
                                         "spectrum x.csv --to 0Hz",
                                         "calibrate x.csv --minimum 0s",
                                         "evaluate x.csv --minimum 0s",
                                         "compensate x.csv AHRS --rate-limit 0deg/s",
                                         "compensate x.csv AHRS --force-limit '0 g'",
-                                        "convert m.yaml f.yaml --to filter --tau-from 0s",
-                                        "convert m.yaml f.yaml --to filter --tau-to 0s",
                                         "physics ring_laser -d 1s --step 0s"};
     char line[200];
     for (size_t i = 0; i < sizeof zeros / sizeof zeros[0]; i++) {
@@ -242,12 +239,47 @@ static void test_given_is_no_value(void **state)
     }
 }
 
+/* Numbers beyond a range, in the unit in which the sentence says it. */
+static void test_ranges(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *words, *says;
+    } cases[] = {
+        {"allan x.csv --rate 0Hz", "--rate 0Hz: expected 1e-9Hz to 1e9Hz"},
+        {"convert m.yaml f.yaml --to filter --rate 1e-320Hz",
+         "--rate 1e-320Hz: expected 1e-9Hz to 1e9Hz"},
+        {"identify --plan tactical --rate 1e308Hz", "--rate 1e308Hz: expected 1e-9Hz to 1e9Hz"},
+        {"convert m.yaml f.yaml --to filter --tau-from 1e-320s",
+         "--tau-from 1e-320s: expected 1e-9s to 1e9s"},
+        {"convert m.yaml f.yaml --to filter --tau-from 0s",
+         "--tau-from 0s: expected 1e-9s to 1e9s"},
+        {"convert m.yaml f.yaml --to filter --tau-to 1e308s",
+         "--tau-to 1e308s: expected 1e-9s to 1e9s"},
+        {"convert x.csv y.csv --gravity-free --latitude 45deg --yaw 1e20deg",
+         "--yaw 1e20deg: expected -36000deg to 36000deg"},
+        {"simulate AHRS --rate 1Hz --duration 2s --pitch=-1e3rad",
+         "--pitch -1e3rad: expected -36000deg to 36000deg"},
+        {"calibrate x.csv --placement 1e20deg", "--placement 1e20deg: expected 0deg to 180deg"},
+        {"drift AHRS --roll 36001deg", "--roll 36001deg: expected -36000deg to 36000deg"},
+    };
+    char line[200], sentence[200];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        snprintf(line, sizeof line, "$I %s", cases[i].words);
+        snprintf(sentence, sizeof sentence, "error: %s\n", cases[i].says);
+        assert_int_equal(run(line), 2);
+        check_contains(err, sentence, line);
+    }
+    assert_int_equal(run("$I simulate AHRS --rate 1Hz --duration 2s --yaw=-36000deg"), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_newcomer),      cmocka_unit_test(test_help_of_every_verb),
         cmocka_unit_test(test_wrong_usage),   cmocka_unit_test(test_units_of_quantities),
         cmocka_unit_test(test_whole_numbers), cmocka_unit_test(test_given_is_no_value),
+        cmocka_unit_test(test_ranges),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

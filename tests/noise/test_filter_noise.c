@@ -213,6 +213,11 @@ static void test_rest(void **state)
     assert_string_equal(error.field, "axis");
     settings.to = 0.5;
     CHECK_STATUS(imk_filter_noise_of(&model.gyro, 0, &settings, &noise, &error), IMK_ERROR_RANGE);
+    settings.to = 1e308;
+    CHECK_STATUS(imk_filter_noise_of(&model.gyro, 0, &settings, &noise, &error), IMK_ERROR_RANGE);
+    settings.from = 1e-320;
+    settings.to = 1e3;
+    CHECK_STATUS(imk_filter_noise_of(&model.gyro, 0, &settings, &noise, &error), IMK_ERROR_RANGE);
     memset(&settings, 0, sizeof settings);
     CHECK_STATUS(imk_filter_noise_of(&model.gyro, 0, &settings, &noise, &error),
                  IMK_ERROR_UNINITIALISED);
