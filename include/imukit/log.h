@@ -209,13 +209,15 @@ IMK_API void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup l
 /** Add rows from one array per column, SI. @param executor formats blocks in parallel, beside the
  *  compression and writing of the blocks before; may be NULL. The bytes do not depend on it, nor on
  *  how the rows are divided among calls.
- *  @return IMK_ERROR_WRITE or IMK_ERROR_MEMORY, possibly a call late; commit has the reason */
+ *  @return IMK_ERROR_WRITE or IMK_ERROR_MEMORY, possibly a call late;
+ *          IMK_ERROR_NOT_FINITE (a finite value that is infinite in the column's unit); commit has
+ *          the reason */
 IMK_API imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *const *columns,
                                  const imk_executor *executor);
 /** Finish: the file appears. On error nothing appears. Frees the writer.
  *  @return IMK_ERROR_WRITE (error.field: the path, error.found: the system's reason),
  *          IMK_ERROR_CONFLICT (another row count than announced, where it matters),
- *          IMK_ERROR_MEMORY */
+ *          IMK_ERROR_NOT_FINITE (error.field: column and row), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_commit(imk_log_writer *writer, imk_error *error);
 /** Give up: nothing appears. Frees the writer; NULL is allowed. */
 IMK_API void imk_log_abandon(imk_log_writer *writer);

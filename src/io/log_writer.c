@@ -11,6 +11,7 @@
 #include "io/output_file_internal.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,12 +34,15 @@ struct imk_log_writer {
     imk_output_file *file;
     imk_output_file *names; /* the side file of a .npy */
     imki_row_format format;
+    imk_log_column *column;
     char *header; /* of a CSV */
     bool begun;   /* the header is written */
     uint64_t rows, row_count;
     wave waves[2];
     int filling; /* the wave that is formatted next; the other one waits to be written */
     imk_status status;
+    size_t beyond_column; /* of a value that its unit cannot hold, when status is NOT_FINITE */
+    uint64_t beyond_row;
 };
 
 static bool ends_with(const char *text, size_t length, const char *ending)
@@ -167,6 +171,11 @@ imk_status imk_log_create(const char *path, size_t column_count, const imk_log_c
     imk_status status =
         set_format(&made->format, column_count, columns, precision, decimals, error);
     if (status == IMK_OK) {
+        made->column = malloc(column_count * sizeof *columns);
+        status = made->column ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
+    }
+    if (status == IMK_OK) {
+        memcpy(made->column, columns, column_count * sizeof *columns);
         made->format.binary = is_npy(path);
         made->row_count = row_count;
         status = open_files(made, path, column_count, columns, error);
@@ -255,6 +264,34 @@ static void work(void *context, size_t item)
                     &writer->waves[writer->filling].block[item - 1]);
 }
 
+/* A number that is finite must be so in the unit written, too. */
+static void check_units(imk_log_writer *writer, size_t rows, const double *const *columns)
+{
+    for (size_t c = 0; c < writer->format.column_count && writer->status == IMK_OK; c++) {
+        const double scale = writer->column[c].unit.scale;
+        const double most = DBL_MAX * scale * (1.0 - 1e-12); /* rounding left aside */
+        if (scale >= 1.0 || writer->column[c].label)
+            continue;
+        for (size_t row = 0; row < rows && writer->status == IMK_OK; row++)
+            if (fabs(columns[c][row]) > most && fabs(columns[c][row]) <= DBL_MAX) {
+                writer->status = IMK_ERROR_NOT_FINITE;
+                writer->beyond_column = c;
+                writer->beyond_row = writer->rows + row + 1;
+            }
+    }
+}
+
+static imk_status refuse_unit(const imk_log_writer *writer, imk_error *error)
+{
+    const imk_log_column *column = &writer->column[writer->beyond_column];
+    char field[96], found[128];
+    snprintf(field, sizeof field, "%s, row %llu", column->name,
+             (unsigned long long)writer->beyond_row);
+    snprintf(found, sizeof found, "\"%s\" is too small a unit: the number would be infinite",
+             column->unit.text);
+    return imk_error_set(error, IMK_ERROR_NOT_FINITE, field, found, "write a larger one");
+}
+
 imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *const *columns,
                          const imk_executor *executor)
 {
@@ -266,6 +303,7 @@ imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *cons
     const size_t wished = 1 + threads * BLOCKS_PER_THREAD;
     const size_t blocks_max = wished < BLOCKS_MAX ? wished : BLOCKS_MAX;
     begin(writer);
+    check_units(writer, rows, columns);
     for (size_t first = 0; first < rows && writer->status == IMK_OK;) {
         size_t blocks = (rows - first + block_rows - 1) / block_rows;
         blocks = blocks < blocks_max ? blocks : blocks_max;
@@ -304,6 +342,7 @@ static void release(imk_log_writer *writer)
         for (size_t block = 0; block < BLOCKS_MAX; block++)
             free(writer->waves[i].block[block].bytes);
     free(writer->header);
+    free(writer->column);
     free(writer);
 }
 
@@ -314,6 +353,8 @@ imk_status imk_log_commit(imk_log_writer *writer, imk_error *error)
     imk_status status = IMK_OK;
     if (writer->status == IMK_ERROR_MEMORY)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    else if (writer->status == IMK_ERROR_NOT_FINITE)
+        status = refuse_unit(writer, error);
     else if (writer->format.binary)
         status = finish_npy(writer, error);
     /* Both files are made ready before the first appears, so that the second does not fail. A

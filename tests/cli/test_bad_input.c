@@ -148,6 +148,19 @@ static void test_gaps_kept(void **state)
     }
 }
 
+/* A finite number stays one in the unit written, or is refused by column and row. */
+static void test_unit_too_small(void **state)
+{
+    (void)state;
+    put("late.csv", "time [s],gyro_x [deg/s]\n0,1\n1e300,2\n2e300,3\n");
+    check_message(
+        "$I convert late.csv b.csv --to-time-unit ns", 1,
+        "imukit convert: error: time, row 2: \"ns\" is too small a unit: the number would "
+        "be infinite; write a larger one\n");
+    assert_int_equal(run("$I convert late.csv b.csv --to-time-unit s && cmp late.csv b.csv"), 0);
+    assert_int_equal(sweep(), 2);
+}
+
 /* A number whose square overflows, and an infinity, are told and left out by identify too, whose
  * results are those of the log where the cell is empty. */
 static void test_no_readings(void **state)
@@ -390,12 +403,19 @@ static void test_unwritable_outputs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bad_logs),           cmocka_unit_test(test_refused_logs),
-        cmocka_unit_test(test_gaps_kept),          cmocka_unit_test(test_no_readings),
-        cmocka_unit_test(test_few_finite),         cmocka_unit_test(test_rows_without_end),
-        cmocka_unit_test(test_memory_is_limited),  cmocka_unit_test(test_grids),
-        cmocka_unit_test(test_next_command),       cmocka_unit_test(test_gap_policies),
-        cmocka_unit_test(test_bridging_is_linear), cmocka_unit_test(test_unwritable_outputs),
+        cmocka_unit_test(test_bad_logs),
+        cmocka_unit_test(test_refused_logs),
+        cmocka_unit_test(test_gaps_kept),
+        cmocka_unit_test(test_no_readings),
+        cmocka_unit_test(test_few_finite),
+        cmocka_unit_test(test_rows_without_end),
+        cmocka_unit_test(test_unit_too_small),
+        cmocka_unit_test(test_memory_is_limited),
+        cmocka_unit_test(test_grids),
+        cmocka_unit_test(test_next_command),
+        cmocka_unit_test(test_gap_policies),
+        cmocka_unit_test(test_bridging_is_linear),
+        cmocka_unit_test(test_unwritable_outputs),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

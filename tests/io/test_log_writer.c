@@ -603,6 +603,29 @@ static void refusals(void **state)
 }
 
 /* A full device: the error comes, at the latest at commit, with the reason. */
+/* A finite number that its unit makes infinite is refused by column and row; infinities stay. */
+static void number_beyond_its_unit(void **state)
+{
+    (void)state;
+    const imk_log_column columns[] = {column_of("x", "m", 1.0, 0.0),
+                                      column_of("time", "ns", 1e-9, 0.0)};
+    const char *const names[] = {"beyond.csv", "beyond.npy"};
+    const double x[] = {1.0, 1e308, 1e308}, good[] = {1.0, (double)INFINITY, 1e298},
+                 bad[] = {1.0, (double)NAN, -1e300};
+    for (int k = 0; k < 2; k++) {
+        const char *path = path_of(names[k]);
+        imk_log_writer *writer;
+        imk_error error;
+        CHECK_OK(imk_log_create(path, 2, columns, IMK_LOG_SHORTEST, NULL, 0, &writer, &error));
+        CHECK_OK(imk_log_write(writer, 3, (const double *const[]){x, good}, NULL));
+        CHECK_STATUS(imk_log_write(writer, 3, (const double *const[]){x, bad}, NULL),
+                     IMK_ERROR_NOT_FINITE);
+        CHECK_STATUS(imk_log_commit(writer, &error), IMK_ERROR_NOT_FINITE);
+        assert_string_equal(error.field, "time, row 6");
+        assert_int_equal(access(path, F_OK), -1);
+    }
+}
+
 static void full_device(void **state)
 {
     (void)state;
@@ -671,6 +694,7 @@ int main(void)
         cmocka_unit_test(npy_heads),
         cmocka_unit_test(reader_and_writer_agree),
         cmocka_unit_test(refusals),
+        cmocka_unit_test(number_beyond_its_unit),
         cmocka_unit_test(full_device),
         cmocka_unit_test(abandoned),
     };
