@@ -95,6 +95,17 @@ static int set_integer(const option *o, const char *text, option_integer *target
     return -1;
 }
 
+/* "0.1..0.9". @return the dots, NULL without bounds */
+static const char *read_bounds(const option *o, double *least, double *most)
+{
+    const char *dots = o->choices ? strstr(o->choices, "..") : NULL;
+    if (dots) {
+        imk_decimal_parse(o->choices, dots, least);
+        imk_decimal_parse(dots + 2, dots + strlen(dots), most);
+    }
+    return dots;
+}
+
 static int set_fraction(const option *o, const char *text, double *target)
 {
     const char *end = text + strlen(text);
@@ -108,23 +119,26 @@ static int set_fraction(const option *o, const char *text, double *target)
         return command_misused("--%s %s: expected a fraction between 0 and 1, such as 0.95 or 95%%",
                                o->name, text);
     *target = value;
-    return -1;
+    double least = 0, most = 1;
+    const char *dots = read_bounds(o, &least, &most);
+    if (value >= least && value <= most)
+        return -1;
+    return command_misused("--%s %s: expected a fraction from %.*s to %s", o->name, text,
+                           (int)(dots - o->choices), o->choices, dots + 2);
 }
 
 /* "1e-9..1e9", in the option's unit. */
 static int check_quantity(const option *o, const char *text, double value)
 {
-    const char *end = o->choices + strlen(o->choices), *dots = strstr(o->choices, "..");
     const imk_unit unit = imk_unit_of(o->unit);
     double least = 0, most = 0;
+    const char *dots = read_bounds(o, &least, &most);
     const bool zero_fits = strcmp(o->choices, "not negative") == 0;
     if (!dots)
         return value > 0 || (zero_fits && value == 0)
                    ? -1
                    : command_misused("--%s %s: expected %s", o->name, text,
                                      zero_fits ? "0 or more" : "more than 0");
-    imk_decimal_parse(o->choices, dots, &least);
-    imk_decimal_parse(dots + 2, end, &most);
     if (value >= least * unit.scale + unit.offset && value <= most * unit.scale + unit.offset)
         return -1;
     return command_misused("--%s %s: expected %.*s%s to %s%s", o->name, text,

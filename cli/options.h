@@ -35,7 +35,8 @@ typedef struct option {
     const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages */
     const char *choices; /* OPTION_CHOICE: "octave|decade|all"; OPTION_INTEGER: "1-5", the least and
                             the most, NULL: any; OPTION_QUANTITY: the same as "-90..90" in `unit`,
-                            or "positive", which refuses 0 and less, or "not negative" */
+                            or "positive", which refuses 0 and less, or "not negative";
+                            OPTION_FRACTION: "0.1..0.9" */
     const char *help;    /* a clause */
     size_t offset;       /* of the value in the settings of the group */
 } option;
@@ -50,6 +51,9 @@ typedef struct option_group {
 typedef struct example {
     const char *command, *meaning;
 } example;
+
+/* OPTION_FRACTION of a confidence: beyond, its quantiles have no digits. */
+#define CONFIDENCE_RANGE "0.001..0.999999999"
 
 /* OPERANDS_MAX is room for the operands of most verbs; one that takes more makes its own. */
 enum { OPERANDS_MAX = 8, GROUPS_MAX = 4 };

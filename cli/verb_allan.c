@@ -17,7 +17,7 @@ static const option allan_option_table[] = {
      "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, then 32 "
      "to the octave), every one, or a list such as 1,10,100 in seconds",
      offsetof(allan_options, tau)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
+    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
      "of the two-sided intervals; default 0.95", offsetof(allan_options, confidence)},
     {"edf", 0, OPTION_CHOICE, "CHOICE", NULL, "exact|greenhall-riley",
      "degrees of freedom behind the intervals: of the sampled process (the default), or by the "

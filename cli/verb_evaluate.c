@@ -21,7 +21,7 @@ static const option result_options[] = {
      offsetof(evaluate_options, plot)},
     {"levels", 0, OPTION_FLAG, NULL, NULL, NULL, "print the mean readings of every level",
      offsetof(evaluate_options, levels)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
+    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
      "of intervals, and of the coverage; default 0.95", offsetof(evaluate_options, confidence)},
     {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
      offsetof(evaluate_options, json)},

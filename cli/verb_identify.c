@@ -29,7 +29,7 @@ static const option identify_option_table[] = {
     {"truth", 0, OPTION_FILE, "MODEL", NULL, NULL,
      "print these true values beside the estimates, for logs that were simulated",
      offsetof(identify_options, truth)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
+    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
      "of intervals and bounds; default 0.95", offsetof(identify_options, confidence)},
     {"significance", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
      "chance that a term which is not there is called present; default 0.01",

@@ -33,7 +33,7 @@ static const option spectrum_option_table[] = {
     {"to", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "positive",
      "highest; set it below the sensor's own filter; default: half the sample rate",
      offsetof(spectrum_options, to)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
+    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
      "of the two-sided intervals; default 0.95", offsetof(spectrum_options, confidence)},
     {"output", 'o', OPTION_OUTPUT, "FILE.csv", NULL, NULL,
      "write the densities (100 per decade, one line per channel and frequency, SI) here; - is "

@@ -164,7 +164,8 @@ typedef enum imk_allan_bias_removal {
 } imk_allan_bias_removal;
 
 /** Interval of the deviation at two-sided confidence (0.683, 0.95, …) for a variance with edf
- *  degrees of freedom: deviation * sqrt(edf / chi2 quantile). */
+ *  degrees of freedom: deviation * sqrt(edf / chi2 quantile). Above a confidence of 0.999999999 the
+ *  lower end loses its digits, and at the next number below 1 it is NaN. */
 IMK_API void imk_allan_interval(double deviation, double edf, double confidence, double *lower,
                                 double *upper);
 

@@ -96,7 +96,8 @@ IMK_API imk_status imk_spectrum_estimate(const imk_spectrum_settings *settings, 
                                          double *density, double *degrees, double *harmonic,
                                          void *workspace, size_t workspace_size, imk_error *error);
 
-/** Interval of a density with chi-square `degrees`, at two-sided confidence. */
+/** Interval of a density with chi-square `degrees`, at two-sided confidence, which is to be at most
+ *  0.999999999 as in imk_allan_interval(). */
 IMK_API void imk_spectrum_interval(double density, double degrees, double confidence, double *lower,
                                    double *upper);
 

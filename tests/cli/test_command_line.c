@@ -261,6 +261,14 @@ static void test_ranges(void **state)
         {"simulate AHRS --rate 1Hz --duration 2s --pitch=-1e3rad",
          "--pitch -1e3rad: expected -36000deg to 36000deg"},
         {"calibrate x.csv --placement 1e20deg", "--placement 1e20deg: expected 0deg to 180deg"},
+        {"allan x.csv --confidence 0.9999999999999999",
+         "--confidence 0.9999999999999999: expected a fraction from 0.001 to 0.999999999"},
+        {"spectrum x.csv --confidence 99.99999999%",
+         "--confidence 99.99999999%: expected a fraction from 0.001 to 0.999999999"},
+        {"evaluate x.csv --confidence 1e-300",
+         "--confidence 1e-300: expected a fraction from 0.001 to 0.999999999"},
+        {"identify x.csv --confidence 0.9999999999",
+         "--confidence 0.9999999999: expected a fraction from 0.001 to 0.999999999"},
         {"drift AHRS --roll 36001deg", "--roll 36001deg: expected -36000deg to 36000deg"},
     };
     char line[200], sentence[200];
