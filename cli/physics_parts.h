@@ -57,7 +57,8 @@ enum { PHYSICS_CURVE_POINTS = 4000 };
 /* A run to look at: statistics of the outputs, and means for a picture. */
 typedef struct physics_run {
     uint64_t samples, stride; /* samples to a point of the picture */
-    double mean[IMK_INSTRUMENT_OUTPUTS_MAX], deviation[IMK_INSTRUMENT_OUTPUTS_MAX];
+    double mean[IMK_INSTRUMENT_OUTPUTS_MAX];
+    double deviation[IMK_INSTRUMENT_OUTPUTS_MAX]; /* NaN: of one sample */
     double last[IMK_INSTRUMENT_OUTPUTS_MAX]; /* at the end: mean of the last 1 % of the samples */
     size_t points;
     double *time, *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /* [s], SI; PHYSICS_CURVE_POINTS + 1 each */

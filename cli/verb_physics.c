@@ -221,7 +221,10 @@ static void print_run(const physics *p, const physics_run *r)
         text_table_row(&table);
         text_table_set(&table, 0, "%s", instrument->outputs[i].name);
         text_table_set(&table, 1, "%.8g", (r->mean[i] - unit.offset) / unit.scale);
-        text_table_set(&table, 2, "%.5g", r->deviation[i] / unit.scale);
+        if (r->samples > 1)
+            text_table_set(&table, 2, "%.5g", r->deviation[i] / unit.scale);
+        else
+            text_table_set(&table, 2, "-");
         text_table_set(&table, 3, "%.8g", (r->last[i] - unit.offset) / unit.scale);
         text_table_set(&table, 4, "%s", strcmp(unit.text, "1") == 0 ? "" : unit.text);
     }

@@ -126,6 +126,25 @@ static void test_log(void **state)
     sweep();
 }
 
+/* One sample has no scatter: "-" and null; and a warning cannot be judged by it. */
+static void test_one_sample(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"ring_laser", "mems_accelerometer"};
+    char line[200];
+    for (int i = 0; i < 2; i++) {
+        snprintf(line, sizeof line, "$I physics %s -d 0.2s --output-rate 5Hz -o a.csv", names[i]);
+        assert_int_equal(run(line), 0);
+        assert_string_equal(err, "");
+        check_contains(out, "   -  ", line);
+        assert_null(strstr(out, "nan"));
+        snprintf(line, sizeof line, "$I physics %s -d 0.2s --output-rate 5Hz --json", names[i]);
+        assert_int_equal(run(line), 0);
+        check_contains(out, "\"standard_deviation\": {\"value\": null, ", line);
+    }
+    sweep();
+}
+
 /* A sine starts at 0 and has whole cycles: its mean is 0, its root mean square a/sqrt(2), less
  * sinc(f/rate) for the mean over a sample. */
 static void test_sine(void **state)
@@ -514,6 +533,7 @@ int main(void)
         cmocka_unit_test(test_list),
         cmocka_unit_test(test_every_instrument),
         cmocka_unit_test(test_log),
+        cmocka_unit_test(test_one_sample),
         cmocka_unit_test(test_sine),
         cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_temperature_and_signals),
