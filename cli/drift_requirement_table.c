@@ -165,6 +165,19 @@ static void set_alone(text_table *table, size_t column, double alone)
         text_table_set(table, column, "-");
 }
 
+/* What a source must become; a factor of 0 is below what the search for it can tell. */
+static void set_needed(text_table *table, const drift_case *one, const json_t *model, size_t source,
+                       double factor)
+{
+    char value[CELL_SIZE];
+    value_text(one, model, source, factor, value, sizeof value);
+    text_table_set(table, 2, "%s", factor > 0 ? value : "-");
+    if (factor > 0)
+        text_table_set(table, 3, "%.3g times smaller", 1 / factor);
+    else
+        text_table_set(table, 3, "too small to tell");
+}
+
 /* Terms that must become better, the one that needs most first. */
 static size_t improvements(const drift_case *one, const imk_drift_requirement *need, size_t *order)
 {
@@ -211,9 +224,7 @@ text_table drift_answer_table(const drift_result *r, const drift_answer *answer)
         text_table_set(&table, 0, "%s", one->analysis->source[order[i]].text);
         value_text(one, model, order[i], 1, value, sizeof value);
         text_table_set(&table, 1, "%s", value);
-        value_text(one, model, order[i], need->source[order[i]], value, sizeof value);
-        text_table_set(&table, 2, "%s", value);
-        text_table_set(&table, 3, "%.3g times smaller", 1 / need->source[order[i]]);
+        set_needed(&table, one, model, order[i], need->source[order[i]]);
         if (alone)
             set_alone(&table, 4, need->alone[order[i]]);
     }

@@ -8,6 +8,9 @@
 
 enum { FIGURES = IMK_WISH_HEADING + 1 };
 
+/* Of any figure, SI: beyond what sensors do and what the Earth has room for. */
+static const double least_goal = 1e-9, largest_goal = 1e9;
+
 static int refuse(const char *text, const char *why)
 {
     return command_misused("--want \"%s\": %s; write --want \"CEP 1 nmi @ 1h\"", text, why);
@@ -63,6 +66,10 @@ int drift_want_parse(const char *text, drift_wished *want)
                  (int)(at - value < 40 ? at - value : 40), value,
                  imk_dimension_name(imk_unit_of(unit).dimension),
                  imk_dimension_examples(imk_unit_of(unit).dimension));
+        return refuse(text, why);
+    }
+    if (!(want->goal >= least_goal && want->goal <= largest_goal)) {
+        snprintf(why, sizeof why, "a figure from 1e-9 to 1e9 %s is due", unit);
         return refuse(text, why);
     }
     if (!quantity(at + 1, at + 1 + strlen(at + 1), "s", &want->time, NULL))

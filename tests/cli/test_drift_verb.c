@@ -194,6 +194,10 @@ static void test_devices(void **state)
     json_decref(document);
     check_message("$I drift navigation --want 'R95 10 km @ 1h'", 0, "");
     check_contains(out, "Wanted: R95 10.0 km after 1 h. Met:", "verdict");
+    /* 1e18 times smaller is beyond what the search tells */
+    assert_int_equal(run("$I drift control --want 'CEP 1e-9 m @ 24h' 2>/dev/null"), 0);
+    check_contains(out, "too small to tell", "a wish of a nanometre");
+    assert_null(strstr(out, "inf times"));
 }
 
 /* ---- runs ------------------------------------------------------------------------------------
@@ -324,6 +328,9 @@ static void test_messages(void **state)
         {"$I drift tactical --want 'CPE 1 nmi @ 1h'",
          "--want \"CPE 1 nmi @ 1h\": \"CPE\" is no figure (did you mean CEP?); CEP, R95, DRMS, "
          "height, velocity, tilt and heading are; write --want \"CEP 1 nmi @ 1h\""},
+        {"$I drift tactical --want 'CEP 1e-30 nmi @ 1h'",
+         "--want \"CEP 1e-30 nmi @ 1h\": a figure from 1e-9 to 1e9 m is due; write --want \"CEP 1 "
+         "nmi @ 1h\""},
         {"$I drift tactical --times 1min,foo",
          "--times \"1min,foo\": \"foo\" is no positive time with a unit; write --times \"1min, "
          "10min, 1h\""},
