@@ -46,6 +46,8 @@ static int read_shard(const char *text, uint64_t *index, uint64_t *count)
         strchr(text, '-'))
         return command_misused("--shard %s: expected I/N, such as 3/10: the third of ten parts",
                                text);
+    if (n > UINT32_MAX) /* as many as runs; what is no number of 64 bits is read as the largest */
+        return command_misused("--shard %s: expected at most 4294967295 parts", text);
     *index = i;
     *count = n;
     return -1;

@@ -345,6 +345,8 @@ static void test_messages(void **state)
         {"$I drift tactical navigation -n 10", "--monte-carlo is of one model at a time"},
         {"$I drift tactical -n 10 --shard 4/3 -o a.h5",
          "--shard 4/3: expected I/N, such as 3/10: the third of ten parts"},
+        {"$I drift tactical -n 10 --shard 1/18446744073709551616 -o a.h5",
+         "--shard 1/18446744073709551616: expected at most 4294967295 parts"},
         {"$I drift tactical -n 10 --shard 1/3",
          "--shard makes a part for imukit merge: add -o PART.h5"},
         {"$I drift tactical -o a.h5",
