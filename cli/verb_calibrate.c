@@ -39,7 +39,7 @@ static const option result_options[] = {
     {"want", 0, OPTION_TEXT, "WISHES", NULL, NULL,
      "with --plan: 1 sigma to reach, such as \"accel.scale_factor 50 ppm, gyro.bias 5 deg/h\"",
      offsetof(calibrate_options, want)},
-    {"soak", 0, OPTION_QUANTITY, "TIME", "s", NULL,
+    {"soak", 0, OPTION_QUANTITY, "TIME", "s", "0..1e6",
      "with --plan, thermal: held at each temperature before it is measured; default 10min",
      offsetof(calibrate_options, soak)},
     {"anyway", 0, OPTION_FLAG, NULL, NULL, NULL,
@@ -237,8 +237,8 @@ static int check(const calibrate_options *o)
                                "out");
     if (o->want && !o->plan)
         return command_misused("--want is of --plan");
-    if (!isnan(o->soak) && (!o->plan || !(o->soak >= 0)))
-        return command_misused("--soak is of --plan, 0 s or more");
+    if (!isnan(o->soak) && !o->plan)
+        return command_misused("--soak is of --plan");
     return command_check_plot(o->plot);
 }
 

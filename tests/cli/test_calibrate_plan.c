@@ -150,6 +150,8 @@ static void temperatures_are_soaked(void **state)
     }
     assert_int_equal(run("$I calibrate t.csv -p thermal --soak 2min"), 2);
     check_contains(err, "--soak is of --plan", "soak");
+    check_message("$I calibrate --plan unit.yaml -p thermal --soak 1e308s", 2,
+                  "imukit calibrate: error: --soak 1e308s: expected 0s to 1e6s\n" TRY("calibrate"));
     sweep();
 }
 
