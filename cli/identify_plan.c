@@ -116,13 +116,34 @@ static int grant(identify_plan *p, plan_wish *wish)
     return -1;
 }
 
+/* The bounds are known of so many samples (identify_plan.h). */
+static const double fewest_samples = 256, most_samples = 1e12;
+
+/* Is there a statement about the planned record, or about one of those that are always shown? What
+ * is wanted finds its own length. */
+static int check_length(const identify_plan_request *request)
+{
+    const double day = 86400, planned = request->duration > 0 ? request->duration : day;
+    const double samples = planned * request->rate;
+    const bool finds_length = request->want && !(request->duration > 0);
+    if (finds_length || (samples >= fewest_samples && samples <= most_samples))
+        return -1;
+    return command_misused("--plan: a record of %g s at %g Hz has not the 256 to 1e12 samples that "
+                           "are due; %s",
+                           planned, request->rate,
+                           request->duration > 0 ? "change --duration or --rate"
+                                                 : "add another --duration");
+}
+
 static int set_up(identify_plan *p)
 {
     const identify_plan_request *request = p->request;
     if (!(request->rate > 0))
         return command_misused(
             "--plan: the sample rate of the record is due, such as --rate 100Hz");
-    int code = command_model(request->model, &p->model, NULL);
+    int code = check_length(request);
+    if (code < 0)
+        code = command_model(request->model, &p->model, NULL);
     if (code >= 0)
         return code;
     p->settings = imk_bounds_default();

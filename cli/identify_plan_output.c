@@ -82,7 +82,6 @@ static void print_cells(identify_plan *p)
 {
     double duration[DURATIONS];
     const size_t count = durations(p, duration);
-    static plan_cell none;
     plan_cell cell[DURATIONS][PLAN_ROWS_MAX];
     bool told[DURATIONS];
     for (size_t d = 0; d < count; d++)
@@ -104,7 +103,7 @@ static void print_cells(identify_plan *p)
                 put_cell(&table, 3 + d,
                          row->time ? &(plan_cell){cell[d][r].relative, 1} : &cell[d][r]);
             else
-                put_cell(&table, 3 + d, &none);
+                text_table_set(&table, 3 + d, "-"); /* too short or too long for any statement */
     }
     text_table_print(&table, stdout);
     text_table_free(&table);

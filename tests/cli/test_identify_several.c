@@ -209,6 +209,16 @@ static void test_plan(void **state)
                      0);
     check_contains(out, "bias_instability 5%", "plan");
     check_contains(out, "as planned", "plan");
+    /* Ten minutes are too short for a statement. */
+    assert_int_equal(run("$I identify --plan tactical --rate 0.1Hz | grep gyro.angle_random_walk"),
+                     0);
+    check_contains(out, "deg/sqrt(h)    -  ", "plan");
+    check_message("$I identify --plan tactical --rate 1e-9Hz", 2,
+                  "imukit identify: error: --plan: a record of 86400 s at 1e-09 Hz has not the 256 "
+                  "to 1e12 samples that are due; add another --duration\n" TRY("identify"));
+    check_message("$I identify --plan tactical --rate 100Hz --duration 1e308s", 2,
+                  "imukit identify: error: --plan: a record of 1e+308 s at 100 Hz has not the 256 "
+                  "to 1e12 samples that are due; change --duration or --rate\n" TRY("identify"));
     check_message("$I identify run1.npy --plan model.yaml --rate 100Hz", 2,
                   "imukit identify: error: --plan is for a record that is not made yet: leave the "
                   "log out, or --plan\n" TRY("identify"));
