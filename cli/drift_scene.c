@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What is navigated and when to look, from the options. */
 #include "drift_parts.h"
-#include "place_text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -268,10 +267,7 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
         return command_misused("--rate %g Hz: expected 0.001 Hz to 1 MHz", settings->rate);
     if (!isnan(o->duration) && o->times)
         return command_misused("--duration and --times exclude each other");
-    int code =
-        place_check_rest(settings->latitude, o->height, (double[]){o->roll, o->pitch, o->yaw});
-    if (code < 0 && o->want)
-        code = drift_want_parse(o->want, &s->want);
+    int code = o->want ? drift_want_parse(o->want, &s->want) : -1;
     if (code < 0)
         code = read_start(o, settings);
     if (code < 0 && o->motion)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Latitude, longitude and height of --position; place and attitude of a unit at rest. */
+/* Latitude, longitude and height of --position. */
 #include "place_text.h"
 
 #include <math.h>
@@ -40,25 +40,5 @@ int place_parse(const char *text, imk_geodetic *place)
     if (!(value[2] >= -1e4 && value[2] <= 1e5))
         return command_misused("--position \"%s\": the height is between -10 and 100 km", text);
     *place = (imk_geodetic){value[0], value[1], value[2]};
-    return -1;
-}
-
-int place_check_rest(double latitude, double height, const double attitude[3])
-{
-    const double turns = 36000 * degree;
-    const struct {
-        const char *name, *unit, *due;
-        double value, scale, least, most;
-    } numbers[] = {
-        {"latitude", "deg", "-90deg to 90deg", latitude, degree, -90 * degree, 90 * degree},
-        {"height", "m", "-10 km to 100 km", height, 1, -1e4, 1e5},
-        {"roll", "deg", "at most 100 turns, 36000deg", attitude[0], degree, -turns, turns},
-        {"pitch", "deg", "at most 100 turns, 36000deg", attitude[1], degree, -turns, turns},
-        {"yaw", "deg", "at most 100 turns, 36000deg", attitude[2], degree, -turns, turns}};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        if (!(numbers[i].value >= numbers[i].least && numbers[i].value <= numbers[i].most))
-            return command_misused("--%s %g %s: expected %s", numbers[i].name,
-                                   numbers[i].value / numbers[i].scale, numbers[i].unit,
-                                   numbers[i].due);
     return -1;
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Motion, temperature and length of a simulation, from the options. */
-#include "place_text.h"
 #include "simulate_parts.h"
 
 #include <math.h>
@@ -174,10 +173,7 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
     s->simulation.pitch = o->pitch;
     s->simulation.yaw = o->yaw;
     s->simulation.substeps = o->substeps.value;
-    int code =
-        place_check_rest(place.latitude, place.height, (double[]){o->roll, o->pitch, o->yaw});
-    if (code < 0 && o->motion)
-        code = open_motion(o, s);
+    int code = o->motion ? open_motion(o, s) : -1;
     if (code < 0)
         code = check_clock(o, model, s);
     if (code < 0)

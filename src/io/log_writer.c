@@ -264,6 +264,11 @@ static void work(void *context, size_t item)
                     &writer->waves[writer->filling].block[item - 1]);
 }
 
+static int is_beyond(double value, double most)
+{
+    return (fabs(value) > most) & (fabs(value) <= DBL_MAX);
+}
+
 /* A number that is finite must be so in the unit written, too. */
 static void check_units(imk_log_writer *writer, size_t rows, const double *const *columns)
 {
@@ -272,8 +277,11 @@ static void check_units(imk_log_writer *writer, size_t rows, const double *const
         const double most = DBL_MAX * scale * (1.0 - 1e-12); /* rounding left aside */
         if (scale >= 1.0 || writer->column[c].label)
             continue;
-        for (size_t row = 0; row < rows && writer->status == IMK_OK; row++)
-            if (fabs(columns[c][row]) > most && fabs(columns[c][row]) <= DBL_MAX) {
+        int any = 0; /* without a branch, so that several rows are compared at a time */
+        for (size_t row = 0; row < rows; row++)
+            any |= is_beyond(columns[c][row], most);
+        for (size_t row = 0; row < rows && any && writer->status == IMK_OK; row++)
+            if (is_beyond(columns[c][row], most)) {
                 writer->status = IMK_ERROR_NOT_FINITE;
                 writer->beyond_column = c;
                 writer->beyond_row = writer->rows + row + 1;

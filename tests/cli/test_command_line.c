@@ -227,10 +227,9 @@ static void test_given_is_no_value(void **state)
         check_contains(err, ": expected more than 0\n", line);
     }
     static const char *const negative[] = {
-        "calibrate x.csv --trim=-1s",        "calibrate x.csv --settle=-1s",
-        "calibrate x.csv --window=-1s",      "calibrate x.csv --initial-rest=-1s",
-        "calibrate x.csv --placement=-1deg", "calibrate x.csv --mounting=-1deg",
-        "evaluate x.csv --trim=-1s",         "evaluate x.csv --settle=-1s",
+        "calibrate x.csv --trim=-1s",   "calibrate x.csv --settle=-1s",
+        "calibrate x.csv --window=-1s", "calibrate x.csv --initial-rest=-1s",
+        "evaluate x.csv --trim=-1s",    "evaluate x.csv --settle=-1s",
         "spectrum x.csv --from=-1Hz"};
     for (size_t i = 0; i < sizeof negative / sizeof negative[0]; i++) {
         snprintf(line, sizeof line, "$I %s", negative[i]);
