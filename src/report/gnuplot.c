@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runs gnuplot on a figure. Script, numbers and drawing have fixed names in a private temporary
- * folder, in which gnuplot runs: a name that begins with | or < is a command to it, so it sees none
- * that the user or the environment chose. It has a limited time, and a signal that ends this
- * process ends it too (io/leftovers.c). */
+/* Runs gnuplot on a figure, in a private temporary folder (scratch_folder.c). It has a limited
+ * time, and a signal that ends this process ends it too (io/leftovers.c). What it has drawn is
+ * taken when it is whole only: gnuplot does not notice that the disk is full. */
 #define _GNU_SOURCE /* posix_spawn_file_actions_addchdir_np() */
 #include "figure_internal.h"
 
 #include "imukit/decimal.h"
 #include "io/leftovers_internal.h"
 #include "io/system_error_internal.h"
+#include "scratch_folder_internal.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -25,11 +26,6 @@
 
 /* A figure takes a second; the fonts of a new system, once, up to a minute. */
 static const double usual_limit = 120; /* [s] */
-
-/* Names inside the temporary folder. */
-enum { SCRIPT, DATA, OUTPUT, FILE_COUNT };
-static char script_name[] = "figure.gp";
-static const char *const file_names[FILE_COUNT] = {script_name, "figure.dat", "figure.out"};
 
 /* ---- the program ----------------------------------------------------------------------------- */
 
@@ -72,7 +68,9 @@ static int start(const char *program, const char *folder, const sigset_t *mask, 
     sigset_t usual;
     /* -d: the user's own start-up file must not change our figures. */
     char name[] = "gnuplot", defaults[] = "-d";
-    char *const arguments[] = {name, defaults, script_name, NULL};
+    char script[40];
+    snprintf(script, sizeof script, "%s", imki_scratch_names[IMKI_SCRATCH_SCRIPT]);
+    char *const arguments[] = {name, defaults, script, NULL};
     int number = posix_spawn_file_actions_init(&actions);
     if (number != 0)
         return number;
@@ -157,125 +155,21 @@ static imk_status run(const char *program, const char *folder, imk_error *error)
                                  : "a working gnuplot, or more time: IMUKIT_GNUPLOT_SECONDS");
 }
 
-/* ---- the folder ------------------------------------------------------------------------------ */
-
-typedef struct scratch {
-    char *folder;
-    char *file[FILE_COUNT];
-    int slot[FILE_COUNT + 1];
-} scratch;
-
-static void scratch_free(scratch *s)
-{
-    for (int i = 0; i < FILE_COUNT; i++)
-        free(s->file[i]);
-    free(s->folder);
-}
-
-static void scratch_remove(scratch *s)
-{
-    for (int i = 0; i < FILE_COUNT; i++)
-        unlink(s->file[i]);
-    rmdir(s->folder);
-    for (int i = 0; i <= FILE_COUNT; i++)
-        imki_leftover_drop(s->slot[i]);
-    scratch_free(s);
-}
-
-static imk_status refuse_folder(int number, imk_error *error)
-{
-    (void)imki_system_error(error, IMK_ERROR_OPEN, "temporary folder", number);
-    if (error)
-        snprintf(error->expected, sizeof error->expected,
-                 "set TMPDIR to a folder that can be written");
-    return IMK_ERROR_OPEN;
-}
-
-static imk_status scratch_make(scratch *s, imk_error *error)
-{
-    static const char pattern[] = "/imukit-XXXXXX";
-    const char *base = getenv("TMPDIR");
-    base = base && *base ? base : "/tmp";
-    const size_t size = strlen(base) + sizeof pattern;
-    *s = (scratch){.folder = malloc(size)};
-    bool good = s->folder != NULL;
-    for (int i = 0; i < FILE_COUNT; i++)
-        good = (s->file[i] = malloc(size + 1 + strlen(file_names[i]))) && good;
-    if (!good) {
-        scratch_free(s);
-        return imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
-    }
-    snprintf(s->folder, size, "%s%s", base, pattern);
-    sigset_t before;
-    hold_signals(&before);
-    const int number = mkdtemp(s->folder) ? 0 : errno;
-    for (int i = 0; i < FILE_COUNT && number == 0; i++) {
-        snprintf(s->file[i], size + 1 + strlen(file_names[i]), "%s/%s", s->folder, file_names[i]);
-        s->slot[i] = imki_leftover_add(s->file[i]);
-    }
-    if (number == 0)
-        s->slot[FILE_COUNT] = imki_leftover_add(s->folder);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    if (number == 0)
-        return IMK_OK;
-    scratch_free(s);
-    return refuse_folder(number, error);
-}
-
-/* @return 0 or an errno value */
-static int save(const char *path, const char *text, size_t size)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file)
-        return errno;
-    int number = fwrite(text, 1, size, file) == size ? 0 : errno;
-    if (fclose(file) != 0 && number == 0)
-        number = errno;
-    return number;
-}
-
-/* A whole file that is not empty, with a terminating zero, from malloc(). @return as save() */
-static int slurp(const char *path, char **text, size_t *size)
-{
-    FILE *file = fopen(path, "rb");
-    struct stat about;
-    if (!file)
-        return errno;
-    if (fstat(fileno(file), &about) != 0 || about.st_size == 0) {
-        fclose(file);
-        return ENOENT;
-    }
-    const size_t length = (size_t)about.st_size;
-    char *whole = malloc(length + 1);
-    const int number = !whole ? ENOMEM : fread(whole, 1, length, file) == length ? 0 : EIO;
-    fclose(file);
-    if (number != 0) {
-        free(whole);
-        return number;
-    }
-    whole[length] = '\0';
-    *text = whole;
-    *size = length;
-    return 0;
-}
-
 /* ---- from end to end ------------------------------------------------------------------------- */
 
-static imk_status save_figure(const imk_figure *figure, imki_drawing *drawing, const scratch *s,
-                              imk_error *error)
+static imk_status save_figure(const imk_figure *figure, imki_drawing *drawing,
+                              const imki_scratch *s, imk_error *error)
 {
-    drawing->output = file_names[OUTPUT];
-    drawing->data = file_names[DATA];
+    drawing->output = imki_scratch_names[IMKI_SCRATCH_OUTPUT];
+    drawing->data = imki_scratch_names[IMKI_SCRATCH_DATA];
     size_t script_size = 0, data_size = 0;
     char *script = imki_figure_script(figure, drawing, &script_size);
     char *data = imki_figure_data(figure, &data_size);
     imk_status status = IMK_OK;
     if (script && data) {
-        int number = save(s->file[SCRIPT], script, script_size);
-        if (number == 0)
-            number = save(s->file[DATA], data, data_size);
-        if (number != 0)
-            status = refuse_folder(number, error);
+        status = imki_scratch_save(s, IMKI_SCRATCH_SCRIPT, script, script_size, error);
+        if (status == IMK_OK)
+            status = imki_scratch_save(s, IMKI_SCRATCH_DATA, data, data_size, error);
     } else {
         status = imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
     }
@@ -284,35 +178,72 @@ static imk_status save_figure(const imk_figure *figure, imki_drawing *drawing, c
     return status;
 }
 
-/* The drawing that gnuplot has left. */
-static imk_status take_image(const scratch *s, char **image, size_t *size, imk_error *error)
+static bool ends_with(const char *text, size_t size, const char *end, size_t end_size)
 {
-    const int number = slurp(s->file[OUTPUT], image, size);
-    if (number == 0)
-        return IMK_OK;
+    return size >= end_size && memcmp(text + size - end_size, end, end_size) == 0;
+}
+
+/* Is nothing missing at the end? In letters each panel has as many lines as the terminal. */
+static bool is_whole(const imk_figure *figure, const imki_drawing *drawing, const char *image,
+                     size_t size)
+{
+    static const char svg_end[] = "</svg>", png_end[] = "\0\0\0\0IEND\xAE\x42\x60\x82";
+    size_t lines = 0;
+    switch (drawing->terminal) {
+    case IMKI_TERMINAL_SVG:
+        while (size > 0 && isspace((unsigned char)image[size - 1]))
+            size--;
+        return ends_with(image, size, svg_end, sizeof svg_end - 1);
+    case IMKI_TERMINAL_PNG:
+        return ends_with(image, size, png_end, sizeof png_end - 1);
+    case IMKI_TERMINAL_TEXT:
+        for (size_t i = 0; i < size; i++)
+            lines += image[i] == '\n';
+        return lines >= figure->panel_count * (size_t)drawing->height;
+    }
+    return false;
+}
+
+/* The drawing that gnuplot has left. */
+static imk_status take_image(const imk_figure *figure, const imki_drawing *drawing,
+                             const imki_scratch *s, char **image, size_t *size, imk_error *error)
+{
+    char *drawn = NULL;
+    size_t length = 0;
+    const int number = imki_scratch_load(s, IMKI_SCRATCH_OUTPUT, &drawn, &length);
     if (number == ENOMEM)
         return imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
-    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot",
-                         "gnuplot failed: there is no drawing",
-                         "a working gnuplot >= 5.2: apt install gnuplot-nox");
+    if (number != 0 || !is_whole(figure, drawing, drawn, length)) {
+        free(drawn);
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot",
+                             number != 0 ? "gnuplot failed: there is no drawing"
+                                         : "gnuplot failed: the end of its drawing is missing",
+                             "a working gnuplot >= 5.2: apt install gnuplot-nox");
+    }
+    *image = drawn;
+    *size = length;
+    return IMK_OK;
 }
 
 imk_status imki_gnuplot_draw(const imk_figure *figure, imki_drawing *drawing, char **image,
                              size_t *size, imk_error *error)
 {
-    scratch s;
+    imki_scratch s;
     char program[PATH_MAX];
     if (!find_program(program))
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", "gnuplot is not installed",
                              "install it: apt install gnuplot-nox");
-    imk_status status = scratch_make(&s, error);
+    imk_status status = imki_scratch_make(&s, error);
     if (status != IMK_OK)
         return status;
     status = save_figure(figure, drawing, &s, error);
-    if (status == IMK_OK)
+    if (status == IMK_OK) {
         status = run(program, s.folder, error);
-    if (status == IMK_OK)
-        status = take_image(&s, image, size, error);
-    scratch_remove(&s);
+        if (status == IMK_OK)
+            status = take_image(figure, drawing, &s, image, size, error);
+        if (status == IMK_ERROR_UNSUPPORTED && imki_scratch_is_full(&s))
+            status = imki_scratch_refuse_full(error);
+    }
+    imki_scratch_remove(&s);
     return status;
 }

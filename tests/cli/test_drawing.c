@@ -313,6 +313,46 @@ static void test_failing_gnuplot(void **state)
     assert_int_equal(run("rm -r bad"), 0);
 }
 
+/* Neither is a drawing whose end is missing, in any form. */
+static void test_cut_drawing(void **state)
+{
+    (void)state;
+    static const char *const plots[] = {"x.svg", "x.png", "term"};
+    mkdir("bad", 0700);
+    put("bad/gnuplot", "#!/bin/sh\n/usr/bin/gnuplot -d figure.gp && truncate -s -40 figure.out\n");
+    chmod("bad/gnuplot", 0700);
+    if (access("/usr/bin/gnuplot", X_OK) == 0) {
+        for (size_t i = 0; i < sizeof plots / sizeof plots[0]; i++) {
+            char line[600];
+            snprintf(line, sizeof line, "PATH=bad:$PATH TMPDIR=tmp %s --plot %s", allan, plots[i]);
+            check_says(line, 1, "gnuplot failed: the end of its drawing is missing");
+            check_absent(line, plots[i]);
+            assert_null(strchr(out, '\f')); /* which dumb begins with */
+        }
+    }
+    assert_int_equal(run("rm -r bad"), 0);
+}
+
+/* Of a full disk gnuplot says nothing: the sentence names the folder. */
+static void test_full_temporary_folder(void **state)
+{
+    (void)state;
+    static const char *const options[] = {"--plot x.svg", "--plot x.png", "--report x.html"};
+    if (!imk_plot_available() || run("unshare -rm mount -t tmpfs tmpfs tmp") != 0)
+        skip();
+    for (int i = 0; i < 3; i++) {
+        char line[600];
+        snprintf(line, sizeof line,
+                 "unshare -rm sh -c 'mount -t tmpfs -o size=16k tmpfs tmp && "
+                 "TMPDIR=tmp \"$I\" allan one.csv %s; code=$?; rmdir tmp/*; exit $code'",
+                 options[i]);
+        check_says(line, 1,
+                   "error: temporary folder tmp: its disk is full; set TMPDIR to a folder with "
+                   "room\nrmdir: "); /* for nothing was left in it */
+        check_absent(line, strrchr(options[i], ' ') + 1);
+    }
+}
+
 static void test_signals(void **state)
 {
     (void)state;
@@ -353,6 +393,8 @@ int main(void)
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_hung_gnuplot),
         cmocka_unit_test(test_failing_gnuplot),
+        cmocka_unit_test(test_cut_drawing),
+        cmocka_unit_test(test_full_temporary_folder),
         cmocka_unit_test(test_signals),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);

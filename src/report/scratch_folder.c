@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The folder gnuplot runs in. Script, numbers and drawing have fixed names in it: a name that
+ * begins with | or < is a command to gnuplot, so it sees none that the user or the environment
+ * chose. */
+#define _DEFAULT_SOURCE
+#include "scratch_folder_internal.h"
+
+#include "io/leftovers_internal.h"
+#include "io/system_error_internal.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+const char *const imki_scratch_names[IMKI_SCRATCH_FILES] = {"figure.gp", "figure.dat",
+                                                            "figure.out"};
+
+static bool means_full(int number)
+{
+    return number == ENOSPC || number == EDQUOT;
+}
+
+/* ---- refusals -------------------------------------------------------------------------------- */
+
+static const char *base_folder(void)
+{
+    const char *base = getenv("TMPDIR");
+    return base && *base ? base : "/tmp";
+}
+
+imk_status imki_scratch_refuse_full(imk_error *error)
+{
+    char field[sizeof error->field];
+    snprintf(field, sizeof field, "temporary folder %s", base_folder());
+    return imk_error_set(error, IMK_ERROR_WRITE, field, "its disk is full",
+                         "set TMPDIR to a folder with room");
+}
+
+static imk_status refuse(int number, imk_error *error)
+{
+    if (means_full(number))
+        return imki_scratch_refuse_full(error);
+    (void)imki_system_error(error, IMK_ERROR_OPEN, "temporary folder", number);
+    if (error)
+        snprintf(error->expected, sizeof error->expected,
+                 "set TMPDIR to a folder that can be written");
+    return IMK_ERROR_OPEN;
+}
+
+/* ---- the folder ------------------------------------------------------------------------------ */
+
+static void release(imki_scratch *s)
+{
+    for (int i = 0; i < IMKI_SCRATCH_FILES; i++)
+        free(s->file[i]);
+    free(s->folder);
+}
+
+void imki_scratch_remove(imki_scratch *s)
+{
+    for (int i = 0; i < IMKI_SCRATCH_FILES; i++)
+        unlink(s->file[i]);
+    rmdir(s->folder);
+    for (int i = 0; i <= IMKI_SCRATCH_FILES; i++)
+        imki_leftover_drop(s->slot[i]);
+    release(s);
+}
+
+imk_status imki_scratch_make(imki_scratch *s, imk_error *error)
+{
+    static const char pattern[] = "/imukit-XXXXXX";
+    const char *base = base_folder();
+    const size_t size = strlen(base) + sizeof pattern;
+    *s = (imki_scratch){.folder = malloc(size)};
+    bool good = s->folder != NULL;
+    for (int i = 0; i < IMKI_SCRATCH_FILES; i++)
+        good = (s->file[i] = malloc(size + 1 + strlen(imki_scratch_names[i]))) && good;
+    if (!good) {
+        release(s);
+        return imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
+    }
+    snprintf(s->folder, size, "%s%s", base, pattern);
+    /* Until what it made is in the register, no signal may end the process. */
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    const int number = mkdtemp(s->folder) ? 0 : errno;
+    for (int i = 0; i < IMKI_SCRATCH_FILES && number == 0; i++) {
+        snprintf(s->file[i], size + 1 + strlen(imki_scratch_names[i]), "%s/%s", s->folder,
+                 imki_scratch_names[i]);
+        s->slot[i] = imki_leftover_add(s->file[i]);
+    }
+    if (number == 0)
+        s->slot[IMKI_SCRATCH_FILES] = imki_leftover_add(s->folder);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (number == 0)
+        return IMK_OK;
+    release(s);
+    return refuse(number, error);
+}
+
+/* ---- its files ------------------------------------------------------------------------------- */
+
+/* @param mode  of fopen()
+ * @return 0 or an errno value */
+static int save(const char *path, const char *mode, const char *text, size_t size)
+{
+    FILE *file = fopen(path, mode);
+    if (!file)
+        return errno;
+    int number = fwrite(text, 1, size, file) == size ? 0 : errno;
+    if (fclose(file) != 0 && number == 0)
+        number = errno;
+    return number;
+}
+
+imk_status imki_scratch_save(const imki_scratch *s, imki_scratch_file file, const char *text,
+                             size_t size, imk_error *error)
+{
+    const int number = save(s->file[file], "wb", text, size);
+    return number == 0 ? IMK_OK : refuse(number, error);
+}
+
+int imki_scratch_load(const imki_scratch *s, imki_scratch_file which, char **text, size_t *size)
+{
+    FILE *file = fopen(s->file[which], "rb");
+    struct stat about;
+    if (!file)
+        return errno;
+    if (fstat(fileno(file), &about) != 0 || about.st_size == 0) {
+        fclose(file);
+        return ENOENT;
+    }
+    const size_t length = (size_t)about.st_size;
+    char *whole = malloc(length + 1);
+    const int number = !whole ? ENOMEM : fread(whole, 1, length, file) == length ? 0 : EIO;
+    fclose(file);
+    if (number != 0) {
+        free(whole);
+        return number;
+    }
+    whole[length] = '\0';
+    *text = whole;
+    *size = length;
+    return 0;
+}
+
+/* A disk without room for this much has cut a drawing short, or soon will. */
+bool imki_scratch_is_full(const imki_scratch *s)
+{
+    static const char block[1 << 16];
+    return means_full(save(s->file[IMKI_SCRATCH_OUTPUT], "ab", block, sizeof block));
+}
