@@ -59,7 +59,7 @@ static void hold_signals(sigset_t *before)
     pthread_sigmask(SIG_BLOCK, &all, before);
 }
 
-/* Start the program in the folder, with its messages discarded, as the leader of a process group.
+/* Start the program in the folder, with its messages in a file, as the leader of a process group.
  * @return 0 or an errno value */
 static int start(const char *program, const char *folder, const sigset_t *mask, pid_t *child)
 {
@@ -80,8 +80,9 @@ static int start(const char *program, const char *folder, const sigset_t *mask, 
         return number;
     }
     number = posix_spawn_file_actions_addchdir_np(&actions, folder);
+    const char *const streams[] = {"/dev/null", "/dev/null", imki_scratch_names[IMKI_SCRATCH_SAID]};
     for (int stream = 0; stream < 3 && number == 0; stream++)
-        number = posix_spawn_file_actions_addopen(&actions, stream, "/dev/null",
+        number = posix_spawn_file_actions_addopen(&actions, stream, streams[stream],
                                                   stream == 0 ? O_RDONLY : O_WRONLY, 0);
     sigemptyset(&usual);
     sigaddset(&usual, SIGXFSZ); /* ignored, it would let a drawing be cut short silently */
@@ -130,14 +131,24 @@ static bool await(pid_t child, double limit, int *status)
     return false;
 }
 
-static imk_status run(const char *program, const char *folder, imk_error *error)
+/* What happened, and in its own words why. */
+static imk_status refuse(const imki_scratch *s, const char *found, imk_error *error)
+{
+    char line[sizeof error->expected], expected[sizeof line + 12];
+    imki_scratch_last_line(s, IMKI_SCRATCH_SAID, line, sizeof line);
+    snprintf(expected, sizeof expected, "it said: %s", line);
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found,
+                         line[0] ? expected : "see whether it works by itself: gnuplot --version");
+}
+
+static imk_status run(const char *program, const imki_scratch *s, imk_error *error)
 {
     sigset_t before;
     pid_t child = 0;
     int status = 0, slot = -1;
     const double limit = time_limit();
     hold_signals(&before);
-    const int number = start(program, folder, &before, &child);
+    const int number = start(program, s->folder, &before, &child);
     if (number == 0)
         slot = imki_leftover_add_program(child);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -145,14 +156,20 @@ static imk_status run(const char *program, const char *folder, imk_error *error)
         return imki_system_error(error, IMK_ERROR_OPEN, program, number);
     const bool in_time = await(child, limit, &status);
     imki_leftover_drop(slot);
-    if (in_time && WIFEXITED(status) && WEXITSTATUS(status) == 0)
-        return IMK_OK;
-    char found[80] = "gnuplot failed";
-    if (!in_time)
+    char found[sizeof error->found];
+    if (!in_time) {
         snprintf(found, sizeof found, "gnuplot was ended: it has not finished in %g s", limit);
-    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found,
-                         in_time ? "a working gnuplot >= 5.2: apt install gnuplot-nox"
-                                 : "a working gnuplot, or more time: IMUKIT_GNUPLOT_SECONDS");
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found,
+                             "a working gnuplot, or more time: IMUKIT_GNUPLOT_SECONDS");
+    }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        return IMK_OK;
+    if (WIFSIGNALED(status))
+        snprintf(found, sizeof found, "gnuplot was ended by signal %d (%s)", WTERMSIG(status),
+                 strsignal(WTERMSIG(status)));
+    else
+        snprintf(found, sizeof found, "gnuplot failed with exit code %d", WEXITSTATUS(status));
+    return refuse(s, found, error);
 }
 
 /* ---- from end to end ------------------------------------------------------------------------- */
@@ -170,6 +187,8 @@ static imk_status save_figure(const imk_figure *figure, imki_drawing *drawing,
         status = imki_scratch_save(s, IMKI_SCRATCH_SCRIPT, script, script_size, error);
         if (status == IMK_OK)
             status = imki_scratch_save(s, IMKI_SCRATCH_DATA, data, data_size, error);
+        if (status == IMK_OK)
+            status = imki_scratch_save(s, IMKI_SCRATCH_SAID, "", 0, error);
     } else {
         status = imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
     }
@@ -215,10 +234,10 @@ static imk_status take_image(const imk_figure *figure, const imki_drawing *drawi
         return imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
     if (number != 0 || !is_whole(figure, drawing, drawn, length)) {
         free(drawn);
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot",
-                             number != 0 ? "gnuplot failed: there is no drawing"
-                                         : "gnuplot failed: the end of its drawing is missing",
-                             "a working gnuplot >= 5.2: apt install gnuplot-nox");
+        return refuse(s,
+                      number != 0 ? "gnuplot failed: there is no drawing"
+                                  : "gnuplot failed: the end of its drawing is missing",
+                      error);
     }
     *image = drawn;
     *size = length;
@@ -238,7 +257,7 @@ imk_status imki_gnuplot_draw(const imk_figure *figure, imki_drawing *drawing, ch
         return status;
     status = save_figure(figure, drawing, &s, error);
     if (status == IMK_OK) {
-        status = run(program, s.folder, error);
+        status = run(program, &s, error);
         if (status == IMK_OK)
             status = take_image(figure, drawing, &s, image, size, error);
         if (status == IMK_ERROR_UNSUPPORTED && imki_scratch_is_full(&s))

@@ -8,6 +8,7 @@
 #include "io/leftovers_internal.h"
 #include "io/system_error_internal.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -16,8 +17,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-const char *const imki_scratch_names[IMKI_SCRATCH_FILES] = {"figure.gp", "figure.dat",
-                                                            "figure.out"};
+const char *const imki_scratch_names[IMKI_SCRATCH_FILES] = {"figure.gp", "figure.dat", "figure.out",
+                                                            "figure.err"};
 
 static bool means_full(int number)
 {
@@ -118,10 +119,10 @@ static int save(const char *path, const char *mode, const char *text, size_t siz
     return number;
 }
 
-imk_status imki_scratch_save(const imki_scratch *s, imki_scratch_file file, const char *text,
+imk_status imki_scratch_save(const imki_scratch *s, imki_scratch_file which, const char *text,
                              size_t size, imk_error *error)
 {
-    const int number = save(s->file[file], "wb", text, size);
+    const int number = save(s->file[which], "wb", text, size);
     return number == 0 ? IMK_OK : refuse(number, error);
 }
 
@@ -147,6 +148,25 @@ int imki_scratch_load(const imki_scratch *s, imki_scratch_file which, char **tex
     *text = whole;
     *size = length;
     return 0;
+}
+
+void imki_scratch_last_line(const imki_scratch *s, imki_scratch_file which, char *line, size_t size)
+{
+    char text[1 << 10] = "";
+    FILE *file = fopen(s->file[which], "rb");
+    if (file) {
+        if (fseek(file, 1 - (long)sizeof text, SEEK_END) != 0) /* it is shorter */
+            rewind(file);
+        text[fread(text, 1, sizeof text - 1, file)] = '\0';
+        fclose(file);
+    }
+    size_t end = strlen(text);
+    while (end > 0 && isspace((unsigned char)text[end - 1]))
+        end--;
+    text[end] = '\0';
+    const char *newline = strrchr(text, '\n');
+    const char *begin = newline ? newline + 1 : text;
+    snprintf(line, size, "%s", begin + strspn(begin, " \t"));
 }
 
 /* A disk without room for this much has cut a drawing short, or soon will. */

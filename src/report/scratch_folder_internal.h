@@ -12,6 +12,7 @@ typedef enum imki_scratch_file {
     IMKI_SCRATCH_SCRIPT = 0,
     IMKI_SCRATCH_DATA,
     IMKI_SCRATCH_OUTPUT,
+    IMKI_SCRATCH_SAID,
     IMKI_SCRATCH_FILES
 } imki_scratch_file;
 extern const char *const imki_scratch_names[IMKI_SCRATCH_FILES];
@@ -29,12 +30,16 @@ imk_status imki_scratch_make(imki_scratch *s, imk_error *error);
 /* Remove it, and free. */
 void imki_scratch_remove(imki_scratch *s);
 
-imk_status imki_scratch_save(const imki_scratch *s, imki_scratch_file file, const char *text,
+imk_status imki_scratch_save(const imki_scratch *s, imki_scratch_file which, const char *text,
                              size_t size, imk_error *error);
 
 /* A whole file that is not empty, with a terminating zero, from malloc().
  * @return 0 or an errno value */
-int imki_scratch_load(const imki_scratch *s, imki_scratch_file file, char **text, size_t *size);
+int imki_scratch_load(const imki_scratch *s, imki_scratch_file which, char **text, size_t *size);
+
+/* The last line of a file that is not empty, shortened; "" when there is none. */
+void imki_scratch_last_line(const imki_scratch *s, imki_scratch_file which, char *line,
+                            size_t size);
 
 /* Is the disk full, so that the output may be cut short? It is not to be used afterwards. */
 bool imki_scratch_is_full(const imki_scratch *s);

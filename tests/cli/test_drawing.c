@@ -292,20 +292,33 @@ static void test_hung_gnuplot(void **state)
     check_nothing_left(wait_for_gnuplot());
 }
 
-/* Also a gnuplot that fails, or draws nothing, or half. */
+/* Also a gnuplot that fails, or draws nothing, or half: how it ended is said, and what it said
+ * last, not that another should be installed. */
 static void test_failing_gnuplot(void **state)
 {
     (void)state;
     mkdir("bad", 0700);
-    static const char *const programs[] = {"exit 1", "exit 0", "echo '<svg' >figure.out; exit 3",
-                                           "echo '<svg' >figure.out; kill -9 $$"};
-    for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++) {
-        char text[100], line[600];
-        snprintf(text, sizeof text, "#!/bin/sh\n%s\n", programs[i]);
+    static const struct {
+        const char *program, *says;
+    } bad[] = {
+        {"exit 1", "gnuplot failed with exit code 1; see whether it works by itself: gnuplot "
+                   "--version\n"},
+        {"exit 0", "gnuplot failed: there is no drawing; see whether it works by itself"},
+        {"echo '<svg' >figure.out; echo first >&2; printf ' \\033]0;last\\007 words\n\n' >&2; exit "
+         "3",
+         "plot: gnuplot failed with exit code 3; it said: ?]0;last? words\n"},
+        {"echo '<svg' >figure.out; kill -9 $$",
+         "plot: gnuplot was ended by signal 9 (Killed); see whether it works by itself"},
+        {"seq 100000 | tr '\n' ' ' >&2; exit 4", "gnuplot failed with exit code 4; it said: "},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        char text[200], line[600];
+        snprintf(text, sizeof text, "#!/bin/sh\n%s\n", bad[i].program);
         put("bad/gnuplot", text);
         chmod("bad/gnuplot", 0700);
         snprintf(line, sizeof line, "PATH=bad:$PATH TMPDIR=tmp %s --plot x.svg", allan);
-        check_says(line, 1, "gnuplot failed");
+        check_says(line, 1, bad[i].says);
+        assert_true(strlen(err) < 400);
         check_absent(line, "x.svg");
         assert_int_equal(rmdir("tmp"), 0);
         mkdir("tmp", 0700);
