@@ -107,7 +107,8 @@ static int help(int count, char **words)
     return command_finish(EXIT_DONE);
 }
 
-static const int ending_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT, SIGXCPU};
+static const int ending_signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGQUIT,
+                                     SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM};
 enum { ENDING_SIGNALS = sizeof ending_signals / sizeof ending_signals[0] };
 
 /* Interrupted: leave no half-written file behind, and end as the signal would have. */

@@ -5,12 +5,12 @@
 #define _GNU_SOURCE /* mkostemp() */
 #include "io/input_copy_internal.h"
 
+#include "io/leftovers_internal.h"
 #include "io/system_error_internal.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,14 +41,13 @@ static int open_nameless(void)
         return -1;
     snprintf(name, size, "%s%s", folder, pattern);
     /* As long as it has a name, no signal may end the process. */
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, &before);
+    sigset_t before;
+    imki_signals_hold(&before);
     const int file = mkostemp(name, O_CLOEXEC);
     const int number = errno;
     if (file >= 0)
         unlink(name);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    imki_signals_release(&before);
     free(name);
     errno = number;
     return file;

@@ -6,7 +6,6 @@
 #include "imukit/output_file.h"
 
 #include <errno.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <string.h>
@@ -27,6 +26,18 @@ static struct {
     pid_t leader; /* of a program; 0: a file or folder */
     char name[NAME_SIZE];
 } slots[SLOTS];
+
+void imki_signals_hold(sigset_t *before)
+{
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, before);
+}
+
+void imki_signals_release(const sigset_t *before)
+{
+    pthread_sigmask(SIG_SETMASK, before, NULL);
+}
 
 static int add(const char *name, pid_t leader)
 {

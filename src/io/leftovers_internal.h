@@ -5,7 +5,13 @@
 #ifndef IMUKIT_LEFTOVERS_INTERNAL_H
 #define IMUKIT_LEFTOVERS_INTERNAL_H
 
+#include <signal.h>
 #include <sys/types.h>
+
+/* Signals wait from here to imki_signals_release(): between making something and its place in the
+ * register, none may end the process. The threads of thread_pool.c take none at any time. */
+void imki_signals_hold(sigset_t *before);
+void imki_signals_release(const sigset_t *before);
 
 /* A file or folder. @return the place in the register, -1 when it is full or the name too long */
 int imki_leftover_add(const char *name);

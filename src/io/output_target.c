@@ -74,6 +74,8 @@ static int make_temporary(imki_target *target, mode_t mode)
     target->temporary = malloc(size);
     if (!target->temporary)
         return ENOMEM;
+    sigset_t before;
+    imki_signals_hold(&before);
     for (int attempt = 0; attempt < ATTEMPTS_MAX; attempt++) {
         /* Half of a name of the greatest length leaves room for what is added. */
         snprintf(target->temporary, size, "%.*s.%.*s.%ld.%u.part", directory, target->name,
@@ -83,13 +85,15 @@ static int make_temporary(imki_target *target, mode_t mode)
         if (target->file >= 0 || errno != EEXIST)
             break;
     }
-    if (target->file < 0) {
+    const int number = target->file >= 0 ? 0 : errno;
+    if (number == 0)
+        target->slot = imki_leftover_add(target->temporary);
+    imki_signals_release(&before);
+    if (number != 0) {
         free(target->temporary);
         target->temporary = NULL;
-        return errno;
     }
-    target->slot = imki_leftover_add(target->temporary);
-    return 0;
+    return number;
 }
 
 /* A temporary file for a target that exists or not. */

@@ -51,14 +51,6 @@ bool imk_plot_available(void)
     return find_program(program);
 }
 
-/* Until what it made is in the register, no signal may end the process. */
-static void hold_signals(sigset_t *before)
-{
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, before);
-}
-
 /* Start the program in the folder, with its messages in a file, as the leader of a process group.
  * @return 0 or an errno value */
 static int start(const char *program, const char *folder, const sigset_t *mask, pid_t *child)
@@ -147,11 +139,11 @@ static imk_status run(const char *program, const imki_scratch *s, imk_error *err
     pid_t child = 0;
     int status = 0, slot = -1;
     const double limit = time_limit();
-    hold_signals(&before);
+    imki_signals_hold(&before);
     const int number = start(program, s->folder, &before, &child);
     if (number == 0)
         slot = imki_leftover_add_program(child);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    imki_signals_release(&before);
     if (number != 0)
         return imki_system_error(error, IMK_ERROR_OPEN, program, number);
     const bool in_time = await(child, limit, &status);

@@ -10,7 +10,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,10 +84,8 @@ imk_status imki_scratch_make(imki_scratch *s, imk_error *error)
         return imk_error_set(error, IMK_ERROR_MEMORY, "figure", NULL, NULL);
     }
     snprintf(s->folder, size, "%s%s", base, pattern);
-    /* Until what it made is in the register, no signal may end the process. */
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, &before);
+    sigset_t before;
+    imki_signals_hold(&before);
     const int number = mkdtemp(s->folder) ? 0 : errno;
     for (int i = 0; i < IMKI_SCRATCH_FILES && number == 0; i++) {
         snprintf(s->file[i], size + 1 + strlen(imki_scratch_names[i]), "%s/%s", s->folder,
@@ -97,7 +94,7 @@ imk_status imki_scratch_make(imki_scratch *s, imk_error *error)
     }
     if (number == 0)
         s->slot[IMKI_SCRATCH_FILES] = imki_leftover_add(s->folder);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    imki_signals_release(&before);
     if (number == 0)
         return IMK_OK;
     release(s);

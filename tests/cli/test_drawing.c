@@ -369,7 +369,8 @@ static void test_full_temporary_folder(void **state)
 static void test_signals(void **state)
 {
     (void)state;
-    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU};
+    static const int signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT,
+                                  SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM};
     for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
         fflush(stdout);
         const pid_t child = fork();

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A command that a signal or a limit of the system ends leaves nothing behind. */
+#define _GNU_SOURCE /* F_NOTIFY */
 #include "run_command.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -28,7 +30,8 @@ static bool has_begun(void)
 static void test_signals(void **state)
 {
     (void)state;
-    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU};
+    static const int signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT,
+                                  SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM};
     for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
         fflush(stdout);
         const pid_t child = fork();
@@ -44,6 +47,40 @@ static void test_signals(void **state)
         int status;
         assert_int_equal(waitpid(child, &status, 0), child);
         assert_true(begun);
+        assert_true(WIFSIGNALED(status));
+        assert_int_equal(WTERMSIG(status), signals[i]);
+        assert_int_equal(sweep(), 0);
+    }
+}
+
+/* The first new file in the working directory sends this process a signal, within the call that
+ * makes it. */
+static void ask_for_signal(int number)
+{
+    const int folder = open(".", O_RDONLY);
+    if (folder < 0 || fcntl(folder, F_SETSIG, number) != 0 ||
+        fcntl(folder, F_SETOWN, getpid()) != 0 || fcntl(folder, F_NOTIFY, DN_CREATE) != 0)
+        _exit(97);
+}
+
+/* Also when the signal comes while the temporary file is being made. */
+static void test_signal_at_once(void **state)
+{
+    (void)state;
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM};
+    for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
+        fflush(stdout);
+        const pid_t child = fork();
+        if (child == 0) {
+            ask_for_signal(signals[i]);
+            execl(command, command, "simulate", "tactical", "--rate", "10Hz", "--duration", "10s",
+                  "-o", "short.csv", (char *)NULL);
+            _exit(98);
+        }
+        int status;
+        assert_int_equal(waitpid(child, &status, 0), child);
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 97)
+            skip(); /* a kernel that does not tell of new files */
         assert_true(WIFSIGNALED(status));
         assert_int_equal(WTERMSIG(status), signals[i]);
         assert_int_equal(sweep(), 0);
@@ -77,6 +114,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_signals),
+        cmocka_unit_test(test_signal_at_once),
         cmocka_unit_test(test_file_size),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
