@@ -2,7 +2,7 @@
 /* The folder gnuplot runs in. Script, numbers and drawing have fixed names in it: a name that
  * begins with | or < is a command to gnuplot, so it sees none that the user or the environment
  * chose. */
-#define _DEFAULT_SOURCE
+#define _GNU_SOURCE /* nftw(), mkdtemp() */
 #include "scratch_folder_internal.h"
 
 #include "io/leftovers_internal.h"
@@ -10,6 +10,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,11 +61,22 @@ static void release(imki_scratch *s)
     free(s->folder);
 }
 
+static int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *place)
+{
+    (void)about;
+    (void)kind;
+    (void)place;
+    remove(path);
+    return 0;
+}
+
+/* gnuplot, or what it has started, may have made files of its own. */
 void imki_scratch_remove(imki_scratch *s)
 {
     for (int i = 0; i < IMKI_SCRATCH_FILES; i++)
         unlink(s->file[i]);
-    rmdir(s->folder);
+    if (rmdir(s->folder) != 0 && (errno == ENOTEMPTY || errno == EEXIST))
+        nftw(s->folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS | FTW_MOUNT);
     for (int i = 0; i <= IMKI_SCRATCH_FILES; i++)
         imki_leftover_drop(s->slot[i]);
     release(s);

@@ -27,7 +27,7 @@ typedef struct imki_scratch {
 /* Make the folder, in $TMPDIR or /tmp. */
 imk_status imki_scratch_make(imki_scratch *s, imk_error *error);
 
-/* Remove it, and free. */
+/* Remove it with all that is in it, and free. */
 void imki_scratch_remove(imki_scratch *s);
 
 imk_status imki_scratch_save(const imki_scratch *s, imki_scratch_file which, const char *text,

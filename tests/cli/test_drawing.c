@@ -366,6 +366,23 @@ static void test_full_temporary_folder(void **state)
     }
 }
 
+/* What gnuplot leaves beside its drawing goes with the folder, and nothing else. */
+static void test_untidy_gnuplot(void **state)
+{
+    (void)state;
+    char line[600];
+    mkdir("bad", 0700);
+    put("bad/gnuplot", "#!/bin/sh\nmkdir -p a/b '*'; echo >a/b/c; echo >.d; mkfifo e; ln -s a f\n"
+                       "ln -s \"$KEPT\" g; ln -s \"$KEPT/h\" a/i; echo '</svg>' >figure.out\n");
+    chmod("bad/gnuplot", 0700);
+    snprintf(line, sizeof line,
+             "mkdir kept; echo >kept/h; KEPT=$PWD/kept PATH=bad:$PATH TMPDIR=tmp %s --plot x.svg",
+             allan);
+    check_says(line, 0, "");
+    assert_int_equal(run("rmdir tmp && rm kept/h && rmdir kept && rm -r bad x.svg"), 0);
+    mkdir("tmp", 0700);
+}
+
 static void test_signals(void **state)
 {
     (void)state;
@@ -407,6 +424,7 @@ int main(void)
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_hung_gnuplot),
         cmocka_unit_test(test_failing_gnuplot),
+        cmocka_unit_test(test_untidy_gnuplot),
         cmocka_unit_test(test_cut_drawing),
         cmocka_unit_test(test_full_temporary_folder),
         cmocka_unit_test(test_signals),
