@@ -3,6 +3,7 @@
  * they come, and copied in the order of their numbers when all are there. */
 #define _POSIX_C_SOURCE 200809L
 #include "io/campaign_internal.h"
+#include "io/output_file_internal.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -57,7 +58,9 @@ static imk_status start(imk_campaign_writer *w, imk_error *error)
         w->done = w->record.runs;
         return IMK_OK;
     }
-    const imk_status status = imki_part_open(w->path, &w->record, w->place, &w->part, error);
+    imk_status status = imki_output_file_check(w->path, error);
+    if (status == IMK_OK)
+        status = imki_part_open(w->path, &w->record, w->place, &w->part, error);
     for (uint64_t i = 0; i < w->record.runs && status == IMK_OK; i++)
         w->done += w->place[i] != 0;
     return status;

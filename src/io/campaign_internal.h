@@ -97,7 +97,7 @@ void imki_results_close(imki_results *results);
 typedef imk_status (*imki_values)(void *context, uint64_t place, uint64_t count, double *values,
                                   imk_error *error);
 
-/* Can the path be written? @return IMK_ERROR_FORMAT */
+/* Does the name say what to write? @return IMK_ERROR_FORMAT */
 imk_status imki_store_check(const char *path, imk_error *error);
 bool imki_store_is_hdf5(const char *path);
 imk_status imki_store(const char *path, const imki_record *record, imki_values values,

@@ -7,6 +7,10 @@
 
 #include <stdbool.h>
 
+/* Refuse a path that imk_output_file_open() would, before hours are spent on what is to be written
+ * there. */
+imk_status imki_output_file_check(const char *path, imk_error *error);
+
 /* Can bytes written before be replaced? Only in an uncompressed regular file. */
 bool imki_output_file_can_replace(const imk_output_file *file);
 

@@ -148,6 +148,20 @@ int imki_target_open(imki_target *target, const char *path)
     return number;
 }
 
+int imki_target_check(const char *path)
+{
+    struct stat about;
+    imki_target target;
+    if (strcmp(path, "-") == 0 || imki_descriptor_named(path) >= 0)
+        return 0;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode))
+        return S_ISSOCK(about.st_mode) ? ENXIO : 0;
+    const int number = imki_target_open(&target, path);
+    if (number == 0)
+        imki_target_close(&target);
+    return number;
+}
+
 /* Make the rename durable. Failure is no reason to report: the file is complete and in its place;
  * only a power cut within seconds could bring the old one back. */
 static void sync_directory(const char *name)

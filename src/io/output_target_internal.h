@@ -18,6 +18,10 @@ typedef struct imki_target {
 /* @return 0 or an errno value */
 int imki_target_open(imki_target *target, const char *path);
 
+/* Can it be opened? Nothing is left behind, and a pipe is not touched: its reader would take the
+ * closing for the end. @return as imki_target_open() */
+int imki_target_check(const char *path);
+
 /* Close the file and give it its name. @return 0 or an errno value */
 int imki_target_publish(imki_target *target);
 

@@ -113,6 +113,40 @@ static void wrong_usage(void **state)
     sweep();
 }
 
+/* What cannot be written is refused before hours are spent on it, and nothing is left; a pipe is
+ * not opened for it, for its reader would take the closing for the end. */
+static void unwritable_results(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *make, *path;
+    } cases[] = {
+        {"mkdir d.csv.gz", "d.csv.gz"},
+        {"ln -s e.csv e.csv", "e.csv"},
+        {"ln -s no/f.csv f.csv", "f.csv"},
+        {"python3 -c 'import socket; socket.socket(socket.AF_UNIX).bind(\"g.csv\")'", "g.csv"},
+        {"touch h.csv; chmod a-w h.csv", "h.csv"},
+    };
+    char line[300];
+    put("m.yaml", model);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        if (run(cases[i].make) != 0 || (strstr(cases[i].make, "chmod") && geteuid() == 0))
+            continue; /* root may write it */
+        snprintf(line, sizeof line,
+                 "timeout 10 $I drift m.yaml --duration 1h --monte-carlo 100000 -o %s",
+                 cases[i].path);
+        assert_int_equal(run(line), 1);
+        check_contains(err, "cannot be opened: ", line);
+        snprintf(line, sizeof line, "%s.part", cases[i].path);
+        assert_int_not_equal(access(line, F_OK), 0);
+    }
+    snprintf(line, sizeof line, "mkfifo i.csv; cat i.csv >i & %s -o i.csv && wait && head -1 i",
+             "$I drift m.yaml --duration 20s --monte-carlo 2");
+    assert_int_equal(run(line), 0);
+    check_contains(out, "run,time [s],", line);
+    sweep();
+}
+
 static pid_t start(const char *shard, const char *path)
 {
     const pid_t child = fork();
@@ -226,6 +260,7 @@ int main(void)
         cmocka_unit_test(shards_and_threads_do_not_matter),
         cmocka_unit_test(what_is_wrong_is_named),
         cmocka_unit_test(wrong_usage),
+        cmocka_unit_test(unwritable_results),
         cmocka_unit_test(killed_campaigns_end_in_the_same_bytes),
         cmocka_unit_test(an_interrupt_says_how_to_go_on),
         cmocka_unit_test(a_full_disk),
