@@ -2,11 +2,13 @@
 /* Copies of inputs that cannot be read twice, in files without a name: they are gone with the
  * process, however it ends. An input is known by its device and inode, which do not depend on the
  * name it is opened by. */
-#define _GNU_SOURCE /* mkostemp() */
+#define _GNU_SOURCE /* mkostemp(), memrchr() */
 #include "io/input_copy_internal.h"
 
 #include "io/leftovers_internal.h"
+#include "io/log_text_internal.h"
 #include "io/system_error_internal.h"
+#include "io/text_file_internal.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -16,7 +18,10 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { BLOCK = 1 << 16 };
+enum {
+    BLOCK = 1 << 16,
+    LOOK = 4096 /* bytes looked at to tell a text */
+};
 
 typedef struct copy {
     dev_t device;
@@ -78,16 +83,74 @@ static int write_all(int file, const char *bytes, size_t size)
     return 0;
 }
 
+/* Fill a block unless the input ends before. @return -1 with errno */
+static ssize_t read_block(int file, char *block)
+{
+    size_t size = 0;
+    while (size < BLOCK) {
+        const ssize_t count = read(file, block + size, BLOCK - size);
+        if (count == 0)
+            break;
+        if (count < 0 && errno != EINTR)
+            return -1;
+        size += count > 0 ? (size_t)count : 0;
+    }
+    return (ssize_t)size;
+}
+
+/* What an input that may have no end is known by, so that it does not fill the disk. */
+typedef struct seen {
+    bool text;
+    size_t line; /* bytes since the last line feed */
+} seen;
+
+/* The first block: text, or one of the other forms that inputs have. */
+static imk_status look_at_begin(seen *s, const char *block, size_t size, const char *path,
+                                imk_error *error)
+{
+    static const char *const others[] = {"\x1F\x8B", "\x28\xB5\x2F\xFD", "\x93NUMPY"};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (size >= strlen(others[i]) && memcmp(block, others[i], strlen(others[i])) == 0)
+            return IMK_OK;
+    /* A skippable frame of zstd. */
+    if (size >= 4 && (block[0] & 0xF0) == 0x50 && memcmp(block + 1, "\x2A\x4D\x18", 3) == 0)
+        return IMK_OK;
+    s->text = imki_is_text(block, size < LOOK ? size : LOOK);
+    return s->text ? IMK_OK
+                   : imk_error_set(error, IMK_ERROR_FORMAT, path,
+                                   "it is neither text nor .npy, and not compressed by gzip or "
+                                   "zstd",
+                                   "");
+}
+
+static imk_status look_at_line(seen *s, const char *block, size_t size, const char *path,
+                               imk_error *error)
+{
+    const char *feed = memrchr(block, '\n', size);
+    s->line = feed ? (size_t)(block + size - feed - 1) : s->line + size;
+    return s->line <= IMKI_LINE_MAX ? IMK_OK
+                                    : imk_error_set(error, IMK_ERROR_FORMAT, path,
+                                                    "a line longer than 1 MiB", "a text in lines");
+}
+
 static imk_status copy_all(int from, int to, const char *path, imk_error *error)
 {
     char block[BLOCK];
-    for (;;) {
-        const ssize_t count = read(from, block, sizeof block);
+    seen s = {false, 0};
+    for (bool first = true;; first = false) {
+        const ssize_t count = read_block(from, block);
+        if (count < 0)
+            return imki_system_error(error, IMK_ERROR_READ, path, errno);
         if (count == 0)
             return IMK_OK;
-        if (count < 0 && errno != EINTR)
-            return imki_system_error(error, IMK_ERROR_READ, path, errno);
-        const int number = count > 0 ? write_all(to, block, (size_t)count) : 0;
+        imk_status status = IMK_OK;
+        if (first)
+            status = look_at_begin(&s, block, (size_t)count, path, error);
+        if (status == IMK_OK && s.text)
+            status = look_at_line(&s, block, (size_t)count, path, error);
+        if (status != IMK_OK)
+            return status;
+        const int number = write_all(to, block, (size_t)count);
         if (number != 0)
             return refuse(path, number, error);
     }

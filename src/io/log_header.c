@@ -2,6 +2,7 @@
 /* The head of a CSV log: is it a text, which separator, a header or not, what the first rows show.
  */
 #include "io/log_reader_internal.h"
+#include "io/text_file_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,24 +11,13 @@
 
 enum { LOOK = 4096 }; /* bytes looked at to tell a text */
 
-/* Control characters do not stand in a text log. */
-static bool is_text(const char *begin, const char *end)
-{
-    for (const char *p = begin; p < end; p++) {
-        const unsigned char c = (unsigned char)*p;
-        if (c < 9 || (c > 13 && c < 32) || c == 127)
-            return false;
-    }
-    return true;
-}
-
 /* Texts of other systems, which other programs convert. @param size  above 0 */
 static imk_status check_encoding(const char *begin, size_t size, imk_error *error)
 {
     if (size >= 2 && (memcmp(begin, "\xFF\xFE", 2) == 0 || memcmp(begin, "\xFE\xFF", 2) == 0))
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "the text is UTF-16",
                              "convert it: iconv -f UTF-16 -t UTF-8 FILE >NEW.csv");
-    if (!is_text(begin, begin + size))
+    if (!imki_is_text(begin, size))
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "not a text log",
                              "CSV (plain, .gz or .zst) or .npy");
     /* The newline of a last CR may not be seen yet. */

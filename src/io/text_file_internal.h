@@ -13,6 +13,9 @@
 imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, size_t *size,
                                imk_error *error);
 
+/* No control characters but those between lines and words stand in a text. */
+bool imki_is_text(const char *bytes, size_t size);
+
 /* Is it a script by its name: .yaml, .yml, .json? */
 bool imki_is_script_name(const char *path);
 

@@ -229,6 +229,28 @@ static void test_same_to_pipes(void **state)
 }
 
 /* A reader that goes away ends the command as other commands end, or with a sentence. */
+/* A device without end is refused by its first bytes, and nothing of it is kept. */
+static void test_without_end(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "$I identify /dev/zero",
+        "$I evaluate /dev/zero",
+        "$I simulate tactical --rate 10Hz --motion /dev/zero",
+        "$I simulate tactical --rate 10Hz -d 10s --temperature /dev/zero",
+        "$I convert /dev/zero - --to kalibr --rate 100Hz",
+    };
+    char line[300];
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        snprintf(line, sizeof line, "( ulimit -f 2048; %s )", lines[i]);
+        assert_int_equal(run(line), 1);
+        check_contains(err,
+                       "error: /dev/zero: it is neither text nor .npy, and not compressed by gzip "
+                       "or zstd\n",
+                       line);
+    }
+}
+
 static void test_closed_pipe(void **state)
 {
     (void)state;
@@ -291,8 +313,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_from_pipes),      cmocka_unit_test(test_copy_that_fails),
         cmocka_unit_test(test_streams_stay_streams), cmocka_unit_test(test_same_to_pipes),
-        cmocka_unit_test(test_closed_pipe),          cmocka_unit_test(test_formats_that_seek),
-        cmocka_unit_test(test_one_stream_one_text),
+        cmocka_unit_test(test_closed_pipe),          cmocka_unit_test(test_without_end),
+        cmocka_unit_test(test_formats_that_seek),    cmocka_unit_test(test_one_stream_one_text),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
 }

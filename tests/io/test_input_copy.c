@@ -154,6 +154,42 @@ static void copy_that_fails(void **state)
     close(reader);
 }
 
+static void check_refused(const char *path, const char *found)
+{
+    imki_input *input = NULL;
+    imk_error error;
+    for (int time = 0; time < 2; time++) {
+        CHECK_STATUS(imki_input_open_kept(path, &input, &error), IMK_ERROR_FORMAT);
+        assert_string_equal(error.found, found);
+    }
+    CHECK_STATUS(imki_input_open(path, &input, &error), IMK_ERROR_FORMAT); /* ends the copy */
+    assert_null(input);
+}
+
+/* What has no end is not copied until the disk is full: no text, and a line without end. */
+static void without_end(void **state)
+{
+    (void)state;
+    check_refused("/dev/zero", "it is neither text nor .npy, and not compressed by gzip or zstd");
+    int ends[2];
+    char path[40];
+    assert_int_equal(pipe(ends), 0);
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+        close(ends[0]);
+        while (write(ends[1], "0123456789", 10) > 0)
+            ;
+        _exit(1);
+    }
+    close(ends[1]);
+    snprintf(path, sizeof path, "/dev/fd/%d", ends[0]);
+    check_refused(path, "a line longer than 1 MiB");
+    close(ends[0]);
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child); /* by SIGPIPE */
+}
+
 /* Standard input that is a file is put back to where it stood. */
 static void standard_input_file(void **state)
 {
@@ -214,6 +250,7 @@ int main(void)
         cmocka_unit_test(size_is_known),
         cmocka_unit_test(named_pipe),
         cmocka_unit_test(copy_that_fails),
+        cmocka_unit_test(without_end),
         cmocka_unit_test(standard_input_file),
         cmocka_unit_test(names_of_streams),
     };
