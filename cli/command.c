@@ -85,9 +85,12 @@ static void speak(const char *color, const char *label, const char *format, va_l
     fputc('\n', stderr);
 }
 
+static bool has_said_why; /* a message was an error's */
+
 int command_failed(const char *format, ...)
 {
     va_list arguments;
+    has_said_why = true;
     va_start(arguments, format);
     speak(COLOR_RED, "error:", format, arguments);
     va_end(arguments);
@@ -97,6 +100,7 @@ int command_failed(const char *format, ...)
 int command_misused(const char *format, ...)
 {
     va_list arguments;
+    has_said_why = true;
     va_start(arguments, format);
     speak(COLOR_RED, "error:", format, arguments);
     va_end(arguments);
@@ -228,11 +232,14 @@ const command_warning *command_warning_get(size_t index)
 
 int command_finish(int code)
 {
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        int failed = command_failed("standard output: %s", strerror(errno));
-        return code == EXIT_DONE ? failed : code;
-    }
-    return code;
+    const int number = fflush(stdout) != 0 ? errno : 0;
+    if (number == 0 && !ferror(stdout))
+        return code;
+    /* What failed before this flush has left no reason behind; somebody may have given it. */
+    if (!has_said_why)
+        command_failed("standard output: %s",
+                       number != 0 ? strerror(number) : "not all of it could be written");
+    return code == EXIT_DONE ? EXIT_FAILED : code;
 }
 
 const char *command_nearest(const char *name, size_t count, const char *const *candidates)

@@ -391,11 +391,18 @@ static void test_unwritable_outputs(void **state)
                                                      "allan good.csv --json",
                                                      "identify good.csv",
                                                      "simulate AHRS --rate 100Hz --duration 1s",
-                                                     "convert good.csv -"};
+                                                     "convert good.csv -",
+                                                     "drift --help",
+                                                     "grade AHRS --plot term"};
     for (size_t i = 0; i < sizeof to_standard_output / sizeof to_standard_output[0]; i++) {
+        if (strstr(to_standard_output[i], "--plot") && !imk_plot_available())
+            continue;
         snprintf(line, sizeof line, "$I %s >/dev/full", to_standard_output[i]);
         assert_int_equal(run(line), 1);
         check_contains(err, "No space left on device", line);
+        const char *error = strstr(err, "error: ");
+        assert_non_null(error);
+        assert_null(strstr(error + 1, "error: ")); /* one sentence */
     }
     sweep();
 }
