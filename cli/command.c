@@ -16,7 +16,7 @@
 
 static const char *current_verb;
 
-enum { WARNINGS_MAX = 64 };
+enum { WARNINGS_MAX = 64, MESSAGE_SIZE = 1 << 14 };
 static command_warning warnings[WARNINGS_MAX];
 static size_t warning_count;
 
@@ -71,18 +71,36 @@ const char *command_color(FILE *stream, const char *sequence)
     return isatty(fileno(stream)) ? sequence : "";
 }
 
+void command_clean(char *text)
+{
+    char *end = text;
+    while (*text) {
+        const size_t printable = imk_utf8_printable(text), length = imk_utf8_length(text);
+        if (printable > 0 || *text == '\n') {
+            memmove(end, text, length);
+            end += length;
+        } else {
+            *end++ = '?';
+        }
+        text += length > 0 ? length : 1;
+    }
+    *end = '\0';
+}
+
 static void speak(const char *color, const char *label, const char *format, va_list arguments)
     __attribute__((format(printf, 3, 0)));
 
 static void speak(const char *color, const char *label, const char *format, va_list arguments)
 {
+    char text[MESSAGE_SIZE];
+    vsnprintf(text, sizeof text, format, arguments);
+    command_clean(text);
     fflush(stdout);
     fprintf(stderr, "imukit%s%s: ", current_verb ? " " : "", current_verb ? current_verb : "");
     if (*label)
         fprintf(stderr, "%s%s%s ", command_color(stderr, color), label,
                 command_color(stderr, COLOR_RESET));
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    fprintf(stderr, "%s\n", text);
 }
 
 static bool has_said_why; /* a message was an error's */

@@ -48,6 +48,10 @@ int command_log_error(const imk_error *error, const char *path);
 /* Refuse a --plot that cannot be drawn before the work is done. @return -1 or the exit code */
 int command_check_plot(const char *plot);
 
+/* Text of strangers on its way to a terminal: what could be taken for a command, and bytes that are
+ * no text, become "?", as in the sentences of errors. Line feeds stay. */
+void command_clean(char *text);
+
 /* Is it standard output, or a pipe or device that is there: nothing that has a format by its name?
  */
 bool command_is_stream(const char *path);

@@ -292,7 +292,9 @@ static void print_case(const grade_case *one)
     const char *bold = command_color(stdout, COLOR_BOLD),
                *reset = command_color(stdout, COLOR_RESET);
     char text[600];
-    printf("%s: %s%s%s\n", one->model->name[0] ? one->model->name : one->operand, bold,
+    snprintf(text, sizeof text, "%s", one->model->name[0] ? one->model->name : one->operand);
+    command_clean(text);
+    printf("%s: %s%s%s\n", text, bold,
            one->table.limiting[0] ? grade_name(one->table.overall) : "no biases stated", reset);
     for (int gyro = 1; gyro >= 0; gyro--) {
         grade_bias_sentence(one, gyro == 1, text, sizeof text);

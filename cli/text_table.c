@@ -29,10 +29,11 @@ void text_table_row(text_table *table)
 void text_table_set(text_table *table, size_t column, const char *format, ...)
 {
     va_list arguments;
+    char *cell = table->cell[(table->rows - 1) * table->columns + column];
     va_start(arguments, format);
-    vsnprintf(table->cell[(table->rows - 1) * table->columns + column], CELL_SIZE, format,
-              arguments);
+    vsnprintf(cell, CELL_SIZE, format, arguments);
     va_end(arguments);
+    command_clean(cell);
 }
 
 const char *text_table_get(const text_table *table, size_t row, size_t column)

@@ -17,6 +17,9 @@ extern "C" {
  *  [RFC3629, 4]; 0 when it begins with none, or is empty. */
 IMK_API size_t imk_utf8_length(const char *text);
 
+/** The same, but 0 for a control character too, which a terminal could take for a command. */
+IMK_API size_t imk_utf8_printable(const char *text);
+
 /** Copy a text, every byte that is no part of a character as IMK_UTF8_REPLACEMENT, cut between two
  *  characters where it does not fit.
  *  @param target  `size` bytes, always ended by a zero; NULL with size 0

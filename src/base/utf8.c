@@ -27,6 +27,13 @@ size_t imk_utf8_length(const char *text)
     return 0;
 }
 
+size_t imk_utf8_printable(const char *text)
+{
+    const unsigned char *c = (const unsigned char *)text;
+    const bool control = c[0] < 0x20 || c[0] == 0x7F || (c[0] == 0xC2 && c[1] < 0xA0);
+    return control ? 0 : imk_utf8_length(text);
+}
+
 size_t imk_utf8_clean(const char *text, char *target, size_t size)
 {
     size_t whole = 0, used = 0;

@@ -27,19 +27,11 @@ typedef struct sentence {
     bool full; /* something did not fit; nothing is added after it */
 } sentence;
 
-/* Length of the UTF-8 character at `at`, 0 when it is a control character or no UTF-8. */
-static size_t character_length(const char *at)
-{
-    const unsigned char *byte = (const unsigned char *)at;
-    const bool control = byte[0] < 0x20 || byte[0] == 0x7F || (byte[0] == 0xC2 && byte[1] < 0xA0);
-    return control ? 0 : imk_utf8_length(at);
-}
-
 /* Add text. What a terminal could take for a command, and bytes that are no text, become "?". */
 static void add(sentence *s, const char *text)
 {
     while (*text != '\0') {
-        size_t length = character_length(text);
+        size_t length = imk_utf8_printable(text);
         const char *character = length > 0 ? text : "?";
         text += length > 0 ? length : 1;
         length = length > 0 ? length : 1;

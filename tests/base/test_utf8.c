@@ -28,6 +28,8 @@ static void every_character(void **state)
         const size_t length = encode(point, text);
         const bool valid = point < 0x110000 && (point < 0xD800 || point > 0xDFFF);
         assert_int_equal(imk_utf8_length(text), valid ? length : 0);
+        const bool control = point < 0x20 || (point >= 0x7F && point < 0xA0);
+        assert_int_equal(imk_utf8_printable(text), valid && !control ? length : 0);
         strcpy(cut, text);
         cut[length - 1] = '\0';
         assert_int_equal(imk_utf8_length(cut), 0); /* cut short, or empty */
@@ -53,7 +55,7 @@ static void no_characters(void **state)
                                         "\xE2\x82(",
                                         "\xED\xA0\x80"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
-        assert_int_equal(imk_utf8_length(texts[i]), 0);
+        assert_int_equal(imk_utf8_length(texts[i]) + imk_utf8_printable(texts[i]), 0);
 }
 
 #define REPLACED IMK_UTF8_REPLACEMENT

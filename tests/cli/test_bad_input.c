@@ -2,6 +2,8 @@
 /* Logs, models and outputs that are wrong: the sentence, the exit code, and nothing left behind. */
 #include "run_command.h"
 
+#include "imukit/utf8.h"
+
 #include "imukit/memory_limit.h"
 
 #define REMEDY "use --gaps longest (the longest clean stretch) or --gaps bridge (interpolate)\n"
@@ -353,6 +355,37 @@ static void test_bridging_is_linear(void **state)
     sweep();
 }
 
+/* Nothing that is given or read reaches the terminal as a command to it. */
+static void test_control_characters(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "$I \"$E\"",
+        "$I allan --\"$E\"",
+        "$I grade \"$E\"",
+        "$I devices \"$E\"",
+        "$I grade m.yaml",
+        "$I grade m.yaml m.yaml",
+        "$I convert m.yaml \"$E\"",
+        "$I drift m.yaml -d 1min -r 1Hz",
+        "$I -\"$E\"",
+        "$I allan good.csv --plot \"$E\"",
+    };
+    setenv("E", "\033[31mx\302\233y\377z", 1);
+    put("m.yaml", "imukit: 1\nname: \"\\e[31mevil\\u009b\"\n"
+                  "gyro: {bias: {repeatability: 1 deg/h}}\n"
+                  "accel: {bias: {repeatability: 1 mg}}\n");
+    write_good();
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        run(lines[i]);
+        for (const char *text = out, *end = out + strlen(out); text < end; text++)
+            assert_true(*text == '\n' || imk_utf8_printable(text) || (*text & 0xC0) == 0x80);
+        for (const char *text = err, *end = err + strlen(err); text < end; text++)
+            assert_true(*text == '\n' || imk_utf8_printable(text) || (*text & 0xC0) == 0x80);
+    }
+    sweep();
+}
+
 /* ---- outputs that cannot be written ---------------------------------------------------------- */
 
 static void test_unwritable_outputs(void **state)
@@ -422,6 +455,7 @@ int main(void)
         cmocka_unit_test(test_next_command),
         cmocka_unit_test(test_gap_policies),
         cmocka_unit_test(test_bridging_is_linear),
+        cmocka_unit_test(test_control_characters),
         cmocka_unit_test(test_unwritable_outputs),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
