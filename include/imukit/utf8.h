@@ -26,6 +26,11 @@ IMK_API size_t imk_utf8_printable(const char *text);
  *  @return the length of the whole, as snprintf() */
 IMK_API size_t imk_utf8_clean(const char *text, char *target, size_t size);
 
+/** Copy a text; of one that does not fit, the middle is left out, with … in its place, because the
+ *  end of a path says most.
+ *  @param target  `size` (> 0) bytes, always ended by a zero */
+IMK_API void imk_utf8_shorten(const char *text, char *target, size_t size);
+
 #ifdef __cplusplus
 }
 #endif

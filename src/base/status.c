@@ -2,6 +2,8 @@
 /* Names and texts of the statuses, from the one list in status.h, and filling an imk_error. */
 #include "imukit/status.h"
 
+#include "imukit/utf8.h"
+
 #include <stddef.h>
 #include <string.h>
 
@@ -50,7 +52,7 @@ imk_status imk_error_set(imk_error *error, imk_status status, const char *field,
         memset(error, 0, sizeof *error);
         error->status = status;
         error->index = -1;
-        copy_text(error->field, sizeof error->field, field);
+        imk_utf8_shorten(field ? field : "", error->field, sizeof error->field);
         copy_text(error->found, sizeof error->found, found);
         copy_text(error->expected, sizeof error->expected, expected);
     }

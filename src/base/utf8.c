@@ -5,6 +5,11 @@
 #include <stdbool.h>
 #include <string.h>
 
+static bool is_continuation(char byte)
+{
+    return ((unsigned char)byte & 0xC0) == 0x80;
+}
+
 size_t imk_utf8_length(const char *text)
 {
     static const struct {
@@ -53,4 +58,23 @@ size_t imk_utf8_clean(const char *text, char *target, size_t size)
     if (size > 0)
         target[used] = '\0';
     return whole;
+}
+
+void imk_utf8_shorten(const char *text, char *target, size_t size)
+{
+    static const char ellipsis[] = "\xE2\x80\xA6";
+    const size_t length = strlen(text), mark = sizeof ellipsis - 1;
+    if (length < size) {
+        memcpy(target, text, length + 1);
+        return;
+    }
+    const size_t room = size > mark + 1 ? size - mark - 1 : 0;
+    size_t head = room / 3, tail = length - (room - head);
+    while (head > 0 && is_continuation(text[head]))
+        head--;
+    while (is_continuation(text[tail]))
+        tail++;
+    memcpy(target, text, head);
+    memcpy(target + head, ellipsis, room > 0 ? mark : 0);
+    memcpy(target + head + (room > 0 ? mark : 0), text + tail, length - tail + 1);
 }

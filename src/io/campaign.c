@@ -5,6 +5,8 @@
 #include "io/campaign_internal.h"
 #include "io/output_file_internal.h"
 
+#include "imukit/utf8.h"
+
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -70,7 +72,7 @@ static imk_status start(imk_campaign_writer *w, imk_error *error)
 static imk_status name_path(imk_status status, const char *path, imk_error *error)
 {
     if (status != IMK_OK && error && error->field[0] == '\0')
-        snprintf(error->field, sizeof error->field, "%.95s", path);
+        imk_utf8_shorten(path, error->field, sizeof error->field);
     return status;
 }
 

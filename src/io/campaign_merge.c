@@ -6,6 +6,8 @@
  * does is refused, and so is the other. */
 #include "io/campaign_internal.h"
 
+#include "imukit/utf8.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -138,7 +140,7 @@ static imk_status load(const shard *s, imk_campaign_results **results, imk_error
 {
     const imk_status status = imk_campaign_load(s->path, results, error);
     if (status != IMK_OK && error)
-        snprintf(error->field, sizeof error->field, "%.95s", s->path);
+        imk_utf8_shorten(s->path, error->field, sizeof error->field);
     return status;
 }
 
@@ -326,7 +328,7 @@ static imk_status open_shard(merge *m, shard *s, imk_error *error)
     if (status == IMK_OK)
         m->open = s;
     else if (error)
-        snprintf(error->field, sizeof error->field, "%.95s", s->path);
+        imk_utf8_shorten(s->path, error->field, sizeof error->field);
     return status;
 }
 

@@ -232,9 +232,9 @@ static bool is_source(const imk_error *error, const char *source)
         return false;
     if (strcmp(source, "-") == 0)
         return strcmp(error->field, "standard input") == 0;
-    const size_t length = strlen(error->field);
-    const bool shortened = length + 4 >= sizeof error->field;
-    return shortened ? begins_with(source, error->field) : strcmp(source, error->field) == 0;
+    char shortened[sizeof error->field];
+    imk_utf8_shorten(source, shortened, sizeof shortened);
+    return strcmp(shortened, error->field) == 0;
 }
 
 /* `gyro.bias.fixed, axis x: `, `time, row 17: `, `gyro.noise.gauss_markov[2]: `. */

@@ -13,6 +13,8 @@
 #include "io/input_copy_internal.h"
 #include "io/system_error_internal.h"
 
+#include "imukit/utf8.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -361,7 +363,7 @@ static imk_status open_file(imki_input *input, const char *path, bool kept)
 {
     struct stat about;
     input->standard = strcmp(path, "-") == 0;
-    snprintf(input->path, sizeof input->path, "%s", input->standard ? "standard input" : path);
+    imk_utf8_shorten(input->standard ? "standard input" : path, input->path, sizeof input->path);
     if ((input->standard ? fstat(STDIN_FILENO, &about) : stat(path, &about)) != 0)
         return imki_system_error(&input->failure, IMK_ERROR_OPEN, input->path, errno);
     if (S_ISDIR(about.st_mode))

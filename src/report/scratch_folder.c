@@ -8,6 +8,8 @@
 #include "io/leftovers_internal.h"
 #include "io/system_error_internal.h"
 
+#include "imukit/utf8.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <ftw.h>
@@ -35,8 +37,9 @@ static const char *base_folder(void)
 
 imk_status imki_scratch_refuse_full(imk_error *error)
 {
-    char field[sizeof error->field];
-    snprintf(field, sizeof field, "temporary folder %s", base_folder());
+    char folder[64], field[sizeof error->field];
+    imk_utf8_shorten(base_folder(), folder, sizeof folder);
+    snprintf(field, sizeof field, "temporary folder %s", folder);
     return imk_error_set(error, IMK_ERROR_WRITE, field, "its disk is full",
                          "set TMPDIR to a folder with room");
 }

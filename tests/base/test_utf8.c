@@ -94,12 +94,37 @@ static void clean_texts(void **state)
     }
 }
 
+/* The middle goes, between characters, and more of the end stays. */
+static void shortened_texts(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *shortened;
+        size_t size;
+    } cases[] = {{"", "", 1},
+                 {"/logs/one.csv", "/logs/one.csv", 14},
+                 {"/logs/one.csv", "/lo\xE2\x80\xA6ne.csv", 13},
+                 {"/logs/one.csv", "\xE2\x80\xA6v", 5},
+                 {"/logs/one.csv", "", 4},
+                 {"/logs/one.csv", "", 1},
+                 {"\xC3\xB6\xC3\xB6\xC3\xB6\xC3\xB6\xC3\xB6\xC3\xB6",
+                  "\xC3\xB6\xE2\x80\xA6\xC3\xB6\xC3\xB6", 10}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char target[20];
+        memset(target, 'x', sizeof target);
+        imk_utf8_shorten(cases[i].text, target, cases[i].size);
+        assert_string_equal(target, cases[i].shortened);
+        assert_int_equal(target[cases[i].size], 'x');
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_character),
         cmocka_unit_test(no_characters),
         cmocka_unit_test(clean_texts),
+        cmocka_unit_test(shortened_texts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -286,6 +286,23 @@ static void shortened(void **state)
     assert_int_equal(byte, 'x');
 }
 
+/* The middle of a long path is left out, and it is not said twice either. */
+static void long_path(void **state)
+{
+    (void)state;
+    char path[200], sentence[500];
+    imk_error error;
+    memset(path, 'a', sizeof path);
+    strcpy(path + sizeof path - 9, "/end.csv");
+    imk_error_set(&error, IMK_ERROR_OPEN, path, "", "");
+    imk_error_text(&error, path, sentence, sizeof sentence);
+    assert_string_equal(sentence + strlen(path), ": the file cannot be opened");
+    imk_error_text(&error, NULL, sentence, sizeof sentence);
+    assert_non_null(strstr(sentence, "aaa\xE2\x80\xA6"
+                                     "aaa"));
+    assert_non_null(strstr(sentence, "aaa/end.csv: the file cannot be opened"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +315,7 @@ int main(void)
         cmocka_unit_test(remedies),
         cmocka_unit_test(control_characters),
         cmocka_unit_test(shortened),
+        cmocka_unit_test(long_path),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
