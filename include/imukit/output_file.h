@@ -24,8 +24,8 @@ typedef struct imk_output_file imk_output_file;
  *    (level 3, with checksum) is compressed on the way.
  *
  *  One file belongs to one thread at a time.
- *  @return IMK_ERROR_OPEN (error.field: the path; error.found: the system's reason),
- *          IMK_ERROR_MEMORY */
+ *  @return IMK_ERROR_OPEN (error.field: the path; error.found: the system's reason, or what is
+ *          wrong with the folder), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_output_file_open(const char *path, imk_output_file **file, imk_error *error);
 
 /** Add bytes; errors are kept and reported by commit as well. */

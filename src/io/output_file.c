@@ -161,16 +161,10 @@ static void release(imk_output_file *file)
     free(file);
 }
 
-static imk_status refuse_path(const char *path, int number, imk_error *error)
-{
-    return imki_system_error(error, number == ENOMEM ? IMK_ERROR_MEMORY : IMK_ERROR_OPEN, path,
-                             number);
-}
-
 imk_status imki_output_file_check(const char *path, imk_error *error)
 {
     const int number = imki_target_check(path);
-    return number == 0 ? IMK_OK : refuse_path(path, number, error);
+    return number == 0 ? IMK_OK : imki_target_refuse(path, number, error);
 }
 
 imk_status imk_output_file_open(const char *path, imk_output_file **file, imk_error *error)
@@ -186,7 +180,7 @@ imk_status imk_output_file_open(const char *path, imk_output_file **file, imk_er
     const int number = imki_target_open(&made->target, path);
     if (number != 0) {
         release(made);
-        return refuse_path(path, number, error);
+        return imki_target_refuse(path, number, error);
     }
     *file = made;
     return IMK_OK;

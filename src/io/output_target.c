@@ -9,6 +9,9 @@
 
 #include "io/descriptor_name_internal.h"
 #include "io/leftovers_internal.h"
+#include "io/system_error_internal.h"
+
+#include "imukit/utf8.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -146,6 +149,45 @@ int imki_target_open(imki_target *target, const char *path)
     if (number != 0)
         imki_target_close(target);
     return number;
+}
+
+/* Of a file that cannot be made beside the others in its folder. */
+static imk_status refuse_folder(const char *path, char *name, int number, imk_error *error)
+{
+    struct stat about;
+    imk_error reason;
+    char shown[40], found[sizeof reason.found];
+    const size_t length = directory_length(name);
+    if (name[length] == '\0')
+        return imk_error_set(error, IMK_ERROR_OPEN, path, "it is the name of a folder",
+                             "a name of a file");
+    name[length > 1 ? length - 1 : length] = '\0';
+    const char *folder = length > 0 ? name : ".";
+    imk_utf8_shorten(folder, shown, sizeof shown);
+    if (stat(folder, &about) != 0 && errno == ENOENT) {
+        snprintf(found, sizeof found, "the folder %s does not exist", shown);
+        return imk_error_set(error, IMK_ERROR_OPEN, path, found, "make it, or name another");
+    }
+    (void)imki_system_error(&reason, IMK_ERROR_OPEN, "", number);
+    snprintf(found, sizeof found, "the folder %s cannot be written: %.25s", shown, reason.found);
+    return imk_error_set(error, IMK_ERROR_OPEN, path, found, "");
+}
+
+imk_status imki_target_refuse(const char *path, int number, imk_error *error)
+{
+    struct stat about;
+    if (number == ENOMEM)
+        return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
+    const bool of_folder = number == ENOENT || number == EACCES || number == EPERM ||
+                           number == EROFS || number == EISDIR;
+    char *name = of_folder ? follow_links(path) : NULL;
+    const bool refused =
+        name && stat(name, &about) == 0 && (S_ISDIR(about.st_mode) || access(name, W_OK) != 0);
+    const imk_status status = name && name[0] != '\0' && !refused
+                                  ? refuse_folder(path, name, number, error)
+                                  : imki_system_error(error, IMK_ERROR_OPEN, path, number);
+    free(name);
+    return status;
 }
 
 int imki_target_check(const char *path)

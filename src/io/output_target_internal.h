@@ -4,6 +4,8 @@
 #ifndef IMUKIT_OUTPUT_TARGET_INTERNAL_H
 #define IMUKIT_OUTPUT_TARGET_INTERNAL_H
 
+#include "imukit/status.h"
+
 #include <stdbool.h>
 
 typedef struct imki_target {
@@ -17,6 +19,10 @@ typedef struct imki_target {
 
 /* @return 0 or an errno value */
 int imki_target_open(imki_target *target, const char *path);
+
+/* Why it could not be opened: the folder is told from the file.
+ * @param number  from imki_target_open() */
+imk_status imki_target_refuse(const char *path, int number, imk_error *error);
 
 /* Can it be opened? Nothing is left behind, and a pipe is not touched: its reader would take the
  * closing for the end. @return as imki_target_open() */

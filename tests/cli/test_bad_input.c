@@ -400,7 +400,8 @@ static void test_unwritable_outputs(void **state)
     static const struct {
         const char *path, *says;
     } places[] = {{"/dev/full", "No space left on device"},
-                  {"/nonexistent/x.csv", "No such file or directory"},
+                  {"/nonexistent/x.csv", "the folder /nonexistent does not exist"},
+                  {"/proc/x.csv", "the folder /proc cannot be written: "},
                   {"dir.csv", "Is a directory"}};
     char line[300];
     write_good();
@@ -414,6 +415,9 @@ static void test_unwritable_outputs(void **state)
             check_contains(err, places[k].says, line);
         }
     }
+    check_message("$I allan good.csv -o nodir/ >/dev/null", 1,
+                  "imukit allan: error: nodir/: it is the name of a folder; expected a name of a "
+                  "file\n");
     assert_int_equal(sweep(), 2); /* good.csv and dir.csv: nothing else was left */
     write_good();
     static const char *const to_standard_output[] = {"--help",

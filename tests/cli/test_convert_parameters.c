@@ -51,8 +51,8 @@ static void test_from_model(void **state)
         "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter\n" TRY(
             "convert"));
     check_message("$I convert model.yaml /nowhere/out.yaml --to kalibr", 1,
-                  "imukit convert: error: /nowhere/out.yaml: the file cannot be opened: No such "
-                  "file or directory\n");
+                  "imukit convert: error: /nowhere/out.yaml: the folder /nowhere does not "
+                  "exist; make it, or name another\n");
     assert_int_equal(sweep(), 3);
 }
 

@@ -465,7 +465,7 @@ static void test_refusals(void **state)
         {"ring_laser -d 1s --output-rat 5Hz", 2,
          E "there is no option --output-rat; did you mean --output-rate?\n" TRY("physics")},
         {"ring_laser -d 1s -o no/a.csv", 1,
-         E "no/a.csv: the file cannot be opened: No such file or directory\n"},
+         E "no/a.csv: the folder no does not exist; make it, or name another\n"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char line[400];

@@ -407,8 +407,8 @@ static void test_refusals(void **state)
             "--only: \"scale_factr\" is not a known name; did you mean scale_factor?");
     /* What is wrong with a file is no misuse; nothing is left behind. */
     check_message("$I simulate AHRS $D --truth nowhere/t.csv -o x.csv", 1,
-                  "imukit simulate: error: nowhere/t.csv: the file cannot be opened: No such file "
-                  "or directory\n");
+                  "imukit simulate: error: nowhere/t.csv: the folder nowhere does not exist; "
+                  "make it, or name another\n");
     check_message("$I simulate AHRS $D --runs 2 -o nowhere/x/", 1,
                   "imukit simulate: error: nowhere/x/: No such file or directory\n");
     check_message("sed '1s/ .s.//' log.csv >bare.csv; $I simulate AHRS --motion bare.csv", 1,

@@ -184,30 +184,40 @@ static void links_stay_links(void **state)
     assert_int_equal(count_files(), 0);
 }
 
-static void check_refused(const char *path, int number)
+static void check_refused(const char *path, const char *found)
 {
     imk_output_file *file = NULL;
     imk_error error;
     CHECK_STATUS(imk_output_file_open(path, &file, &error), IMK_ERROR_OPEN);
     assert_null(file);
     assert_string_equal(error.field, path);
-    assert_string_equal(error.found, strerror(number));
+    assert_string_equal(error.found, found);
 }
 
 static void refusals_name_the_reason(void **state)
 {
     (void)state;
-    check_refused(directory, EISDIR);
-    check_refused("", ENOENT);
-    check_refused(path_of("missing/a.csv"), ENOENT);
-    check_refused(path_of("missing/"), EISDIR);
-    check_refused("/proc/imukit.csv", ENOENT); /* a directory where even root makes no files */
+    check_refused(directory, strerror(EISDIR));
+    check_refused("", strerror(ENOENT));
+    char found[160];
+    snprintf(found, sizeof found, "the folder %s/missing does not exist", directory);
+    check_refused(path_of("missing/a.csv"), found);
+    assert_int_equal(symlink("missing/a.csv", path_of("link")), 0);
+    check_refused(path_of("link"), found);
+    unlink(path_of("link"));
+    check_refused(path_of("missing/"), "it is the name of a folder");
+    check_refused(
+        "/proc/imukit.csv",
+        "the folder /proc cannot be written: No such file or directory"); /* a directory where even
+                                                                             root makes no files */
     save(path_of("file"), "");
-    check_refused(path_of("file/a.csv"), ENOTDIR);
+    check_refused(path_of("file/a.csv"), strerror(ENOTDIR));
     unlink(path_of("file"));
     mkdir(path_of("locked"), 0500);
+    snprintf(found, sizeof found, "the folder %s/locked cannot be written: Permission denied",
+             directory);
     if (access(path_of("locked"), W_OK) != 0)
-        check_refused(path_of("locked/a.csv"), EACCES);
+        check_refused(path_of("locked/a.csv"), found);
     rmdir(path_of("locked"));
     assert_int_equal(count_files(), 0);
 }
@@ -388,7 +398,7 @@ static void open_streams(void **state)
     unlink(path_of("log"));
 
     snprintf(name, sizeof name, "/dev/fd/%d", file);
-    check_refused(name, EBADF);
+    check_refused(name, strerror(EBADF));
     assert_int_equal(symlink("/dev/null", path_of("nowhere")), 0);
     write_text(path_of("nowhere"), "nothing");
     struct stat about;
