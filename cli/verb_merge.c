@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit merge: the shards of a Monte Carlo campaign become one results file. */
+#define _POSIX_C_SOURCE 200809L
 #include "json_output.h"
 
 #include "imukit/campaign.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct merge_options {
     const char *output;
@@ -55,10 +57,26 @@ static void warn_complaints(const imk_campaign_merge_report *report)
     }
 }
 
+/* Is there a file that could not be read, and may have runs that are missing? */
+static bool has_unreadable(const imk_campaign_merge_report *r)
+{
+    for (size_t i = 0; i < r->complaint_count; i++)
+        if (r->complaint[i].error.status == IMK_ERROR_OPEN &&
+            (strcmp(r->complaint[i].path, "-") == 0 || access(r->complaint[i].path, F_OK) == 0))
+            return true;
+    return false;
+}
+
 /* What to do about the runs that are not there. */
 static void describe_missing(const imk_campaign_merge_report *r, char *text, size_t size)
 {
-    if (r->shard_count > 0 && r->shards[0])
+    if (has_unreadable(r))
+        snprintf(
+            text, size,
+            "runs %s of %llu are missing, which may be in a file that could not be read: merge "
+            "again with files that can",
+            r->missing, (unsigned long long)r->run_count);
+    else if (r->shard_count > 0 && r->shards[0])
         snprintf(
             text, size,
             "runs %s of %llu are missing; compute again with --shard i/%llu for i = %s (Slurm: "

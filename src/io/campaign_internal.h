@@ -44,7 +44,8 @@ imk_status imki_campaign_compare(const imk_campaign *other, const imk_campaign *
 
 /* ---- the first line of a results file: campaign_seal.c ---- */
 
-enum { IMKI_SEAL_SIZE = 512 }; /* bytes: the least user block of HDF5 */
+#define IMKI_RESULTS_MAGIC "imukit results " /* begins it */
+enum { IMKI_SEAL_SIZE = 512 };               /* bytes: the least user block of HDF5 */
 
 typedef struct imki_seal {
     uint64_t size; /* of the whole file */

@@ -11,15 +11,27 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+static imk_status refuse_stream(imk_error *error)
+{
+    return imk_error_set(error, IMK_ERROR_OPEN, "", "a results file cannot be read through a pipe",
+                         "give the file itself");
+}
+
 /* A FIFO is not waited for: it is refused. @return an open regular file, its size; -1 on error */
 static int open_file(const char *path, uint64_t *size, imk_status *status, imk_error *error)
 {
     struct stat about;
+    if (strcmp(path, "-") == 0) {
+        *status = refuse_stream(error);
+        return -1;
+    }
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
     if (file < 0 || fstat(file, &about) != 0)
         *status = imki_system_error(error, IMK_ERROR_OPEN, "", errno);
+    else if (S_ISDIR(about.st_mode))
+        *status = imki_system_error(error, IMK_ERROR_OPEN, "", EISDIR);
     else if (!S_ISREG(about.st_mode))
-        *status = imk_error_set(error, IMK_ERROR_OPEN, "", "it is not a regular file", "");
+        *status = refuse_stream(error);
     else
         *status = IMK_OK;
     if (*status == IMK_OK) {
@@ -34,7 +46,7 @@ static int open_file(const char *path, uint64_t *size, imk_status *status, imk_e
 /* Open and verify. */
 static imk_status open_verified(const char *path, int *file, imki_seal *seal, imk_error *error)
 {
-    uint64_t size;
+    uint64_t size = 0;
     imk_status status;
     *file = open_file(path, &size, &status, error);
     if (status == IMK_OK)

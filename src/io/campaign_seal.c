@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char magic[] = "imukit results ";
+static const char magic[] = IMKI_RESULTS_MAGIC;
 enum {
     MAGIC = sizeof magic - 1,
     SIZE_AT = MAGIC + 8, /* "1  size=" */

@@ -2,10 +2,17 @@
 /* A short text file in memory: model files and scripts. */
 #include "text_file_internal.h"
 
+#include "campaign_internal.h"
 #include "input_stream_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+static bool begins_with(const char *bytes, size_t size, const char *beginning)
+{
+    const size_t length = strlen(beginning);
+    return size >= length && memcmp(bytes, beginning, length) == 0;
+}
 
 imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, size_t *size,
                                imk_error *error)
@@ -24,6 +31,9 @@ imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, siz
         status = imki_input_read(input, buffer + used, capacity - used, &got, error);
     }
     imki_input_close(input);
+    if (status == IMK_OK && begins_with(buffer, used, IMKI_RESULTS_MAGIC))
+        status = imk_error_set(error, IMK_ERROR_FORMAT, "", "it is a results file of a campaign",
+                               "give the file itself to imukit drift, with a name ending in .h5");
     if (status != IMK_OK) {
         free(buffer);
         return status;

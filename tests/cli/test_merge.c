@@ -113,6 +113,32 @@ static void wrong_usage(void **state)
     sweep();
 }
 
+/* A results file that comes through a pipe is named as such, and its runs are not to be computed
+ * again. */
+static void results_through_a_pipe(void **state)
+{
+    (void)state;
+    make_shards(2);
+    check_message("cat s1.h5 | $I drift -", 1,
+                  "imukit drift: error: standard input: it is a results file of a campaign; give "
+                  "the file itself to imukit drift, with a name ending in .h5\n");
+    check_message("mv s1.h5 s1; $I grade s1; mv s1 s1.h5", 0,
+                  "imukit grade: error: s1: it is a results file of a campaign; give "
+                  "the file itself to imukit drift, with a name ending in .h5\n");
+    check_message("cat s1.h5 | $I merge - s2.h5 -o x.h5", 1,
+                  "imukit merge: warning: standard input: a results file cannot be read through a "
+                  "pipe; give the file itself\n"
+                  "imukit merge: error: runs 0-49 of 100 are missing, which may be in a file that "
+                  "could not be read: merge again with files that can (--partial merges what there "
+                  "is)\n");
+    run("cat s1.h5 | $I merge /dev/stdin s2.h5 -o x.h5");
+    check_contains(err, "/dev/stdin: a results file cannot be read through a pipe", "merge");
+    assert_null(strstr(err, "compute again"));
+    assert_int_equal(run("$I merge missing.h5 s2.h5 -o x.h5"), 1);
+    check_contains(err, "compute again with --shard", "merge");
+    sweep();
+}
+
 /* What cannot be written is refused before hours are spent on it, and nothing is left; a pipe is
  * not opened for it, for its reader would take the closing for the end. */
 static void unwritable_results(void **state)
@@ -261,6 +287,7 @@ int main(void)
         cmocka_unit_test(shards_and_threads_do_not_matter),
         cmocka_unit_test(what_is_wrong_is_named),
         cmocka_unit_test(wrong_usage),
+        cmocka_unit_test(results_through_a_pipe),
         cmocka_unit_test(unwritable_results),
         cmocka_unit_test(killed_campaigns_end_in_the_same_bytes),
         cmocka_unit_test(an_interrupt_says_how_to_go_on),

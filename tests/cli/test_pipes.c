@@ -289,7 +289,10 @@ static void test_formats_that_seek(void **state)
     check_message("$I drift tactical -d 10s -r 1Hz -n 3 -o /dev/stdout", 2,
                   "imukit drift: error: -o -: runs are kept in a file beside their results while "
                   "they are made; give a name ending in .csv or .h5\n" TRY("drift"));
-    check_message("$I drift x.h5", 1, "imukit drift: error: x.h5: it is not a regular file\n");
+    check_message(
+        "$I drift x.h5", 1,
+        "imukit drift: error: x.h5: a results file cannot be read through a pipe; give the file "
+        "itself\n");
     assert_int_equal(run("test -p x.npy && test -p x.h5 && rm x.npy x.h5 runs.h5"), 0);
     assert_int_equal(run("ls x.*"), 2);
 }
