@@ -66,15 +66,19 @@ static bool only_parameters(const char *path)
     return has_ending(path, sizeof endings / sizeof endings[0], endings);
 }
 
-int parameters_wanted(const parameter_options *options, const char *in, bool *wanted)
+int parameters_wanted(const parameter_options *options, const char *in, bool model_due,
+                      bool *wanted)
 {
     imk_error error;
     imk_parameter_format format;
     *wanted = options->from > 0 || options->to > 0;
-    /* Logs are not looked into. */
-    if (*wanted || !(only_parameters(in) || parameters_or_model(in)))
+    const bool named = only_parameters(in) || parameters_or_model(in);
+    if (*wanted || !(named || model_due)) /* logs are not looked into */
         return -1;
-    if (imk_parameter_format_detect(in, &format, &error) != IMK_OK)
+    const imk_status status = imk_parameter_format_detect(in, &format, &error);
+    if (status == IMK_ERROR_UNSUPPORTED && !named) /* too long: a log */
+        return -1;
+    if (status != IMK_OK)
         return command_error(&error, in);
     *wanted = format != IMK_PARAMETERS_UNKNOWN || only_parameters(in);
     return -1;

@@ -21,8 +21,10 @@ extern const option parameter_option_table[PARAMETER_OPTIONS];
 bool parameters_or_model(const char *path);
 
 /* Is this a conversion of parameters: by the options, or by what the file holds?
+ * @param model_due  a log cannot become what is written, so that any file is looked into
  * @return -1 or the exit code, the message printed */
-int parameters_wanted(const parameter_options *options, const char *in, bool *wanted);
+int parameters_wanted(const parameter_options *options, const char *in, bool model_due,
+                      bool *wanted);
 
 /* @param rate  [Hz], 0: not given. @return the exit code, messages printed */
 int convert_parameters(const parameter_options *options, double rate, const char *in,

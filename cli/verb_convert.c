@@ -57,7 +57,8 @@ const verb convert_verb = {
     .description =
         "A log is .csv (also .gz, .zst) or .npy; - is standard input or output, as CSV. Increments "
         "become rates. Values keep their units unless an option changes them.\n\n"
-        "A model (.yaml, .yml, .json) is converted between YAML and JSON. Parameter files of "
+        "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
+        "Parameter files of "
         "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and "
         "ardupilot "
         "are recognised by their content; what was assumed about units and densities, and what a "
@@ -71,6 +72,17 @@ const verb convert_verb = {
                {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
                 offsetof(convert_options, log)}},
     .run = run};
+
+/* What each end is. A name without an ending tells nothing of what is read: its content is looked
+ * at, but a stream's only when a model is due, for it has to be copied. A stream that is written is
+ * of the kind of what is read. */
+static void find_kinds(const char *in, const char *out, bool *from_model, bool *to_model)
+{
+    *to_model = parameters_or_model(out);
+    *from_model =
+        *to_model || !command_is_stream(in) ? imk_model_recognise(in) : parameters_or_model(in);
+    *to_model = *to_model || (*from_model && command_is_stream(out));
+}
 
 /* The document is kept only within one format: JSON has no place for comments and layout. */
 static int convert_model(const char *in, const char *out)
@@ -272,7 +284,7 @@ static int run(int count, char **words)
         return code;
     operands[1] = options_output_name(operands[1]);
     bool wanted;
-    code = parameters_wanted(&o.parameters, operands[0], &wanted);
+    code = parameters_wanted(&o.parameters, operands[0], parameters_or_model(operands[1]), &wanted);
     if (code >= 0)
         return code;
     if (wanted)
@@ -281,7 +293,8 @@ static int run(int count, char **words)
         return command_misused("%s: --json, --sensor and --density are for parameter files; "
                                "--from says which kind it is",
                                operands[0]);
-    bool from_model = parameters_or_model(operands[0]), to_model = parameters_or_model(operands[1]);
+    bool from_model, to_model;
+    find_kinds(operands[0], operands[1], &from_model, &to_model);
     if (from_model != to_model)
         return command_misused("%s is a %s and %s a %s: a log and a model cannot become each "
                                "other; use identify or simulate",

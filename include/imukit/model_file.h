@@ -30,6 +30,10 @@ IMK_API imk_status imk_model_read(const char *path, imk_model *model, imk_docume
 IMK_API imk_status imk_model_parse(const char *text, size_t size, imk_model *model,
                                    imk_document **document, imk_error *error);
 
+/** Is it a model, or another script of imukit or a parameter file, by its name (.yaml, .yml,
+ * .json), or else a model by its content? A pipe can be read after this. */
+IMK_API bool imk_model_recognise(const char *path);
+
 /** Free a document; NULL is allowed. */
 IMK_API void imk_document_free(imk_document *document);
 

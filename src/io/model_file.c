@@ -79,6 +79,11 @@ imk_status imk_model_read(const char *path, imk_model *model, imk_document **doc
     return status;
 }
 
+bool imk_model_recognise(const char *path)
+{
+    return imki_is_script(path, "imukit:") || imki_is_script(path, "imukit\":");
+}
+
 /* ---- writing --------------------------------------------------------------------------------- */
 
 static imk_status check_texts(const imk_model *model, imk_error *error)

@@ -106,6 +106,17 @@ static void test_wrong_usage(void **state)
     check_message("$I convert model.yaml log.csv", 2,
                   "imukit convert: error: model.yaml is a model and log.csv a log: a log and a "
                   "model cannot become each other; use identify or simulate\n" TRY("convert"));
+    put("m.yaml", "imukit: 1\ngyro: {range: 9 deg/s}\n");
+    put("r", "time [s],gyro_x [deg/s]\n0,1\n1,2\n");
+    check_message("cat r | $I convert - m.json", 2,
+                  "imukit convert: error: - is a log and m.json a model: a log and a model cannot "
+                  "become each other; use identify or simulate\n" TRY("convert"));
+    check_message("$I convert m.yaml -; cp m.yaml n; $I convert n -; cat r | $I convert - -", 0,
+                  "");
+    assert_string_equal(out, "imukit: 1\ngyro: {range: 9 deg/s}\n"
+                             "imukit: 1\ngyro: {range: 9 deg/s}\n"
+                             "time [s],gyro_x [deg/s]\n0,1\n1,2\n");
+    assert_int_equal(sweep(), 3);
     assert_int_equal(sweep(), 0);
 }
 

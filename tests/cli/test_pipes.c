@@ -33,6 +33,8 @@ static const struct {
     {"unit.yaml", "$I grade @ --json"},
     {"unit.yaml", "$I convert @ - --to kalibr --rate 100Hz"},
     {"kalibr.yaml", "$I convert @ - --to gazebo --rate 100Hz"},
+    {"unit.yaml", "$I convert @ z.json && cat z.json && rm z.json"},
+    {"kalibr.yaml", "$I convert @ z.yaml --rate 100Hz && cat z.yaml && rm z.yaml"},
     {"design.yaml", "$I physics @ --reduce"},
 };
 enum { READINGS = sizeof readings / sizeof readings[0] };
