@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/run_command.h"
 
+#include "enter_folder.h"
+
 #include <dirent.h>
 #include <stdlib.h>
 
@@ -29,10 +31,11 @@ int set_up(void **state)
     locate_command();
     if (access(command, X_OK) != 0) {
         print_error("%s is not there: build the target imukit-command\n", command);
-        return -1;
+        exit(EXIT_FAILURE); /* see enter_folder.h */
     }
     unsetenv("NO_COLOR");
-    return mkdtemp(directory) && chdir(directory) == 0 ? 0 : -1;
+    enter_folder(directory);
+    return 0;
 }
 
 int tear_down(void **state)

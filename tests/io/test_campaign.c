@@ -3,6 +3,7 @@
  * for bit. */
 #define _DEFAULT_SOURCE
 #include "campaign_runs.h"
+#include "enter_folder.h"
 
 #include "imukit/decimal.h"
 #include "imukit/io.h"
@@ -29,7 +30,8 @@ static char directory[] = "/tmp/imukit-campaign-XXXXXX";
 static int set_up(void **state)
 {
     (void)state;
-    return mkdtemp(directory) && chdir(directory) == 0 ? 0 : -1;
+    enter_folder(directory);
+    return 0;
 }
 
 static int clean(void **state)

@@ -3,6 +3,7 @@
  * damaged, forged, of another shape. */
 #define _DEFAULT_SOURCE
 #include "campaign_runs.h"
+#include "enter_folder.h"
 
 #include "io/campaign_internal.h"
 
@@ -18,7 +19,8 @@ static char directory[] = "/tmp/imukit-results-XXXXXX";
 static int set_up(void **state)
 {
     (void)state;
-    return mkdtemp(directory) && chdir(directory) == 0 ? 0 : -1;
+    enter_folder(directory);
+    return 0;
 }
 
 static int clean(void **state)

@@ -3,6 +3,7 @@
  * about files that do not belong. */
 #define _DEFAULT_SOURCE
 #include "campaign_runs.h"
+#include "enter_folder.h"
 
 #include <dirent.h>
 #include <unistd.h>
@@ -29,8 +30,7 @@ static int set_up(void **state)
     for (size_t i = 0; i < FILES_MAX; i++)
         paths[i] = names[i];
     report.complaint = complaints;
-    if (!mkdtemp(directory) || chdir(directory) != 0)
-        return -1;
+    enter_folder(directory);
     compute_shard("whole.h5", &campaign, 0, RUNS);
     return 0;
 }
