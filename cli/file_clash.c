@@ -59,9 +59,10 @@ static bool follow_link(char path[PATH_MAX])
 static char *place_of(const char *name)
 {
     char path[PATH_MAX], real[PATH_MAX], rest[PATH_MAX] = "";
-    if (strlen(name) >= sizeof path)
+    const size_t length = strlen(name);
+    if (length >= sizeof path)
         return NULL;
-    strcpy(path, name);
+    memcpy(path, name, length + 1);
     for (int links = 0; !realpath(*path ? path : ".", real);) {
         if (links < LINKS_MAX && follow_link(path))
             links++;
