@@ -354,6 +354,20 @@ static imk_status build(pose_table *t, const double *time, imk_motion_file *file
     return status;
 }
 
+/* Rows may each be sound, and yet no polynomials lead through all of them: a second beside days, a
+ * leap across the Earth. */
+static imk_status check_way(const imk_trajectory *trajectory, imk_error *error)
+{
+    imk_error of_piece = {.status = IMK_OK};
+    const imk_status status = imk_trajectory_validate(trajectory, &of_piece);
+    if (status == IMK_OK)
+        return IMK_OK;
+    const size_t row = of_piece.index >= 0 ? (size_t)of_piece.index + 1 : 1;
+    return imki_table_row_error("poses", IMK_ERROR_CONFLICT, row,
+                                "the rows about it cannot be joined by a smooth motion",
+                                "divide the table there, or fill the gap", error);
+}
+
 imk_status imki_poses_open(const imk_log *log, const double *time, const imk_geodetic *place,
                            imk_motion_file *file, imk_error *error)
 {
@@ -384,5 +398,5 @@ imk_status imki_poses_open(const imk_log *log, const double *time, const imk_geo
                                         .piece = file->piece};
     file->kind = IMK_MOTION_POSES;
     file->motion.trajectory = &file->trajectory;
-    return IMK_OK;
+    return check_way(&file->trajectory, error);
 }

@@ -306,6 +306,11 @@ static const struct {
      "m.csv: time, row 2: \"9.99989e-321 s\" is the step from the row before; expected a step of "
      "time "
      "from 1 ns to 1e9 s"},
+    {"time [s]," PLACES "," ANGLES "\n0,45,7,300,0,0,90\n1,45.0001,7,0,1,0,100\n"
+     "2,45.0002,7.0001,302,3,0,110\n3,45.0003,7.0001,302,1,1,115\n"
+     "404500,0.4,7.0002,302,0,1,120\n",
+     "m.csv: poses, row 4: the rows about it cannot be joined by a smooth motion; divide the table "
+     "there, or fill the gap"},
     {"time [s],lat [deg],lon [deg]\n0,1,2\n1,1,2\n",
      "m.csv: height: this column is missing; the columns latitude, longitude and height go "
      "together"},
