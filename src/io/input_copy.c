@@ -104,11 +104,13 @@ typedef struct seen {
     size_t line; /* bytes since the last line feed */
 } seen;
 
-/* The first block: text, or one of the other forms that inputs have. */
+/* The first block: text, or one of the other forms that inputs have. UTF-16 is left to the reader,
+ * which tells how to convert it. */
 static imk_status look_at_begin(seen *s, const char *block, size_t size, const char *path,
                                 imk_error *error)
 {
-    static const char *const others[] = {"\x1F\x8B", "\x28\xB5\x2F\xFD", "\x93NUMPY"};
+    static const char *const others[] = {"\x1F\x8B", "\x28\xB5\x2F\xFD", "\x93NUMPY", "\xFF\xFE",
+                                         "\xFE\xFF"};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         if (size >= strlen(others[i]) && memcmp(block, others[i], strlen(others[i])) == 0)
             return IMK_OK;

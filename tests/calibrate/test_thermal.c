@@ -285,7 +285,7 @@ static void knocks_are_left_out(void **state)
 }
 
 /* A sample as large as no sensor reads, even the first, costs the piece it is in and no digits of
- * the others. */
+ * the others, which made sigmas ten times as large and more. */
 static void an_absurd_sample_is_left_out(void **state)
 {
     (void)state;

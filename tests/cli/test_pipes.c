@@ -230,7 +230,6 @@ static void test_same_to_pipes(void **state)
     assert_int_equal(run("rm whole other log"), 0);
 }
 
-/* A reader that goes away ends the command as other commands end, or with a sentence. */
 /* A device without end is refused by its first bytes, and nothing of it is kept. */
 static void test_without_end(void **state)
 {
@@ -251,8 +250,12 @@ static void test_without_end(void **state)
                        "or zstd\n",
                        line);
     }
+    /* What ends, and can be read after a conversion, is told that. */
+    assert_int_equal(run("iconv -f UTF-8 -t UTF-16 log.csv | $I identify /dev/stdin"), 1);
+    check_contains(err, "the text is UTF-16; convert it: iconv -f UTF-16", "UTF-16");
 }
 
+/* A reader that goes away ends the command as other commands end, or with a sentence. */
 static void test_closed_pipe(void **state)
 {
     (void)state;
