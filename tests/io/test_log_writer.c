@@ -602,7 +602,6 @@ static void refusals(void **state)
     assert_int_equal(access(path_of("a.csv"), F_OK), -1);
 }
 
-/* A full device: the error comes, at the latest at commit, with the reason. */
 /* A finite number that its unit makes infinite is refused by column and row; infinities stay. */
 static void number_beyond_its_unit(void **state)
 {
@@ -626,6 +625,7 @@ static void number_beyond_its_unit(void **state)
     }
 }
 
+/* A full device: the error comes, at the latest at commit, with the reason. */
 static void full_device(void **state)
 {
     (void)state;
