@@ -15,7 +15,7 @@
 
 #include "imukit/fibre_optic.h"
 #include "imukit/instrument.h"
-#include "physics/tuning_fork_internal.h"
+#include "physics/tuning_fork/tuning_fork_internal.h"
 
 enum { REPEATS = 5, MANY = 40, TABLE = 256 };
 static const double pi = 3.14159265358979323846;

@@ -4,24 +4,24 @@
 # Each is compiled once, as position-independent objects, and made into an archive and a shared
 # library.
 
-file(GLOB core_sources CONFIGURE_DEPENDS src/base/*.c src/model/*.c src/noise/*.c src/motion/*.c
-     src/simulate/*.c src/identify/*.c src/physics/*.c src/compensate/*.c src/calibrate/*.c
-     src/navigate/*.c)
-file(GLOB io_sources CONFIGURE_DEPENDS src/io/*.c src/report/*.c)
+file(GLOB_RECURSE core_sources CONFIGURE_DEPENDS src/base/*.c src/model/*.c src/noise/*.c
+     src/motion/*.c src/simulate/*.c src/identify/*.c src/physics/*.c src/compensate/*.c
+     src/calibrate/*.c src/navigate/*.c)
+file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.c src/report/*.c)
 set(IMUKIT_FILE_FILTER "" CACHE STRING "Regular expression: build only files of such names")
 list(FILTER core_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
 list(FILTER io_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
 
 # One file per instruction set, chosen at run time; the rest is compiled for the base machine.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
-  set_source_files_properties(src/base/normals_avx2.c src/motion/trajectory_avx2.c PROPERTIES
+  set_source_files_properties(src/base/random/normals_avx2.c src/motion/trajectory_avx2.c PROPERTIES
                               COMPILE_OPTIONS "-mavx2")
-  set_source_files_properties(src/navigate/strapdown_block_fma.c PROPERTIES COMPILE_OPTIONS
+  set_source_files_properties(src/navigate/strapdown/strapdown_block_fma.c PROPERTIES COMPILE_OPTIONS
                               "-mfma")
-  set_source_files_properties(src/navigate/strapdown_block_avx2.c PROPERTIES COMPILE_OPTIONS
+  set_source_files_properties(src/navigate/strapdown/strapdown_block_avx2.c PROPERTIES COMPILE_OPTIONS
                               "-mavx2;-mfma")
-  set_source_files_properties(src/base/normals_avx512.c src/motion/trajectory_avx512.c
-                              src/navigate/strapdown_block_avx512.c PROPERTIES
+  set_source_files_properties(src/base/random/normals_avx512.c src/motion/trajectory_avx512.c
+                              src/navigate/strapdown/strapdown_block_avx512.c PROPERTIES
                               COMPILE_OPTIONS "-mavx512f;-mavx512dq")
 endif()
 
@@ -36,7 +36,7 @@ set(seldom_run_sources ${io_sources})
 list(FILTER seldom_run_sources EXCLUDE REGEX "/(log_|npy|input_)")
 set_property(SOURCE ${seldom_run_sources} APPEND PROPERTY COMPILE_OPTIONS ${imukit_seldom_run})
 if(IMUKIT_SANITIZE AND NOT IMUKIT_FUZZ) # what every class of every grade goes through, three times as fast so
-  set_property(SOURCE src/navigate/drift_propagate.c APPEND PROPERTY COMPILE_OPTIONS -O3)
+  set_property(SOURCE src/navigate/drift/drift_propagate.c APPEND PROPERTY COMPILE_OPTIONS -O3)
 endif()
 
 set(imukit_soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})

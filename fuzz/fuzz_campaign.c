@@ -2,12 +2,12 @@
 /* Fuzz entry point of what campaigns keep: the first line of a results file, before libhdf5 sees
  * anything of it, the head, and PATH.part. Checksums that a stranger would get right are put right
  * here, so that what stands behind them is reached.
- * Reads: src/io/campaign_seal.c src/io/campaign_head.c src/io/campaign_part.c
- * src/io/campaign_file.c */
+ * Reads: src/io/campaign/campaign_seal.c src/io/campaign/campaign_head.c
+ * src/io/campaign/campaign_part.c src/io/campaign/campaign_file.c */
 #define _POSIX_C_SOURCE 200809L
 #include "harness.h"
 
-#include "io/campaign_internal.h"
+#include "io/campaign/campaign_internal.h"
 
 #include <fcntl.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* libFuzzer entry: imk_decimal_parse() against strtod(), and what is written reads back.
- * Reads: src/base/decimal_parse.c src/base/decimal_format.c src/base/decimal_big.c */
+ * Reads: src/base/decimal/decimal_parse.c src/base/decimal/decimal_format.c
+ * src/base/decimal/decimal_big.c */
 #include "harness.h"
 
 #include "imukit/decimal.h"

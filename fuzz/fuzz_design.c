@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of the design file: any bytes are read or refused; what is read is a valid
  * design, which is written and read again with the same bits.
- * Reads: src/io/design_file.c src/io/design_read.c src/io/design_field.c src/io/design_print.c */
+ * Reads: src/io/design/design_file.c src/io/design/design_read.c src/io/design/design_field.c
+ * src/io/design/design_print.c */
 #include "harness.h"
 
 #include "imukit/design_file.h"

@@ -2,9 +2,10 @@
 /* Fuzz entry point of the model file: any bytes are read or refused; a model that is read is
  * written with its document as the same bytes, and without it as a text that reads back to the
  * same model.
- * Reads: src/io/document.c src/io/model_file.c src/io/model_items.c
- * src/io/model_yaml_correlation.c src/io/model_yaml_edit.c src/io/model_yaml_fields.c
- * src/io/model_yaml_read.c src/io/model_yaml_values.c src/io/model_yaml_write.c */
+ * Reads: src/io/model/document.c src/io/model/model_file.c src/io/model/model_items.c
+ * src/io/model/model_yaml_correlation.c src/io/model/model_yaml_edit.c
+ * src/io/model/model_yaml_fields.c src/io/model/model_yaml_read.c src/io/model/model_yaml_values.c
+ * src/io/model/model_yaml_write.c */
 #include "harness.h"
 
 #include "imukit/model_file.h"

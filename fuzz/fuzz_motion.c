@@ -2,13 +2,14 @@
 /* Fuzz entry point of the motion script: any bytes are read or refused; what is read has finite
  * steps, and a short script is compiled into a trajectory that is valid. Compiling takes 4 us a
  * piece, with the sanitizers five times that: scripts of many pieces are left to the tests.
- * Reads: src/io/motion_file.c src/io/motion_script_read.c src/io/motion_sentence.c
- * src/io/step_sentence.c src/io/vibration_lines.c src/motion/script_check.c */
+ * Reads: src/io/motion/motion_file.c src/io/motion/motion_script_read.c
+ * src/io/motion/motion_sentence.c src/io/motion/step_sentence.c src/io/motion/vibration_lines.c
+ * src/motion/script_check.c */
 #include "harness.h"
 
 #include "imukit/motion_file.h"
 
-#include "io/motion_file_internal.h"
+#include "io/motion/motion_file_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of .npy matrices. What stands before the magic number is the file of names
  * beside the matrix.
- * Reads: src/io/npy.c src/io/log_matrix.c */
+ * Reads: src/io/log/npy.c src/io/log/log_matrix.c */
 #include "harness.h"
 
 #include "imukit/log.h"
-#include "io/npy_internal.h"
+#include "io/log/npy_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,10 +3,12 @@
  * they are recognised as and as one that they are said to be; what is read is written in a format,
  * and that reads back. Trying all pairs of formats, up to 110 of them, took 20 ms an input: the
  * bytes choose one.
- * Reads: src/io/parameter_file.c src/io/parameter_ardupilot.c src/io/parameter_expression.c
- * src/io/parameter_filter.c src/io/parameter_gazebo.c src/io/parameter_gnss_ins_sim.c
- * src/io/parameter_kalibr.c src/io/parameter_matlab.c src/io/parameter_navego.c
- * src/io/parameter_px4.c src/io/parameter_values.c src/io/parameter_vins.c */
+ * Reads: src/io/foreign/parameter_file.c src/io/foreign/parameter_ardupilot.c
+ * src/io/foreign/parameter_expression.c src/io/foreign/parameter_filter.c
+ * src/io/foreign/parameter_gazebo.c src/io/foreign/parameter_gnss_ins_sim.c
+ * src/io/foreign/parameter_kalibr.c src/io/foreign/parameter_matlab.c
+ * src/io/foreign/parameter_navego.c src/io/foreign/parameter_px4.c
+ * src/io/foreign/parameter_values.c src/io/foreign/parameter_vins.c */
 #include "harness.h"
 
 #include "imukit/parameter_file.h"

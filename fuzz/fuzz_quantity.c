@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of units and quantities: what is read is written and reads back with the same
  * bits.
- * Reads: src/base/units.c src/base/unit_table.c src/base/quantity.c src/base/quantity_format.c
- * src/base/dimension_table.c src/base/nearest_name.c */
+ * Reads: src/base/units/units.c src/base/units/unit_table.c src/base/units/quantity.c
+ * src/base/units/quantity_format.c src/base/units/dimension_table.c src/base/nearest_name.c */
 #include "harness.h"
 
 #include "imukit/units.h"

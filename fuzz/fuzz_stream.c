@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of compressed and plain files: any bytes are delivered or refused, and whether
  * they are asked for in large or in small pieces makes no difference to what is delivered.
- * Reads: src/io/input_stream.c */
+ * Reads: src/io/file/input_stream.c */
 #include "harness.h"
 
-#include "io/input_stream_internal.h"
+#include "io/file/input_stream_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of tables that are loaded whole: poses, recorded rates and forces, temperatures.
  * What is read is a valid motion or profile.
- * Reads: src/io/log_load.c src/io/motion_table.c src/io/pose_columns.c src/io/recorded_motion.c */
+ * Reads: src/io/log/log_load.c src/io/motion/motion_table.c src/io/motion/pose_columns.c
+ * src/io/motion/recorded_motion.c */
 #include "harness.h"
 
 #include "imukit/motion_file.h"

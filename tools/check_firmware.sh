@@ -84,7 +84,7 @@ if $emulate -kernel "$out/wrong.elf" >"$out/wrong.log" 2>&1; then
 fi
 
 # The streaming Allan variances of the library itself: the same bits on the device as here.
-sources="src/identify/allan_stream.c src/identify/allan_stream_join.c"
+sources="src/identify/allan/allan_stream.c src/identify/allan/allan_stream_join.c"
 gcc -DSTREAM_HOST -std=gnu17 -O2 -ffp-contract=off -Iinclude -Isrc tests/firmware/stream_main.c \
     $sources -lm -o "$out/stream_host"
 arm-none-eabi-gcc $m4 $board -O2 -ffp-contract=off -Iinclude -Isrc -nostartfiles \

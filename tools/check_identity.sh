@@ -69,7 +69,7 @@ for program in simulate_hash physics_hash; do
         -o "$out/$program.o"
 done
 core=$(tools/needed_files.sh "$out"/*_hash.o | sed 's/^/-name /; $!s/$/ -o/' | xargs find src)
-core="$core $(echo src/*/*_neon.c)" # which it takes on AArch64
+core="$core $(find src -name '*_neon.c')" # which it takes on AArch64
 tools/compile_core.sh "$out/gcc-O0" "$core" gcc -O0
 tools/compile_core.sh "$out/clang-O0" "$core" clang -O0
 tools/compile_core.sh "$out/clang-O3" "$core" clang -O3

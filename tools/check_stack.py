@@ -23,7 +23,7 @@ LIMIT = 48 * 1024
 # Recursion with a bound: how many calls of a function stand on the stack at most. All that is below
 # it counts as often.
 BOUNDED = {
-    "src/base/units.c:read_product": 9,  # a bracket in each of 8, BRACKETS_MAX
+    "src/base/units/units.c:read_product": 9,  # a bracket in each of 8, BRACKETS_MAX
 }
 # What is not ours. libm: the reduction of large angles, with 4 x 20 doubles, is its deepest.
 OUTSIDE = [(r"__aeabi_\w+|__\w+[sd]f\d?", 64), (r"mem\w+|str\w+", 128), (r"\w+", 1024)]

@@ -3,4 +3,4 @@
 # Prints the files of libimukit: all modules left of io.
 set -eu
 cd "$(dirname "$0")/.."
-printf '%s\n' src/{base,model,noise,motion,simulate,identify,physics,compensate,calibrate,navigate}/*.c
+find src/{base,model,noise,motion,simulate,identify,physics,compensate,calibrate,navigate} -name '*.c' | sort

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Write src/base/decimal_powers.c: 10^e as 128-bit significands, rounded down, with exact integers.
+"""Write src/base/decimal/decimal_powers.c: 10^e as 128-bit significands, rounded down, with exact integers.
 
     make_decimal_powers.py FILE          writes the table
     make_decimal_powers.py --check FILE  compares it with what would be written, exit 1 if different

@@ -9,7 +9,7 @@
  */
 #include "imukit/elementary.h"
 
-#include "base/sine_internal.h"
+#include "sine_internal.h"
 
 #include <float.h>
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "imukit/earth.h"
 
 #include "imukit/elementary.h"
-#include "motion/wgs84_internal.h"
+#include "wgs84_internal.h"
 
 #include <math.h>
 

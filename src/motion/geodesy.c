@@ -14,7 +14,7 @@ static inline real square_root(real a)
     return sqrt(a);
 }
 
-#include "motion/gravity_kernel.h"
+#include "gravity_kernel.h"
 
 /* N = a/sqrt(1 - e^2 sin^2),   x, y = (N + h) cos,   z = (N (1 - e^2) + h) sin */
 imk_vector3 imk_ecef_from_geodetic(imk_geodetic place)

@@ -30,7 +30,7 @@
  * Every direction is kept as its sine and as its cosine by p: nothing is divided by p, and the
  * poles are not special. Normalised they are by the power series of (1 + x)^(-1/2), as their
  * lengths are known to 0.014. */
-#include "motion/wgs84_internal.h"
+#include "wgs84_internal.h"
 
 /* e'^2 b and e^2 a [m] */
 #define POLAR_EXCESS (FIRST_ECCENTRICITY_SQUARED * SEMI_MAJOR_AXIS / (1.0 - FLATTENING))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Trajectories: a body at rest, checks, and the state at one instant. */
-#include "motion/trajectory_internal.h"
+#include "trajectory_internal.h"
 
 #include "imukit/elementary.h"
 

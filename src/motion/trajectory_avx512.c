@@ -15,7 +15,7 @@ static inline real square_root(real a)
     return (real)_mm512_sqrt_pd((__m512d)a);
 }
 
-#include "motion/trajectory_kernel.h"
+#include "trajectory_kernel.h"
 
 void imki_means_of_intervals_avx512(const imk_trajectory *trajectory, size_t count,
                                     imki_intervals *intervals)

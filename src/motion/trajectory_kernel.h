@@ -12,7 +12,7 @@
  * Means over an interval are by the Gauss-Lobatto formula with five nodes, 0, (1 -+ sqrt(3/7))/2,
  * 1/2 and 1, whose weights are 1/20, 49/180, 16/45 [ABRAMOWITZ1964, 25.4.32]; as differences to the
  * middle, so that the mean of a constant is that constant. */
-#include "motion/trajectory_node.h"
+#include "trajectory_node.h"
 
 #include <string.h>
 

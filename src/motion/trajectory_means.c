@@ -2,7 +2,7 @@
 /* Means of angular rate and specific force over the samples of a trajectory: samples are cut where
  * pieces meet, and the parts are handed to the kernel of trajectory_kernel.h, eight at a time or,
  * where eight samples or more lie within one piece, in rows. */
-#include "motion/trajectory_internal.h"
+#include "trajectory_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -16,8 +16,8 @@
  * Its rotation C_v = Rx Ry Rz acts last: one axis k after the other, by the angle a,
  *
  *     f <- R^T f,   w <- R^T w + a' k,   w' <- R^T w' - a' k x R^T w + a'' k */
-#include "motion/gravity_kernel.h"
-#include "motion/trajectory_internal.h"
+#include "gravity_kernel.h"
+#include "trajectory_internal.h"
 
 #ifndef KERNEL
 #define KERNEL static inline __attribute__((always_inline))

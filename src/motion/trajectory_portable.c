@@ -31,7 +31,7 @@ static inline real square_root(real a)
 }
 #endif
 
-#include "motion/trajectory_kernel.h"
+#include "trajectory_kernel.h"
 
 void imki_means_of_intervals_portable(const imk_trajectory *trajectory, size_t count,
                                       imki_intervals *intervals)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* ARMA(2,2) sequences: spectrum, stationary start, recursion. */
-#include "noise/arma_internal.h"
+#include "arma_internal.h"
 
 /* S(f) = dt |B|^2/|A|^2 at z = exp(2 pi i f dt), with u = sin^2(pi f dt):
  *

@@ -3,7 +3,7 @@
 #ifndef IMUKIT_ARMA_INTERNAL_H
 #define IMUKIT_ARMA_INTERNAL_H
 
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 /* x' = -w x + drive u (order 1), or x'' + 2 damping w x' + w^2 x = drive u (order 2), u white noise
  * of unit density. The state is (x, v = x'); order 1 leaves v at 0. */

@@ -10,7 +10,7 @@
  * a moving average of three independent triples, whose autocovariances give B. Relative to that of
  * plain white noise nothing cancels, so both limits are reached: white for a bandwidth far above
  * the rate, the continuous filter far below. */
-#include "noise/arma_internal.h"
+#include "arma_internal.h"
 
 /* w of the filter from its -3 dB point f: second order, with r = (2 pi f/w)^2,
  * (1 - r)^2 + 4 damping^2 r = 2, whose positive root is r = m + sqrt(m^2 + 1), m = 1 - 2 damping^2.

@@ -13,7 +13,7 @@
  * The fastest stage also stands for those faster than dt, which are left out: its variance is
  * raised by FASTEST, chosen to make the largest deviation of the Allan deviation from the ideal one
  * smallest over 2 … 300 dt (tests/reference/flicker_stages.py). */
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 #define FASTEST 1.20785             /* tests/reference/flicker_stages.py */
 #define VARIANCE 0.4412712003053032 /* ln 4/pi */

@@ -4,7 +4,7 @@
  *     y[k] = phi y[k-1] + q n[k],   phi = exp(-dt/T),   q = sigma sqrt(1 - phi^2),
  *
  * from a stationary y[-1]. expm1 keeps q accurate for dt << T, where 1 - phi^2 cancels. */
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 /* sum over k >= 3 of (-1)^k/k! [4 a^k - b^k - n c^k - d^k]: the bracket of either Allan variance,
  * whose terms up to second order cancel. Largest argument 2: 26 terms leave 2^29/29! < 1e-22. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What every generator does: check its arguments, and hand out blocks in pieces of any size. */
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 imk_status imki_check_noise(double strength, double dt)
 {

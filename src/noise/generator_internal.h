@@ -10,7 +10,7 @@
 #ifndef IMUKIT_GENERATOR_INTERNAL_H
 #define IMUKIT_GENERATOR_INTERNAL_H
 
-#include "base/normals_internal.h"
+#include "base/random/normals_internal.h"
 #include "imukit/elementary.h"
 #include "imukit/noise.h"
 

@@ -9,7 +9,7 @@
  * [VANLOAN1978 has the integrals; doubling adds only positive variances, so that nothing cancels
  * however small w dt or the damping is]. The transition itself is taken from its closed form at
  * each length, so its errors do not grow. */
-#include "noise/arma_internal.h"
+#include "arma_internal.h"
 
 imki_dynamics imki_first_order(double omega, double drive)
 {

@@ -10,7 +10,7 @@
  *
  * At the end of each segment of 32 samples the residual is folded back to +-lsb/2, which keeps the
  * sums short: no digits are lost however long the record. */
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 double imk_quantization_allan_variance(double q, double tau)
 {

@@ -12,7 +12,7 @@
  * The steps are white, and the cosine transform (DCT-II) turns the walk's covariance into a
  * diagonal matrix exactly; its expected square is that of the spectrum K^2 dt^2/(4 sin^2(pi f dt)).
  */
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 double imk_random_walk_allan_variance(double k, double tau)
 {

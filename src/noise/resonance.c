@@ -6,7 +6,7 @@
  *     x[k] - t x[k-1] + d x[k-2] = e_x[k-1] + ((phi - t) e)_x[k-2],
  *
  * an ARMA(2,1). The drive that gives the standard deviation sigma is sigma sqrt(2 w^3/Q). */
-#include "noise/arma_internal.h"
+#include "arma_internal.h"
 
 static imki_dynamics resonance_dynamics(imk_resonance resonance)
 {

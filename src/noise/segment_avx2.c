@@ -2,7 +2,7 @@
 /* The loops over a block in segment order with AVX2. */
 #if defined(__x86_64__) && defined(__GNUC__)
 #define LANES 4
-#include "noise/segment_kernel.h"
+#include "segment_kernel.h"
 
 COMPILE_FOR(avx2, __attribute__((target("avx2"))))
 #else

@@ -2,7 +2,7 @@
 /* The loops over a block in segment order with AVX-512. */
 #if defined(__x86_64__) && defined(__GNUC__)
 #define LANES 8
-#include "noise/segment_kernel.h"
+#include "segment_kernel.h"
 
 COMPILE_FOR(avx512, __attribute__((target("avx512f,avx512dq"))))
 #else

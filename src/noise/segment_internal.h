@@ -3,7 +3,7 @@
 #ifndef IMUKIT_SEGMENT_INTERNAL_H
 #define IMUKIT_SEGMENT_INTERNAL_H
 
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 #define IMKI_SEGMENT_LOOPS(isa)                                                                    \
     void imki_add_scaled_##isa(double scale, const double *normals, double *block);                \

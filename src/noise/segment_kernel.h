@@ -6,7 +6,7 @@
 #define IMUKIT_SEGMENT_KERNEL_H
 
 #include "base/sine_internal.h"
-#include "noise/segment_internal.h"
+#include "segment_internal.h"
 
 #define KERNEL static inline __attribute__((always_inline))
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The loops of segment_kernel.h, each by the instruction set asked for. */
 #include "base/kernel_call_internal.h"
-#include "noise/segment_internal.h"
+#include "segment_internal.h"
 
 void imki_add_scaled(imk_kernel kernel, double scale, const double *normals, double *block)
 {

@@ -5,7 +5,7 @@
  * is exact at any k, and f is off by at most 2^-65/dt. Within a segment of 32 samples the sine
  * turns by the addition theorem from the segment's start, which costs one sine and cosine per
  * segment and an error of 2 ulp of a. */
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 double imk_sinusoid_allan_variance(imk_sinusoid sinusoid, double tau)
 {

@@ -2,7 +2,7 @@
 /* White noise: the mean of continuous white noise of density N over each sample,
  *
  *     y[k] = N/sqrt(dt) n[k],   Allan variance N^2/tau,   S(f) = N^2   [IEEE952]  */
-#include "noise/generator_internal.h"
+#include "generator_internal.h"
 
 double imk_white_allan_variance(double density, double tau)
 {

@@ -2,7 +2,7 @@
 /* Random numbers of the instruments. Instances of a stream: 0-63 draws, 64-71 constants of the
  * run, 128 + 16 k … the stages of flicker noise k. Terms: IMK_TERM_PHYSICS + 256 times the
  * occasion. */
-#include "physics/physics_internal.h"
+#include "physics_internal.h"
 
 enum { CONSTANTS = 64, FLICKERS = 128, FLICKER_INSTANCES = 16 };
 

@@ -12,7 +12,7 @@
 #include "imukit/tuned_gyro.h"
 #include "imukit/tuning_fork.h"
 #include "imukit/vibrating_beam.h"
-#include "physics/physics_internal.h"
+#include "physics_internal.h"
 
 #include <math.h>
 #include <string.h>

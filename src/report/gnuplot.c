@@ -6,8 +6,8 @@
 #include "figure_internal.h"
 
 #include "imukit/decimal.h"
-#include "io/leftovers_internal.h"
-#include "io/system_error_internal.h"
+#include "io/file/leftovers_internal.h"
+#include "io/file/system_error_internal.h"
 #include "scratch_folder_internal.h"
 
 #include <ctype.h>

@@ -5,8 +5,8 @@
 #define _GNU_SOURCE /* nftw(), mkdtemp() */
 #include "scratch_folder_internal.h"
 
-#include "io/leftovers_internal.h"
-#include "io/system_error_internal.h"
+#include "io/file/leftovers_internal.h"
+#include "io/file/system_error_internal.h"
 
 #include "imukit/utf8.h"
 

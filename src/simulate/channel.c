@@ -8,7 +8,7 @@
  * Samples are made in blocks of 512 counted from sample 0, so it does not matter how many are asked
  * for at a time. */
 #include "model/distort_internal.h"
-#include "simulate/simulate_internal.h"
+#include "simulate_internal.h"
 
 #include <string.h>
 

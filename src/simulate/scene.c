@@ -9,7 +9,7 @@
  * the middle of a part without jitter. Nothing here depends on how rows are divided into stretches.
  */
 #include "model/distort_internal.h"
-#include "simulate/simulate_internal.h"
+#include "simulate_internal.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 /* The simulator: memory, channels, and the order in which rows are made. */
 #include "imukit/simulate.h"
 
-#include "simulate/simulate_internal.h"
+#include "simulate_internal.h"
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Exact discretisation of linear systems, and Bessel functions. */
 #define _XOPEN_SOURCE 700 /* jn() */
-#include "../check.h"
+#include "check.h"
 
-#include "base/bessel_internal.h"
-#include "base/linear_system_internal.h"
+#include "base/algebra/linear_system_internal.h"
+#include "base/distributions/bessel_internal.h"
 
 #include <float.h>
 #include <stdlib.h>

@@ -3,10 +3,10 @@
  * squares, coverage of its intervals, bad poses, and every way a problem can be undetermined. */
 #include "check.h"
 
-#include "calibrate/axis_reading_internal.h"
-#include "calibrate/calibration_internal.h"
-#include "calibrate/coverage.h"
-#include "calibrate/estimator_bench.h"
+#include "calibrate/estimator/axis_reading_internal.h"
+#include "calibrate/estimator/calibration_internal.h"
+#include "coverage.h"
+#include "estimator_bench.h"
 
 #include "imukit/distributions.h"
 #include "imukit/linear_algebra.h"

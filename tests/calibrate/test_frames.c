@@ -3,8 +3,8 @@
  * differences of the exact one, and comparing calibrations across frames. */
 #include "check.h"
 
-#include "calibrate/calibration_internal.h"
-#include "calibrate/estimator_bench.h"
+#include "calibrate/estimator/calibration_internal.h"
+#include "estimator_bench.h"
 
 static void response(const imk_triad *t, double r[3][3])
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The experiments find what was put into an instrument whose errors are known: a made-up one that
  * does nothing but have them. */
-#include "../check.h"
+#include "check.h"
 
 #include "imukit/distort.h"
 #include "imukit/elementary.h"

@@ -4,7 +4,7 @@
  * experiments/coverage_multiposition.c. */
 #include "check.h"
 
-#include "calibrate/multiposition_internal.h"
+#include "calibrate/procedures/multiposition_internal.h"
 #include "multiposition_bench.h"
 
 #include <string.h>

@@ -3,8 +3,8 @@
  * benches, and what is refused. */
 #include "check.h"
 
-#include "calibrate/six_position_bench.h"
-#include "calibrate/six_position_internal.h"
+#include "calibrate/procedures/six_position_internal.h"
+#include "six_position_bench.h"
 
 /* ---- labels ------------------------------------------------------------------------------------
  */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What temperature does, found in simulated sweeps, in readings made by formula, and in a real log.
  */
-#include "../check.h"
+#include "check.h"
 #include "thermal_bench.h"
 
 #include "imukit/log.h"

@@ -3,7 +3,7 @@
  * known errors, and its derivatives against differences. */
 #include "check.h"
 
-#include "calibrate/calibration_internal.h"
+#include "calibrate/estimator/calibration_internal.h"
 #include "imukit/attitude.h"
 #include "imukit/motion_script.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/run_command.h"
+#include "run_command.h"
 
 #include "enter_folder.h"
 

@@ -4,7 +4,7 @@
  * samples, so that the whole-record transform is at hand to compare with. */
 #include "check.h"
 
-#include "identify/long_record_internal.h"
+#include "identify/records/long_record_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * the intervals that it states. */
 #include "check.h"
 
-#include "../../src/identify/missing_internal.h"
+#include "identify/records/missing_internal.h"
 #include "imukit/fourier.h"
 #include "imukit/linear_algebra.h"
 

@@ -2,7 +2,7 @@
 /* Where the verdicts on a record begin: repeated samples, and samples that pile up at a limit. */
 #include "check.h"
 
-#include "identify/screen_internal.h"
+#include "identify/records/screen_internal.h"
 #include "imukit/identify.h"
 #include "imukit/random.h"
 

@@ -3,7 +3,7 @@
  * cannot be one has none. */
 #include "check.h"
 
-#include "identify/identify_internal.h"
+#include "identify/likelihood/identify_internal.h"
 
 enum { N = 1 << 14 };
 static const double DT = 0.01;

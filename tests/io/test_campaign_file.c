@@ -5,7 +5,7 @@
 #include "campaign_runs.h"
 #include "enter_folder.h"
 
-#include "io/campaign_internal.h"
+#include "io/campaign/campaign_internal.h"
 
 #include <dirent.h>
 #include <fcntl.h>

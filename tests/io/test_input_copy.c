@@ -4,8 +4,8 @@
 #define _XOPEN_SOURCE 700
 #include "check.h"
 
-#include "io/descriptor_name_internal.h"
-#include "io/input_stream_internal.h"
+#include "io/file/descriptor_name_internal.h"
+#include "io/file/input_stream_internal.h"
 
 #include <dirent.h>
 #include <fcntl.h>

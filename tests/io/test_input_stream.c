@@ -3,7 +3,7 @@
  * never a short read. */
 #define _POSIX_C_SOURCE 200809L
 #define ZLIB_CONST
-#include "io/input_stream_internal.h"
+#include "io/file/input_stream_internal.h"
 
 #include "check.h"
 

@@ -6,10 +6,10 @@
 #include "imukit/log.h"
 #include "imukit/thread_pool.h"
 
-#include "io/fixed_decimal_internal.h"
-#include "io/input_stream_internal.h"
-#include "io/log_format_internal.h"
-#include "io/npy_internal.h"
+#include "io/file/input_stream_internal.h"
+#include "io/log/fixed_decimal_internal.h"
+#include "io/log/log_format_internal.h"
+#include "io/log/npy_internal.h"
 
 #include "check.h"
 

@@ -8,7 +8,7 @@
 #include "random_model.h"
 
 #include "imukit/io.h"
-#include "io/model_yaml_internal.h"
+#include "io/model/model_yaml_internal.h"
 
 #include <stdlib.h>
 

@@ -8,7 +8,7 @@
 
 #include "imukit/io.h"
 
-#include "io/motion_file_internal.h"
+#include "io/motion/motion_file_internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 
 #include "imukit/io.h"
 
-#include "io/geodetic_difference_internal.h"
+#include "io/motion/geodetic_difference_internal.h"
 
 #include <stdio.h>
 #include <string.h>

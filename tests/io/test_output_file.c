@@ -4,8 +4,8 @@
 #define _XOPEN_SOURCE 700
 #include "imukit/output_file.h"
 
-#include "io/input_stream_internal.h"
-#include "io/output_file_internal.h"
+#include "io/file/input_stream_internal.h"
+#include "io/file/output_file_internal.h"
 
 #include "check.h"
 

@@ -3,7 +3,7 @@
  * from the programs' own equations, docs/other-formats.md), values that cannot be in the unit, and
  * that writing and reading loses nothing but what is said to be lost. */
 #include "check.h"
-#include "io/random_model.h"
+#include "random_model.h"
 
 #include "imukit/io.h"
 #include "imukit/parameter_file.h"

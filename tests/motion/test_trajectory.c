@@ -3,7 +3,7 @@
  * differences; what is refused. */
 #include "check.h"
 
-#include "motion/random_pieces.h"
+#include "random_pieces.h"
 
 static const double degree = 0.017453292519943295;
 

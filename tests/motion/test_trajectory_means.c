@@ -3,7 +3,7 @@
  * for. */
 #include "check.h"
 
-#include "motion/random_pieces.h"
+#include "random_pieces.h"
 
 /* Mean of states between two times by eight intervals of five Gauss-Legendre nodes
  * [ABRAMOWITZ1964, table 25.4]. */

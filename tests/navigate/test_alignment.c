@@ -10,7 +10,7 @@
 #include "imukit/linear_algebra.h"
 #include "imukit/simulate.h"
 
-#include "navigate/alignment_internal.h"
+#include "navigate/alignment/alignment_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

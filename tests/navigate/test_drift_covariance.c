@@ -4,11 +4,11 @@
  * the result promises of itself. The motion is tested in test_drift_response.c. */
 #include "check.h"
 
-#include "../model/horizontal_error.h"
-#include "base/linear_system_internal.h"
+#include "base/algebra/linear_system_internal.h"
 #include "imukit/drift.h"
 #include "imukit/thread_pool.h"
-#include "navigate/drift_covariance_internal.h"
+#include "model/horizontal_error.h"
+#include "navigate/drift/drift_covariance_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

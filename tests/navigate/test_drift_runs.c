@@ -11,7 +11,7 @@
 #include "imukit/navigate.h"
 #include "imukit/noise.h"
 #include "imukit/simulate.h"
-#include "navigate/drift_runs_internal.h"
+#include "navigate/drift/drift_runs_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -160,7 +160,7 @@ static void test_gauss_markov_cancellation(void **state)
         size_t n;
         double sampled;
     } reference[] = {
-#include "../reference/gauss_markov_sampled.inc"
+#include "reference/gauss_markov_sampled.inc"
     };
     for (size_t i = 0; i < sizeof reference / sizeof *reference; i++) {
         imk_gauss_markov process = {1.0, 1.0};
@@ -171,7 +171,7 @@ static void test_gauss_markov_cancellation(void **state)
     static const struct {
         double x, continuous;
     } limit[] = {
-#include "../reference/gauss_markov_continuous.inc"
+#include "reference/gauss_markov_continuous.inc"
     };
     for (size_t i = 0; i < sizeof limit / sizeof *limit; i++)
         CHECK_RELATIVE(imk_gauss_markov_allan_variance((imk_gauss_markov){1.0, 1.0}, limit[i].x),

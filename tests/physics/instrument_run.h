@@ -4,7 +4,7 @@
 #ifndef IMUKIT_TESTS_INSTRUMENT_RUN_H
 #define IMUKIT_TESTS_INSTRUMENT_RUN_H
 
-#include "../check.h"
+#include "check.h"
 
 #include "imukit/identify.h"
 #include "imukit/instrument.h"

@@ -10,7 +10,7 @@
 #include "imukit/earth.h"
 #include "imukit/free_gyro.h"
 #include "imukit/units.h"
-#include "physics/free_gyro_internal.h"
+#include "physics/free_gyro/free_gyro_internal.h"
 
 static const double pi = 3.14159265358979324;
 static const double degree = 3.14159265358979324 / 180.0;

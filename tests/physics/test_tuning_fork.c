@@ -7,7 +7,7 @@
 
 #include "imukit/random.h"
 #include "imukit/tuning_fork.h"
-#include "physics/tuning_fork_internal.h"
+#include "physics/tuning_fork/tuning_fork_internal.h"
 
 #include <stdio.h>
 

@@ -4,7 +4,7 @@
 
 #include "imukit/units.h"
 #include "imukit/vibrating_beam.h"
-#include "physics/vibrating_beam_internal.h"
+#include "physics/vibrating_beam/vibrating_beam_internal.h"
 
 #define G IMK_STANDARD_GRAVITY
 static const imk_instrument *const beam = &imk_vibrating_beam_instrument;

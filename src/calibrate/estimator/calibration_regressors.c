@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The equation of distort.h at single points, with its derivatives. A reading is
+ *
+ *     y = e.v + sum over the terms of  parameter x regressor(v, f, T)
+ *
+ * so that the regressors are the derivatives by the parameters, exact at any distance; only lever
+ * arms are in v = f + alpha x r + w x (w x r) itself, which is linear in them but enters products.
+ * By the input:
+ *
+ *     dy/dv = e (1 + s + 2 K2 u + 2 Koq |u| + 3 K3 u^2 + asymmetry sign(u)/2) + A + X + cross
+ *     dv/dw = (w.r) I + w r^T - 2 r w^T,   dv/dalpha = -[r x],   dv/dr = [alpha x] + w w^T - w^2 I
+ */
+#include "axis_reading_internal.h"
+#include "calibration_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* T above the reference, T clipped to the valid range. */
+static double warmth(const imk_temperature_polynomial *polynomial, double temperature)
+{
+    if (isnan(temperature))
+        return 0.0;
+    double t = temperature;
+    if (polynomial->order > 0) {
+        t = t < polynomial->minimum ? polynomial->minimum : t;
+        t = t > polynomial->maximum ? polynomial->maximum : t;
+    }
+    return t - polynomial->reference;
+}
+
+static double polynomial_at(const imk_temperature_polynomial *polynomial, int axis, double x)
+{
+    double sum = 0.0;
+    for (int k = polynomial->order - 1; k >= 0; k--)
+        sum = (sum + polynomial->coefficient[k].value[axis]) * x;
+    return sum;
+}
+
+/* The pendulous axis the model states, or the body axis two places on (distort.h). */
+static void pendulous_axis(const imk_triad *triad, int i, double p[3])
+{
+    const double *e = triad->direction[i];
+    memcpy(p, triad->nonlinearity.pendulous_axis[i], 3 * sizeof *p);
+    if (p[0] != 0.0 || p[1] != 0.0 || p[2] != 0.0)
+        return;
+    for (int k = 0; k < 3; k++)
+        if (e[(k + 1) % 3] == 0.0 && e[(k + 2) % 3] == 0.0)
+            p[(k + 2) % 3] = 1.0;
+}
+
+/* The force at the place of an accelerometer. */
+static void force_at(const double r[3], const imki_input *input, double v[3])
+{
+    const double *w = input->rate;
+    memcpy(v, input->force, 3 * sizeof *v);
+    if (r[0] == 0.0 && r[1] == 0.0 && r[2] == 0.0)
+        return;
+    const double along = dot(w, r), square = dot(w, w);
+    double turning[3];
+    cross(input->angular_acceleration, r, turning);
+    for (int j = 0; j < 3; j++)
+        v[j] += turning[j] + w[j] * along - r[j] * square;
+}
+
+/* Derivatives by rate, force and angular acceleration, from that by the vector seen. */
+static void by_input(const imk_triad *triad, int sensor, int i, const imki_input *input,
+                     imki_axis_reading *y)
+{
+    const double *d = y->by_seen, *f = input->force, *w = input->rate;
+    if (sensor == IMK_GYRO) {
+        const double *g = triad->g_sensitivity.value[i], *q = triad->g2_sensitivity.value[i];
+        memcpy(y->by_rate, d, sizeof y->by_rate);
+        memset(y->by_angular_acceleration, 0, sizeof y->by_angular_acceleration);
+        y->by_force[0] = g[0] + 2.0 * q[0] * f[0] + q[3] * f[1] + q[5] * f[2];
+        y->by_force[1] = g[1] + 2.0 * q[1] * f[1] + q[3] * f[0] + q[4] * f[2];
+        y->by_force[2] = g[2] + 2.0 * q[2] * f[2] + q[4] * f[1] + q[5] * f[0];
+        return;
+    }
+    const double *r = triad->lever_arm.value[i];
+    const double along = dot(w, r), d_w = dot(d, w), d_r = dot(d, r);
+    memcpy(y->by_force, d, sizeof y->by_force);
+    memset(y->by_rate, 0, sizeof y->by_rate);
+    memset(y->by_angular_acceleration, 0, sizeof y->by_angular_acceleration);
+    if (r[0] == 0.0 && r[1] == 0.0 && r[2] == 0.0)
+        return;
+    for (int j = 0; j < 3; j++)
+        y->by_rate[j] = along * d[j] + d_w * r[j] - 2.0 * d_r * w[j];
+    cross(r, d, y->by_angular_acceleration); /* d.(alpha x r) = alpha.(r x d) */
+}
+
+static void add_cross_products(const imk_triad *triad, int axis, imki_axis_reading *y)
+{
+    const double *k = triad->nonlinearity.cross_products.value[axis], *e = triad->direction[axis];
+    const double u = y->along;
+    if (k[0] == 0.0 && k[1] == 0.0 && k[2] == 0.0)
+        return;
+    double p[3], o[3];
+    pendulous_axis(triad, axis, p);
+    cross(p, e, o);
+    const double along_p = dot(p, y->seen), along_o = dot(o, y->seen);
+    y->value += k[0] * u * along_p + k[1] * u * along_o + k[2] * along_p * along_o;
+    for (int j = 0; j < 3; j++)
+        y->by_seen[j] += (k[0] * along_p + k[1] * along_o) * e[j] +
+                         (k[0] * u + k[2] * along_o) * p[j] + (k[1] * u + k[2] * along_p) * o[j];
+}
+
+imki_axis_reading imki_axis_read(const imk_model *model, int sensor, int axis,
+                                 const imki_input *input)
+{
+    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    const imk_nonlinearity *n = &triad->nonlinearity;
+    const double *e = triad->direction[axis];
+    imki_axis_reading y;
+    y.triad = triad;
+    y.bias_warmth = warmth(&triad->bias.temperature, input->temperature);
+    y.scale_warmth = warmth(&triad->scale_factor.temperature, input->temperature);
+    if (sensor == IMK_GYRO)
+        memcpy(y.seen, input->rate, sizeof y.seen);
+    else
+        force_at(triad->lever_arm.value[axis], input, y.seen);
+    const double u = dot(e, y.seen);
+    const double k2 = n->k2.value[axis], koq = n->koq.value[axis], k3 = n->k3.value[axis],
+                 half_asymmetry = 0.5 * n->asymmetry.value[axis];
+    const double scale = triad->scale_factor.fixed.value[axis] +
+                         polynomial_at(&triad->scale_factor.temperature, axis, y.scale_warmth);
+    y.along = u;
+    y.value = triad->bias.fixed.value[axis] +
+              polynomial_at(&triad->bias.temperature, axis, y.bias_warmth) +
+              triad->bias.temperature_rate.value[axis] * input->temperature_rate + u + scale * u +
+              (k2 + koq * copysign(1.0, u) + k3 * u) * u * u + half_asymmetry * fabs(u);
+    const double slope = 1.0 + scale + 2.0 * k2 * u + 2.0 * koq * fabs(u) + 3.0 * k3 * u * u +
+                         half_asymmetry * ((u > 0.0) - (u < 0.0));
+    for (int j = 0; j < 3; j++) {
+        const double row = triad->misalignment.value[axis][j] + triad->cross_axis.value[axis][j];
+        y.value += row * y.seen[j];
+        y.by_seen[j] = slope * e[j] + row;
+    }
+    if (sensor == IMK_ACCEL) {
+        add_cross_products(triad, axis, &y);
+    } else {
+        const double *f = input->force, *q = triad->g2_sensitivity.value[axis];
+        y.value += dot(triad->g_sensitivity.value[axis], f) + q[0] * f[0] * f[0] +
+                   q[1] * f[1] * f[1] + q[2] * f[2] * f[2] + q[3] * f[0] * f[1] +
+                   q[4] * f[1] * f[2] + q[5] * f[2] * f[0];
+    }
+    by_input(triad, sensor, axis, input, &y);
+    return y;
+}
+
+/* dy/dr along one component: d.([alpha x] + w w^T - w^2 I) column. */
+static double by_lever_arm(const imki_axis_reading *y, const imki_input *input, int j)
+{
+    const double *d = y->by_seen, *w = input->rate;
+    double column[3]; /* alpha x unit vector j */
+    const double unit[3] = {j == 0, j == 1, j == 2};
+    cross(input->angular_acceleration, unit, column);
+    return dot(d, column) + dot(d, w) * w[j] - dot(w, w) * d[j];
+}
+
+static double by_cross_product(const imki_axis_reading *y, int axis, int k)
+{
+    double p[3], o[3];
+    pendulous_axis(y->triad, axis, p);
+    cross(p, y->triad->direction[axis], o);
+    const double along_p = dot(p, y->seen), along_o = dot(o, y->seen);
+    return k == 0 ? y->along * along_p : k == 1 ? y->along * along_o : along_p * along_o;
+}
+
+static double power(double x, int exponent)
+{
+    double product = x;
+    for (int k = 1; k < exponent; k++)
+        product *= x;
+    return product;
+}
+
+double imki_axis_regressor(const imki_axis_reading *y, const imki_input *input,
+                           imk_model_parameter parameter)
+{
+    static const int first[6] = {0, 1, 2, 0, 1, 2}, second[6] = {0, 1, 2, 1, 2, 0};
+    const double u = y->along, *f = input->force;
+    const int k = parameter.element;
+    switch ((imk_model_term)parameter.term) {
+    case IMK_MODEL_BIAS:
+        return 1.0;
+    case IMK_MODEL_SCALE_FACTOR:
+        return u;
+    case IMK_MODEL_MISALIGNMENT:
+    case IMK_MODEL_CROSS_AXIS:
+        return y->seen[k];
+    case IMK_MODEL_K2:
+        return u * u;
+    case IMK_MODEL_KOQ:
+        return u * fabs(u);
+    case IMK_MODEL_K3:
+        return u * u * u;
+    case IMK_MODEL_ASYMMETRY:
+        return 0.5 * fabs(u);
+    case IMK_MODEL_CROSS_PRODUCTS:
+        return by_cross_product(y, parameter.axis, k);
+    case IMK_MODEL_G_SENSITIVITY:
+        return f[k];
+    case IMK_MODEL_G2_SENSITIVITY:
+        return f[first[k]] * f[second[k]];
+    case IMK_MODEL_LEVER_ARM:
+        return by_lever_arm(y, input, k);
+    case IMK_MODEL_BIAS_TEMPERATURE:
+        return power(y->bias_warmth, k + 1);
+    case IMK_MODEL_SCALE_TEMPERATURE:
+        return u * power(y->scale_warmth, k + 1);
+    case IMK_MODEL_TEMPERATURE_RATE:
+        return input->temperature_rate;
+    case IMK_MODEL_TERMS:
+        break;
+    }
+    return 0.0;
+}
+
+void imki_calibration_regressors(const imk_model *model, size_t count,
+                                 const imk_model_parameter *parameter, int sensor, int axis,
+                                 const double rate[3], const double force[3],
+                                 const double angular_acceleration[3], double temperature,
+                                 double temperature_rate, double *row)
+{
+    imki_input input = {.temperature = temperature, .temperature_rate = temperature_rate};
+    memcpy(input.rate, rate, sizeof input.rate);
+    memcpy(input.force, force, sizeof input.force);
+    if (angular_acceleration)
+        memcpy(input.angular_acceleration, angular_acceleration, sizeof input.angular_acceleration);
+    const imki_axis_reading reading = imki_axis_read(model, sensor, axis, &input);
+    for (size_t p = 0; p < count; p++)
+        row[p] = parameter[p].sensor == sensor && parameter[p].axis == axis
+                     ? imki_axis_regressor(&reading, &input, parameter[p])
+                     : 0.0;
+}

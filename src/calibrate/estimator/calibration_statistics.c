@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* How well a solution fits. With rows J, whitened by sigma and factor, and weights w, the residuals
+ * of the item's rows have the variance
+ *
+ *     (I - w M)(I - w M + M),   M = J Cov J^T
+ *
+ * I - M for an item of full weight, I + M for one that is left out and only predicted [BAARDA1968].
+ * Both are diagonal in the eigenvectors of M; directions in which the item alone determines its
+ * unknowns, such as its attitude, have no variance and tell nothing.
+ *
+ * The variance of a row is factor^2 sigma^2 + (what is known besides, for gyros at rest the Earth's
+ * horizontal rate); phi is the share of the first part. What the unknowns leave of a row is its
+ * redundancy 1 - M_ii. The factor of a group follows from
+ *
+ *     factor^2 <- factor^2 [1 + sum of phi (residual^2 - (1 - M_ii))/r],
+ *     r = sum of phi^2 (1 - M_ii),  its degrees of freedom,
+ *
+ * residuals over their sigma, iterated because the factors weigh the rows [FORSTNER1979]. With all
+ * phi = 1 that is the sum of squares over the redundancy. */
+#include "estimator_internal.h"
+
+#include "imukit/linear_algebra.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of a factor^2 that slow noise is taken from; a factor of 0.9. */
+static const double least_white = 0.8;
+
+/* A direction that keeps less than this share of its variance tells nothing: the item alone
+ * determines what it depends on. Where a placement is known before, little is left of a direction
+ * that it explains, but exactly that tells a placement far beyond its sigma. */
+static const double least_variance = 0.02, least_variance_placed = 1e-9;
+
+/* Factors with fewer degrees of freedom stay 1: the sigmas are taken as stated. */
+static const double least_freedom = 3.0;
+
+int imki_whitened_rows(imki_estimator *e, size_t item)
+{
+    const int count = imki_item_rows(e, &e->now, item, e->row);
+    for (int i = 0; i < count; i++) {
+        imki_row *row = &e->row[i];
+        const double total = imki_row_variance(e, row), scale = 1.0 / sqrt(total);
+        const double scaled = row->sigma * e->factor[row->group];
+        row->share = scaled * scaled / total;
+        row->residual *= scale;
+        for (int k = 0; k < row->locals; k++)
+            row->by_local[k] *= scale;
+        for (int k = 0; k < row->globals; k++)
+            row->by_global[k] *= scale;
+    }
+    return count;
+}
+
+/* Of some rows of one group. */
+static double distance_of(const imki_estimator *e, const imki_row *row, int count, double w,
+                          double least, int *degrees)
+{
+    double matrix[IMK_AXES_MAX * IMK_AXES_MAX], vector[IMK_AXES_MAX * IMK_AXES_MAX],
+        value[IMK_AXES_MAX];
+    double sum = 0.0;
+    imki_rows_covariance(&e->normal, row, count, matrix, NULL);
+    if (imk_symmetric_eigen((size_t)count, matrix, value, vector) != IMK_OK)
+        return 0.0;
+    for (int k = 0; k < count; k++) {
+        const double left = 1.0 - w * value[k];
+        const double variance = left * (left + value[k]);
+        if (!(variance > least))
+            continue;
+        double residual = 0.0;
+        for (int i = 0; i < count; i++)
+            residual += vector[i * count + k] * row[i].residual;
+        sum += residual * residual / variance;
+        ++*degrees;
+    }
+    return sum;
+}
+
+void imki_item_distances(imki_estimator *e, size_t item, double square[IMK_GROUPS],
+                         int degrees[IMK_GROUPS])
+{
+    const int count = imki_whitened_rows(e, item);
+    const bool placed = item < e->observations &&
+                        e->problem->observation[item].knowledge == IMK_INPUT_PLACED &&
+                        e->local_first[item] >= 0;
+    memset(square, 0, IMK_GROUPS * sizeof *square);
+    memset(degrees, 0, IMK_GROUPS * sizeof *degrees);
+    for (int first = 0, end; first < count; first = end) { /* rows of a group are neighbours */
+        const int group = (int)e->row[first].group;
+        for (end = first; end < count && (int)e->row[end].group == group;)
+            end++;
+        square[group] =
+            distance_of(e, e->row + first, end - first, e->weight[item],
+                        placed ? least_variance_placed : least_variance, &degrees[group]);
+    }
+}
+
+imk_status imki_built_covariance(imki_estimator *e)
+{
+    const imk_status status = imki_normal_factor(&e->normal, 0.0);
+    if (status == IMK_OK)
+        imki_normal_invert(&e->normal);
+    return status;
+}
+
+imk_status imki_estimator_covariance(imki_estimator *e)
+{
+    e->cost = imki_build(e, &e->now);
+    return imki_built_covariance(e);
+}
+
+void imki_fit_groups(imki_estimator *e, imki_fit *fit)
+{
+    double matrix[IMKI_ROWS_MAX * IMKI_ROWS_MAX];
+    memset(fit, 0, sizeof *fit);
+    for (size_t item = 0; item < e->items; item++) {
+        if (e->weight[item] < 1.0)
+            continue;
+        const int count = imki_whitened_rows(e, item);
+        imki_rows_covariance(&e->normal, e->row, count, matrix, NULL);
+        for (int i = 0; i < count; i++) {
+            const int group = (int)e->row[i].group;
+            const double square = e->row[i].residual * e->row[i].residual;
+            const double left = 1.0 - matrix[i * count + i], share = e->row[i].share;
+            fit->square[group] += square;
+            fit->redundancy[group] += left;
+            fit->shared_square[group] += share * square;
+            fit->shared_redundancy[group] += share * left;
+            fit->freedom[group] += share * share * left;
+            const double variance = imki_row_variance(e, &e->row[i]);
+            fit->excess[group] += variance * square - e->row[i].known_variance * left;
+            fit->scaled[group] += e->row[i].sigma * e->row[i].sigma * left;
+        }
+    }
+    imki_slow_noise_fit(e, fit);
+}
+
+/* The next factor of a group, squared. The first is by moments, from where the iteration, which
+ * has little to go by while the share is small, does not go astray. */
+static double next_square(const imki_estimator *e, const imki_fit *fit, int g, bool first)
+{
+    const double square = e->factor[g] * e->factor[g];
+    if (first && fit->freedom[g] < 0.99 * fit->redundancy[g])
+        return fmax(0.05, fit->excess[g] / fit->scaled[g]);
+    const double excess = fit->shared_square[g] - fit->shared_redundancy[g];
+    const double whole = square * fmax(0.01, 1.0 + excess / fit->freedom[g]);
+    /* Slow noise explains what the residuals have beyond the sigmas stated, and little more: the
+     * scatter of rounded samples makes sigmas a tenth too large at most. */
+    return fmax(fmin(whole, least_white),
+                square * fmax(0.01, 1.0 + (excess - fit->slow_square[g]) / fit->freedom[g]));
+}
+
+/* `held`: groups that are not estimated. A group that loses its redundancy to the others while its
+ * factor falls joins them: with the sigmas stated it would have it again, and so on without end. */
+static imk_status find_factors(imki_estimator *e, double tolerance, bool held[IMK_GROUPS],
+                               imki_fit *fit)
+{
+    /* Where the sigmas stated are thousand times too large something else is wrong. */
+    const double least_factor = 1e-3;
+    enum { ROUNDS = 40 }; /* a dozen on the way to no redundancy, as many after it is held */
+    for (int round = 0; round < ROUNDS; round++) {
+        bool converged, same = true;
+        imk_status status = imki_iterate(e, 30, &converged);
+        if (status == IMK_OK)
+            status = imki_built_covariance(e);
+        if (status != IMK_OK)
+            return status;
+        imki_fit_groups(e, fit);
+        for (int g = 0; g < IMK_GROUPS; g++) {
+            double factor = 1.0;
+            if (round > 0 && e->factor[g] < 1.0 && fit->redundancy[g] < least_freedom)
+                held[g] = true;
+            if (!held[g] && fit->redundancy[g] >= least_freedom && fit->freedom[g] > 0.0)
+                factor = fmax(least_factor, sqrt(next_square(e, fit, g, round == 0)));
+            same = same && fabs(factor - e->factor[g]) <= tolerance * e->factor[g];
+            e->factor[g] = factor;
+        }
+        if (same)
+            break;
+    }
+    return IMK_OK;
+}
+
+imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *fit)
+{
+    bool held[IMK_GROUPS] = {false}, again = false;
+    imk_status status = find_factors(e, tolerance, held, fit);
+    for (int g = 0; g < IMK_GROUPS; g++) {
+        held[g] = held[g] || !(fit->freedom[g] >= least_freedom);
+        again = again || (held[g] && e->factor[g] != 1.0);
+    }
+    if (status == IMK_OK && again)
+        status = find_factors(e, tolerance, held, fit);
+    for (int g = 0; g < IMK_GROUPS; g++)
+        fit->estimated[g] = !held[g];
+    return status;
+}
+
+/* Degrees of freedom of a factor: a part of the squares that is expected, and taken off, scatters
+ * as well as the rest. Where that is more than half, least_white keeps the factor from falling. */
+static double freedom_of_factor(const imki_fit *fit, int g)
+{
+    const double whole = 1.0 + fmin(1.0, fit->slow_square[g] / fit->shared_redundancy[g]);
+    return fit->freedom[g] / (whole * whole);
+}
+
+/* The variance of a parameter is a sum over the groups, Cov J_g^T J_g Cov; that of its estimate,
+ * with shares v_g of groups of r_g degrees, has (sum v)^2/sum(v_g^2/r_g) degrees
+ * [SATTERTHWAITE1946]. Groups whose factor was not estimated, and what is known before, count as
+ * certain. */
+void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *freedom)
+{
+    double matrix[IMKI_ROWS_MAX * IMKI_ROWS_MAX];
+    double share[IMK_GROUPS][IMK_CORRELATED_MAX];
+    double by_globals[IMKI_ROWS_MAX * IMKI_GLOBALS_MAX];
+    memset(share, 0, sizeof share);
+    for (size_t item = 0; item < e->items; item++) {
+        if (e->weight[item] < 1.0)
+            continue;
+        const int count = imki_whitened_rows(e, item);
+        imki_rows_covariance(&e->normal, e->row, count, matrix, by_globals);
+        for (int i = 0; i < count; i++)
+            for (size_t p = 0; p < e->parameters; p++) {
+                const double by = by_globals[(size_t)i * e->globals + p];
+                share[e->row[i].group][p] += e->row[i].share * by * by;
+            }
+    }
+    for (size_t p = 0; p < e->parameters; p++) {
+        const double variance = e->normal.covariance[p * e->globals + p];
+        double sum = 0.0;
+        for (int g = 0; g < IMK_GROUPS; g++)
+            if (fit->estimated[g])
+                sum += share[g][p] * share[g][p] / freedom_of_factor(fit, g);
+        freedom[p] =
+            sum > 1e-12 * variance * variance ? variance * variance / sum : (double)INFINITY;
+    }
+}

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The estimator's working state. Unknowns are of two kinds:
+ *
+ *   globals  parameters, then three angles of each fixture whose mounting is not exact, then the
+ *            vertical part of the Earth's rate when the latitude is not known
+ *   locals   two angles of each direction of gravity, three of each placement; where turns join
+ *            rests and it matters, two components of the Earth's horizontal rate at a rest
+ *            (calibration_earth.c); turns tie the locals of two observations, so that their normal
+ *            matrix is banded
+ *
+ * An item is an observation (0 … observations - 1) or a turn (observations …). */
+#ifndef IMUKIT_ESTIMATOR_INTERNAL_H
+#define IMUKIT_ESTIMATOR_INTERNAL_H
+
+#include "axis_reading_internal.h"
+#include "calibration_internal.h"
+
+enum {
+    IMKI_GLOBALS_MAX = IMK_CORRELATED_MAX + 3 * IMK_FIXTURES_MAX + 1,
+    IMKI_ROWS_MAX = 2 * IMK_AXES_MAX,
+    IMKI_LOCALS_OF_ROW = 6
+};
+
+/* One scalar: observed less predicted, and the derivatives of the prediction. */
+typedef struct imki_row {
+    imk_observation_group group;
+    int sensor, axis;       /* of a reading; axis is the component of a turn */
+    double residual, sigma; /* [unit], sigma as stated */
+    double known_variance;  /* besides, which no factor multiplies: the Earth's horizontal rate */
+    double share;           /* of the variance that the factor multiplies */
+    int locals;
+    size_t local[IMKI_LOCALS_OF_ROW];
+    double by_local[IMKI_LOCALS_OF_ROW];
+    int globals;
+    int global[IMKI_GLOBALS_MAX];
+    double by_global[IMKI_GLOBALS_MAX];
+} imki_row;
+
+/* Normal equations: locals in a band (element j of row i at i (width + 1) + width + j - i), border,
+ * globals; with their factors. */
+typedef struct imki_normal {
+    size_t locals, width, globals;
+    double *band, *border, *core; /* locals (width+1); locals x globals; globals^2 */
+    double *local_gradient, *global_gradient;
+    double *factor; /* Cholesky factor of the band */
+    double *half;   /* factor^-1 border, locals x globals */
+    double *schur;  /* Cholesky factor of the eliminated core */
+    double *local_step, *global_step;
+    double *local_inverse; /* inverse of the band's matrix, where the band is */
+    double *whole;         /* band^-1 border */
+    double *covariance;    /* of the globals */
+} imki_normal;
+
+/* A turn, linearised about the parameters it was integrated with. */
+typedef struct imki_linear_turn {
+    double turn[9], angle, duration;
+    double sigma; /* without what the chain of the Earth's horizontal rate tells */
+    bool usable;
+} imki_linear_turn;
+
+typedef struct imki_point {
+    double global[IMKI_GLOBALS_MAX];
+    double (*attitude)[3];   /* per observation: vertical, or rotation of a placement */
+    double (*horizontal)[3]; /* per observation: the Earth's horizontal rate, body axes [rad/s] */
+} imki_point;
+
+/* Slow noise that the model states (calibration_slow_noise.c). */
+typedef struct imki_slow_noise {
+    size_t count;       /* observations that have a time; 0: no slow noise */
+    int *order;         /* of these, by record and time */
+    double *covariance; /* what it adds to that of the globals */
+    double *axis;       /* the same of one axis */
+    void *sums;         /* along a record, imki_slow_noise_sums() bytes */
+} imki_slow_noise;
+
+typedef struct imki_estimator {
+    imk_calibration *problem; /* a copy: the frame solved in, the model at the current point */
+    size_t observations, turns, parameters, globals, locals, items;
+    double start[IMK_CORRELATED_MAX];  /* of the parameters: where priors pull to */
+    double *place[IMK_CORRELATED_MAX]; /* in the model */
+    int axis_parameters[2][IMK_AXES_MAX];
+    uint8_t axis_parameter[2][IMK_AXES_MAX][IMK_CORRELATED_MAX];
+    int fixture_global[IMK_FIXTURES_MAX]; /* first of its angles; -1: exact */
+    int vertical_global;                  /* -1: the latitude is known, or nothing depends on it */
+    double vertical_rate, vertical_sigma, horizontal_variance; /* of the Earth at rest */
+    int *local_first;                                          /* per observation; -1: none */
+    bool *earth; /* per observation: its third and fourth local are the Earth's horizontal rate */
+    int *turn_into; /* per observation: the turn that carries that rate to it; -1: none */
+    double (*sigma)[2][IMK_AXES_MAX];       /* per observation, SI */
+    double (*known_variance)[IMK_AXES_MAX]; /* per observation, of gyros */
+    double (*reading)[2][IMK_AXES_MAX];     /* per observation, SI; NaN: not observed */
+    double *weight;                         /* per item: 1 … 0 */
+    imki_linear_turn *turn;
+    double *turn_jacobian; /* per turn 3 x parameters */
+    bool turns_known;      /* integrated at least once */
+    double turn_reference[IMKI_GLOBALS_MAX];
+    double factor[IMK_GROUPS]; /* of sigmas */
+    imki_point now, trial, best;
+    double best_factor[IMK_GROUPS];
+    double *best_weight; /* per item */
+    imki_normal normal;
+    imki_slow_noise slow;
+    imki_row *row;    /* IMKI_ROWS_MAX */
+    double *distance; /* per item and group of three: see statistics */
+    double *sorted;
+    unsigned char *state; /* per item */
+    imk_calibration_result *result;
+    double cost;
+    int iterations;
+} imki_estimator;
+
+/* Weight left to what is refused: enough to let its own attitude follow it. */
+#define IMKI_WEIGHT_REFUSED 1e-8
+
+/* ---- calibration_setup.c ---- */
+size_t imki_estimator_size(const imk_calibration *calibration);
+imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibration,
+                                bool readings_matter, void *workspace, size_t workspace_size,
+                                imk_error *error);
+
+/* ---- calibration_earth.c: the Earth's rate at rest in an unknown attitude ---- */
+/* Before the locals are counted. @return whether rests have its horizontal part as unknowns */
+bool imki_earth_start(imki_estimator *e);
+/* What it adds to the variances of readings and takes from those of turns, at the first attitudes.
+ */
+void imki_earth_spread(imki_estimator *e);
+/* Cost of what is known of the horizontal parts; into the normal equations when `build`. */
+double imki_earth_cost(imki_estimator *e, const imki_point *point, bool build);
+/* A step of one across the vertical n, which a and b were across before it moved. */
+void imki_earth_move(const double n[3], const double a[3], const double b[3], const double step[2],
+                     double horizontal[3]);
+
+/* ---- calibration_rows.c ---- */
+int imki_item_rows(imki_estimator *e, const imki_point *point, size_t item, imki_row *row);
+/* Two unit vectors across a unit vector. */
+void imki_across(const double n[3], double a[3], double b[3]);
+/* Put the parameters of a point into the model. */
+void imki_point_apply(imki_estimator *e, const imki_point *point);
+
+/* ---- calibration_normal.c ---- */
+void imki_normal_clear(imki_normal *n);
+void imki_normal_add(imki_normal *n, const imki_row *row, double information);
+imk_status imki_normal_factor(imki_normal *n, double damping);
+void imki_normal_solve(imki_normal *n);
+/* Covariance of the globals and what imki_rows_covariance() needs, after a factor without damping.
+ */
+void imki_normal_invert(imki_normal *n);
+/* J Cov J^T of some rows, count x count; and, when not NULL, Cov_global J^T, count x globals. */
+void imki_rows_covariance(const imki_normal *n, const imki_row *row, int count, double *matrix,
+                          double *by_globals);
+
+/* ---- calibration_iterate.c ---- */
+/* Integrate the turns at the current point, unless the linearisation at hand is good to a tenth of
+ * `tolerance`. @return largest change of an end against the linearisation before, in sigmas of the
+ * turn */
+double imki_turns_linearise(imki_estimator *e, double tolerance);
+void imki_point_copy(const imki_estimator *e, const imki_point *from, imki_point *to);
+/* Least squares at the present weights and linearised turns. The normal equations then are those of
+ * the point it ends at. */
+imk_status imki_iterate(imki_estimator *e, int steps, bool *converged);
+/* Build the normal equations at a point. @return cost */
+double imki_build(imki_estimator *e, const imki_point *point);
+double imki_cost(imki_estimator *e, const imki_point *point);
+
+/* ---- calibration_statistics.c ---- */
+/* Variance of a row: (factor sigma)^2 + what is known besides. */
+static inline double imki_row_variance(const imki_estimator *e, const imki_row *row)
+{
+    const double sigma = row->sigma * e->factor[row->group];
+    return sigma * sigma + row->known_variance;
+}
+
+/* Fit of the groups at the present solution, items of full weight. */
+typedef struct imki_fit {
+    double square[IMK_GROUPS];     /* of residuals over their sigma */
+    double redundancy[IMK_GROUPS]; /* what the fit left of their number */
+    double shared_square[IMK_GROUPS], shared_redundancy[IMK_GROUPS]; /* each row by the share of its
+                                      variance that the factor multiplies */
+    double freedom[IMK_GROUPS]; /* degrees of freedom of the factor: by the square of the share */
+    double excess[IMK_GROUPS], scaled[IMK_GROUPS]; /* for a first factor^2: sums of residual^2 less
+                                      what is known of it, and of sigma^2 (1 - M_ii) */
+    bool estimated[IMK_GROUPS];                    /* the factor; else it is 1 */
+    double slow_square[IMK_GROUPS]; /* what slow noise is expected to add to shared_square */
+} imki_fit;
+/* Rows of an item over their sigma and factor, in e->row. @return their number */
+int imki_whitened_rows(imki_estimator *e, size_t item);
+/* Squared distances of an item's rows, by group, from what the others predict, over their variance:
+ * chi-square with so many degrees (0: nothing to tell it by) when sigmas are right. */
+void imki_item_distances(imki_estimator *e, size_t item, double square[IMK_GROUPS],
+                         int degrees[IMK_GROUPS]);
+imk_status imki_estimator_covariance(imki_estimator *e);
+/* The same from normal equations built for the present point. */
+imk_status imki_built_covariance(imki_estimator *e);
+void imki_fit_groups(imki_estimator *e, imki_fit *fit);
+/* Variance factors until they stay; the solution follows. */
+imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *fit);
+void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *freedom);
+
+/* ---- calibration_slow_noise.c: noise that observations of one record share; does nothing when the
+ * model states none ---- */
+size_t imki_slow_noise_sums(void);
+void imki_slow_noise_start(imki_estimator *e);
+/* What it adds to the covariance and to the squares of a fit, at the present solution. */
+void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit);
+/* Add it to the covariance of the globals; it counts as known exactly. */
+void imki_slow_noise_add(imki_estimator *e, double *freedom);
+
+/* ---- calibration_robust.c ---- */
+imk_status imki_refuse_outliers(imki_estimator *e);
+
+/* ---- calibration_determined.c: what the observations do not determine ---- */
+imk_status imki_check_determined(imki_estimator *e, double *weakest, imk_error *error);
+
+#endif

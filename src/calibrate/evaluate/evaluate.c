@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The evaluation of a table from end to end: what is asked for is checked, the workspace is
+ * divided, and the figures are made one after the other. */
+#include "evaluate_internal.h"
+
+#include "imukit/distributions.h"
+#include "imukit/random.h"
+#include "imukit/samples.h"
+
+#include <string.h>
+
+static const uint32_t cookie = 0x4556414c; /* "EVAL" */
+/* Numbers of the simulation behind the intervals: always the same. */
+static const uint64_t seed = 0x696d756b6974;
+
+imk_evaluation_settings imk_evaluation_default(void)
+{
+    return (imk_evaluation_settings){.cookie = cookie, .confidence = 0.95, .same_unit = true};
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static imk_status bad_row(imk_status status, size_t row, const char *field, const char *expected,
+                          imk_error *error)
+{
+    imk_error_set(error, status, field, NULL, expected);
+    if (error)
+        error->index = (int)row;
+    return status;
+}
+
+static imk_status check_rows(const imk_evaluation_table *table, imk_error *error)
+{
+    for (size_t row = 0; row < table->count; row++) {
+        if (!(fabs(table->reference[row]) <= IMK_READING_MAX))
+            return bad_row(IMK_ERROR_NOT_FINITE, row, "reference", "a number up to 1e60", error);
+        if (!(fabs(table->reading[row]) <= IMK_READING_MAX))
+            return bad_row(IMK_ERROR_NOT_FINITE, row, "reading", "a number up to 1e60", error);
+        if (table->sigma && !(table->sigma[row] > 0.0 && table->sigma[row] < HUGE_VAL))
+            return bad_row(IMK_ERROR_RANGE, row, "sigma", "above 0", error);
+        if (table->direction && (table->direction[row] < -1 || table->direction[row] > 1))
+            return bad_row(IMK_ERROR_RANGE, row, "direction", "-1, 0 or 1", error);
+        if (table->run && (table->run[row] < 0 || table->run[row] >= IMK_EVALUATION_RUNS_MAX))
+            return bad_row(IMK_ERROR_RANGE, row, "run", "a number from 0 to 63", error);
+    }
+    return IMK_OK;
+}
+
+static imk_status check(const imk_evaluation_table *table, const imk_evaluation_settings *settings,
+                        imk_error *error)
+{
+    if (settings->cookie != cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL, NULL);
+    if (!(settings->confidence > 0.0 && settings->confidence < 1.0))
+        return imk_error_set(error, IMK_ERROR_RANGE, "confidence", NULL, "between 0 and 1");
+    if (!(settings->full_scale >= 0.0 && settings->full_scale < HUGE_VAL))
+        return imk_error_set(error, IMK_ERROR_RANGE, "full_scale", NULL, "0 or more");
+    if (!(settings->level_width >= 0.0 && settings->level_width < HUGE_VAL))
+        return imk_error_set(error, IMK_ERROR_RANGE, "level_width", NULL, "0 or more");
+    if (table->count < 2) {
+        imk_error_set(error, IMK_ERROR_TOO_SHORT, "readings", NULL, "at least two readings");
+        if (error) {
+            error->value = (double)table->count;
+            error->limit = 2;
+        }
+        return IMK_ERROR_TOO_SHORT;
+    }
+    return check_rows(table, error);
+}
+
+/* ---- workspace ------------------------------------------------------------------------------- */
+
+static size_t draws_for(size_t rows)
+{
+    const size_t draws = IMKI_DRAWS_ALL / (rows > 0 ? rows : 1);
+    return draws > IMKI_DRAWS_MAX   ? IMKI_DRAWS_MAX
+           : draws < IMKI_DRAWS_MIN ? IMKI_DRAWS_MIN
+                                    : draws;
+}
+
+typedef struct arena {
+    char *base; /* NULL: only counted */
+    size_t used;
+} arena;
+
+static void *take(arena *a, size_t count, size_t size)
+{
+    void *place = a->base ? a->base + a->used : NULL;
+    a->used += (count * size + 63) / 64 * 64;
+    return place;
+}
+
+static void lay_out(imki_evaluation *e, arena *a)
+{
+    const size_t n = e->rows, runs = e->table->run ? 2 * (size_t)IMK_EVALUATION_RUNS_MAX : 0;
+    e->level_of = take(a, n, sizeof *e->level_of);
+    e->side = take(a, n, sizeof *e->side);
+    e->reading = take(a, n, sizeof *e->reading);
+    e->order = take(a, n, sizeof *e->order);
+    e->reference = take(a, n, sizeof *e->reference);
+    e->cell = take(a, n * IMKI_CELLS, sizeof *e->cell);
+    e->level_sigma = take(a, n, sizeof *e->level_sigma);
+    e->pattern = take(a, n, sizeof *e->pattern);
+    e->noise = take(a, n, sizeof *e->noise);
+    e->shifted = take(a, n, sizeof *e->shifted);
+    e->trial = take(a, n, sizeof *e->trial);
+    e->weight = take(a, n, sizeof *e->weight);
+    e->moment = take(a, n, sizeof *e->moment);
+    e->centred = take(a, n, sizeof *e->centred);
+    e->factor = take(a, e->draws, sizeof *e->factor);
+    e->sorted = take(a, e->draws, sizeof *e->sorted);
+    e->none = take(a, e->draws, sizeof *e->none);
+    e->near = take(a, e->draws, sizeof *e->near);
+    e->draw = take(a, e->draws * n, sizeof *e->draw);
+    e->hull = take(a, 2 * n, sizeof *e->hull);
+    e->matrix = runs > 0 ? take(a, runs * (runs + 1), sizeof *e->matrix) : NULL;
+}
+
+size_t imk_evaluation_workspace_size(const imk_evaluation_table *table)
+{
+    imki_evaluation e = {.table = table, .rows = table->count, .draws = draws_for(table->count)};
+    arena a = {NULL, 0};
+    lay_out(&e, &a);
+    return a.used + 64;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+static void clear(imki_evaluation *e)
+{
+    const double none = (double)NAN;
+    imk_evaluation *r = e->result;
+    memset(r, 0, sizeof *r);
+    r->precision = r->sensitivity = r->zero = r->accuracy = r->coverage = imki_unknown();
+    r->linearity = r->linearity_best = r->hysteresis = r->asymmetry = imki_unknown();
+    r->resolution = r->threshold = imki_unknown();
+    r->smallest_step = r->smallest_input = none;
+    r->line = r->best = (imk_evaluation_line){none, none, none};
+    r->accuracy_level = r->linearity_level = r->hysteresis_level = -1;
+    for (int k = 0; k < 3; k++)
+        r->alternation[k] = -1;
+    for (int run = 0; run < IMK_EVALUATION_RUNS_MAX; run++)
+        r->run_line[run][0] = r->run_line[run][1] = none;
+}
+
+static void measure(imki_evaluation *e)
+{
+    double largest = 0.0;
+    e->runs = 1;
+    for (size_t row = 0; row < e->rows; row++) {
+        largest = fmax(largest, fabs(e->table->reference[row]));
+        const int run = imki_run_of(e, row);
+        e->runs = run + 1 > e->runs ? run + 1 : e->runs;
+    }
+    const double given = e->settings->full_scale, width = e->settings->level_width;
+    e->scale = given > 0.0 ? given : largest;
+    e->width = width > 0.0 ? width : 1e-9 * e->scale;
+    e->result->full_scale = e->scale;
+}
+
+/* Student's quantile of the intervals, and the draws that stand for noise: normals, and by how much
+ * the true sigma may differ from the estimated one. */
+static void prepare_intervals(imki_evaluation *e)
+{
+    const imk_random source = imk_random_seeded(seed);
+    const double freedom = e->result->freedom;
+    e->student = (double)NAN;
+    if (e->result->source == IMK_SCATTER_NONE)
+        return;
+    e->student = imk_student_quantile(0.5 + 0.5 * e->settings->confidence, freedom);
+    if (e->result->source == IMK_SCATTER_RESIDUALS)
+        return;
+    imk_random_normals(source, 0, 0, e->draws, e->factor);
+    for (size_t b = 0; b < e->draws; b++) {
+        const double p = imk_normal_probability(e->factor[b]);
+        e->factor[b] =
+            freedom < HUGE_VAL ? sqrt(freedom / imk_chi_square_quantile(p, freedom)) : 1.0;
+    }
+    imk_random_normals(source, 1, 0, e->draws * e->levels, e->draw);
+}
+
+static void put_levels(const imki_evaluation *e, imk_evaluation_level *level, size_t capacity)
+{
+    const imk_evaluation_line *line = &e->result->line, *best = &e->result->best;
+    for (size_t k = 0; k < e->levels && k < capacity; k++) {
+        const imki_cell *cell = &e->cell[k * IMKI_CELLS];
+        double variance;
+        const double mean = imki_level_mean(e, k, &variance), x = e->reference[k];
+        level[k] =
+            (imk_evaluation_level){.reference = x,
+                                   .reading = mean,
+                                   .sigma = sqrt(variance),
+                                   .up = cell[2].count > 0 ? cell[2].mean : (double)NAN,
+                                   .down = cell[0].count > 0 ? cell[0].mean : (double)NAN,
+                                   .deviation = mean - line->zero - line->sensitivity * x,
+                                   .deviation_best = mean - best->zero - best->sensitivity * x,
+                                   .count = cell[0].count + cell[1].count + cell[2].count};
+    }
+}
+
+static void evaluate(imki_evaluation *e)
+{
+    measure(e);
+    imki_divide(e);
+    imki_cell_means(e);
+    imki_least_squares_line(e);
+    imki_to_level_references(e);
+    imki_cell_means(e);
+    imki_least_squares_line(e);
+    imki_scatter(e);
+    imki_least_squares_line(e);
+    prepare_intervals(e);
+    imki_line_intervals(e);
+    imki_asymmetry(e);
+    imki_run_lines(e);
+    imki_extremes(e);
+    imki_steps(e);
+}
+
+imk_status imk_evaluate(const imk_evaluation_table *table, const imk_evaluation_settings *settings,
+                        void *workspace, size_t workspace_size, imk_evaluation_level *level,
+                        size_t capacity, imk_evaluation *result, imk_error *error)
+{
+    const imk_status status = check(table, settings, error);
+    if (status != IMK_OK)
+        return status;
+    if (workspace_size < imk_evaluation_workspace_size(table))
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL, NULL);
+    const uintptr_t address = (uintptr_t)workspace;
+    arena a = {(char *)workspace + ((address + 63) / 64 * 64 - address), 0};
+    imki_evaluation e = {.table = table,
+                         .settings = settings,
+                         .result = result,
+                         .rows = table->count,
+                         .draws = draws_for(table->count)};
+    lay_out(&e, &a);
+    clear(&e);
+    evaluate(&e);
+    put_levels(&e, level, capacity);
+    return IMK_OK;
+}

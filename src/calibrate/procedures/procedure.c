@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The procedures by number: names, defaults, what each does with a record; and what they share:
+ * checks before, and putting the calibration back when one fails. */
+#include "procedure_internal.h"
+
+#include "calibrate/estimator/calibration_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { COOKIE = 0x50524F31, ALIGNMENT = 64 };
+
+#define DEGREE 0.017453292519943295
+
+typedef struct procedure_entry {
+    const char *name;
+    imk_status (*observe)(const imki_procedure_call *call);
+    size_t (*workspace)(const imk_test_record *record, const imk_procedure_settings *settings);
+} procedure_entry;
+
+static const procedure_entry procedures[IMK_PROCEDURES] = {
+    {"multiposition", imki_multiposition_observe, imki_multiposition_workspace},
+    {"sixposition", imki_six_position_observe, imki_six_position_workspace},
+    {"ferraris", imki_ferraris_observe, imki_ferraris_workspace},
+    {"rate-table", imki_reference_observe, imki_reference_workspace},
+    {"tumble", imki_reference_observe, imki_reference_workspace},
+    {"centrifuge", imki_reference_observe, imki_reference_workspace},
+    {"spin", imki_reference_observe, imki_reference_workspace},
+    {"thermal", imki_thermal_observe, imki_thermal_workspace},
+};
+
+static bool exists(imk_procedure procedure)
+{
+    return (unsigned)procedure < IMK_PROCEDURES;
+}
+
+const char *imk_procedure_name(imk_procedure procedure)
+{
+    return exists(procedure) ? procedures[procedure].name : NULL;
+}
+
+imk_procedure_settings imk_procedure_default(imk_procedure procedure)
+{
+    imk_procedure_settings settings = {.cookie = COOKIE,
+                                       .stationary = imk_static_default(),
+                                       .trim = 0.2,
+                                       .steady_rate = 1e-4,
+                                       .steady_force = 1e-3,
+                                       .minimum = 0.5,
+                                       .gyro_turns = true,
+                                       .turn_angle = 6.283185307179586,
+                                       .nonlinear = procedure == IMK_PROCEDURE_RATE_TABLE ||
+                                                    procedure == IMK_PROCEDURE_CENTRIFUGE,
+                                       .g_sensitivity = true,
+                                       .scale_temperature_order = -1,
+                                       .reference_temperature = (double)NAN};
+    /* Faces of a housing are square to some tenths of a degree; a dividing head is exact. */
+    if (procedure == IMK_PROCEDURE_SIXPOSITION || procedure == IMK_PROCEDURE_FERRARIS)
+        settings.placement_sigma = 0.1 * DEGREE;
+    return settings;
+}
+
+/* Room for a copy of the calibration, then what the procedure asks for. */
+static size_t copy_size(void)
+{
+    return (sizeof(imk_calibration) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT + ALIGNMENT;
+}
+
+size_t imk_procedure_workspace_size(imk_procedure procedure, const imk_test_record *record,
+                                    const imk_procedure_settings *settings)
+{
+    return exists(procedure) ? copy_size() + procedures[procedure].workspace(record, settings) : 0;
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static bool positive(double x)
+{
+    return x > 0.0 && x < HUGE_VAL;
+}
+
+static bool not_negative(double x)
+{
+    return x >= 0.0 && x < HUGE_VAL;
+}
+
+static imk_status check_settings(const imk_procedure_settings *s, imk_error *error)
+{
+    const struct {
+        const char *field;
+        bool valid;
+        double value;
+        const char *expected;
+    } rules[] = {
+        {"placement_sigma", not_negative(s->placement_sigma), s->placement_sigma, "0 or more"},
+        {"fixture_sigma", not_negative(s->fixture_sigma), s->fixture_sigma, "0 or more"},
+        {"trim", not_negative(s->trim), s->trim, "0 or more seconds"},
+        {"settle", not_negative(s->settle), s->settle, "0 or more seconds"},
+        {"steady_rate", positive(s->steady_rate), s->steady_rate, "above 0"},
+        {"steady_force", positive(s->steady_force), s->steady_force, "above 0"},
+        {"minimum", positive(s->minimum), s->minimum, "above 0 seconds"},
+        {"turn_angle", positive(fabs(s->turn_angle)), s->turn_angle, "an angle that is not 0"},
+        {"sine_block", not_negative(s->sine_block), s->sine_block, "0 or more seconds"},
+        {"temperature_order",
+         s->temperature_order >= 0 && s->temperature_order <= IMK_TEMPERATURE_ORDER_MAX,
+         s->temperature_order, "1 to 5, or 0 to choose"},
+        {"scale_temperature_order",
+         s->scale_temperature_order >= -1 &&
+             s->scale_temperature_order <= IMK_TEMPERATURE_ORDER_MAX,
+         s->scale_temperature_order, "0 to 5, or -1 to choose"},
+        {"reference_temperature",
+         isnan(s->reference_temperature) || positive(s->reference_temperature),
+         s->reference_temperature, "above 0 K"},
+        {"temperature_bin", not_negative(s->temperature_bin), s->temperature_bin, "0 or more K"},
+    };
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
+        if (rules[i].valid)
+            continue;
+        imk_error_set(error, IMK_ERROR_RANGE, rules[i].field, NULL, rules[i].expected);
+        if (error)
+            error->value = rules[i].value;
+        return IMK_ERROR_RANGE;
+    }
+    return IMK_OK;
+}
+
+static imk_status check_record(const imk_test_record *record, const imk_model *model,
+                               imk_error *error)
+{
+    static const char *const names[2] = {"gyro", "accel"};
+    const imk_triad *triads[2] = {&model->gyro, &model->accel};
+    if (record->count == 0 || record->axis_count[0] + record->axis_count[1] < 1)
+        return imk_error_set(error, IMK_ERROR_EMPTY, record->name, NULL,
+                             "samples of gyros or accelerometers");
+    if (!positive(record->dt))
+        return imk_error_set(error, IMK_ERROR_RATE_MISSING, record->name, NULL,
+                             "a sample interval above 0");
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const int axes = triads[sensor]->present ? triads[sensor]->axis_count : 0;
+        if (record->axis_count[sensor] < 0 || record->axis_count[sensor] > axes) {
+            imk_error_set(error, IMK_ERROR_CONFLICT, names[sensor],
+                          "the log has more axes than the model",
+                          "a model of the unit that was logged");
+            if (error) {
+                error->value = record->axis_count[sensor];
+                error->limit = axes;
+            }
+            return IMK_ERROR_CONFLICT;
+        }
+        for (int i = 0; i < record->axis_count[sensor]; i++)
+            if (!record->reading[sensor][i])
+                return imk_error_set(error, IMK_ERROR_ARGUMENT, names[sensor], NULL,
+                                     "readings of every axis");
+    }
+    return IMK_OK;
+}
+
+/* ---- observing --------------------------------------------------------------------------------
+ */
+
+imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calibration,
+                                 const imk_test_record *record,
+                                 const imk_procedure_settings *settings, bool keep_free,
+                                 void *workspace, size_t workspace_size,
+                                 imk_procedure_findings *findings, imk_error *error)
+{
+    if (!exists(procedure) || !calibration || !record || !settings || !workspace)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "procedure", NULL, "see procedure.h");
+    if (settings->cookie != COOKIE || calibration->cookie != IMKI_CALIBRATION_COOKIE)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, NULL, NULL,
+                             "start from imk_procedure_default() and imk_calibration_default()");
+    imk_status status = check_settings(settings, error);
+    if (status == IMK_OK)
+        status = check_record(record, &calibration->model, error);
+    if (status != IMK_OK)
+        return status;
+    if (calibration->record_count >= IMK_TEST_RECORDS_MAX)
+        return imk_error_set(error, IMK_ERROR_RANGE, "records", NULL, "at most 64 logs");
+    if (workspace_size < imk_procedure_workspace_size(procedure, record, settings))
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
+                             "imk_procedure_workspace_size() bytes");
+    char *memory = (char *)workspace + (ALIGNMENT - (uintptr_t)workspace % ALIGNMENT) % ALIGNMENT;
+    memcpy(memory, calibration, sizeof *calibration);
+    imk_procedure_findings own;
+    imk_procedure_findings *seen = findings ? findings : &own;
+    memset(seen, 0, sizeof *seen);
+    seen->first_observation = calibration->observation_count;
+    seen->first_turn = calibration->turn_count;
+    calibration->record[calibration->record_count] = record;
+    const size_t used = copy_size();
+    const imki_procedure_call call = {.procedure = procedure,
+                                      .calibration = calibration,
+                                      .record = (int)calibration->record_count++,
+                                      .settings = settings,
+                                      .keep_free = keep_free,
+                                      .workspace = (char *)workspace + used,
+                                      .workspace_size = workspace_size - used,
+                                      .findings = seen,
+                                      .error = error};
+    status = procedures[procedure].observe(&call);
+    if (status != IMK_OK) {
+        memcpy(calibration, memory, sizeof *calibration);
+        return status;
+    }
+    seen->observations = calibration->observation_count - seen->first_observation;
+    seen->turns = calibration->turn_count - seen->first_turn;
+    return IMK_OK;
+}
+
+/* ---- shared -----------------------------------------------------------------------------------
+ */
+
+/* Elements of the misalignments or cross-axis terms of accelerometers that a frame leaves free; a
+ * symmetric one ties the pairs, so that all have a value. */
+static bool frame_leaves(imk_triad_frame frame, int axis, int element)
+{
+    return frame == IMK_FRAME_UPPER ? element > axis : frame != IMK_FRAME_LOWER || element < axis;
+}
+
+imk_status imki_free_term(const imki_procedure_call *call, int sensor, int term, int elements,
+                          bool attitudes_known)
+{
+    imk_calibration *c = call->calibration;
+    const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+    const int axes = c->record[call->record]->axis_count[sensor];
+    const bool rows = term == IMK_MODEL_MISALIGNMENT || term == IMK_MODEL_CROSS_AXIS;
+    if (call->keep_free)
+        return IMK_OK;
+    for (int axis = 0; axis < axes; axis++)
+        for (int element = 0; element < elements; element++) {
+            if (rows && triad->axis_count == 3 && element == axis)
+                continue;
+            if (rows && sensor == IMK_ACCEL && triad->axis_count == 3 && !attitudes_known &&
+                !frame_leaves(c->frame, axis, element))
+                continue;
+            const imk_status status = imk_calibration_free(c, sensor, term, axis, element);
+            if (status == IMK_ERROR_RANGE)
+                return imk_error_set(call->error, status, "parameters", NULL,
+                                     "at most 64 parameters can be estimated at once");
+            if (status != IMK_OK)
+                return imk_error_set(call->error, status, "parameters", NULL,
+                                     "a term that this sensor has");
+        }
+    return IMK_OK;
+}
+
+double imki_reading_si(const imk_model *model, const imk_test_record *record, int sensor, int axis,
+                       double reading)
+{
+    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    if (!record || !record->counts[sensor])
+        return reading;
+    return (reading - triad->zero_offset.value[axis]) / triad->sensitivity.value[axis];
+}

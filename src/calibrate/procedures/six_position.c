@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* sixposition: each axis of the housing up and down on a level plate.
+ *
+ * The specific force at rest points up, so a hold with axis i up is exposed to +g e_i, but for its
+ * placement. The Earth turns the unit by
+ *
+ *     w = W sin(latitude) up + W cos(latitude) north
+ *
+ * of which the heading of the unit, and so its direction to the north, is not known: that part adds
+ * W cos(latitude)/sqrt(2) to the sigma of both gyros across the vertical. */
+#include "six_position_internal.h"
+
+#include "imukit/elementary.h"
+
+#include <math.h>
+#include <string.h>
+
+size_t imki_six_position_workspace(const imk_test_record *record,
+                                   const imk_procedure_settings *settings)
+{
+    return imki_stretches_workspace(record, settings);
+}
+
+/* ---- units ------------------------------------------------------------------------------------
+ */
+
+static const imk_triad *triad_of(const imk_model *model, int sensor)
+{
+    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
+}
+
+double imki_counts_per_unit(const imk_model *model, const imk_test_record *record, int sensor,
+                            int axis)
+{
+    return record->counts[sensor] ? triad_of(model, sensor)->sensitivity.value[axis] : 1.0;
+}
+
+bool imki_unit_known(const imk_model *model, const imk_test_record *record, int sensor)
+{
+    for (int i = 0; i < record->axis_count[sensor]; i++)
+        if (imki_counts_per_unit(model, record, sensor, i) == 0.0)
+            return false;
+    return true;
+}
+
+void imki_append(char *text, size_t size, const char *more)
+{
+    const size_t length = strlen(text), room = size - 1 - length, wanted = strlen(more);
+    const size_t taken = wanted < room ? wanted : room;
+    memcpy(text + length, more, taken);
+    text[length + taken] = '\0';
+}
+
+double imki_round_digits(double x, int digits)
+{
+    if (x == 0.0 || !isfinite(x))
+        return x;
+    double low = 1.0, scale = 1.0;
+    while (digits-- > 1)
+        low *= 10.0;
+    while (fabs(x) * scale < low && scale < 1e300)
+        scale *= 10.0;
+    if (scale > 1.0)
+        return rint(x * scale) / scale;
+    while (fabs(x) / scale >= 10.0 * low)
+        scale *= 10.0;
+    return rint(x / scale) * scale;
+}
+
+/* ---- the Earth --------------------------------------------------------------------------------
+ */
+
+void imki_earth_at_rest(const imk_calibration *calibration, const double up[3], double rate[3],
+                        double sigma[3])
+{
+    const double total = calibration->earth_rate, latitude = calibration->latitude;
+    if (isnan(latitude)) {
+        /* Anywhere on Earth, all directions alike: each component has the variance W^2/3. That of
+         * the vertical is the same up and down and does not average out, so it counts twice. */
+        for (int i = 0; i < 3; i++) {
+            rate[i] = 0.0;
+            sigma[i] = total * sqrt((1.0 + up[i] * up[i]) / 3.0);
+        }
+        return;
+    }
+    const double vertical = total * imk_sin(latitude), level = total * imk_cos(latitude);
+    for (int i = 0; i < 3; i++) {
+        rate[i] = vertical * up[i];
+        sigma[i] = level * sqrt(0.5 * fmax(0.0, 1.0 - up[i] * up[i]));
+    }
+}
+
+/* ---- observations -----------------------------------------------------------------------------
+ */
+
+/* Half a count: what a mean may be off when no noise carries the reading over the steps. */
+static double smallest_sigma(const imk_model *model, const imk_test_record *record, int sensor,
+                             int axis)
+{
+    static const double uniform = 0.28867513459481287; /* 1/sqrt(12) */
+    const double resolution = triad_of(model, sensor)->resolution.value[axis];
+    if (record->counts[sensor])
+        return uniform;
+    return resolution > 0.0 ? uniform * resolution : 1e-9;
+}
+
+static void set_readings(const imki_procedure_call *call, const imk_static_interval *hold,
+                         const double earth_sigma[3], imk_observation *observation)
+{
+    const imk_model *model = &call->calibration->model;
+    const imk_test_record *record = call->calibration->record[call->record];
+    for (int s = 0; s < 2; s++) {
+        const bool known = imki_unit_known(model, record, s);
+        for (int i = 0; i < IMK_AXES_MAX; i++) {
+            observation->reading[s][i] = (double)NAN;
+            observation->sigma[s][i] = 1.0;
+            if (i >= record->axis_count[s] || !known || !isfinite(hold->mean[s][i]))
+                continue;
+            double sigma = hold->sigma[s][i];
+            if (!(sigma > 0.0))
+                sigma = smallest_sigma(model, record, s, i);
+            if (s == IMK_GYRO && i < 3) {
+                const double earth =
+                    earth_sigma[i] * fabs(imki_counts_per_unit(model, record, s, i));
+                sigma = sqrt(sigma * sigma + earth * earth);
+            }
+            observation->reading[s][i] = hold->mean[s][i];
+            observation->sigma[s][i] = sigma;
+        }
+    }
+}
+
+static int add_fixture(const imki_procedure_call *call)
+{
+    imk_calibration *c = call->calibration;
+    if (!(call->settings->fixture_sigma > 0.0))
+        return -1;
+    if (c->fixture_count >= IMK_FIXTURES_MAX)
+        return -2;
+    c->fixture_sigma[c->fixture_count] = call->settings->fixture_sigma;
+    return (int)c->fixture_count++;
+}
+
+/* Smallest eigenvalue of the mean outer product of the directions of holds: of axes, the smallest
+ * share of the holds. */
+static double spread_of(const imki_bench_stretches *list)
+{
+    double holds[3] = {0.0};
+    for (size_t k = 0; k < list->count; k++)
+        if (!list->stretch[k].at.turn)
+            holds[list->stretch[k].at.axis] += 1.0;
+    return fmin(fmin(holds[0], holds[1]), holds[2]) / (holds[0] + holds[1] + holds[2]);
+}
+
+imk_status imki_holds_observe(const imki_procedure_call *call, const imki_bench_stretches *list,
+                              size_t more, int *fixture)
+{
+    imk_calibration *c = call->calibration;
+    const imk_procedure_settings *settings = call->settings;
+    const size_t needed = c->observation_count + list->count + more;
+    if (needed > c->observation_capacity) {
+        imk_error_set(call->error, IMK_ERROR_WORKSPACE, "observations", NULL,
+                      "room for an observation a hold and turn");
+        if (call->error) {
+            call->error->value = (double)needed;
+            call->error->limit = (double)c->observation_capacity;
+        }
+        return IMK_ERROR_WORKSPACE;
+    }
+    *fixture = add_fixture(call);
+    if (*fixture == -2)
+        return imk_error_set(call->error, IMK_ERROR_RANGE, "fixture", NULL,
+                             "at most 8 mountings in one solution");
+    for (int i = 0; i < 3 && list->sensitivity[i] > 0.0; i++) {
+        c->model.accel.sensitivity.value[i] = list->sensitivity[i];
+        c->model.accel.zero_offset.value[i] = list->zero_offset[i];
+    }
+    c->frame = IMK_FRAME_REFERENCE;
+    for (size_t k = 0; k < list->count; k++) {
+        const imki_bench_stretch *stretch = &list->stretch[k];
+        if (stretch->at.turn)
+            continue;
+        imk_observation observation = {
+            .knowledge = settings->placement_sigma > 0.0 ? IMK_INPUT_PLACED : IMK_INPUT_KNOWN,
+            .record = call->record,
+            .begin = stretch->at.begin,
+            .end = stretch->at.end,
+            .temperature = stretch->summary.temperature,
+            .temperature_rate = isfinite(stretch->summary.temperature_rate)
+                                    ? stretch->summary.temperature_rate
+                                    : 0.0,
+            .placement_sigma = settings->placement_sigma,
+            .fixture = *fixture};
+        double up[3] = {0.0}, earth_sigma[3];
+        up[stretch->at.axis] = stretch->at.sense;
+        observation.force[stretch->at.axis] = stretch->at.sense * c->gravity;
+        imki_earth_at_rest(c, up, observation.rate, earth_sigma);
+        set_readings(call, &stretch->summary, earth_sigma, &observation);
+        (void)imk_calibration_observe(c, &observation);
+    }
+    call->findings->intervals += list->found;
+    call->findings->left_out += list->left_out;
+    call->findings->spread = spread_of(list);
+    return IMK_OK;
+}
+
+imk_status imki_six_position_observe(const imki_procedure_call *call)
+{
+    imk_calibration *c = call->calibration;
+    const imk_test_record *record = c->record[call->record];
+    imki_bench_stretches list;
+    int fixture;
+    imk_status status =
+        imki_stretches_find(record, call->settings, &c->model, c->gravity, call->workspace,
+                            call->workspace_size, &list, &call->findings->stationary, call->error);
+    if (status == IMK_OK)
+        status = imki_faces_complete(&list, call->error);
+    if (status == IMK_OK)
+        status = imki_holds_observe(call, &list, 0, &fixture);
+    if (status == IMK_OK)
+        status = imki_free_term(call, IMK_ACCEL, IMK_MODEL_BIAS, 1, true);
+    if (status == IMK_OK)
+        status = imki_free_term(call, IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 1, true);
+    if (status == IMK_OK)
+        status = imki_free_term(call, IMK_ACCEL, IMK_MODEL_MISALIGNMENT, 3, true);
+    if (status != IMK_OK || !imki_unit_known(&c->model, record, IMK_GYRO))
+        return status;
+    status = imki_free_term(call, IMK_GYRO, IMK_MODEL_BIAS, 1, true);
+    if (status == IMK_OK && call->settings->g_sensitivity)
+        status = imki_free_term(call, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, 3, true);
+    return status;
+}

@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Allan deviations of a record with missing samples: the record as running sums and counts of what
+ * is there, and its holes by length; then one averaging factor after another
+ * (allan_gaps_point.c). */
+#include "allan_gaps_internal.h"
+#include "identify/records/screen_internal.h"
+#include "imukit/elementary.h"
+
+#include <math.h>
+
+enum { COOKIE = 0x1A6A95, SCRATCH = 8192 };
+
+imk_allan_gaps_settings imk_allan_gaps_default(void)
+{
+    return (imk_allan_gaps_settings){.cookie = COOKIE, .confidence = 0.95};
+}
+
+size_t imk_allan_gaps_workspace_size(size_t n)
+{
+    return 64 + (n + 1 + SCRATCH) * sizeof(double) + (n + 1) * sizeof(uint32_t) + n;
+}
+
+/* The record less its mean, in place of its samples; the sums carry their rounding error along, so
+ * that a large constant (gravity on an accelerometer) costs no digits. */
+static void take_sums(imki_gap_record *r)
+{
+    double *const values = r->sums;
+    double shift = 0, mean = 0, sum = 0, error = 0, value = values[0];
+    for (size_t i = r->n; i-- > 0;)
+        shift = imki_is_there(values[i]) ? values[i] : shift;
+    r->counts[0] = 0;
+    for (size_t i = 0; i < r->n; i++) {
+        const bool present = imki_is_there(values[i]);
+        mean += present ? values[i] - shift : 0;
+        r->counts[i + 1] = r->counts[i] + present;
+    }
+    r->present = r->counts[r->n];
+    mean /= r->present > 0 ? (double)r->present : 1;
+    r->sums[0] = 0;
+    for (size_t i = 0; i < r->n; i++) {
+        const double step = imki_is_there(value) ? (value - shift) - mean : 0;
+        const double after = sum + step, part = after - sum;
+        error += (sum - (after - part)) + (step - part);
+        sum = after;
+        value = i + 1 < r->n ? values[i + 1] : 0; /* before it is overwritten */
+        r->sums[i + 1] = sum + error;
+    }
+}
+
+static unsigned class_of(size_t length)
+{
+    unsigned c = 2;
+    for (; length > 1 && c < IMKI_HOLE_CLASSES - 1; length /= 2)
+        c++;
+    return c;
+}
+
+/* Holes longer than chance makes them where samples are missing one by one: the longest run of n
+ * trials with missing fraction p is about log(n)/log(1/p); ten times n for rarity. */
+static void take_holes(imki_gap_record *r)
+{
+    const double missing = (double)(r->n - r->present) / (double)r->n;
+    const double chance = missing > 0 ? imk_ln(10.0 * (double)r->n) / -imk_ln(missing) : 0;
+    for (size_t i = 0; i < r->n;) {
+        size_t end = i;
+        while (end < r->n && r->counts[end + 1] == r->counts[end])
+            end++;
+        const size_t length = end - i;
+        const unsigned c = (double)length > chance ? class_of(length) : 1;
+        r->squares[c] += (double)length * (double)length;
+        r->long_holes = r->long_holes || (c > 1 && length > 0);
+        for (; i < end; i++)
+            r->holes[i] = (unsigned char)c;
+        if (i < r->n)
+            r->holes[i++] = 0;
+    }
+    r->squares[1] = 0;
+}
+
+typedef struct gap_work {
+    const imki_gap_record *record;
+    bool robust;
+    const size_t *factors;
+    imk_allan_gap_point *points;
+} gap_work;
+
+static void gap_item(void *context, size_t item)
+{
+    const gap_work *w = context;
+    imki_gap_point(w->record, w->robust, w->factors[item], &w->points[item]);
+}
+
+/* Without a missing sample: the ordinary deviations, to the last bit, a batch at a time. The last
+ * factor whose noise type can be told leads every batch, for those behind it. */
+static imk_status complete_record(const imk_allan_gaps_settings *settings, size_t n,
+                                  const double *rate, double *sums, size_t factor_count,
+                                  const size_t *factors, imk_allan_gap_point *points,
+                                  const imk_executor *executor)
+{
+    enum { BATCH = 63 };
+    imk_allan_point point[BATCH + 1];
+    size_t factor[BATCH + 1], told = 0;
+    imk_allan_settings ordinary = imk_allan_default();
+    ordinary.confidence = settings->confidence;
+    imk_allan_sums(n, rate, sums, executor);
+    for (size_t i = 0, size; i < factor_count; i += size) {
+        const size_t lead = told > 0;
+        factor[0] = told;
+        for (size = 0; size < BATCH && i + size < factor_count; size++) {
+            factor[lead + size] = factors[i + size];
+            told = factors[i + size] <= n / 30 ? factors[i + size] : told;
+        }
+        const imk_status status =
+            imk_allan_points(&ordinary, n, sums, lead + size, factor, point, executor);
+        if (status != IMK_OK)
+            return status;
+        for (size_t k = 0; k < size; k++)
+            points[i + k] = (imk_allan_gap_point){
+                .point = point[lead + k], .used = 1, .fullness = 1, .resolved = true};
+    }
+    return IMK_OK;
+}
+
+/* Variances and their subtractions become deviations with intervals. Where the noise type could not
+ * be told it is that of the factor before. */
+static void finish(const imk_allan_gaps_settings *settings, size_t n, size_t count,
+                   imk_allan_gap_point *points)
+{
+    imk_power_law type = IMK_WHITE_PHASE;
+    for (size_t i = 0; i < count; i++) {
+        imk_allan_gap_point *p = &points[i];
+        imk_allan_point *q = &p->point;
+        const double variance = q->deviation, share = fabs(q->edf);
+        /* Noise gets no bluer than white again with time, but by chance where clusters are few. */
+        const imk_power_law bluest = type > IMK_WHITE_RATE ? type : IMK_WHITE_RATE;
+        if (q->edf > 0)
+            type = q->type < bluest ? q->type : bluest;
+        q->type = type;
+        if (q->count == 0) {
+            q->deviation = q->lower = q->upper = q->edf = (double)NAN;
+            continue;
+        }
+        q->edf = share * imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, type, n, q->m);
+        q->edf = 2 / (2 / fmax(q->edf, 1) + q->lower * q->lower / (variance * variance));
+        const double error = variance * sqrt(2 / q->edf), rest = variance - p->correction;
+        p->resolved = p->correction == 0 || rest >= error / 2;
+        q->deviation = sqrt(p->resolved ? rest : error / 2);
+        imk_allan_interval(1, q->edf, settings->confidence, &q->lower, &q->upper);
+        const double low = q->lower * q->lower * variance - p->correction;
+        const double high = q->upper * q->upper * variance - p->correction;
+        q->lower = p->resolved && low > 0 ? sqrt(low) : 0;
+        q->upper = high > q->deviation * q->deviation ? sqrt(high) : q->deviation;
+        const double kept = q->deviation * q->deviation / variance;
+        q->edf = p->resolved ? q->edf * kept * kept : 1;
+    }
+}
+
+/* Samples far from the level around them count as missing. */
+static void leave_out_outliers(size_t n, double *samples, double *scratch)
+{
+    const double resolution = imki_record_resolution(n, samples, scratch, SCRATCH);
+    const imki_outlier_rule rule =
+        imki_outlier_rule_find(n, samples, 1e-3, resolution, SCRATCH / 2, scratch);
+    double largest;
+    imki_outliers_find(n, samples, &rule, samples, &largest);
+}
+
+imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t n,
+                                 const double *rate, size_t factor_count, const size_t *factors,
+                                 imk_allan_gap_point *points, void *workspace,
+                                 size_t workspace_size, const imk_executor *executor)
+{
+    if (settings->cookie != COOKIE)
+        return IMK_ERROR_UNINITIALISED;
+    if (!(settings->confidence > 0 && settings->confidence < 1) || n > UINT32_MAX)
+        return IMK_ERROR_RANGE;
+    for (size_t i = 0; i < factor_count; i++)
+        if (factors[i] < 1 || factors[i] > n / 2)
+            return n < 2 ? IMK_ERROR_TOO_SHORT : IMK_ERROR_RANGE;
+    if (workspace_size < imk_allan_gaps_workspace_size(n))
+        return IMK_ERROR_WORKSPACE;
+    double *scratch = (double *)((char *)workspace + (64 - (uintptr_t)workspace % 64) % 64);
+    imki_gap_record record = {.n = n, .sums = scratch + SCRATCH};
+    record.counts = (uint32_t *)(record.sums + n + 1);
+    record.holes = (unsigned char *)(record.counts + n + 1);
+    size_t present = 0;
+    for (size_t i = 0; i < n; i++) {
+        record.sums[i] = rate[i];
+        present += imki_is_there(rate[i]);
+    }
+    if (present < 2)
+        return IMK_ERROR_TOO_SHORT;
+    if (settings->robust)
+        leave_out_outliers(n, record.sums, scratch);
+    else if (present == n)
+        return complete_record(settings, n, rate, record.sums, factor_count, factors, points,
+                               executor);
+    take_sums(&record);
+    take_holes(&record);
+    if (record.long_holes)
+        imki_gap_take_lags(&record);
+    gap_work work = {&record, settings->robust, factors, points};
+    imk_execute(executor, factor_count, gap_item, &work);
+    for (size_t i = 0; i < factor_count; i++)
+        if (points[i].point.count > 0 && !(points[i].point.deviation < HUGE_VAL))
+            return IMK_ERROR_NOT_FINITE;
+    finish(settings, n, factor_count, points);
+    return IMK_OK;
+}

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parts of the identification of one channel: the cosine spectrum in bands, the likelihood fit of
+ * its terms, and the search for lines, resonances and the output filter. */
+#ifndef IMUKIT_IDENTIFY_INTERNAL_H
+#define IMUKIT_IDENTIFY_INTERNAL_H
+
+#include "identify/records/screen_internal.h" /* the record's faults: record_checks.c */
+#include "imukit/identify.h"
+
+enum {
+    IMKI_SINGLE_BANDS = 64, /* lowest frequencies, one to a band */
+    IMKI_BANDS_MAX = 2048,  /* bands in all */
+    IMKI_GAUSS_MARKOV_MAX = IMK_TERMS_MAX,
+    IMKI_TEMPLATES_MAX = 4 + IMKI_GAUSS_MARKOV_MAX + IMK_TERMS_MAX,
+    IMKI_LINES_MAX = 2 * IMK_TERMS_MAX,
+    IMKI_POINTS_MAX = 160 /* of an Allan deviation: ten a decade */
+};
+
+/* Templates by index: the four random terms in the order of imk_noise_term, Gauss-Markov terms,
+ * then resonances. */
+enum { IMKI_FIRST_GAUSS_MARKOV = 4, IMKI_FIRST_RESONANCE = 4 + IMKI_GAUSS_MARKOV_MAX };
+
+/* A spectral line found: DCT indices first … last around its peak. */
+typedef struct imki_line {
+    size_t first, last;
+    double ratio; /* mean power over the surroundings' */
+    double gain;  /* log-likelihood it is worth */
+} imki_line;
+
+/* Spectrum S(f) in bands: mean power of `count` cosine coefficients. */
+typedef struct imki_bands {
+    size_t n; /* samples in the record */
+    double dt;
+    size_t count;
+    double frequency[IMKI_BANDS_MAX];
+    double degrees[IMKI_BANDS_MAX];        /* coefficients in the band */
+    size_t length[IMKI_BANDS_MAX];         /* samples of the transform behind it: n, or a segment */
+    double power[IMKI_BANDS_MAX];          /* their mean square times dt: an estimate of S */
+    size_t singles;                        /* leading bands of one coefficient, k = 1 … singles */
+    double coefficient[IMKI_SINGLE_BANDS]; /* those coefficients, with sign */
+    double ramp[IMKI_SINGLE_BANDS];        /* what a ramp of 1 unit/s adds to them */
+    /* The rounding errors at the two ends of a quantized record add u_k a, u_k = sqrt(2/n)
+     * cos(w/2)/dt, with one a for even k [0], another for odd k [1]. Sums over the band, times dt:
+     * of u_k c_k and of u_k^2; 0 where `length` is not n. */
+    double end_product[2][IMKI_BANDS_MAX], end_square[2][IMKI_BANDS_MAX];
+} imki_bands;
+
+/* Spectrum and powers of a fit at the bands, and rows that its slope is summed with. */
+typedef struct imki_evaluation {
+    double spectrum[IMKI_BANDS_MAX];
+    double power[IMKI_BANDS_MAX]; /* without ramp and ends */
+    double weight[IMKI_BANDS_MAX], product[IMKI_BANDS_MAX];
+    double end_slope; /* of the likelihood in Q^2 by the ends' variance alone */
+    double end_information;
+    double log_likelihood;
+} imki_evaluation;
+
+/* Spectral model: S = sum of amount[j] * shape[j], amount >= 0, plus a ramp in the mean. */
+typedef struct imki_fit {
+    size_t templates;
+    double shape[IMKI_TEMPLATES_MAX][IMKI_BANDS_MAX]; /* for amount 1 */
+    bool active[IMKI_TEMPLATES_MAX];
+    double amount[IMKI_TEMPLATES_MAX]; /* squares: Q^2, N^2, B^2, K^2, sigma^2 */
+    bool ramp_active;
+    double ramp;                                    /* [unit/s] */
+    double correlation_time[IMKI_GAUSS_MARKOV_MAX]; /* [s], of the shapes; 0: no shape yet */
+    double log_likelihood;
+    double sine_square[IMKI_BANDS_MAX];                   /* sin^2(pi f dt) at the bands */
+    double change[IMKI_GAUSS_MARKOV_MAX][IMKI_BANDS_MAX]; /* scratch: d S/d log correlation time */
+    imki_evaluation evaluation;                           /* scratch of spectral_fit.c */
+} imki_fit;
+
+/* A fit but for its shapes: cheap to keep and to go back to. */
+typedef struct imki_amounts {
+    bool active[IMKI_TEMPLATES_MAX], ramp_active;
+    double amount[IMKI_TEMPLATES_MAX], ramp, correlation_time[IMKI_GAUSS_MARKOV_MAX];
+    double log_likelihood;
+} imki_amounts;
+
+/* golden_section.c: place of the highest value between low and high, which should hold one peak. */
+typedef double (*imki_height)(void *context, double place);
+double imki_peak(imki_height height, void *context, double low, double high, int sections);
+
+/* Part of the frequencies, seen by one cosine transform or by the mean power of several. */
+typedef struct imki_spectrum {
+    size_t n; /* points of the transform */
+    double dt;
+    size_t length;              /* samples behind them */
+    size_t first, end;          /* coefficients to use: first … end - 1 */
+    double squares;             /* averaged in each coefficient's power */
+    const double *coefficients; /* with sign; NULL for mean powers */
+    const double *cumulative;   /* cumulative[k] = sum of power times dt over 1 <= i < k */
+    size_t line_count;
+    const imki_line *lines; /* left out */
+} imki_spectrum;
+
+/* cosine_spectrum.c */
+/* Add the bands of a part; count, singles, n and dt are the caller's to start with. */
+void imki_bands_add(imki_bands *bands, const imki_spectrum *spectrum, size_t resonance_count,
+                    const imk_resonance *resonances);
+/* Bands of a whole record, n + 1 values of cumulative. */
+void imki_bands_build(imki_bands *bands, size_t n, double dt, const double *coefficients,
+                      const double *cumulative, size_t line_count, const imki_line *lines,
+                      size_t resonance_count, const imk_resonance *resonances);
+
+/* Spectra of unit resonances and of filtered white noise of unit density at the bands. */
+void imki_resonance_shape(double frequency, double q, const imki_bands *bands, double *shape);
+void imki_filter_shape(imk_low_pass filter, const imki_bands *bands, double *shape);
+
+/* spectral_fit.c: all return the log-likelihood, and leave it in the fit. */
+double imki_fit_maximise(imki_fit *fit, const imki_bands *bands);
+/* The same with one amount (or the ramp: index IMK_NOISE_RAMP when `ramp`) held at a value. */
+double imki_fit_profile(imki_fit *fit, const imki_bands *bands, int held, double value);
+/* Covariance of the active amounts, templates x templates, row-major; zero for the others. */
+void imki_fit_covariance(imki_fit *fit, const imki_bands *bands, double *covariance);
+double imki_fit_ramp_information(const imki_fit *fit, const imki_bands *bands);
+double imki_fit_spectrum(const imki_fit *fit, size_t band);
+imki_amounts imki_fit_keep(const imki_fit *fit);
+/* Shapes of Gauss-Markov templates whose time has changed since are made again. */
+void imki_fit_restore(imki_fit *fit, const imki_bands *bands, const imki_amounts *kept);
+void imki_fit_copy(imki_fit *to, const imki_fit *from, const imki_bands *bands);
+/* Log-likelihood's gradient and information over `count` columns of d S/d parameter, at the fit. */
+void imki_fit_slope(imki_fit *fit, const imki_bands *bands, size_t count,
+                    const double *const *columns, double *gradient, double *information);
+enum { IMKI_HELD_NONE = -1, IMKI_HELD_RAMP = -2 };
+
+/* spectral_lines.c */
+/* @param squares  squares averaged in each coefficient's power: 1 for a whole record */
+size_t imki_lines_find(size_t n, const double *cumulative, double squares, imki_line *lines);
+/* Fit and subtract a sinusoid whose frequency is near `frequency`; false, and nothing subtracted,
+ * when it holds less than 0.6 of the line's variance. */
+bool imki_sinusoid_remove(size_t n, double dt, double frequency, double variance, double *samples,
+                          imk_sinusoid *sinusoid);
+/* The coefficients a line spreads over, skirts included. */
+imki_line imki_line_widen(const imki_line *line, size_t n);
+/* Variance of a line: its power in excess of its surroundings'. */
+double imki_line_variance(const imki_line *line, size_t n, double dt, const double *cumulative);
+
+/* spectral_shape.c: fits a resonance from a start; false when the line, of the given variance, is
+ * not shaped like one. */
+bool imki_shape_resonance(imk_resonance *resonance, double line_variance, size_t n, double dt,
+                          const double *cumulative);
+
+/* output_filter.c: finds the filter (bandwidth 0: none) and leaves the fit at it. */
+imk_low_pass imki_filter_find(imki_fit *fit, const imki_bands *bands);
+
+/* spectral_templates.c: shapes of the four random terms, and of a Gauss-Markov term of unit
+ * variance. */
+void imki_templates_set(imki_fit *fit, const imki_bands *bands);
+void imki_gauss_markov_shape(const imki_fit *fit, const imki_bands *bands, double correlation_time,
+                             double *shape);
+
+/* gauss_markov_search.c: correlation time at which one more term brings the likelihood most, left
+ * in the fit with its amount; false, and the fit as it was, when none brings `gain`. */
+bool imki_gauss_markov_add(imki_fit *fit, const imki_bands *bands, double gain);
+/* Correlation times of all active terms and everything else at the maximum of the likelihood; one
+ * amount, or one correlation time, may be held where it is. */
+double imki_gauss_markov_settle(imki_fit *fit, const imki_bands *bands, int held, int held_time);
+/* Range of correlation times [s] that a record can tell; false when there is none. */
+bool imki_gauss_markov_range(const imki_bands *bands, double *shortest, double *longest);
+
+/* term_search.c: the set of terms with the largest likelihood less its penalties. */
+typedef struct imki_penalties {
+    double term;         /* a strength */
+    double gauss_markov; /* a strength and a correlation time */
+    double significance; /* of a ramp */
+} imki_penalties;
+imki_penalties imki_penalties_of(const imki_bands *bands, double significance);
+/* Returns the likelihood less the penalties of the set, which is left in the fit. */
+double imki_terms_choose(imki_fit *fit, const imki_bands *bands, const imki_penalties *penalties);
+
+/* Quality above which a resonance counts as a narrow line. */
+#define IMKI_NARROW 50.0
+
+/* Everything that one channel needs, laid out in the caller's workspace. */
+typedef struct imki_work {
+    const imk_identify_settings *settings;
+    size_t n;
+    double scale;         /* of samples and all that follows from them: record times scale */
+    double *samples;      /* n: mean removed, later sinusoids subtracted */
+    double *coefficients; /* n: cosine transform */
+    double *cumulative;   /* n + 1: powers summed, later running sums */
+    void *transform;
+    size_t transform_size;
+    imki_bands *bands;
+    imki_fit *fit, *trial, *chosen;
+    size_t line_count;
+    imki_line lines[IMKI_LINES_MAX]; /* left out of the fit */
+    struct imki_missing *missing;    /* missing_internal.h; NULL: none are */
+    bool bands_given;                /* several records: the bands are there already */
+    /* A long record instead comes as the spectra of two scales and its Allan deviations at 99.9 %
+     * confidence, ascending; 0 of them: as samples. */
+    size_t spectrum_count, point_count;
+    const imki_spectrum *spectra;
+    imk_allan_point *points; /* room for IMKI_POINTS_MAX */
+} imki_work;
+
+/* fast_shape.c: fits the filter and the wide resonances jointly with all amounts, and adds the
+ * resonances that the residuals ask for; returns how many. Uses `trial` and `chosen`. */
+int imki_fast_shape_refine(imki_work *w, imk_identification *result);
+/* joint_shape.c: sigmas and intervals of the random terms, found with filter and resonances held,
+ * times what these add to their uncertainty. */
+void imki_identify_widen(imki_work *w, imk_identification *result);
+
+/* joint_records.c: what a joint estimate needs, after the terms are found; NULL: nothing. */
+void imki_summary_save(const imki_work *w, imk_spectral_summary *summary);
+
+/* The steps of imk_identify_channel(), in order, one file each. */
+void imki_identify_transform(imki_work *w);
+void imki_identify_lines(imki_work *w, imk_identification *result);
+void imki_identify_bands(imki_work *w, const imk_identification *result);
+void imki_identify_terms(imki_work *w, imk_identification *result);
+void imki_identify_intervals(imki_work *w, imk_identification *result);
+void imki_identify_judge(imki_work *w, imk_identification *result);
+
+/* identify_lines.c: enter a line that is no subtracted tone as a resonance or, where it is not
+ * shaped like one, as a sinusoid at `frequency`; true when it is to be left out of the fit.
+ * @param narrowest  half-power width [Hz] that the transform tells from a tone */
+bool imki_line_describe(const imki_line *line, size_t n, double dt, const double *cumulative,
+                        double frequency, double narrowest, imk_identification *result);
+
+/* identify.c: what all ways in share. */
+imk_status imki_identify_check(const imk_identify_settings *settings, imk_error *error);
+/* Strengths of everything random, and of the ramp, times a factor. */
+void imki_identification_rescale(imk_identification *result, double factor);
+bool imki_identification_is_finite(const imk_identification *result);
+
+#endif

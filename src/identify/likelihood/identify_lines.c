@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The channel's spectrum, and what its lines are. */
+#include "identify/records/missing_internal.h"
+#include "identify_internal.h"
+#include "imukit/fourier.h"
+
+#include <math.h>
+#include <string.h>
+
+void imki_identify_transform(imki_work *w)
+{
+    memcpy(w->coefficients, w->samples, w->n * sizeof(double));
+    (void)imk_cosine(w->n, w->coefficients, w->transform, w->transform_size); /* sized for it */
+    if (w->missing)
+        imki_missing_restore(w->missing, w->n, w->coefficients);
+    w->cumulative[0] = w->cumulative[1] = 0;
+    for (size_t k = 1; k < w->n; k++)
+        w->cumulative[k + 1] =
+            w->cumulative[k] + w->coefficients[k] * w->coefficients[k] * w->settings->dt;
+}
+
+static double centre_of(const imki_line *line)
+{
+    return 0.5 * (double)(line->first + line->last);
+}
+
+static double variance_of(const imki_work *w, const imki_line *line)
+{
+    return imki_line_variance(line, w->n, w->settings->dt, w->cumulative);
+}
+
+static size_t peak_of(const imki_work *w, const imki_line *line)
+{
+    size_t peak = line->first;
+    for (size_t k = line->first; k <= line->last; k++)
+        peak = fabs(w->coefficients[k]) > fabs(w->coefficients[peak]) ? k : peak;
+    return peak;
+}
+
+/* Subtract the tones: a tone's skirts may make a line of sixteen coefficients of it, no more. */
+static void remove_tones(imki_work *w, size_t count, const imki_line *lines,
+                         imk_identification *result)
+{
+    const double step_hz = 1 / (2 * (double)w->n * w->settings->dt);
+    for (size_t i = 0; i < count; i++)
+        if (lines[i].last - lines[i].first < 16 && result->sinusoid_count < IMK_TERMS_MAX &&
+            imki_sinusoid_remove(w->n, w->settings->dt, (double)peak_of(w, &lines[i]) * step_hz,
+                                 variance_of(w, &lines[i]), w->samples,
+                                 &result->sinusoid[result->sinusoid_count]))
+            result->sinusoid_count++;
+}
+
+bool imki_line_describe(const imki_line *line, size_t n, double dt, const double *cumulative,
+                        double frequency, double narrowest, imk_identification *result)
+{
+    const double variance = imki_line_variance(line, n, dt, cumulative);
+    const double centre = centre_of(line), width = (double)(line->last - line->first + 1);
+    imk_resonance r = {0, frequency, fmax(1, centre / width)};
+    /* A frequency far below the sample rate is none that imk_resonance_arma() takes. */
+    const bool possible =
+        width > 2 && r.frequency * dt > 1e-5 && result->resonance_count < IMK_TERMS_MAX;
+    bool resonant = possible && imki_shape_resonance(&r, variance, n, dt, cumulative) &&
+                    r.frequency > narrowest * r.q;
+    /* What is wide takes part in the fit whatever its shape: further resonances complete it. */
+    if (possible && !resonant && width > 16 && centre < IMKI_NARROW * width) {
+        r = (imk_resonance){sqrt(variance), frequency, fmax(1, centre / width)};
+        resonant = r.frequency > narrowest * r.q;
+    }
+    const bool narrow = !resonant || r.q > IMKI_NARROW;
+    if (resonant) {
+        r.sigma = narrow ? sqrt(variance) : r.sigma;
+        result->resonance[result->resonance_count++] = r;
+    } else if (result->sinusoid_count < IMK_TERMS_MAX) {
+        result->sinusoid[result->sinusoid_count++] = (imk_sinusoid){sqrt(2 * variance), frequency};
+    }
+    return narrow;
+}
+
+/* What a line is: a tone is subtracted as a sinusoid; what is shaped like a resonance is one; a
+ * line that is neither, such as a tone whose frequency wanders, stands in the model as a sinusoid
+ * of its power. Only wide resonances take part in the fit: narrow lines are left out of it, and
+ * their power is what is found above their surroundings, whatever their exact shape. */
+void imki_identify_lines(imki_work *w, imk_identification *result)
+{
+    const double dt = w->settings->dt, step_hz = 1 / (2 * (double)w->n * dt);
+    imki_line lines[IMKI_LINES_MAX];
+    size_t count = imki_lines_find(w->n, w->cumulative, 1, lines);
+    remove_tones(w, count, lines, result);
+    if (result->sinusoid_count > 0) {
+        imki_identify_transform(w);
+        count = imki_lines_find(w->n, w->cumulative, 1, lines);
+    }
+    for (size_t i = 0; i < count; i++)
+        if (imki_line_describe(&lines[i], w->n, dt, w->cumulative, centre_of(&lines[i]) * step_hz,
+                               0, result))
+            w->lines[w->line_count++] = imki_line_widen(&lines[i], w->n);
+}
+
+void imki_identify_bands(imki_work *w, const imk_identification *result)
+{
+    const double dt = w->settings->dt;
+    const size_t resonances = (size_t)result->resonance_count;
+    if (w->bands_given)
+        return;
+    if (w->spectrum_count == 0) {
+        imki_bands_build(w->bands, w->n, dt, w->coefficients, w->cumulative, w->line_count,
+                         w->lines, resonances, result->resonance);
+        if (w->missing)
+            imki_missing_weigh(w->missing, w->bands);
+        return;
+    }
+    w->bands->n = w->n;
+    w->bands->dt = dt;
+    w->bands->count = w->bands->singles = 0;
+    for (size_t i = 0; i < w->spectrum_count; i++)
+        imki_bands_add(w->bands, &w->spectra[i], resonances, result->resonance);
+}

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Copies of inputs that cannot be read twice, in files without a name: they are gone with the
+ * process, however it ends. An input is known by its device and inode, which do not depend on the
+ * name it is opened by. */
+#define _GNU_SOURCE /* mkostemp(), memrchr() */
+#include "input_copy_internal.h"
+
+#include "io/log/log_text_internal.h"
+#include "leftovers_internal.h"
+#include "system_error_internal.h"
+#include "text_file_internal.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    BLOCK = 1 << 16,
+    LOOK = 4096 /* bytes looked at to tell a text */
+};
+
+typedef struct copy {
+    dev_t device;
+    ino_t inode;
+    int file;          /* -1: it could not be made */
+    imk_error failure; /* why not: part of the input is lost, and whoever opens it is to know */
+    struct copy *next;
+} copy;
+
+static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+static copy *copies;
+
+/* A new file without a name. @return -1 with errno */
+static int open_nameless(void)
+{
+    static const char pattern[] = "/imukit-XXXXXX";
+    const char *folder = getenv("TMPDIR");
+    folder = folder && *folder ? folder : "/tmp";
+    const size_t size = strlen(folder) + sizeof pattern;
+    char *name = malloc(size);
+    if (!name)
+        return -1;
+    snprintf(name, size, "%s%s", folder, pattern);
+    /* As long as it has a name, no signal may end the process. */
+    sigset_t before;
+    imki_signals_hold(&before);
+    const int file = mkostemp(name, O_CLOEXEC);
+    const int number = errno;
+    if (file >= 0)
+        unlink(name);
+    imki_signals_release(&before);
+    free(name);
+    errno = number;
+    return file;
+}
+
+static imk_status refuse(const char *path, int number, imk_error *error)
+{
+    imk_error reason;
+    char found[sizeof reason.found];
+    (void)imki_system_error(&reason, IMK_ERROR_WRITE, "", number);
+    snprintf(found, sizeof found, "its temporary copy cannot be written: %.55s", reason.found);
+    return imk_error_set(error, IMK_ERROR_WRITE, path, found,
+                         "set TMPDIR to a folder with room, or give a file instead of a pipe");
+}
+
+/* @return 0 or an errno value */
+static int write_all(int file, const char *bytes, size_t size)
+{
+    while (size > 0) {
+        const ssize_t count = write(file, bytes, size);
+        if (count < 0 && errno != EINTR)
+            return errno;
+        if (count > 0) {
+            bytes += count;
+            size -= (size_t)count;
+        }
+    }
+    return 0;
+}
+
+/* Fill a block unless the input ends before. @return -1 with errno */
+static ssize_t read_block(int file, char *block)
+{
+    size_t size = 0;
+    while (size < BLOCK) {
+        const ssize_t count = read(file, block + size, BLOCK - size);
+        if (count == 0)
+            break;
+        if (count < 0 && errno != EINTR)
+            return -1;
+        size += count > 0 ? (size_t)count : 0;
+    }
+    return (ssize_t)size;
+}
+
+/* What an input that may have no end is known by, so that it does not fill the disk. */
+typedef struct seen {
+    bool text;
+    size_t line; /* bytes since the last line feed */
+} seen;
+
+/* The first block: text, or one of the other forms that inputs have. UTF-16 is left to the reader,
+ * which tells how to convert it. */
+static imk_status look_at_begin(seen *s, const char *block, size_t size, const char *path,
+                                imk_error *error)
+{
+    static const char *const others[] = {"\x1F\x8B", "\x28\xB5\x2F\xFD", "\x93NUMPY", "\xFF\xFE",
+                                         "\xFE\xFF"};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (size >= strlen(others[i]) && memcmp(block, others[i], strlen(others[i])) == 0)
+            return IMK_OK;
+    /* A skippable frame of zstd. */
+    if (size >= 4 && (block[0] & 0xF0) == 0x50 && memcmp(block + 1, "\x2A\x4D\x18", 3) == 0)
+        return IMK_OK;
+    s->text = imki_is_text(block, size < LOOK ? size : LOOK);
+    return s->text ? IMK_OK
+                   : imk_error_set(error, IMK_ERROR_FORMAT, path,
+                                   "it is neither text nor .npy, and not compressed by gzip or "
+                                   "zstd",
+                                   "");
+}
+
+static imk_status look_at_line(seen *s, const char *block, size_t size, const char *path,
+                               imk_error *error)
+{
+    const char *feed = memrchr(block, '\n', size);
+    s->line = feed ? (size_t)(block + size - feed - 1) : s->line + size;
+    return s->line <= IMKI_LINE_MAX ? IMK_OK
+                                    : imk_error_set(error, IMK_ERROR_FORMAT, path,
+                                                    "a line longer than 1 MiB", "a text in lines");
+}
+
+static imk_status copy_all(int from, int to, const char *path, imk_error *error)
+{
+    char block[BLOCK];
+    seen s = {false, 0};
+    for (bool first = true;; first = false) {
+        const ssize_t count = read_block(from, block);
+        if (count < 0)
+            return imki_system_error(error, IMK_ERROR_READ, path, errno);
+        if (count == 0)
+            return IMK_OK;
+        imk_status status = IMK_OK;
+        if (first)
+            status = look_at_begin(&s, block, (size_t)count, path, error);
+        if (status == IMK_OK && s.text)
+            status = look_at_line(&s, block, (size_t)count, path, error);
+        if (status != IMK_OK)
+            return status;
+        const int number = write_all(to, block, (size_t)count);
+        if (number != 0)
+            return refuse(path, number, error);
+    }
+}
+
+imk_status imki_copy_make(const struct stat *about, int file, const char *path, imk_error *error)
+{
+    copy *made = malloc(sizeof *made);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
+    *made = (copy){.device = about->st_dev, .inode = about->st_ino, .file = open_nameless()};
+    const imk_status status = made->file < 0 ? refuse(path, errno, &made->failure)
+                                             : copy_all(file, made->file, path, &made->failure);
+    if (status != IMK_OK) {
+        if (made->file >= 0)
+            close(made->file);
+        made->file = -1;
+        if (error)
+            *error = made->failure;
+    }
+    pthread_mutex_lock(&mutex);
+    made->next = copies;
+    copies = made;
+    pthread_mutex_unlock(&mutex);
+    return status;
+}
+
+/* What is found, taken out of the list unless it is kept. */
+static imk_status use(copy **place, bool kept, int *file, imk_error *error)
+{
+    copy *found = *place;
+    const imk_status status = found->failure.status;
+    if (status != IMK_OK && error)
+        *error = found->failure;
+    if (status == IMK_OK)
+        *file = kept ? fcntl(found->file, F_DUPFD_CLOEXEC, 0) : found->file;
+    if (!kept) {
+        *place = found->next;
+        free(found);
+    }
+    return status;
+}
+
+imk_status imki_copy_open(const struct stat *about, bool kept, int *file, imk_error *error)
+{
+    imk_status status = IMK_OK;
+    *file = -1;
+    pthread_mutex_lock(&mutex);
+    copy **place = &copies;
+    while (*place && ((*place)->device != about->st_dev || (*place)->inode != about->st_ino))
+        place = &(*place)->next;
+    if (*place)
+        status = use(place, kept, file, error);
+    pthread_mutex_unlock(&mutex);
+    return status;
+}

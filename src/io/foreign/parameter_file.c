@@ -1,0 +1,413 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Foreign parameter files: which format a file has, and reading and writing by it.
+ *
+ * Writing ends with reading back what was written: whatever does not return as it was is noted as
+ * lost, so that no format can drop something silently. */
+#define _POSIX_C_SOURCE 200809L
+#include "imukit/parameter_file.h"
+
+#include "io/file/input_stream_internal.h"
+#include "parameter_internal.h"
+
+#include "imukit/output_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- formats --------------------------------------------------------------------------------- */
+
+static const struct format {
+    const char *name;
+    imki_parameter_function *read, *write;
+    bool has_several; /* a file may be of several sensors */
+} formats[] = {
+    [IMK_PARAMETERS_KALIBR] = {"kalibr", imki_kalibr_read, imki_kalibr_write, true},
+    [IMK_PARAMETERS_GAZEBO] = {"gazebo", imki_gazebo_read, imki_gazebo_write, true},
+    [IMK_PARAMETERS_MATLAB] = {"matlab", imki_matlab_read, imki_matlab_write, true},
+    [IMK_PARAMETERS_GNSS_INS_SIM] = {"gnss-ins-sim", imki_gnss_ins_sim_read,
+                                     imki_gnss_ins_sim_write, false},
+    [IMK_PARAMETERS_NAVEGO] = {"navego", imki_navego_read, imki_navego_write, true},
+    [IMK_PARAMETERS_OPENVINS] = {"openvins", imki_openvins_read, imki_openvins_write, false},
+    [IMK_PARAMETERS_VINS] = {"vins", imki_vins_read, imki_vins_write, false},
+    [IMK_PARAMETERS_PX4] = {"px4", imki_px4_read, imki_px4_write, true},
+    [IMK_PARAMETERS_ARDUPILOT] = {"ardupilot", imki_ardupilot_read, imki_ardupilot_write, true},
+    [IMK_PARAMETERS_FILTER] = {"filter", imki_filter_read, imki_filter_write, false},
+};
+enum { FORMATS = sizeof formats / sizeof formats[0] };
+
+const char *imk_parameter_format_name(imk_parameter_format format)
+{
+    return (int)format > 0 && (int)format < FORMATS ? formats[format].name : NULL;
+}
+
+imk_parameter_format imk_parameter_format_find(const char *name)
+{
+    for (int i = 1; i < FORMATS; i++)
+        if (strcmp(formats[i].name, name) == 0)
+            return (imk_parameter_format)i;
+    return IMK_PARAMETERS_UNKNOWN;
+}
+
+static const uint32_t settings_cookie = 0x70617231; /* "par1" */
+
+imk_parameter_settings imk_parameter_settings_default(void)
+{
+    return (imk_parameter_settings){.cookie = settings_cookie,
+                                    .filter = imk_filter_noise_default()};
+}
+
+/* ---- recognition ----------------------------------------------------------------------------- */
+
+static bool has_any(const imk_document *document, int node, size_t count, const char *const *keys)
+{
+    for (size_t i = 0; i < count; i++)
+        if (imki_document_value(document, node, keys[i]) != IMKI_NONE)
+            return true;
+    return false;
+}
+
+/* By the keys of the root, or of one of its values. */
+static imk_parameter_format recognise_keys(const imk_document *document, int node)
+{
+    static const char *const vins[] = {"acc_n", "gyr_n", "acc_w", "gyr_w"};
+    static const char *const gnss[] = {"gyro_b", "gyro_arw", "gyro_b_stability", "accel_vrw"};
+    static const char *const matlab[] = {"Gyroscope", "Accelerometer"};
+    static const char *const openvins[] = {"Tw", "Ta", "Tg", "R_IMUtoGYRO", "R_IMUtoACC"};
+    static const char *const kalibr[] = {"gyroscopes", "accelerometers"};
+    static const char *const filter[] = {"imukit_filter"};
+    if (has_any(document, node, 1, filter))
+        return IMK_PARAMETERS_FILTER;
+    if (has_any(document, node, 4, vins))
+        return IMK_PARAMETERS_VINS;
+    if (has_any(document, node, 4, gnss))
+        return IMK_PARAMETERS_GNSS_INS_SIM;
+    if (has_any(document, node, 2, matlab))
+        return IMK_PARAMETERS_MATLAB;
+    if (has_any(document, node, 5, openvins))
+        return IMK_PARAMETERS_OPENVINS;
+    if (has_any(document, node, 2, kalibr) ||
+        has_any(document, node, IMKI_KALIBR_NOISE_KEYS, imki_kalibr_noise_keys))
+        return IMK_PARAMETERS_KALIBR;
+    return IMK_PARAMETERS_UNKNOWN;
+}
+
+/* A tree that cannot be built has a fault to be told about; for that its words must do. */
+static imk_parameter_format recognise_words(const char *text)
+{
+    static const struct {
+        const char *word;
+        imk_parameter_format format;
+    } words[] = {{"imukit_filter", IMK_PARAMETERS_FILTER},
+                 {"acc_n:", IMK_PARAMETERS_VINS},
+                 {"gyr_n:", IMK_PARAMETERS_VINS},
+                 {"gyro_arw", IMK_PARAMETERS_GNSS_INS_SIM},
+                 {"\"Gyroscope\"", IMK_PARAMETERS_MATLAB},
+                 {"\"Accelerometer\"", IMK_PARAMETERS_MATLAB},
+                 {"R_IMUto", IMK_PARAMETERS_OPENVINS},
+                 {"gyroscope_noise_density", IMK_PARAMETERS_KALIBR},
+                 {"accelerometer_noise_density", IMK_PARAMETERS_KALIBR}};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strstr(text, words[i].word))
+            return words[i].format;
+    return IMK_PARAMETERS_UNKNOWN;
+}
+
+static imk_parameter_format recognise_tree(const char *text, size_t size)
+{
+    imk_parameter_settings settings = imk_parameter_settings_default();
+    imki_parameters p = {.settings = &settings, .text = text, .size = size};
+    imk_document *document = NULL;
+    if (imki_parameters_document(&p, &document) != IMK_OK)
+        return recognise_words(text);
+    imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
+    /* A model file has the last word about itself. */
+    if (imki_document_value(document, 0, "imukit") == IMKI_NONE) {
+        format = recognise_keys(document, 0);
+        for (int key = document->node[0].first;
+             key != IMKI_NONE && format == IMK_PARAMETERS_UNKNOWN;) {
+            format = recognise_keys(document, document->node[key].next);
+            key = document->node[document->node[key].next].next;
+        }
+    }
+    imk_document_free(document);
+    return format;
+}
+
+/* Does a word of the text begin so? */
+static bool has_word(const char *text, const char *beginning)
+{
+    for (const char *at = strstr(text, beginning); at; at = strstr(at + 1, beginning))
+        if (at == text || strchr(" \t\n,", at[-1]))
+            return true;
+    return false;
+}
+
+/* `name.field =`, with a field of NaveGo's. */
+static bool has_assignment(const char *text)
+{
+    static const char *const fields[] = {".arw",    ".vrw",    ".gb_sta",
+                                         ".ab_sta", ".gb_dyn", ".ab_dyn"};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
+        for (const char *at = strstr(text, fields[i]); at; at = strstr(at + 1, fields[i])) {
+            const char *behind = at + strlen(fields[i]);
+            behind += strspn(behind, " \t");
+            if (behind[0] == '=' && behind[1] != '=')
+                return true;
+        }
+    return false;
+}
+
+static imk_parameter_format recognise(const char *text, size_t size)
+{
+    const char *first = text + strspn(text, " \t\r\n\xEF\xBB\xBF");
+    if (memchr(text, '\0', size))
+        return IMK_PARAMETERS_UNKNOWN;
+    if (*first == '<')
+        return strstr(text, "<imu") || strstr(text, "\"imu\"") ? IMK_PARAMETERS_GAZEBO
+                                                               : IMK_PARAMETERS_UNKNOWN;
+    imk_parameter_format format = recognise_tree(text, size);
+    if (format != IMK_PARAMETERS_UNKNOWN)
+        return format;
+    if (has_word(text, "CAL_GYRO") || has_word(text, "CAL_ACC") || has_word(text, "TC_G") ||
+        has_word(text, "TC_A"))
+        return IMK_PARAMETERS_PX4;
+    if (has_word(text, "INS_ACC") || has_word(text, "INS_GYR") || has_word(text, "INS_TCAL"))
+        return IMK_PARAMETERS_ARDUPILOT;
+    return has_assignment(text) ? IMK_PARAMETERS_NAVEGO : IMK_PARAMETERS_UNKNOWN;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+/* All bytes of a file and a zero. */
+static imk_status read_all(const char *path, bool reopened, char **text, size_t *size,
+                           imk_error *error)
+{
+    enum { CAPACITY = IMKI_DOCUMENT_SIZE_MAX };
+    imki_input *input = NULL;
+    imk_status status =
+        reopened ? imki_input_open_kept(path, &input, error) : imki_input_open(path, &input, error);
+    if (status != IMK_OK)
+        return status;
+    char *buffer = malloc(CAPACITY + 1);
+    if (!buffer)
+        status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    *size = 0;
+    for (size_t got = 1; status == IMK_OK && got > 0 && *size < CAPACITY; *size += got) {
+        got = 0;
+        status = imki_input_read(input, buffer + *size, CAPACITY - *size, &got, error);
+    }
+    imki_input_close(input);
+    if (status == IMK_OK && *size == CAPACITY)
+        status = imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "a file longer than 1 MiB",
+                               "a parameter file");
+    if (status != IMK_OK) {
+        free(buffer);
+        return status;
+    }
+    buffer[*size] = '\0';
+    *text = buffer;
+    return IMK_OK;
+}
+
+imk_status imk_parameter_format_detect(const char *path, imk_parameter_format *format,
+                                       imk_error *error)
+{
+    char *text = NULL;
+    size_t size;
+    const imk_status status = read_all(path, true, &text, &size, error);
+    const bool is_missing = status == IMK_ERROR_OPEN && access(path, F_OK) != 0;
+    if (status == IMK_ERROR_READ || status == IMK_ERROR_MEMORY ||
+        (status == IMK_ERROR_OPEN && !is_missing))
+        return status;
+    *format = status == IMK_OK ? recognise(text, size) : IMK_PARAMETERS_UNKNOWN;
+    free(text);
+    return IMK_OK;
+}
+
+static imk_status check_settings(const imk_parameter_settings *settings, imk_error *error)
+{
+    if (!settings || settings->cookie != settings_cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
+                             "settings from imk_parameter_settings_default()");
+    if (settings->rate != 0 && !(settings->rate >= 1e-9 && settings->rate <= 1e9))
+        return imk_error_set(error, IMK_ERROR_RANGE, "rate", "",
+                             "a sample rate from 1e-9 Hz to 1e9 Hz");
+    if ((int)settings->format < 0 || (int)settings->format >= FORMATS)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "format", "", "one of the formats");
+    return IMK_OK;
+}
+
+/* Where the densities are settled, an option that says otherwise would be a mistake. */
+static imk_status check_density(const imk_parameter_settings *settings, imk_parameter_format format,
+                                imk_error *error)
+{
+    if (settings->density != IMK_DENSITY_ONE_SIDED || format == IMK_PARAMETERS_VINS ||
+        format == IMK_PARAMETERS_MATLAB)
+        return IMK_OK;
+    char found[96];
+    snprintf(found, sizeof found, "one-sided: the format %s has two-sided densities",
+             formats[format].name);
+    return imk_error_set(error, IMK_ERROR_CONFLICT, "density", found,
+                         "leave --density out, or divide the numbers by sqrt(2) first");
+}
+
+static imk_status check_sensor(const imk_parameter_settings *settings, imk_parameter_format format,
+                               imk_error *error)
+{
+    if (!settings->sensor || formats[format].has_several)
+        return IMK_OK;
+    char found[96];
+    snprintf(found, sizeof found, "the format %s has one sensor only", formats[format].name);
+    return imk_error_set(error, IMK_ERROR_CONFLICT, "sensor", found, "leave --sensor out");
+}
+
+/* `text` ends with a zero. */
+static imk_status parse_text(const char *text, size_t size, const imk_parameter_settings *settings,
+                             imk_model *made, imk_parameter_notes *notes, imk_error *error)
+{
+    imki_parameters p = {.settings = settings,
+                         .notes = notes,
+                         .error = error,
+                         .text = text,
+                         .size = size,
+                         .model = made};
+    imk_parameter_format format = settings->format;
+    imk_model_default(made);
+    if (memchr(text, '\0', size))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "", "a text file");
+    if (format == IMK_PARAMETERS_UNKNOWN)
+        format = recognise(text, size);
+    if (format == IMK_PARAMETERS_UNKNOWN)
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "",
+                             "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, "
+                             "openvins, vins, px4, ardupilot or filter (--from says which)");
+    imk_status status = check_density(settings, format, error);
+    if (status == IMK_OK)
+        status = check_sensor(settings, format, error);
+    if (status == IMK_OK)
+        status = formats[format].read(&p);
+    return status == IMK_OK ? imk_model_validate(made, error) : status;
+}
+
+imk_status imk_parameters_parse(const char *text, size_t size,
+                                const imk_parameter_settings *settings, imk_model *model,
+                                imk_parameter_notes *notes, imk_error *error)
+{
+    imk_status status = check_settings(settings, error);
+    if (status != IMK_OK)
+        return status;
+    char *copy = malloc(size + 1);
+    imk_model *made = malloc(sizeof *made);
+    imk_parameter_notes found = {.count = 0};
+    if (!copy || !made) {
+        free(copy);
+        free(made);
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    }
+    if (size > 0)
+        memcpy(copy, text, size);
+    copy[size] = '\0';
+    status = parse_text(copy, size, settings, made, &found, error);
+    if (status == IMK_OK) {
+        *model = *made;
+        if (notes)
+            *notes = found;
+    }
+    free(copy);
+    free(made);
+    return status;
+}
+
+imk_status imk_parameters_read(const char *path, const imk_parameter_settings *settings,
+                               imk_model *model, imk_parameter_notes *notes, imk_error *error)
+{
+    char *text = NULL;
+    size_t size = 0;
+    imk_status status = read_all(path, false, &text, &size, error);
+    if (status == IMK_OK && text)
+        status = imk_parameters_parse(text, size, settings, model, notes, error);
+    free(text);
+    return status;
+}
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+static imk_status check_model(const imk_parameter_settings *settings, const imk_model *model,
+                              imk_error *error)
+{
+    imk_status status = check_settings(settings, error);
+    if (status == IMK_OK && settings->format == IMK_PARAMETERS_UNKNOWN)
+        status = imk_error_set(error, IMK_ERROR_ARGUMENT, "format", "", "the format to write");
+    if (status == IMK_OK)
+        status = check_density(settings, settings->format, error);
+    if (status == IMK_OK)
+        status = imk_model_validate(model, error);
+    if (status != IMK_OK)
+        return status;
+    const imk_triad *triads[2] = {&model->gyro, &model->accel};
+    for (int i = 0; i < 2; i++)
+        if (triads[i]->present && triads[i]->axis_count != 3)
+            return imk_error_set(error, IMK_ERROR_UNSUPPORTED,
+                                 i == 0 ? "gyro.direction" : "accel.direction",
+                                 "the foreign formats have three axes, the model has others", "");
+    return IMK_OK;
+}
+
+static bool ends_with(const char *path, const char *ending)
+{
+    if (!path)
+        return false;
+    size_t length = strlen(path), ending_length = strlen(ending);
+    return length >= ending_length && strcmp(path + length - ending_length, ending) == 0;
+}
+
+imk_status imk_parameters_print(const char *path, const imk_parameter_settings *settings,
+                                const imk_model *model, char **text, size_t *size,
+                                imk_parameter_notes *notes, imk_error *error)
+{
+    imk_parameter_notes found = {.count = 0};
+    imk_status status = check_model(settings, model, error);
+    if (status != IMK_OK)
+        return status;
+    imki_parameters p = {.settings = settings,
+                         .notes = &found,
+                         .error = error,
+                         .source = model,
+                         .is_json = ends_with(path, ".json")};
+    status = formats[settings->format].write(&p);
+    if (status == IMK_OK && p.out.failed)
+        status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    if (status == IMK_OK)
+        status = imki_parameters_compare(&p, formats[settings->format].read,
+                                         formats[settings->format].name);
+    if (status != IMK_OK) {
+        free(p.out.bytes);
+        return status;
+    }
+    if (notes)
+        *notes = found;
+    *text = p.out.bytes;
+    *size = p.out.size;
+    return IMK_OK;
+}
+
+imk_status imk_parameters_write(const char *path, const imk_parameter_settings *settings,
+                                const imk_model *model, imk_parameter_notes *notes,
+                                imk_error *error)
+{
+    char *text = NULL;
+    size_t size = 0;
+    imk_output_file *file = NULL;
+    imk_status status = imk_parameters_print(path, settings, model, &text, &size, notes, error);
+    if (status == IMK_OK)
+        status = imk_output_file_open(path, &file, error);
+    if (status == IMK_OK) {
+        /* A failed write is reported by commit. */
+        (void)imk_output_file_write(file, text, size);
+        status = imk_output_file_commit(file, error);
+    }
+    free(text);
+    return status;
+}

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The head of a CSV log: is it a text, which separator, a header or not, what the first rows show.
+ */
+#include "io/file/text_file_internal.h"
+#include "log_reader_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LOOK = 4096 }; /* bytes looked at to tell a text */
+
+/* Texts of other systems, which other programs convert. @param size  above 0 */
+static imk_status check_encoding(const char *begin, size_t size, imk_error *error)
+{
+    if (size >= 2 && (memcmp(begin, "\xFF\xFE", 2) == 0 || memcmp(begin, "\xFE\xFF", 2) == 0))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the text is UTF-16",
+                             "convert it: iconv -f UTF-16 -t UTF-8 FILE >NEW.csv");
+    if (!imki_is_text(begin, size))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "not a text log",
+                             "CSV (plain, .gz or .zst) or .npy");
+    /* The newline of a last CR may not be seen yet. */
+    if (memchr(begin, '\r', size - 1) && !memchr(begin, '\n', size))
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the end of each line is CR alone",
+                             "convert it: tr '\\r' '\\n' <FILE >NEW.csv");
+    return IMK_OK;
+}
+
+static imk_status check_text(imki_log_text *text, imk_error *error)
+{
+    imk_status status = imki_log_text_need(text, LOOK, error);
+    if (status != IMK_OK)
+        return status;
+    const size_t at_hand = (size_t)(text->end - text->next);
+    if (at_hand == 0)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", "the log is empty",
+                             "a header and rows of numbers");
+    status = check_encoding(text->next, at_hand < LOOK ? at_hand : LOOK, error);
+    if (status != IMK_OK)
+        return status;
+    if (at_hand >= 3 && memcmp(text->next, "\xEF\xBB\xBF", 3) == 0) /* byte-order mark */
+        text->next += 3;
+    return IMK_OK;
+}
+
+/* The next line that is neither blank nor a comment. *found is false at the end. */
+static imk_status next_line(imki_log_text *text, imki_log_piece *line, bool *whole, bool *found,
+                            imk_error *error)
+{
+    for (;;) {
+        const imk_status status = imki_log_text_need_line(text, error);
+        if (status != IMK_OK)
+            return status;
+        *found = imki_log_text_take_line(text, &line->begin, &line->end, whole);
+        if (!*found || !imki_log_line_is_idle(line->begin, line->end))
+            return IMK_OK;
+    }
+}
+
+static imk_status refuse_no_header(size_t count, imk_error *error)
+{
+    static const char sensors[] = "gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
+    static const char units[] = "--gyro-unit deg/s --accel-unit g";
+    char expected[160];
+    if (count == 6)
+        snprintf(expected, sizeof expected, "add --columns %s %s --rate 100Hz", sensors, units);
+    else if (count == 7)
+        snprintf(expected, sizeof expected, "add --columns time,%s --time-unit s %s", sensors,
+                 units);
+    else
+        snprintf(expected, sizeof expected,
+                 "add --columns with %zu names (time,gyro_x,...; - skips one), --time-unit s %s",
+                 count, units);
+    return imk_error_set(error, IMK_ERROR_COLUMN, "", "no header: the first row is all numbers",
+                         expected);
+}
+
+/* Names from the settings, with the unit of the file's header where they have none. */
+static imk_status replace_names(const char *columns, bool has_header, size_t count,
+                                imki_log_piece *cells, char (*text)[128], imk_error *error)
+{
+    imki_log_piece names[IMK_LOG_COLUMNS_MAX];
+    const size_t name_count =
+        imki_log_split(columns, columns + strlen(columns), ',', IMK_LOG_COLUMNS_MAX, names);
+    if (name_count != count) {
+        char found[96], expected[96];
+        snprintf(found, sizeof found, "%zu name%s", name_count, name_count == 1 ? "" : "s");
+        snprintf(expected, sizeof expected, "%zu, one for each column of the log (- skips one)",
+                 count);
+        return imk_error_set(error, IMK_ERROR_COLUMN, "columns", found, expected);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const imki_log_piece name = names[i], cell = cells[i];
+        const bool has_unit = memchr(name.begin, '[', (size_t)(name.end - name.begin)) ||
+                              memchr(name.begin, '(', (size_t)(name.end - name.begin));
+        const char *unit = NULL;
+        for (const char *p = cell.begin; has_header && !has_unit && !unit && p < cell.end; p++)
+            if (*p == '[' || *p == '(')
+                unit = p;
+        const bool skip = name.end - name.begin == 1 && *name.begin == '-';
+        const int length =
+            snprintf(text[i], sizeof text[i], "%.*s %.*s", (int)(name.end - name.begin), name.begin,
+                     unit && !skip ? (int)(cell.end - unit) : 0, unit ? unit : "");
+        const size_t room = sizeof text[i] - 1;
+        cells[i] =
+            (imki_log_piece){text[i], text[i] + ((size_t)length < room ? (size_t)length : room)};
+    }
+    return IMK_OK;
+}
+
+static imk_status read_names(imk_log_reader *reader, const imk_log_settings *settings,
+                             imk_error *error)
+{
+    imki_log_text *text = &reader->text;
+    imki_log_piece line, cells[IMK_LOG_COLUMNS_MAX];
+    bool whole, found;
+    imk_status status = next_line(text, &line, &whole, &found, error);
+    if (status != IMK_OK)
+        return status;
+    if (!found)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", "no header and no rows",
+                             "a header and rows of numbers");
+    const size_t header_line = text->line - 1;
+    const char separator = imki_log_find_separator(line.begin, line.end);
+    const size_t count =
+        imki_log_split(line.begin, line.end, separator, IMK_LOG_COLUMNS_MAX, cells);
+    if (count > IMK_LOG_COLUMNS_MAX)
+        return imk_error_set(error, IMK_ERROR_COLUMN, "", "more than 64 columns",
+                             "at most 64 columns");
+    bool numbers = true;
+    double value;
+    for (size_t i = 0; i < count; i++)
+        numbers &= imki_log_piece_is_number(cells[i], &value);
+    char text_of_names[IMK_LOG_COLUMNS_MAX][128];
+    if (settings->columns)
+        status = replace_names(settings->columns, !numbers, count, cells, text_of_names, error);
+    else if (numbers)
+        status = refuse_no_header(count, error);
+    if (status != IMK_OK)
+        return status;
+    reader->layout.separator = separator;
+    status = imki_log_layout_make(cells, count, settings, &reader->layout, error);
+    if (status != IMK_OK && error && !settings->columns)
+        error->line = header_line;
+    if (numbers) { /* it was a row */
+        text->next = line.begin;
+        text->line = header_line;
+    }
+    return status;
+}
+
+/* Columns without meaning here may hold texts: the first row tells. */
+static imk_status find_labels(imk_log_reader *reader, imki_log_piece line, imk_error *error)
+{
+    imki_log_layout_read *layout = &reader->layout;
+    imki_log_piece cells[IMK_LOG_COLUMNS_MAX];
+    double value;
+    if (imki_log_split(line.begin, line.end, layout->separator, IMK_LOG_COLUMNS_MAX, cells) !=
+        layout->cell_count)
+        return IMK_OK; /* refused when it is read */
+    for (size_t i = 0; i < layout->cell_count; i++) {
+        if (layout->cell_column[i] < 0 || cells[i].begin == cells[i].end ||
+            imki_log_piece_is_number(cells[i], &value))
+            continue;
+        imk_log_column *column = &layout->column[layout->cell_column[i]];
+        column->label = column->quantity == IMK_QUANTITY_OTHER;
+        if (column->label && !reader->labels)
+            reader->labels = calloc(IMKI_LABELS_MAX, sizeof reader->labels[0]);
+        if (column->label && !reader->labels)
+            return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    }
+    return IMK_OK;
+}
+
+/* Look at the first row, and the second where the first interval is needed. What is wrong in them
+ * is left to be found when they are read. */
+static imk_status look_at_rows(imk_log_reader *reader, imk_error *error)
+{
+    imki_log_layout_read *layout = &reader->layout;
+    const bool needs_step = layout->has_increments && reader->rate == 0.0;
+    double values[IMK_LOG_COLUMNS_MAX], time[2] = {(double)NAN, (double)NAN};
+    const size_t rows_wanted = needs_step ? 2 : 1;
+    size_t rows = 0;
+    for (; rows < rows_wanted; rows++) {
+        imki_log_piece line;
+        bool whole, found, not_finite;
+        imk_status status = next_line(&reader->text, &line, &whole, &found, error);
+        if (status != IMK_OK)
+            return status;
+        if (!found)
+            break;
+        if (rows == 0)
+            status = find_labels(reader, line, error);
+        if (status != IMK_OK)
+            return status;
+        if (imki_log_row_read(layout, line, whole, 0, reader->labels, &reader->label_count, values,
+                              &not_finite, NULL) != IMK_OK)
+            return IMK_OK;
+        if (layout->time_column >= 0)
+            time[rows] = values[layout->time_column];
+    }
+    if (rows == 0)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", "a header but no rows",
+                             "rows of numbers below the header");
+    if (rows < rows_wanted)
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "increments in a single row",
+                             "two rows; or add --rate 100Hz (samples per second)");
+    if (layout->time_column >= 0) {
+        const double scale = layout->factor[layout->time_column];
+        if (fabs(time[0]) * scale > 1e6)
+            reader->time_origin = time[0];
+        reader->last_step = (time[1] - time[0]) * scale;
+    }
+    return IMK_OK;
+}
+
+imk_status imki_log_open_text(imk_log_reader *reader, const imk_log_settings *settings,
+                              imk_error *error)
+{
+    imki_log_text *text = &reader->text;
+    imk_status status = check_text(text, error);
+    if (status == IMK_OK)
+        status = read_names(reader, settings, error);
+    if (status != IMK_OK)
+        return status;
+    const size_t line = text->line;
+    text->hold = text->next;
+    status = look_at_rows(reader, error);
+    text->next = text->hold;
+    if (text->lines_end < text->next)
+        text->lines_end = text->next;
+    text->hold = NULL;
+    text->line = line;
+    return status;
+}

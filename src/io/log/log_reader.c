@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reading a log: rows in blocks, plain ones the fast way (log_cells.c), others in their general
+ * form (log_row.c); then per block what needs neighbours: times, intervals, increments, findings.
+ */
+#include "log_reader_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const uint32_t settings_cookie = 0x4C4F4732; /* "LOG2" */
+
+imk_log_settings imk_log_settings_default(void)
+{
+    return (imk_log_settings){.cookie = settings_cookie};
+}
+
+static imk_status check_settings(const imk_log_settings *settings, imk_error *error)
+{
+    if (settings->cookie != settings_cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
+                             "imk_log_settings_default()");
+    if (!(settings->rate >= 0.0) || !isfinite(settings->rate)) {
+        imk_error_set(error, IMK_ERROR_RANGE, "rate", NULL,
+                      "a positive number of samples per second, as in --rate 100Hz");
+        if (error)
+            error->value = settings->rate;
+        return IMK_ERROR_RANGE;
+    }
+    return IMK_OK;
+}
+
+static imk_status open_reader(imk_log_reader *reader, imki_input *input, const char *path,
+                              const imk_log_settings *settings, imk_error *error)
+{
+    imk_status status = imki_log_text_start(&reader->text, input, error);
+    if (status == IMK_OK)
+        status = imki_log_text_need(&reader->text, IMKI_NPY_PREFIX, error);
+    if (status != IMK_OK)
+        return status;
+    reader->rate = settings->rate;
+    reader->read_cells = imki_log_cells_choose();
+    const size_t at_hand = (size_t)(reader->text.end - reader->text.next);
+    if (at_hand >= IMKI_NPY_PREFIX && memcmp(reader->text.next, "\x93NUMPY", 6) == 0)
+        status = imki_log_open_matrix(reader, path, settings, error);
+    else
+        status = imki_log_open_text(reader, settings, error);
+    if (status != IMK_OK)
+        return status;
+    reader->last_time = (double)NAN;
+    imki_log_times_start(&reader->times, reader->rate > 0.0 ? 1.0 / reader->rate : 0.0);
+    if (reader->layout.time_column >= 0)
+        reader->times.findings.time_origin =
+            reader->time_origin * reader->layout.factor[reader->layout.time_column];
+    return IMK_OK;
+}
+
+/* Takes the input, also on error. */
+static imk_status make_reader(imki_input *input, const char *path, const imk_log_settings *settings,
+                              imk_log_reader **reader, imk_error *error)
+{
+    imk_log_reader *made = calloc(1, sizeof *made);
+    if (!made) {
+        imki_input_close(input);
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    }
+    const imk_status status = open_reader(made, input, path, settings, error);
+    if (status != IMK_OK) {
+        imk_log_close(made);
+        return status;
+    }
+    *reader = made;
+    return IMK_OK;
+}
+
+imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_log_reader **reader,
+                        imk_error *error)
+{
+    const imk_log_settings usual = imk_log_settings_default();
+    settings = settings ? settings : &usual;
+    imki_input *input;
+    imk_status status = check_settings(settings, error);
+    if (status == IMK_OK)
+        status = settings->reopened ? imki_input_open_kept(path, &input, error)
+                                    : imki_input_open(path, &input, error);
+    return status == IMK_OK ? make_reader(input, path, settings, reader, error) : status;
+}
+
+imk_status imk_log_open_memory(const char *text, size_t size, const imk_log_settings *settings,
+                               imk_log_reader **reader, imk_error *error)
+{
+    const imk_log_settings usual = imk_log_settings_default();
+    settings = settings ? settings : &usual;
+    imki_input *input;
+    imk_status status = check_settings(settings, error);
+    if (status == IMK_OK && imki_input_open_memory(text, size, &input) != IMK_OK)
+        status = imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    return status == IMK_OK ? make_reader(input, NULL, settings, reader, error) : status;
+}
+
+void imk_log_close(imk_log_reader *reader)
+{
+    if (reader) {
+        imki_log_text_stop(&reader->text);
+        free(reader->labels);
+        free(reader);
+    }
+}
+
+size_t imk_log_column_count(const imk_log_reader *reader)
+{
+    return reader->layout.column_count;
+}
+
+const imk_log_column *imk_log_column_get(const imk_log_reader *reader, size_t index)
+{
+    return index < reader->layout.column_count ? &reader->layout.column[index] : NULL;
+}
+
+int imk_log_column_find(const imk_log_reader *reader, imk_quantity quantity, int axis)
+{
+    for (size_t i = 0; i < reader->layout.column_count; i++)
+        if (reader->layout.column[i].quantity == quantity && reader->layout.column[i].axis == axis)
+            return (int)i;
+    return -1;
+}
+
+const char *imk_log_label(const imk_log_reader *reader, size_t index)
+{
+    return index < reader->label_count ? reader->labels[index] : NULL;
+}
+
+void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *size)
+{
+    const imki_log_text *text = &reader->text;
+    if (text->buffer) {
+        const uint64_t consumed = text->taken + (uint64_t)(text->next - text->base);
+        const uint64_t fetched = text->taken + (uint64_t)(text->end - text->base);
+        imki_input_progress(text->input, done, size);
+        if (*done == fetched) /* it is not compressed */
+            *done = consumed;
+    } else {
+        *done = (uint64_t)(text->next - text->base);
+        *size = (uint64_t)(text->end - text->base);
+    }
+}
+
+/* One row in its general form, or an idle line. *rows grows by the rows it gave. */
+static imk_status read_row(imk_log_reader *reader, double *const *out, size_t *rows,
+                           imk_error *error)
+{
+    imki_log_layout_read *layout = &reader->layout;
+    imki_log_piece line;
+    bool whole, not_finite = false;
+    double values[IMK_LOG_COLUMNS_MAX];
+    const size_t number = reader->text.line;
+    if (!imki_log_text_take_line(&reader->text, &line.begin, &line.end, &whole) ||
+        imki_log_line_is_idle(line.begin, line.end))
+        return IMK_OK;
+    const imk_status status = imki_log_row_read(layout, line, whole, number, reader->labels,
+                                                &reader->label_count, values, &not_finite, error);
+    if (status != IMK_OK)
+        return status;
+    for (size_t i = 0; i < layout->cell_count; i++)
+        if (layout->cell_column[i] >= 0)
+            out[i][*rows] = values[layout->cell_column[i]];
+    ++*rows;
+    if (not_finite && reader->not_finite++ == 0)
+        reader->first_not_finite = reader->rows + *rows;
+    return IMK_OK;
+}
+
+/* Up to max_rows rows as they stand, times the factors. out: per cell. */
+static imk_status read_rows(imk_log_reader *reader, size_t max_rows, double *const *out,
+                            size_t *rows, imk_error *error)
+{
+    imki_log_text *text = &reader->text;
+    const imki_log_cells cells = {reader->layout.cell_count, reader->layout.separator,
+                                  reader->layout.cell_factor};
+    *rows = 0;
+    while (*rows < max_rows) {
+        imk_status status = imki_log_text_need_line(text, error);
+        if (status != IMK_OK)
+            return status;
+        if (text->next == text->end)
+            return IMK_OK;
+        if (reader->slow_left == 0 && text->next < text->lines_end) {
+            double *place[IMK_LOG_COLUMNS_MAX];
+            for (size_t i = 0; i < cells.cell_count; i++)
+                place[i] = out[i] + *rows;
+            const size_t read = reader->read_cells(&cells, text->base, &text->next, text->lines_end,
+                                                   place, max_rows - *rows);
+            *rows += read;
+            text->line += read;
+            if (read > 0) {
+                reader->slow_run = 0;
+                continue;
+            }
+            /* Where rows are not plain, try less and less often. */
+            reader->slow_run = reader->slow_run < 32 ? 2 * reader->slow_run + 1 : 63;
+            reader->slow_left = reader->slow_run;
+        }
+        status = read_row(reader, out, rows, error);
+        if (status != IMK_OK)
+            return status;
+        reader->slow_left -= reader->slow_left > 0;
+    }
+    return IMK_OK;
+}
+
+/* Intervals that the increments of these rows are divided by. */
+static void find_intervals(imk_log_reader *reader, size_t rows, const double *time)
+{
+    for (size_t i = 0; i < rows; i++) {
+        const double step = time[i] - reader->last_time;
+        if (step > 0.0 && isfinite(step))
+            reader->last_step = step;
+        reader->interval[i] = reader->last_step;
+        reader->last_time = time[i];
+    }
+}
+
+/* What needs more than a row: times, findings, increments; and the offsets of units. */
+static void finish_block(imk_log_reader *reader, size_t rows, double *time, double *const *columns)
+{
+    const imki_log_layout_read *layout = &reader->layout;
+    if (time) {
+        const double origin = reader->time_origin, scale = layout->factor[layout->time_column];
+        for (size_t i = 0; i < rows; i++)
+            time[i] = (time[i] - origin) * scale;
+        imki_log_times_add(&reader->times, reader->rows + 1, rows, time);
+        if (layout->has_increments && reader->rate == 0.0)
+            find_intervals(reader, rows, time);
+    }
+    for (size_t j = 0; j < layout->column_count; j++) {
+        double *value = columns[j];
+        if (!value)
+            continue;
+        if (layout->column[j].increment)
+            for (size_t i = 0; i < rows; i++)
+                value[i] =
+                    reader->rate > 0.0 ? value[i] * reader->rate : value[i] / reader->interval[i];
+        const double offset = layout->column[j].unit.offset;
+        if (offset != 0.0 && !layout->column[j].label)
+            for (size_t i = 0; i < rows; i++)
+                value[i] += offset;
+    }
+    reader->rows += rows;
+}
+
+static imk_status read_block(imk_log_reader *reader, size_t max_rows, double *const *columns,
+                             size_t *rows, imk_error *error)
+{
+    const imki_log_layout_read *layout = &reader->layout;
+    double *time = NULL, *out[IMK_LOG_COLUMNS_MAX];
+    for (size_t i = 0; i < IMK_LOG_COLUMNS_MAX; i++)
+        out[i] = reader->spare;
+    for (size_t i = 0; i < layout->cell_count; i++) {
+        const int column = layout->cell_column[i];
+        if (column >= 0 && columns[column])
+            out[i] = columns[column];
+        if (column >= 0 && column == layout->time_column)
+            time = out[i] = columns[column] ? columns[column] : reader->time;
+    }
+    const imk_status status = reader->binary
+                                  ? imki_log_read_matrix(reader, max_rows, out, rows, error)
+                                  : read_rows(reader, max_rows, out, rows, error);
+    finish_block(reader, *rows, time, columns);
+    return status;
+}
+
+imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *columns,
+                        size_t *rows, imk_error *error)
+{
+    size_t done = 0;
+    while (done < max_rows && !reader->failed) {
+        double *place[IMK_LOG_COLUMNS_MAX] = {NULL};
+        for (size_t j = 0; j < reader->layout.column_count; j++)
+            place[j] = columns[j] ? columns[j] + done : NULL;
+        const size_t left = max_rows - done;
+        size_t got;
+        reader->failed = read_block(reader, left < IMKI_LOG_BLOCK ? left : IMKI_LOG_BLOCK, place,
+                                    &got, &reader->failure) != IMK_OK;
+        if (got == 0)
+            break;
+        done += got;
+    }
+    if (done == 0 && reader->failed) {
+        if (error)
+            *error = reader->failure;
+        return reader->failure.status;
+    }
+    *rows = done;
+    return IMK_OK;
+}
+
+imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
+{
+    imk_log_findings found = imki_log_times_findings(&reader->times);
+    found.rows = reader->rows;
+    found.not_finite = reader->not_finite;
+    found.first_not_finite = reader->first_not_finite;
+    if (reader->layout.time_column < 0 && reader->rows > 0)
+        found.last_time = (double)(reader->rows - 1) / reader->rate;
+    return found;
+}

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The parts of the log reader: what the columns are, and a row in its general form. */
+#ifndef IMUKIT_LOG_READER_INTERNAL_H
+#define IMUKIT_LOG_READER_INTERNAL_H
+
+#include "imukit/log.h"
+#include "log_cells_internal.h"
+#include "log_findings_internal.h"
+#include "log_text_internal.h"
+#include "npy_internal.h"
+
+enum { IMKI_LABELS_MAX = 4096 };
+
+typedef char imki_log_label[48];
+
+/* Cells of a row and the columns they are. */
+typedef struct imki_log_layout_read {
+    size_t cell_count;
+    int cell_column[IMK_LOG_COLUMNS_MAX];    /* -1: skipped */
+    double cell_factor[IMK_LOG_COLUMNS_MAX]; /* 1 for time, which is scaled later */
+    char separator;
+    size_t column_count;
+    imk_log_column column[IMK_LOG_COLUMNS_MAX];
+    double factor[IMK_LOG_COLUMNS_MAX]; /* per column: scale, with the sign of the axes */
+    int time_column;                    /* -1: none */
+    bool has_increments;
+} imki_log_layout_read;
+
+/* A piece of text. */
+typedef struct imki_log_piece {
+    const char *begin, *end;
+} imki_log_piece;
+
+/* Divide a line into cells; quotes and blanks around a cell are taken off.
+ * @return how many there are, also beyond max_count */
+size_t imki_log_split(const char *begin, const char *end, char separator, size_t max_count,
+                      imki_log_piece *cells);
+
+/* comma, semicolon, tab or blank: which one separates the cells of this line? */
+char imki_log_find_separator(const char *begin, const char *end);
+
+/* Is the line blank or a comment? */
+bool imki_log_line_is_idle(const char *begin, const char *end);
+
+bool imki_log_piece_is_number(imki_log_piece piece, double *value);
+
+/* Fill the layout from the names of the cells (`header`, or NULL) and the settings.
+ * @param first_row  cell count of the first row, for the messages */
+imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
+                                const imk_log_settings *settings, imki_log_layout_read *layout,
+                                imk_error *error);
+
+/* Name and unit of one column ("gyro_x [deg/s]"), with the unit from the settings if need be. */
+imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *settings,
+                                imk_log_column *column, imk_error *error);
+
+/* Read "right-forward-up": file axis i is sign[i] times body axis body[i] (0 forward, 1 right,
+ * 2 down). */
+imk_status imki_log_axes_parse(const char *text, int body[3], double sign[3], imk_error *error);
+
+/* Read one row in its general form: blanks, quotes, empty cells, nan, labels.
+ * @param labels      texts of label columns, *label_count of room for IMKI_LABELS_MAX
+ * @param not_finite  whether a number is missing, NaN or infinite */
+imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, bool whole,
+                             size_t line_number, imki_log_label *labels, size_t *label_count,
+                             double *values, bool *not_finite, imk_error *error);
+
+enum { IMKI_LOG_BLOCK = 1024 }; /* rows handled at a time */
+
+struct imk_log_reader {
+    imki_log_text text;
+    imki_log_layout_read layout;
+    imki_log_cells_reader *read_cells;
+    bool binary; /* .npy */
+    imki_npy npy;
+    uint64_t npy_rows_left;
+    double rate;        /* [Hz]; 0: from the times */
+    double time_origin; /* in the unit of the file */
+    double last_time;   /* [s] */
+    double last_step;   /* [s], the last one above 0, for increments */
+    size_t rows, not_finite, first_not_finite;
+    size_t slow_left, slow_run; /* rows to read in their general form before trying the fast way */
+    imki_log_label *labels;
+    size_t label_count;
+    bool failed; /* an error met behind rows that were delivered; comes with the next call */
+    imk_error failure;
+    imki_log_times times;
+    double spare[IMKI_LOG_BLOCK];    /* for columns nobody wants */
+    double time[IMKI_LOG_BLOCK];     /* for the times, if nobody wants them */
+    double interval[IMKI_LOG_BLOCK]; /* [s] of increments */
+};
+
+/* Read the header of a CSV text and look at its first rows. The columns and labels are then known.
+ */
+imk_status imki_log_open_text(imk_log_reader *reader, const imk_log_settings *settings,
+                              imk_error *error);
+
+/* The same for .npy. @param path  for its file of names; NULL: none */
+imk_status imki_log_open_matrix(imk_log_reader *reader, const char *path,
+                                const imk_log_settings *settings, imk_error *error);
+
+/* Rows of a .npy as they stand in the file, times the factor. out: per cell. */
+imk_status imki_log_read_matrix(imk_log_reader *reader, size_t max_rows, double *const *out,
+                                size_t *rows, imk_error *error);
+
+#endif

@@ -1,0 +1,391 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Logs written as streams of rows.
+ *
+ * Rows are formatted in blocks, each into its own bytes, by the items of an executor; a wave of
+ * blocks is written to the file, in order, by item 0 of the next wave. So the file's system calls
+ * and compression run beside the formatting, and the bytes do not depend on the executor. */
+#include "imukit/log.h"
+
+#include "io/file/output_file_internal.h"
+#include "log_format_internal.h"
+#include "npy_internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    BLOCK_CELLS = 4096,     /* about 50 kB of text: in the second-level cache */
+    BLOCKS_PER_THREAD = 16, /* so that the threads end a wave together, within some per cent */
+    BLOCKS_MAX = 257,       /* in a wave */
+    PARALLEL_CELLS = 2048,  /* fewer are not worth waking a thread, some 10 us */
+    HEADER_CELL_SIZE = 104, /* name, blank, unit in brackets, comma */
+    NAMES_SUFFIX_SIZE = 16
+};
+
+typedef struct wave {
+    imki_log_bytes block[BLOCKS_MAX];
+    size_t count;
+} wave;
+
+struct imk_log_writer {
+    imk_output_file *file;
+    imk_output_file *names; /* the side file of a .npy */
+    imki_row_format format;
+    imk_log_column *column;
+    char *header; /* of a CSV */
+    bool begun;   /* the header is written */
+    uint64_t rows, row_count;
+    wave waves[2];
+    int filling; /* the wave that is formatted next; the other one waits to be written */
+    imk_status status;
+    size_t beyond_column; /* of a value that its unit cannot hold, when status is NOT_FINITE */
+    uint64_t beyond_row;
+};
+
+static bool ends_with(const char *text, size_t length, const char *ending)
+{
+    const size_t ending_length = strlen(ending);
+    return length >= ending_length &&
+           memcmp(text + length - ending_length, ending, ending_length) == 0;
+}
+
+/* FILE.npy, also compressed. */
+static bool is_npy(const char *path)
+{
+    size_t length = path ? strlen(path) : 0;
+    if (ends_with(path, length, ".gz"))
+        length -= 3;
+    else if (ends_with(path, length, ".zst"))
+        length -= 4;
+    return ends_with(path, length, ".npy");
+}
+
+/* Names and units become cells of the header, so they must not contain what divides it. */
+static imk_status check_column(const imk_log_column *columns, size_t index, imk_error *error)
+{
+    const imk_log_column *column = &columns[index];
+    if (column->name[0] == '\0' || strpbrk(column->name, ",;\"#[]()\t\r\n"))
+        return imk_error_set(error, IMK_ERROR_COLUMN, "", column->name,
+                             "a name without separators, quotes and brackets");
+    for (size_t i = 0; i < index; i++)
+        if (strcmp(columns[i].name, column->name) == 0)
+            return imk_error_set(error, IMK_ERROR_COLUMN, column->name, "two columns of one name",
+                                 "");
+    if (!(column->unit.scale > 0.0 && column->unit.scale <= DBL_MAX) ||
+        !(column->unit.offset - column->unit.offset == 0.0) ||
+        strpbrk(column->unit.text, ",;\"#[]\t\r\n"))
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, column->name, "the unit is not valid",
+                             "a unit from imk_unit_parse() or imk_unit_of()");
+    return IMK_OK;
+}
+
+static imk_status set_format(imki_row_format *format, size_t column_count,
+                             const imk_log_column *columns, imk_log_precision precision,
+                             const int *decimals, imk_error *error)
+{
+    if (column_count < 1 || column_count > IMK_LOG_COLUMNS_MAX)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "column_count", "", "1 to 64 columns");
+    if (precision != IMK_LOG_SHORTEST && (precision != IMK_LOG_FIXED || !decimals))
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "precision", "",
+                             "IMK_LOG_SHORTEST, or IMK_LOG_FIXED with decimals");
+    format->column_count = column_count;
+    format->precision = precision;
+    for (size_t i = 0; i < column_count; i++) {
+        const imk_status status = check_column(columns, i, error);
+        if (status != IMK_OK)
+            return status;
+        if (precision == IMK_LOG_FIXED && (decimals[i] < 0 || decimals[i] > 17))
+            return imk_error_set(error, IMK_ERROR_ARGUMENT, columns[i].name,
+                                 "the number of decimals is not valid", "0 to 17 decimals");
+        imki_column_format_set(&format->column[i], columns[i].unit.scale, columns[i].unit.offset,
+                               decimals ? decimals[i] : 0);
+        format->column[i].label = columns[i].label;
+    }
+    return IMK_OK;
+}
+
+/* `name [unit]` of each column, every one followed by `separator`. @return from malloc() */
+static char *join_names(size_t column_count, const imk_log_column *columns, char separator)
+{
+    char *text = malloc(column_count * HEADER_CELL_SIZE + 1);
+    char *at = text;
+    for (size_t i = 0; text && i < column_count; i++) {
+        const char *unit = columns[i].unit.text;
+        at += snprintf(at, HEADER_CELL_SIZE, unit[0] ? "%.47s [%.47s]%c" : "%.47s%.0s%c",
+                       columns[i].name, unit, separator);
+    }
+    return text;
+}
+
+/* FILE.npy.columns */
+static imk_status open_names(imk_log_writer *writer, const char *path, size_t column_count,
+                             const imk_log_column *columns, imk_error *error)
+{
+    const size_t size = strlen(path) + NAMES_SUFFIX_SIZE;
+    char *names_path = malloc(size);
+    char *text = join_names(column_count, columns, '\n');
+    imk_status status = IMK_ERROR_MEMORY;
+    if (names_path && text) {
+        snprintf(names_path, size, "%s.columns", path);
+        status = imk_output_file_open(names_path, &writer->names, error);
+        if (status == IMK_OK)
+            imk_output_file_write(writer->names, text, strlen(text));
+    } else {
+        imk_error_set(error, status, path, "", "");
+    }
+    free(names_path);
+    free(text);
+    return status;
+}
+
+static imk_status open_files(imk_log_writer *writer, const char *path, size_t column_count,
+                             const imk_log_column *columns, imk_error *error)
+{
+    imk_status status = imk_output_file_open(path, &writer->file, error);
+    if (status != IMK_OK)
+        return status;
+    if (writer->format.binary) {
+        if (writer->row_count == 0 && !imki_output_file_can_replace(writer->file))
+            return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path,
+                                 "a .npy of unknown length to a pipe or compressed",
+                                 "write to a plain file, or a .csv");
+        return open_names(writer, path, column_count, columns, error);
+    }
+    writer->header = join_names(column_count, columns, ',');
+    if (!writer->header)
+        return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
+    writer->header[strlen(writer->header) - 1] = '\n';
+    return IMK_OK;
+}
+
+imk_status imk_log_create(const char *path, size_t column_count, const imk_log_column *columns,
+                          imk_log_precision precision, const int *decimals, uint64_t row_count,
+                          imk_log_writer **writer, imk_error *error)
+{
+    imk_log_writer *made = calloc(1, sizeof *made);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
+    imk_status status =
+        set_format(&made->format, column_count, columns, precision, decimals, error);
+    if (status == IMK_OK) {
+        made->column = malloc(column_count * sizeof *columns);
+        status = made->column ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
+    }
+    if (status == IMK_OK) {
+        memcpy(made->column, columns, column_count * sizeof *columns);
+        made->format.binary = is_npy(path);
+        made->row_count = row_count;
+        status = open_files(made, path, column_count, columns, error);
+    }
+    if (status != IMK_OK) {
+        imk_log_abandon(made);
+        return status;
+    }
+    *writer = made;
+    return IMK_OK;
+}
+
+imk_status imk_log_comment(imk_log_writer *writer, const char *text)
+{
+    if (writer->begun)
+        return IMK_ERROR_ARGUMENT;
+    if (writer->format.binary)
+        return IMK_OK;
+    for (;;) {
+        const size_t length = strcspn(text, "\r\n");
+        imk_output_file_write(writer->file, "# ", 2);
+        imk_output_file_write(writer->file, text, length);
+        const imk_status status = imk_output_file_write(writer->file, "\n", 1);
+        text += length;
+        text += strspn(text, "\r\n");
+        if (*text == '\0')
+            return status;
+    }
+}
+
+void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup, void *context)
+{
+    bool any = false;
+    for (size_t i = 0; i < writer->format.column_count; i++)
+        any = any || writer->format.column[i].label;
+    writer->format.label = any ? lookup : NULL;
+    writer->format.label_context = context;
+}
+
+/* The header, once. */
+static void begin(imk_log_writer *writer)
+{
+    if (writer->begun)
+        return;
+    writer->begun = true;
+    if (writer->format.binary) {
+        char header[IMKI_NPY_HEADER_SIZE];
+        imki_npy_header_write(writer->row_count, writer->format.column_count, header);
+        imk_output_file_write(writer->file, header, sizeof header);
+    } else {
+        imk_output_file_write(writer->file, writer->header, strlen(writer->header));
+    }
+}
+
+static void write_wave(imk_log_writer *writer, wave *done)
+{
+    for (size_t i = 0; i < done->count; i++) {
+        if (done->block[i].failed)
+            writer->status = IMK_ERROR_MEMORY;
+        if (writer->status == IMK_OK)
+            writer->status =
+                imk_output_file_write(writer->file, done->block[i].bytes, done->block[i].size);
+    }
+    done->count = 0;
+}
+
+/* One wave: item 0 writes the previous one, the others format a block each. */
+typedef struct job {
+    imk_log_writer *writer;
+    const double *const *columns;
+    size_t first, rows, block_rows; /* rows of the wave */
+} job;
+
+static void work(void *context, size_t item)
+{
+    const job *j = context;
+    imk_log_writer *writer = j->writer;
+    if (item == 0) {
+        write_wave(writer, &writer->waves[!writer->filling]);
+        return;
+    }
+    const size_t begin_row = (item - 1) * j->block_rows;
+    const size_t left = j->rows - begin_row;
+    imki_log_format(&writer->format, j->columns, j->first + begin_row,
+                    left < j->block_rows ? left : j->block_rows,
+                    &writer->waves[writer->filling].block[item - 1]);
+}
+
+static int is_beyond(double value, double most)
+{
+    return (fabs(value) > most) & (fabs(value) <= DBL_MAX);
+}
+
+/* A number that is finite must be so in the unit written, too. */
+static void check_units(imk_log_writer *writer, size_t rows, const double *const *columns)
+{
+    for (size_t c = 0; c < writer->format.column_count && writer->status == IMK_OK; c++) {
+        const double scale = writer->column[c].unit.scale;
+        const double most = DBL_MAX * scale * (1.0 - 1e-12); /* rounding left aside */
+        if (scale >= 1.0 || writer->column[c].label)
+            continue;
+        int any = 0; /* without a branch, so that several rows are compared at a time */
+        for (size_t row = 0; row < rows; row++)
+            any |= is_beyond(columns[c][row], most);
+        for (size_t row = 0; row < rows && any && writer->status == IMK_OK; row++)
+            if (is_beyond(columns[c][row], most)) {
+                writer->status = IMK_ERROR_NOT_FINITE;
+                writer->beyond_column = c;
+                writer->beyond_row = writer->rows + row + 1;
+            }
+    }
+}
+
+static imk_status refuse_unit(const imk_log_writer *writer, imk_error *error)
+{
+    const imk_log_column *column = &writer->column[writer->beyond_column];
+    char field[96], found[128];
+    snprintf(field, sizeof field, "%s, row %llu", column->name,
+             (unsigned long long)writer->beyond_row);
+    snprintf(found, sizeof found, "\"%s\" is too small a unit: the number would be infinite",
+             column->unit.text);
+    return imk_error_set(error, IMK_ERROR_NOT_FINITE, field, found, "write a larger one");
+}
+
+imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *const *columns,
+                         const imk_executor *executor)
+{
+    const size_t cells = writer->format.column_count;
+    const size_t block_rows = BLOCK_CELLS / cells;
+    if (rows <= PARALLEL_CELLS / cells)
+        executor = NULL;
+    const size_t threads = executor && executor->threads > 1 ? executor->threads : 0;
+    const size_t wished = 1 + threads * BLOCKS_PER_THREAD;
+    const size_t blocks_max = wished < BLOCKS_MAX ? wished : BLOCKS_MAX;
+    begin(writer);
+    check_units(writer, rows, columns);
+    for (size_t first = 0; first < rows && writer->status == IMK_OK;) {
+        size_t blocks = (rows - first + block_rows - 1) / block_rows;
+        blocks = blocks < blocks_max ? blocks : blocks_max;
+        const size_t left = rows - first;
+        job j = {writer, columns, first, blocks * block_rows, block_rows};
+        j.rows = j.rows < left ? j.rows : left;
+        imk_execute(executor, blocks + 1, work, &j);
+        writer->waves[writer->filling].count = blocks;
+        writer->filling = !writer->filling;
+        first += j.rows;
+        writer->rows += j.rows;
+    }
+    return writer->status;
+}
+
+/* The number of rows into the header of a .npy. */
+static imk_status finish_npy(imk_log_writer *writer, imk_error *error)
+{
+    if (writer->rows == writer->row_count)
+        return IMK_OK;
+    if (!imki_output_file_can_replace(writer->file)) {
+        char found[96];
+        snprintf(found, sizeof found, "%llu rows instead of the %llu announced",
+                 (unsigned long long)writer->rows, (unsigned long long)writer->row_count);
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "row_count", found, "");
+    }
+    char header[IMKI_NPY_HEADER_SIZE];
+    imki_npy_header_write(writer->rows, writer->format.column_count, header);
+    imki_output_file_replace(writer->file, 0, header, sizeof header);
+    return IMK_OK;
+}
+
+static void release(imk_log_writer *writer)
+{
+    for (int i = 0; i < 2; i++)
+        for (size_t block = 0; block < BLOCKS_MAX; block++)
+            free(writer->waves[i].block[block].bytes);
+    free(writer->header);
+    free(writer->column);
+    free(writer);
+}
+
+imk_status imk_log_commit(imk_log_writer *writer, imk_error *error)
+{
+    begin(writer);
+    write_wave(writer, &writer->waves[!writer->filling]);
+    imk_status status = IMK_OK;
+    if (writer->status == IMK_ERROR_MEMORY)
+        status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    else if (writer->status == IMK_ERROR_NOT_FINITE)
+        status = refuse_unit(writer, error);
+    else if (writer->format.binary)
+        status = finish_npy(writer, error);
+    /* Both files are made ready before the first appears, so that the second does not fail. A
+     * failing prepare or commit has freed its file. */
+    if (status == IMK_OK && (status = imki_output_file_prepare(writer->file, error)) != IMK_OK)
+        writer->file = NULL;
+    if (status == IMK_OK && writer->names) {
+        status = imk_output_file_commit(writer->names, error);
+        writer->names = NULL;
+    }
+    if (status == IMK_OK) {
+        status = imk_output_file_commit(writer->file, error);
+        writer->file = NULL;
+    }
+    imk_log_abandon(writer);
+    return status;
+}
+
+void imk_log_abandon(imk_log_writer *writer)
+{
+    if (!writer)
+        return;
+    imk_output_file_abandon(writer->file);
+    imk_output_file_abandon(writer->names);
+    release(writer);
+}

@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Temperature profiles: a script of a climatic chamber's steps, a table, or a constant.
+ *
+ * The surroundings are straight lines between points. A ramp by d at the rate r takes |d|/r; a step
+ * is two points at one time. The unit follows with the time constant, see motion.h. */
+#define _POSIX_C_SOURCE 200809L
+
+#include "io/file/text_file_internal.h"
+#include "motion_file_internal.h"
+#include "step_sentence_internal.h"
+
+#include "imukit/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { START, RAMP, SOAK, STEP };
+
+static const imki_verb verbs[] = {
+    {"start", START, 0, 0, {IMKI_BARE_BIT}, "write start 25 degC"},
+    {"ramp",
+     RAMP,
+     0,
+     0,
+     {IMKI_TO_BIT | IMKI_AT_BIT, IMKI_TO_BIT | IMKI_IN_BIT},
+     "write ramp to 60 degC at 1 degC/min or ramp to 60 degC in 40 min"},
+    {"soak", SOAK, 0, 0, {IMKI_BARE_BIT, IMKI_FOR_BIT}, "write soak 30 min"},
+    {"step", STEP, 0, 0, {IMKI_TO_BIT}, "write step to 25 degC"},
+};
+
+struct imk_temperature_file {
+    imk_temperature_profile profile;
+    double *time, *temperature; /* capacity of them */
+    double *carried;
+    size_t capacity;
+    imk_log log; /* of a table */
+};
+
+static imk_status add_point(imk_temperature_file *file, double time, double temperature,
+                            imk_error *error)
+{
+    imk_temperature_profile *profile = &file->profile;
+    if (profile->point_count == file->capacity) {
+        const size_t capacity = file->capacity > 0 ? 2 * file->capacity : 16;
+        double *times = realloc(file->time, capacity * sizeof *times);
+        if (times)
+            file->time = times;
+        double *temperatures = realloc(file->temperature, capacity * sizeof *temperatures);
+        if (temperatures)
+            file->temperature = temperatures;
+        if (!times || !temperatures)
+            return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+        file->capacity = capacity;
+    }
+    file->time[profile->point_count] = time;
+    file->temperature[profile->point_count++] = temperature;
+    profile->time = file->time;
+    profile->temperature = file->temperature;
+    return IMK_OK;
+}
+
+/* ---- scripts --------------------------------------------------------------------------------- */
+
+/* A temperature above absolute zero. */
+static imk_status read_temperature(const imki_sentence *s, imki_part part, double *temperature)
+{
+    const imk_status status = imki_sentence_numbers(s, part, "K", 1, temperature);
+    if (status == IMK_OK && !(*temperature > 0.0))
+        return imki_sentence_refuse(s, part, IMK_ERROR_RANGE, "a temperature above 0 K");
+    return status;
+}
+
+static imk_status read_ramp(imk_temperature_file *file, const imki_sentence *s)
+{
+    const size_t last = file->profile.point_count - 1;
+    double temperature = 0.0, measure = 0.0;
+    imk_status status = read_temperature(s, IMKI_PART_TO, &temperature);
+    const bool has_rate = imki_sentence_has(s, IMKI_PART_AT);
+    if (status == IMK_OK)
+        status = imki_sentence_positive(s, has_rate ? IMKI_PART_AT : IMKI_PART_IN,
+                                        has_rate ? "K/s" : "s", &measure);
+    if (status != IMK_OK)
+        return status;
+    const double duration =
+        has_rate ? fabs(temperature - file->temperature[last]) / measure : measure;
+    return duration > 0.0 ? add_point(file, file->time[last] + duration, temperature, s->error)
+                          : IMK_OK;
+}
+
+static imk_status read_step(imk_temperature_file *file, const imk_document *document, int node,
+                            imk_error *error)
+{
+    imki_sentence s;
+    double value = 0.0;
+    imk_status status = imki_value_require(document, node, IMKI_NODE_SCALAR,
+                                           "a step such as ramp to 60 degC at 1 degC/min", error);
+    if (status == IMK_OK)
+        status = imki_sentence_read(document, node, "a step", sizeof verbs / sizeof verbs[0], verbs,
+                                    &s, error);
+    if (status != IMK_OK)
+        return status;
+    const bool is_first = file->profile.point_count == 0;
+    if (is_first != (s.verb->kind == START))
+        return imki_sentence_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX,
+                                    is_first
+                                        ? "start with a step such as start 25 degC"
+                                        : "start is the first step only; write step to 25 degC");
+    const size_t last = file->profile.point_count - 1;
+    switch (s.verb->kind) {
+    case START:
+        status = read_temperature(&s, IMKI_PART_BARE, &value);
+        return status == IMK_OK ? add_point(file, 0.0, value, error) : status;
+    case RAMP:
+        return read_ramp(file, &s);
+    case SOAK:
+        status = imki_sentence_positive(
+            &s, imki_sentence_has(&s, IMKI_PART_FOR) ? IMKI_PART_FOR : IMKI_PART_BARE, "s", &value);
+        return status == IMK_OK
+                   ? add_point(file, file->time[last] + value, file->temperature[last], error)
+                   : status;
+    default:
+        status = read_temperature(&s, IMKI_PART_TO, &value);
+        return status == IMK_OK ? add_point(file, file->time[last], value, error) : status;
+    }
+}
+
+static imk_status read_script(const imk_document *document, imk_temperature_file *file,
+                              imk_error *error)
+{
+    static const char *const names[] = {"imukit_temperature", "name", "time_constant", "steps"};
+    char name[IMKI_MOTION_NAME_SIZE];
+    imk_status status = imki_value_keys(document, 0, 4, names, error);
+    if (status == IMK_OK)
+        status = imki_value_version(document, "imukit_temperature", error);
+    if (status == IMK_OK)
+        status = imki_value_name(document, "name", name, sizeof name, error);
+    const int constant = imki_document_value(document, 0, "time_constant");
+    if (status == IMK_OK && constant != IMKI_NONE)
+        status =
+            imki_value_numbers(document, constant, "s", 1, &file->profile.time_constant, error);
+    if (status == IMK_OK && !(file->profile.time_constant >= 0.0))
+        status = imki_document_error(document, constant, IMK_ERROR_RANGE,
+                                     document->node[constant].text, "a time of 0 s or more", error);
+    if (status != IMK_OK)
+        return status;
+    const int steps = imki_document_value(document, 0, "steps");
+    static const char due[] = "a list of steps: [start 25 degC, soak 30 min, …]";
+    if (steps == IMKI_NONE)
+        return imki_document_error(document, 0, IMK_ERROR_KEY_MISSING, "steps", due, error);
+    status = imki_value_require(document, steps, IMKI_NODE_SEQUENCE, due, error);
+    if (status == IMK_OK && document->node[steps].count == 0)
+        status = imki_document_error(document, steps, IMK_ERROR_SYNTAX, "[]", due, error);
+    for (int i = document->node[steps].first; status == IMK_OK && i != IMKI_NONE;
+         i = document->node[i].next)
+        status = read_step(file, document, i, error);
+    return status;
+}
+
+static imk_status open_script(const char *path, imk_temperature_file *file, imk_error *error)
+{
+    char *text = NULL;
+    size_t size = 0;
+    imk_document *document = NULL;
+    imk_status status = imki_text_file_read(path, IMKI_DOCUMENT_SIZE_MAX, &text, &size, error);
+    if (status == IMK_OK)
+        status = imki_document_parse_as("temperature", "imukit_temperature: 1", text, size,
+                                        &document, error);
+    if (status == IMK_OK)
+        status = read_script(document, file, error);
+    imk_document_free(document);
+    free(text);
+    return status;
+}
+
+/* ---- tables and constants -------------------------------------------------------------------- */
+
+static imk_status open_table(const char *path, imk_temperature_file *file, imk_error *error)
+{
+    const imk_log_settings settings = imk_log_settings_default();
+    imk_log *log = &file->log;
+    imk_status status = imk_log_load(path, &settings, NULL, NULL, log, error);
+    if (status == IMK_ERROR_RATE_MISSING) /* here no rate can stand for the times */
+        return imk_error_set(error, IMK_ERROR_COLUMN, "time", "this column is missing",
+                             "give time [s] and temperature [degC]");
+    if (status != IMK_OK)
+        return status;
+    const int time = imk_log_find(log, IMK_QUANTITY_TIME, -1);
+    const int temperature = imk_log_find(log, IMK_QUANTITY_TEMPERATURE, -1);
+    if (temperature < 0)
+        return imk_error_set(error, IMK_ERROR_COLUMN, "temperature", "this column is missing",
+                             "give time [s] and temperature [degC]");
+    status = imki_table_column_check(log, (size_t)time, "s", error);
+    if (status == IMK_OK)
+        status = imki_table_column_check(log, (size_t)temperature, "K", error);
+    if (status != IMK_OK)
+        return status;
+    const double first = log->data[time][0];
+    for (size_t i = 0; i < log->rows; i++) {
+        log->data[time][i] -= first;
+        if (i > 0 && !(log->data[time][i] >= log->data[time][i - 1]))
+            return imki_table_row_error("time", IMK_ERROR_TIME_ORDER, i + 1,
+                                        "it is before the row before", "put the rows in order",
+                                        error);
+        if (!(log->data[temperature][i] > 0.0)) {
+            char found[64];
+            snprintf(found, sizeof found, "\"%.6g K\" is not above absolute zero",
+                     log->data[temperature][i]);
+            return imki_table_row_error("temperature", IMK_ERROR_RANGE, i + 1, found,
+                                        "a temperature above 0 K", error);
+        }
+    }
+    file->profile.point_count = log->rows;
+    file->profile.time = log->data[time];
+    file->profile.temperature = log->data[temperature];
+    return IMK_OK;
+}
+
+/* Does it begin as a number does, and is no file? */
+static bool is_quantity(const char *text)
+{
+    struct stat unused;
+    const char *digits = text + (*text == '-' || *text == '+');
+    digits += *digits == '.';
+    return *digits >= '0' && *digits <= '9' && stat(text, &unused) != 0;
+}
+
+static imk_status open_constant(const char *text, imk_temperature_file *file, imk_error *error)
+{
+    double value, sigma;
+    size_t count;
+    const imk_status status =
+        imk_quantity_parse(text, text + strlen(text), imk_unit_of("K").dimension, 1, &value, &sigma,
+                           &count, NULL, error);
+    if (status != IMK_OK)
+        return status;
+    if (!(value > 0.0) || sigma != 0.0)
+        return imk_error_set(error, IMK_ERROR_RANGE, "", text,
+                             "a temperature above 0 K, without uncertainty");
+    return add_point(file, 0.0, value, error);
+}
+
+/* What makes looking a temperature up quick in a long profile. */
+static imk_status carry(imk_temperature_file *file, imk_error *error)
+{
+    file->carried = malloc((file->profile.point_count + 1) * sizeof *file->carried);
+    if (!file->carried)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    imk_temperature_carry(&file->profile, file->carried);
+    file->profile.carried = file->carried;
+    return IMK_OK;
+}
+
+imk_status imk_temperature_read(const char *path, imk_temperature_file **file, imk_error *error)
+{
+    imk_temperature_file *made = calloc(1, sizeof *made);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+    imk_status status = is_quantity(path) ? open_constant(path, made, error)
+                        : imki_is_script(path, "imukit_temperature")
+                            ? open_script(path, made, error)
+                            : open_table(path, made, error);
+    if (status == IMK_OK)
+        status = imk_temperature_validate(&made->profile, error);
+    if (status == IMK_OK)
+        status = carry(made, error);
+    if (status != IMK_OK) {
+        imk_temperature_file_free(made);
+        return status;
+    }
+    *file = made;
+    return IMK_OK;
+}
+
+void imk_temperature_file_free(imk_temperature_file *file)
+{
+    if (!file)
+        return;
+    imk_log_free(&file->log);
+    free(file->time);
+    free(file->temperature);
+    free(file->carried);
+    free(file);
+}
+
+const imk_temperature_profile *imk_temperature_file_profile(const imk_temperature_file *file)
+{
+    return &file->profile;
+}

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the errors of a model amount to in the mean over an alignment of length T, along each axis:
+ *
+ *     repeatability, 1 sigma of fixed values     s^2
+ *     Gauss-Markov  2 s^2 t/T [1 - t/T (1 - exp(-T/t))]
+ *     flicker       the same of 16 stages of variance (ln 4/pi) B^2 and times dt 4^j (noise.h):
+ *                   those longer than T act as a bias, so that the sum is about (1.9 B)^2
+ *     random walk   K^2 T/3
+ *     sinusoid      (a^2/2) [sin(pi f T)/(pi f T)]^2
+ *
+ * and how much their change over T looks like a turn, in what a parabola fitted to velocity says
+ * (force weighed by u (1-u)(1-2u), u = 0 … 1): as a random walk of
+ *
+ *     K^2 = 6 s^2/T (4 M0 - 84 M2 + 140 M3 - 84 M5 + 24 M7),   Mk = integral of u^k exp(-u T/t)
+ *
+ * (flicker: 2.785 B^2/T). A resonance counts as white noise of
+ * its spectrum at 0, 2 s^2/(q w).
+ *
+ * Scale factor, misalignment and a gyro's sensitivity to force act through what is measured. Values
+ * that are known are not errors here: they are taken out before, by imk_correct(). */
+#include "alignment_internal.h"
+
+#include "imukit/elementary.h"
+#include "imukit/noise.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+/* (ln 4)/pi, and the fastest stage against the others: noise.h, imk_flicker_start(). */
+static const double flicker_stage = 0.44127124674189006, fastest_stage = 1.208;
+
+static double square(double x)
+{
+    return x * x;
+}
+
+/* Variance of the mean over `duration` of a first-order process of unit variance. */
+static double mean_variance(double correlation_time, double duration)
+{
+    if (!(correlation_time > 0.0))
+        return 0.0;
+    const double x = duration / correlation_time;
+    if (x < 1e-3) /* 1 - x/3 + x^2/12: the difference below loses its digits */
+        return 1.0 - x * (1.0 / 3 - x * (1.0 / 12));
+    return 2.0 / x * (1.0 + imk_expm1(-x) / x);
+}
+
+/* K^2 of the random walk that changes as much, times the duration. */
+static double change_variance(double correlation_time, double duration)
+{
+    if (!(correlation_time > 0.0))
+        return 0.0;
+    const double x = duration / correlation_time;
+    if (x < 3.0) { /* terms of x^j; the next is below 1e-17 */
+        double sum = 0.0, power = 6.0;
+        for (int j = 1; j < 30; j++) {
+            power *= -x / j;
+            sum += power * (4.0 / (j + 1) - 84.0 / (j + 3) + 140.0 / (j + 4) - 84.0 / (j + 6) +
+                            24.0 / (j + 8));
+        }
+        return sum;
+    }
+    double moment[8];
+    const double e = imk_exp(-x);
+    moment[0] = (1.0 - e) / x;
+    for (int k = 1; k < 8; k++)
+        moment[k] = (k * moment[k - 1] - e) / x;
+    return 6.0 * (4.0 * moment[0] - 84.0 * moment[2] + 140.0 * moment[3] - 84.0 * moment[5] +
+                  24.0 * moment[7]);
+}
+
+/* Errors of one axis. */
+typedef struct axis_errors {
+    double white, mean, walk, change, quantum;
+} axis_errors;
+
+static void add_first_order(axis_errors *errors, double variance, double correlation_time,
+                            double duration)
+{
+    errors->mean += variance * mean_variance(correlation_time, duration);
+    errors->change += variance * change_variance(correlation_time, duration) / duration;
+}
+
+static void add_flicker(axis_errors *errors, double instability, double duration, double dt)
+{
+    double correlation_time = dt;
+    const double variance = flicker_stage * square(instability);
+    for (int j = 0; j < IMK_FLICKER_STAGES && variance > 0.0; j++) {
+        add_first_order(errors, j == 0 ? fastest_stage * variance : variance, correlation_time,
+                        duration);
+        correlation_time *= 4.0;
+    }
+}
+
+static void add_lists(axis_errors *errors, const imk_noise *noise, int axis, double duration)
+{
+    for (int i = 0; i < noise->gauss_markov_count; i++)
+        add_first_order(errors, square(noise->gauss_markov[i].sigma.value[axis]),
+                        noise->gauss_markov[i].correlation_time.value[axis], duration);
+    for (int i = 0; i < noise->sinusoid_count; i++) {
+        const double x = pi * noise->sinusoid[i].frequency.value[axis] * duration;
+        if (x > 0.0)
+            errors->mean += 0.5 * square(noise->sinusoid[i].amplitude.value[axis] * imk_sin(x) / x);
+    }
+    for (int i = 0; i < noise->resonance_count; i++) {
+        const double w = 2.0 * pi * noise->resonance[i].frequency.value[axis];
+        const double q = noise->resonance[i].q.value[axis];
+        if (w > 0.0 && q > 0.0)
+            errors->white += 2.0 * square(noise->resonance[i].sigma.value[axis]) / (q * w);
+    }
+}
+
+static double reading_variance(const imk_triad *triad, int axis, imk_vector3 input,
+                               const imk_vector3 *force)
+{
+    const double *e = triad->direction[axis];
+    const double along = e[0] * input.v[0] + e[1] * input.v[1] + e[2] * input.v[2];
+    double sum = square(along) * (square(triad->scale_factor.fixed.sigma[axis]) +
+                                  square(triad->scale_factor.repeatability.value[axis]));
+    for (int j = 0; j < 3; j++) {
+        sum += square(input.v[j]) * (square(triad->misalignment.sigma[axis][j]) +
+                                     square(triad->cross_axis.sigma[axis][j]));
+        if (force != NULL)
+            sum += square(force->v[j] * triad->g_sensitivity.sigma[axis][j]);
+    }
+    return sum;
+}
+
+static axis_errors errors_of_axis(const imk_triad *triad, int axis, double duration, double dt)
+{
+    const imk_noise *noise = &triad->noise;
+    /* Rounding of each sample, when noise is larger than the step. */
+    const double rounding = square(triad->resolution.value[axis]) / 12.0 * dt;
+    axis_errors errors = {.white = square(noise->white.value[axis]) + rounding,
+                          .mean = square(triad->bias.fixed.sigma[axis]) +
+                                  square(triad->bias.repeatability.value[axis]),
+                          .walk = square(noise->random_walk.value[axis]),
+                          .quantum = square(noise->quantization.value[axis])};
+    add_flicker(&errors, noise->bias_instability.value[axis], duration, dt);
+    add_lists(&errors, noise, axis, duration);
+    return errors;
+}
+
+/* Covariance of the body-axes vector that least squares finds from axes of these variances,
+ * (sum e e^T/v)^-1; axes without any error get a little, so that it exists. */
+static imk_matrix3 body_covariance(const imk_triad *triad, const double *variance)
+{
+    imk_matrix3 information = {{{0}}}, covariance = {{{0}}};
+    double largest = 0.0;
+    for (int i = 0; i < triad->axis_count; i++)
+        largest = fmax(largest, variance[i]);
+    if (!(largest > 0.0))
+        return covariance;
+    for (int i = 0; i < triad->axis_count; i++) {
+        const double *e = triad->direction[i], weight = largest / fmax(variance[i], 1e-9 * largest);
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                information.m[r][c] += weight * e[r] * e[c];
+    }
+    if (imk_matrix3_inverse(information, &covariance) != IMK_OK)
+        return (imk_matrix3){{{0}}}; /* fewer than three directions: nothing can be said */
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            covariance.m[r][c] *= largest;
+    return covariance;
+}
+
+imki_alignment_errors imki_alignment_errors_of(const imk_triad *triad, double duration, double dt,
+                                               imk_vector3 input, const imk_vector3 *force)
+{
+    double white[IMK_AXES_MAX], mean[IMK_AXES_MAX], walk[IMK_AXES_MAX], change[IMK_AXES_MAX];
+    double reading[IMK_AXES_MAX], quantum[IMK_AXES_MAX];
+    for (int axis = 0; axis < triad->axis_count; axis++) {
+        const axis_errors errors = errors_of_axis(triad, axis, duration, dt);
+        white[axis] = errors.white;
+        mean[axis] = errors.mean;
+        walk[axis] = errors.walk;
+        change[axis] = errors.change;
+        reading[axis] = reading_variance(triad, axis, input, force);
+        quantum[axis] = errors.quantum;
+    }
+    return (imki_alignment_errors){.white = body_covariance(triad, white),
+                                   .mean = body_covariance(triad, mean),
+                                   .walk = body_covariance(triad, walk),
+                                   .change = body_covariance(triad, change),
+                                   .reading = body_covariance(triad, reading),
+                                   .quantum = body_covariance(triad, quantum)};
+}
+
+double imki_alignment_isotropic(const imk_matrix3 *covariance)
+{
+    return (covariance->m[0][0] + covariance->m[1][1] + covariance->m[2][2]) / 3.0;
+}

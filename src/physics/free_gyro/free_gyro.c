@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The free gyro as an instrument: design, start, readings, signals. Motion: free_gyro_dynamics.c
+ * and free_gyro_slow.c; closed forms: free_gyro_reduce.c. */
+#include "free_gyro_internal.h"
+
+#include <math.h>
+
+enum { COOKIE = 0x46524759 };
+
+#define DEGREE (IMKI_PI / 180.0)
+/* Where the temperature coefficients are zero [K]. */
+#define REFERENCE_TEMPERATURE 293.15
+
+imk_free_gyro imk_free_gyro_default(void)
+{
+    return (imk_free_gyro){
+        .cookie = COOKIE,
+        .spin_rate = 22550.0 * IMKI_PI / 30.0,
+        .rotor_polar = 4.2e-5,
+        .rotor_transverse = 2.6e-5,
+        .inner_inertia = {1.5e-5, 1.2e-5, 1.5e-5},
+        .outer_inertia = {2e-5, 4e-5, 3e-5},
+        .mass = 0.25,
+        .unbalance = {0.1e-6, 0.1e-6, 0.2e-6},
+        .compliance = {1e-8, 1e-8, 1.6e-8},
+        .viscous_friction = 2e-6,
+        .coulomb_friction = 2e-6,
+        .friction_rate = 0.5 * DEGREE,
+        .stop = 85.0 * DEGREE,
+        .torque_temperature = 5e-8,
+        .torque_repeatability = 5e-6,
+        .torque_instability = 5e-7,
+        .torque_noise = 3e-7,
+        .pickoff_resolution = 20.0 * DEGREE / 3600.0,
+        .pickoff_noise = 5.0 * DEGREE / 3600.0,
+        .start_nutation = 15.0 * DEGREE / 3600.0,
+    };
+}
+
+static void set_default(void *design)
+{
+    *(imk_free_gyro *)design = imk_free_gyro_default();
+}
+
+#define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
+    {                                                                                              \
+        path, IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, member), unit, minimum, maximum, open,    \
+            NULL, help                                                                             \
+    }
+#define INERTIA(path, member, help) NUMBER(path, member, "kg*m^2", 0.0, 10.0, false, help)
+
+static const imk_design_field fields[] = {
+    NUMBER("spin.rate", spin_rate, "rpm", 1.0, 1e6, false, "nominal speed of the wheel"),
+    NUMBER("spin.error", spin_error, "1", -0.9, 9.0, false, "relative error of that speed"),
+    {"rotor.polar_inertia", IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, rotor_polar), "kg*m^2",
+     1e-12, 10.0, false, NULL, "inertia of the wheel about its axis"},
+    {"rotor.transverse_inertia", IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, rotor_transverse),
+     "kg*m^2", 1e-12, 10.0, false, NULL, "inertia of the wheel across its axis"},
+    INERTIA("inner_gimbal.inertia_x", inner_inertia[0], "inertia of the inner gimbal about its x"),
+    INERTIA("inner_gimbal.inertia_y", inner_inertia[1], "the same about y, its bearing axis"),
+    INERTIA("inner_gimbal.inertia_z", inner_inertia[2], "the same about z, the spin axis"),
+    INERTIA("outer_gimbal.inertia_x", outer_inertia[0],
+            "inertia of the outer gimbal about x, its bearing axis"),
+    INERTIA("outer_gimbal.inertia_y", outer_inertia[1],
+            "the same about y, the inner gimbal's bearing axis"),
+    INERTIA("outer_gimbal.inertia_z", outer_inertia[2], "the same about z"),
+    NUMBER("suspended.mass", mass, "kg", 0.0, 1e4, false, "mass of wheel and inner gimbal"),
+    NUMBER("unbalance.x", unbalance[0], "um", -1.0, 1.0, false,
+           "centre of that mass along the inner gimbal's x"),
+    NUMBER("unbalance.y", unbalance[1], "um", -1.0, 1.0, false, "the same along y"),
+    NUMBER("unbalance.z", unbalance[2], "um", -1.0, 1.0, false, "the same along the spin axis"),
+    NUMBER("compliance.x", compliance[0], "nm/N", 0.0, 1e-4, false,
+           "yielding of the suspension along the inner gimbal's x"),
+    NUMBER("compliance.y", compliance[1], "nm/N", 0.0, 1e-4, false, "the same along y"),
+    NUMBER("compliance.z", compliance[2], "nm/N", 0.0, 1e-4, false, "the same along the spin axis"),
+    NUMBER("friction.viscous", viscous_friction, "N*m*s/rad", 0.0, 1.0, false,
+           "viscous friction of each gimbal's bearings"),
+    NUMBER("friction.coulomb", coulomb_friction, "N*m", 0.0, 1e-2, false,
+           "dry friction of each gimbal's bearings"),
+    NUMBER("friction.rate", friction_rate, "deg/s", 1e-9, 1e6, false,
+           "relative rate over which the dry friction turns over"),
+    NUMBER("gimbal.stop", stop, "deg", 0.0, 89.0 * DEGREE, true,
+           "travel of the inner gimbal either way, at most 89 deg"),
+    NUMBER("torque.inner", torque_inner, "N*m", -1e-2, 1e-2, false,
+           "constant error torque about the inner axis"),
+    NUMBER("torque.outer", torque_outer, "N*m", -1e-2, 1e-2, false,
+           "the same about the outer axis"),
+    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1e-4, 1e-4, false,
+           "change of both with temperature, from 20 degC"),
+    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1e-2, false,
+           "1 sigma per run of the error torque about each axis"),
+    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1e-2, false,
+           "flicker (bias instability B) of those torques"),
+    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1e-2, false,
+           "white part of those torques, two-sided density"),
+    NUMBER("pickoff.resolution", pickoff_resolution, "arcsec", 0.0, 1.0, false,
+           "step of the readings, 0 for none"),
+    NUMBER("pickoff.noise", pickoff_noise, "arcsec", 0.0, 1.0, false, "1 sigma of a reading"),
+    NUMBER("pickoff.scale_error", pickoff_scale_error, "ppm", -0.5, 0.5, false,
+           "relative error of the readings"),
+    NUMBER("start.outer", start_outer, "deg", -1e3, 1e3, false, "outer angle at the start"),
+    NUMBER("start.inner", start_inner, "deg", -89.0 * DEGREE, 89.0 * DEGREE, false,
+           "inner angle at the start"),
+    NUMBER("start.nutation", start_nutation, "arcsec", 0.0, 89.0 * DEGREE, false,
+           "amplitude of the nutation at the start, of the inner angle"),
+};
+
+static const imk_signal outputs[] = {
+    {"rate", "rad/s", "deg/s", "rate about case x: minus the outer pick-off's difference"},
+    {"rate_inner", "rad/s", "deg/s", "rate about the inner axis: minus its pick-off's difference"},
+    {"outer_reading", "rad", "deg", "reading of the outer pick-off"},
+    {"inner_reading", "rad", "deg", "reading of the inner pick-off"},
+};
+
+enum { OUTER, INNER, NUTATION, OUTER_TORQUE, INNER_TORQUE, STOP };
+static const imk_signal signals[] = {
+    [OUTER] = {"outer_angle", "rad", "deg", "angle of the outer gimbal"},
+    [INNER] = {"inner_angle", "rad", "deg", "angle of the inner gimbal"},
+    [NUTATION] = {"nutation", "rad", "deg",
+                  "amplitude of the nutation, of the inner angle (slow forced motion included)"},
+    [OUTER_TORQUE] = {"outer_torque", "N*m", "nN*m", "error torque about the outer axis"},
+    [INNER_TORQUE] = {"inner_torque", "N*m", "nN*m", "error torque about the inner axis"},
+    [STOP] = {"stop", "1", "1", "1 while the inner gimbal touches its stop"},
+};
+
+static const imk_view views[] = {
+    {.title = "Path of the spin axis",
+     .caption = "Inner against outer angle while the case turns slowly: round and round, the "
+                "nutation, along the way that the case goes",
+     .x = OUTER,
+     .curve_count = 1,
+     .y = {INNER},
+     .duration = 0.04,
+     .rate = 10000.0,
+     .input = 0.5 * DEGREE},
+    {.title = "The gimbals stay behind",
+     .caption = "Angles of both gimbals at rest: the drift by friction, unbalance and error "
+                "torques, which takes minutes to show",
+     .x = -1,
+     .curve_count = 2,
+     .y = {OUTER, INNER},
+     .duration = 60.0,
+     .rate = 10.0},
+    {.title = "Nutation dies away",
+     .caption = "Its amplitude, which bearing friction takes away: dry friction in equal steps, "
+                "viscous in equal parts",
+     .x = -1,
+     .curve_count = 1,
+     .y = {NUTATION},
+     .duration = 5.0,
+     .rate = 200.0},
+};
+
+/* ---- validation ------------------------------------------------------------------------------ */
+
+static imk_status refuse(imk_error *error, const char *field, double value, double limit,
+                         const char *expected)
+{
+    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
+}
+
+/* No inertia of a body exceeds the sum of the other two. */
+static imk_status check_inertia(const double inertia[3], const char *const names[3],
+                                imk_error *error)
+{
+    for (int i = 0; i < 3; i++) {
+        const double others = inertia[(i + 1) % 3] + inertia[(i + 2) % 3];
+        if (!(inertia[i] <= others * (1.0 + 1e-12)))
+            return refuse(error, names[i], inertia[i], others,
+                          "at most the sum of the inertias about the other two axes");
+    }
+    return IMK_OK;
+}
+
+static imk_status check_bodies(const imk_free_gyro *design, imk_error *error)
+{
+    static const char *const inner[] = {"inner_gimbal.inertia_x", "inner_gimbal.inertia_y",
+                                        "inner_gimbal.inertia_z"};
+    static const char *const outer[] = {"outer_gimbal.inertia_x", "outer_gimbal.inertia_y",
+                                        "outer_gimbal.inertia_z"};
+    const double thinnest = 2.0 * design->rotor_transverse * (1.0 + 1e-12);
+    const imk_status status = check_inertia(design->inner_inertia, inner, error);
+    if (!(design->rotor_polar <= thinnest))
+        return refuse(error, "rotor.polar_inertia", design->rotor_polar, thinnest,
+                      "at most twice the transverse inertia, which a thin disc has");
+    return status == IMK_OK ? check_inertia(design->outer_inertia, outer, error) : status;
+}
+
+imk_status imk_free_gyro_validate(const imk_free_gyro *design, imk_error *error)
+{
+    if (design->cookie != COOKIE)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
+                             "a design made by imk_free_gyro_default()");
+    imk_status status = imk_design_check(&imk_free_gyro_instrument, design, error);
+    if (status == IMK_OK)
+        status = check_bodies(design, error);
+    if (status != IMK_OK)
+        return status;
+    const double swing = fabs(design->start_inner) + design->start_nutation;
+    if (!(swing < design->stop))
+        return refuse(error, "start.inner", swing, design->stop,
+                      "inner angle and nutation within gimbal.stop");
+    /* cos x >= 1 - 2 x/pi in a quarter turn: no function is needed for a bound */
+    const double momentum = imk_free_gyro_momentum(design) * (1.0 - 2.0 / IMKI_PI * design->stop);
+    const imki_free_gyro_parts parts = imki_free_gyro_parts_of(design);
+    if (!(parts.slope <= 0.5 * momentum))
+        return refuse(error, "friction.coulomb", parts.slope, 0.5 * momentum,
+                      "friction per relative rate (viscous, and coulomb over friction.rate) below "
+                      "half the momentum of the wheel at the stop");
+    /* weight of 10 m/s^2: the steady precession is real while 4 (A - C) M < H^2 */
+    const double *m = parts.moment;
+    const double weight = 10.0 * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    const double most = parts.h * parts.h / (4.0 * (parts.j_least + fabs(parts.a_c) + parts.b));
+    if (!(weight < most))
+        return refuse(error, "unbalance.z", weight, most,
+                      "a weight times its arm that the wheel can carry: below H^2/4(A + Ao + B)");
+    return IMK_OK;
+}
+
+static imk_status validate(const void *design, imk_error *error)
+{
+    return imk_free_gyro_validate(design, error);
+}
+
+/* ---- start ----------------------------------------------------------------------------------- */
+
+/* Stages to a cycle of the nutation at inner angle 0, where it is fastest, and the decay by
+ * friction in a step, which its impulses follow to second order. */
+#define STEPS_PER_CYCLE 10.0
+#define FEWEST_STEPS_PER_CYCLE 6.0
+#define FRICTION_PER_STEP 0.05
+#define MOST_FRICTION_PER_STEP 0.2
+/* The slow level's error grows with the turn of the case within a step: 10 ms for a vehicle. */
+#define SLOW_STEP 0.01
+#define LONGEST_SLOW_STEP 0.1
+
+static double step_within(const imk_free_gyro *design, imk_level level, bool limit)
+{
+    if (level == IMK_LEVEL_SLOW)
+        return limit ? LONGEST_SLOW_STEP : SLOW_STEP;
+    const imki_free_gyro_parts parts = imki_free_gyro_parts_of(design);
+    const double cycle = 1.0 / imk_free_gyro_nutation(design, 0.0);
+    const double least = parts.j_least + (parts.a_c < 0.0 ? parts.a_c : 0.0);
+    const double inertia = least < parts.b ? least : parts.b;
+    const double by_cycle = cycle / (limit ? FEWEST_STEPS_PER_CYCLE : STEPS_PER_CYCLE);
+    const double decay = limit ? MOST_FRICTION_PER_STEP : FRICTION_PER_STEP;
+    const double by_friction =
+        parts.slope * by_cycle > decay * inertia ? decay * inertia / parts.slope : by_cycle;
+    return by_friction < by_cycle ? by_friction : by_cycle;
+}
+
+static double step_length(const void *design, const imk_physics_settings *settings)
+{
+    const double longest = step_within(design, settings->level, false);
+    const double sample = 1.0 / settings->rate;
+    return sample < longest ? sample : longest;
+}
+
+static double quantised(double x, double step)
+{
+    return step > 0.0 ? step * floor(x / step + 0.5) : x;
+}
+
+static void read_angles(imki_free_gyro_state *state, double reading[2])
+{
+    const double angle[2] = {state->gimbals.outer, state->gimbals.inner};
+    for (int k = 0; k < 2; k++) {
+        const double noise =
+            state->reading_noise > 0.0 ? state->reading_noise * imki_draw(&state->pickoff[k]) : 0.0;
+        reading[k] = quantised(angle[k] * state->scale + noise, state->resolution);
+    }
+}
+
+static imk_status start_random(const imk_free_gyro *design, const imk_physics_settings *settings,
+                               imki_free_gyro_state *state)
+{
+    imki_draws_start(&state->white[0], settings, IMKI_FREE_GYRO_TORQUE_OUTER);
+    imki_draws_start(&state->white[1], settings, IMKI_FREE_GYRO_TORQUE_INNER);
+    imki_draws_start(&state->pickoff[0], settings, IMKI_FREE_GYRO_PICKOFF_OUTER);
+    imki_draws_start(&state->pickoff[1], settings, IMKI_FREE_GYRO_PICKOFF_INNER);
+    state->torque_sigma = settings->noise ? design->torque_noise / sqrt(state->step) : 0.0;
+    state->reading_noise = settings->noise ? design->pickoff_noise : 0.0;
+    imk_status status = imki_wander_start(&state->error[0], settings, IMKI_FREE_GYRO_ERROR_OUTER,
+                                          design->torque_repeatability, design->torque_instability);
+    if (status == IMK_OK)
+        status = imki_wander_start(&state->error[1], settings, IMKI_FREE_GYRO_ERROR_INNER,
+                                   design->torque_repeatability, design->torque_instability);
+    return status;
+}
+
+static imk_status init(const void *given, const imk_physics_settings *settings, void *memory,
+                       imk_error *error)
+{
+    const imk_free_gyro *design = given;
+    imki_free_gyro_state *state = memory;
+    size_t steps = 0;
+    double step = 0.0;
+    imk_status status = imk_free_gyro_validate(design, error);
+    if (status == IMK_OK)
+        status = imki_settings_check(settings, error);
+    if (status == IMK_OK)
+        status = imki_divide_sample(settings, step_within(design, settings->level, false),
+                                    step_within(design, settings->level, true),
+                                    settings->level == IMK_LEVEL_FULL
+                                        ? "at least 6 steps to a cycle of the nutation, and 5 to "
+                                          "its decay by friction"
+                                        : "at most 0.1 s: the case turns between",
+                                    &steps, &step, error);
+    if (status != IMK_OK)
+        return status;
+    *state = (imki_free_gyro_state){
+        .gimbals = {.outer = design->start_outer, .inner = design->start_inner},
+        .parts = imki_free_gyro_parts_of(design),
+        .sample = 1.0 / settings->rate,
+        .step = step,
+        .steps = steps,
+        .level = settings->level,
+        .caged = true,
+        .start_nutation = design->start_nutation,
+        .torque = {design->torque_outer, design->torque_inner},
+        .torque_temperature = design->torque_temperature,
+        .scale = 1.0 + design->pickoff_scale_error,
+        .resolution = design->pickoff_resolution,
+    };
+    imki_free_gyro_trigonometry(&state->gimbals);
+    status = start_random(design, settings, state);
+    if (status != IMK_OK)
+        return imki_design_refuse(error, status, "torque.instability", design->torque_instability,
+                                  0.0, NULL);
+    read_angles(state, state->reading);
+    return IMK_OK;
+}
+
+/* ---- run ------------------------------------------------------------------------------------- */
+
+static void step(void *memory, const imk_exposure *exposure, double *out)
+{
+    imki_free_gyro_state *state = memory;
+    const double thermal =
+        state->torque_temperature * (exposure->temperature - REFERENCE_TEMPERATURE);
+    imki_free_gyro_drive drive;
+    double reading[2];
+    for (int k = 0; k < 3; k++) {
+        drive.rate[k] = exposure->angular_rate[k];
+        drive.acceleration[k] = exposure->angular_acceleration[k];
+        drive.force[k] = exposure->specific_force[k];
+    }
+    drive.outer = state->torque[0] + thermal + imki_wander_next(&state->error[0]);
+    drive.inner = state->torque[1] + thermal + imki_wander_next(&state->error[1]);
+    if (state->level == IMK_LEVEL_FULL) {
+        if (state->caged)
+            imki_free_gyro_uncage(state, &drive);
+        imki_free_gyro_full(state, &drive);
+    } else {
+        imki_free_gyro_slow(state, &drive);
+    }
+    read_angles(state, reading);
+    for (int k = 0; k < 2; k++) {
+        out[k] = (state->reading[k] - reading[k]) / state->sample;
+        out[2 + k] = state->reading[k] = reading[k];
+    }
+}
+
+/* Of a small nutation, the inner rate in inertial space v and the outer one p (less the slow ones)
+ * give the amplitude:  a^2 = (v/n)^2 + (J p/(H c))^2,  n the nutation's angular frequency. */
+static double nutation_of(const imki_free_gyro_state *state)
+{
+    const imki_gimbals *g = &state->gimbals;
+    const imki_free_gyro_parts *parts = &state->parts;
+    if (state->level != IMK_LEVEL_FULL || state->caged)
+        return state->caged && state->level == IMK_LEVEL_FULL ? state->start_nutation : 0.0;
+    const double j = parts->j_least + parts->a_c * g->ci * g->ci, h = parts->h * g->ci;
+    const double p = g->p_outer - parts->h * g->si + state->last_torque[1] * j / h;
+    const double v = g->p_inner - state->last_torque[0] * parts->b / h;
+    return sqrt(v * v * j * parts->per_b + p * p) / h;
+}
+
+static void observe(const void *memory, double *values)
+{
+    const imki_free_gyro_state *state = memory;
+    values[OUTER] = state->gimbals.outer;
+    values[INNER] = state->gimbals.inner;
+    values[NUTATION] = nutation_of(state);
+    values[OUTER_TORQUE] = state->last_torque[0];
+    values[INNER_TORQUE] = state->last_torque[1];
+    values[STOP] = state->on_stop ? 1.0 : 0.0;
+}
+
+static void reduce(const void *design, imk_model *model)
+{
+    imk_free_gyro_reduce(design, model);
+}
+
+const imk_instrument imk_free_gyro_instrument = {
+    .name = "free_gyro",
+    .title = "free gyro",
+    .technology = "",
+    .source = "wheel speed and travel of an electric attitude gyro (training notes, "
+              "flyingpilots.com p=264); inertias, friction and torques chosen: free_gyro.h",
+    .sensor = IMK_GYRO,
+    .design_size = sizeof(imk_free_gyro),
+    .state_size = sizeof(imki_free_gyro_state),
+    IMKI_TABLES,
+    .set_default = set_default,
+    .validate = validate,
+    .init = init,
+    .step = step,
+    .observe = observe,
+    .reduce = reduce,
+    .step_length = step_length,
+};

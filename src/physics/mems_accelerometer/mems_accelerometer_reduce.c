@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From the design of a MEMS accelerometer to its error model.
+ *
+ * Open loop: a1 x + a2 x^2 + a3 x^3 = -a is turned round, with u = -a/a1,
+ *
+ *     x = u - (a2/a1) u^2 + (2 (a2/a1)^2 - a3/a1) u^3
+ *
+ * and the reading is -a1 (x + p2 x^2 + p3 x^3). Analog loop with its mass held at the null:
+ * a = b1 u + b2 u^2 read as b1 u. */
+#include "base/algebra/linear_system_internal.h"
+#include "mems_accelerometer_internal.h"
+
+#include <math.h>
+
+enum { SCAN = 2000, BISECTIONS = 60 };
+
+static double square(double x)
+{
+    return x * x;
+}
+
+/* Force of the plates, Taylor coefficients 0 … 3 of c [(V - u)^2 P(z) - (V + u)^2 M(z)] at the
+ * operating point along the line u = u_0 + a x + b x^2 + c x^3 in `line`. */
+static void force_along(const imk_mems_accelerometer *d, const imki_mems_point *p,
+                        const double line[4], double force[4])
+{
+    const double c = 0.5 * IMKI_PERMITTIVITY * d->area / d->mass;
+    const double near = 1.0 / (d->gap - p->z), far = -1.0 / (d->gap + p->z);
+    double squares[2][4] = {{0.0}}, plates[2][4];
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; i + j < 4; j++)
+            for (int side = 0; side < 2; side++) {
+                const double sign = side == 0 ? -1.0 : 1.0;
+                squares[side][i + j] += ((i == 0 ? d->voltage : 0.0) + sign * line[i]) *
+                                        ((j == 0 ? d->voltage : 0.0) + sign * line[j]);
+            }
+    plates[0][0] = near * near;
+    plates[1][0] = far * far;
+    for (int k = 1; k < 4; k++) { /* 1/(g - z)^2 = sum of (k + 1) x^k/g^(k + 2) */
+        plates[0][k] = plates[0][k - 1] * near * (k + 1.0) / k;
+        plates[1][k] = plates[1][k - 1] * far * (k + 1.0) / k;
+    }
+    for (int k = 0; k < 4; k++) {
+        force[k] = 0.0;
+        for (int j = 0; j <= k; j++)
+            force[k] += c * (squares[0][j] * plates[0][k - j] - squares[1][j] * plates[1][k - j]);
+    }
+}
+
+/* Analog loop without integral part: the mass leaves the null, u = u_0 - (kp/b1) (x + p2 x^2 + p3
+ * x^3), and the forces of plates and springs along that line balance the input,
+ * f = g1 x + g2 x^2 + g3 x^3, which is turned round; the reading is -kp (x + p2 x^2 + p3 x^3). */
+static void deflected_loop(const imk_mems_accelerometer *d, const imki_mems_point *p,
+                           imki_mems_static *e)
+{
+    const imki_series spring = imki_mems_spring(d, p->spring);
+    const double kp = imk_mems_accelerometer_gains(d).proportional;
+    const double p2 = p->pickoff.second / p->pickoff.first;
+    const double p3 = p->pickoff.third / p->pickoff.first;
+    const double per_voltage = -kp / p->b1;
+    const double line[4] = {p->control, per_voltage, per_voltage * p2, per_voltage * p3};
+    double force[4];
+    force_along(d, p, line, force);
+    const double g1 = force[1] - spring.first, g2 = (force[2] - spring.second) / g1;
+    const double g3 = (force[3] - spring.third) / g1;
+    const double seen = -kp / g1, soft = spring.first - p->a1; /* electrostatic */
+    e->scale = seen - 1.0;
+    e->k2 = seen * (p2 - g2) / g1;
+    e->k3 = seen * (p3 - 2.0 * p2 * g2 + 2.0 * g2 * g2 - g3) / square(g1);
+    /* seen = kp/(a1 + kp), of which the voltages' parts grow by 2 g and the springs' by s */
+    e->scale_temperature =
+        seen * (spring.first * d->spring_temperature + 2.0 * (kp - soft) * d->voltage_temperature) /
+        g1;
+}
+
+imki_mems_static imki_mems_static_errors(const imk_mems_accelerometer *d, const imki_mems_point *p)
+{
+    const imki_series spring = imki_mems_spring(d, p->spring);
+    imki_mems_static e = {
+        .scale_temperature = -2.0 * d->voltage_temperature,
+        /* the force that holds the springs away from their rest */
+        .bias_temperature = d->bias_temperature +
+                            spring.value * (d->spring_temperature - 2.0 * d->voltage_temperature)};
+    if (d->loop == IMK_MEMS_OPEN) {
+        const double second = -p->a2 / p->a1, third = 2.0 * second * second - p->a3 / p->a1;
+        const double p2 = p->pickoff.second / p->pickoff.first;
+        const double p3 = p->pickoff.third / p->pickoff.first;
+        e.k2 = -(second + p2) / p->a1;
+        e.k3 = (third + 2.0 * p2 * second + p3) / square(p->a1);
+        e.scale_temperature = -(spring.first * d->spring_temperature -
+                                2.0 * (spring.first - p->a1) * d->voltage_temperature) /
+                              p->a1;
+    } else if (d->loop == IMK_MEMS_ANALOG) {
+        e.k2 = -p->b2 / square(p->b1);
+        e.k3 = 2.0 * square(e.k2);
+        if (!(d->reset > 0.0))
+            deflected_loop(d, p, &e);
+    } else if (!(d->integral > 0.0) && !imki_mems_locked(d)) {
+        e.scale = -1.0 / (1.0 + imk_mems_accelerometer_quantizer(d).gain);
+        e.bias = -e.scale * p->rest;
+    }
+    return e;
+}
+
+double imki_mems_white(const imk_mems_accelerometer *d, const imki_mems_point *p)
+{
+    const double seen = 1.0 + imki_mems_static_errors(d, p).scale;
+    const double brownian = 2.0 * IMKI_BOLTZMANN * d->temperature * p->damping / d->mass;
+    const double pickoff = 0.5 * square(p->a1 * d->pickoff_noise);
+    const bool dithered = d->loop == IMK_MEMS_SIGMA_DELTA && !imki_mems_locked(d);
+    const double quantization = dithered ? imk_mems_accelerometer_quantizer(d).quantization : 0.0;
+    return sqrt(square(seen) * (brownian + pickoff) + square(quantization));
+}
+
+/* ---- frequency response ---------------------------------------------------------------------- */
+
+typedef struct complex_number {
+    double re, im;
+} complex_number;
+
+static complex_number quotient(complex_number a, complex_number b)
+{
+    const double size = b.re * b.re + b.im * b.im;
+    return (complex_number){(a.re * b.re + a.im * b.im) / size, (a.im * b.re - a.re * b.im) / size};
+}
+
+typedef struct chain {
+    const imk_mems_accelerometer *design;
+    imki_mems_point point;
+    imk_mems_gains gains; /* of the controller; of the sigma-delta loop likewise */
+    double amplifier;     /* [rad/s]; 0: none */
+} chain;
+
+static chain chain_of(const imk_mems_accelerometer *d)
+{
+    chain c = {.design = d, .point = imki_mems_operating_point(d)};
+    if (d->loop == IMK_MEMS_ANALOG) {
+        c.gains = imk_mems_accelerometer_gains(d);
+        c.amplifier = 2.0 * IMKI_PI * d->amplifier;
+    } else if (d->loop == IMK_MEMS_SIGMA_DELTA) {
+        const double gain = imk_mems_accelerometer_quantizer(d).gain * c.point.a1;
+        c.gains = (imk_mems_gains){gain, gain * d->lead / d->clock, gain * d->integral * d->clock};
+    }
+    return c;
+}
+
+/* Reading over specific force at w [rad/s], w > 0. */
+static complex_number response(const chain *c, double w)
+{
+    const imk_mems_accelerometer *d = c->design;
+    const complex_number mass = {c->point.a1 - w * w, c->point.damping * w};
+    complex_number h;
+    if (d->loop == IMK_MEMS_OPEN) {
+        h = quotient((complex_number){c->point.a1, 0.0}, mass);
+    } else {
+        complex_number loop = {c->gains.proportional,
+                               c->gains.derivative * w - c->gains.integral / w};
+        if (c->amplifier > 0.0) {
+            const complex_number stage = {1.0, w / c->amplifier};
+            loop = quotient(quotient(loop, stage), stage);
+        }
+        h = quotient(loop, (complex_number){mass.re + loop.re, mass.im + loop.im});
+    }
+    if (d->output_bandwidth > 0.0) {
+        const double r = w / (2.0 * IMKI_PI * d->output_bandwidth);
+        h = quotient(h, (complex_number){1.0 - r * r, 1.41421356237309505 * r});
+    }
+    return h;
+}
+
+static double power(const chain *c, double w)
+{
+    const complex_number h = response(c, w);
+    return h.re * h.re + h.im * h.im;
+}
+
+/* The lowest frequency at which the power has fallen to half that at low frequency [rad/s]. */
+static double half_power(const chain *c, double low)
+{
+    const double half = 0.5 * power(c, low);
+    double below = low;
+    for (int i = 0; i < SCAN; i++) {
+        const double above = below * 1.02;
+        if (power(c, above) < half) {
+            double high = above;
+            for (int j = 0; j < BISECTIONS; j++) {
+                const double middle = 0.5 * (below + high);
+                *(power(c, middle) < half ? &high : &below) = middle;
+            }
+            return high;
+        }
+        below = above;
+    }
+    return 0.0;
+}
+
+/* Half-power frequency over undamped frequency of a second-order filter. */
+static double bandwidth_ratio(double damping)
+{
+    const double b = 1.0 - 2.0 * damping * damping;
+    return sqrt(b + sqrt(b * b + 1.0));
+}
+
+/* The second-order filter with this half-power frequency whose power at half of it is as given;
+ * that falls with the damping. */
+static double damping_for(double power_at_half)
+{
+    double low = 0.05, high = 20.0;
+    for (int i = 0; i < BISECTIONS; i++) {
+        const double middle = 0.5 * (low + high);
+        const double r = 0.5 * bandwidth_ratio(middle), real = 1.0 - r * r;
+        const double found = 1.0 / (real * real + 4.0 * middle * middle * r * r);
+        *(found > power_at_half ? &low : &high) = middle;
+    }
+    return high;
+}
+
+static void set_bandwidth(const imk_mems_accelerometer *d, imk_triad *triad)
+{
+    const chain c = chain_of(d);
+    /* far below all corners */
+    const double low = 2.0 * IMKI_PI * 1e-4 * d->frequency, w = half_power(&c, low);
+    if (!(w > 0.0))
+        return;
+    triad->bandwidth.value[0] = w / (2.0 * IMKI_PI);
+    triad->damping.value[0] = damping_for(power(&c, 0.5 * w) / power(&c, low));
+}
+
+static double reduced_range(const imk_mems_accelerometer *d)
+{
+    const double limit = imk_mems_accelerometer_limit(d);
+    return d->range > 0.0 && d->range < limit ? d->range : limit;
+}
+
+/* Rms velocity of the mass in an analog loop: the stationary covariance of the linear system. */
+static double loop_velocity(const imk_mems_accelerometer *d, const imki_mems_point *p)
+{
+    imki_mems_system system;
+    double covariance[IMKI_MEMS_STATES * IMKI_MEMS_STATES];
+    imki_mems_linear_system(d, p, false, &system);
+    /* a thousand times the slowest of springs, loop and integral part */
+    const double slowest = d->reset > 0.0 && d->reset < d->frequency ? d->reset : d->frequency;
+    imki_step_covariance(system.n, system.a, system.w, 1e3 / slowest, covariance);
+    return sqrt(covariance[IMKI_VELOCITY * system.n + IMKI_VELOCITY]);
+}
+
+/* What the mean of a loop's force over a sample and the input differ by is the change of the
+ * mass's momentum: quantization noise, unless a filter takes it away. */
+static void set_loop_noise(const imk_mems_accelerometer *d, const imki_mems_point *p,
+                           imk_triad *triad)
+{
+    const bool clocked = d->loop == IMK_MEMS_SIGMA_DELTA;
+    if (clocked && imki_mems_locked(d))
+        triad->dead_band.value[0] = imk_mems_accelerometer_limit_cycle(d).dead_zone;
+    /* a model has either that or steps of the output */
+    if (!(d->output_bandwidth > 0.0) && !(d->resolution > 0.0))
+        triad->noise.quantization.value[0] =
+            clocked ? imk_mems_accelerometer_quantizer(d).velocity : loop_velocity(d, p);
+}
+
+void imk_mems_accelerometer_reduce(const imk_mems_accelerometer *d, imk_model *model)
+{
+    imk_triad *triad = imki_reduction_begin(model, &imk_mems_accelerometer_instrument);
+    const imki_mems_point p = imki_mems_operating_point(d);
+    const imki_mems_static e = imki_mems_static_errors(d, &p);
+    triad->scale_factor.fixed.value[0] = e.scale;
+    triad->scale_factor.temperature.coefficient[0].value[0] = e.scale_temperature;
+    triad->nonlinearity.k2.value[0] = e.k2;
+    triad->nonlinearity.k3.value[0] = e.k3;
+    triad->bias.fixed.value[0] = e.bias;
+    const double seen = imki_reduction_offset(triad, d->bias, e.bias_temperature);
+    triad->bias.repeatability.value[0] = seen * d->bias_repeatability;
+    triad->noise.bias_instability.value[0] = seen * d->bias_instability;
+    triad->noise.density = IMK_DENSITY_TWO_SIDED;
+    triad->noise.white.value[0] = imki_mems_white(d, &p);
+    triad->scale_factor.repeatability.value[0] = d->gain_repeatability;
+    triad->cross_axis.value[0][1] = seen * d->tilt_y;
+    triad->cross_axis.value[0][2] = seen * d->tilt_z;
+    triad->range.value[0] = reduced_range(d);
+    triad->resolution.value[0] = d->resolution;
+    set_bandwidth(d, triad);
+    if (d->loop != IMK_MEMS_OPEN)
+        set_loop_noise(d, &p, triad);
+    imk_temperature_polynomial *const polynomials[2] = {&triad->bias.temperature,
+                                                        &triad->scale_factor.temperature};
+    for (int i = 0; i < 2; i++) {
+        if (polynomials[i]->coefficient[0].value[0] == 0.0)
+            continue;
+        polynomials[i]->order = 1;
+        imki_temperature_range(polynomials[i], d->temperature);
+    }
+}

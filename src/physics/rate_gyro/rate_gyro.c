@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The spring-restrained rate gyro: design, closed forms and error model. The dynamics are in
+ * rate_gyro_dynamics.c. */
+#include "rate_gyro_internal.h"
+
+#include <math.h>
+
+enum { COOKIE = 0x52415447 };
+
+imk_rate_gyro imk_rate_gyro_default(void)
+{
+    /* w0 = 2 pi 30 Hz and a ratio of 0.7: I = k/w0^2, c = 1.4 k/w0. The repeatability is 0.02
+     * deg/s, the instability 0.002 deg/s, the noise 0.02 deg/sqrt(h), the scale -200 ppm/K. */
+    return (imk_rate_gyro){
+        .cookie = COOKIE,
+        .momentum = 1e-3,
+        .output_inertia = 2.25e-6,
+        .input_inertia = 2.2e-6,
+        .spin_inertia = 2.5e-6,
+        .stiffness = 0.08,
+        .stiffness_temperature = 2e-4,
+        .damping = 5.94e-4,
+        .stop = IMKI_PI / 60.0, /* 3 deg */
+        .balance = {0.03, 3e-8, 5e-8, 2e-8, 3e-8},
+        .torque = {2e-7, 5e-9, 3.5e-7, 3.5e-8, 5.8e-9},
+        .pickoff_noise = 1e-8,
+    };
+}
+
+static const imk_design_field fields[] = {
+    {"wheel.momentum", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, momentum), "kg*m^2/s", 0.0, 1e3,
+     true, NULL, "angular momentum of the wheel"},
+    {"wheel.momentum_error", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, momentum_error), "ppm",
+     -0.5, 0.5, false, NULL, "relative error of the wheel's speed"},
+    {"gimbal.output_inertia", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, output_inertia), "kg*m^2",
+     0.0, 10.0, true, NULL, "inertia of gimbal and wheel about the output axis"},
+    {"gimbal.input_inertia", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, input_inertia), "kg*m^2",
+     0.0, 10.0, true, NULL, "inertia of gimbal and wheel about the input axis"},
+    {"gimbal.spin_inertia", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, spin_inertia), "kg*m^2", 0.0,
+     10.0, true, NULL, "inertia of gimbal and wheel about the spin axis"},
+    {"spring.stiffness", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, stiffness), "N*m/rad", 0.0, 1e6,
+     true, NULL, "stiffness of the torsion bar"},
+    {"spring.error", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, stiffness_error), "ppm", -0.5, 0.5,
+     false, NULL, "relative error of the stiffness"},
+    {"spring.temperature", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, stiffness_temperature),
+     "ppm/K", -2e-3, 2e-3, false, NULL, "relative change of the stiffness with temperature"},
+    {"gimbal.damping", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, damping), "N*m*s/rad", 0.0, 1e4,
+     false, NULL, "viscous damping of the gimbal"},
+    {"gimbal.friction", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, friction), "N*m", 0.0, 1.0,
+     false, NULL, "Coulomb friction of the gimbal's bearings"},
+    {"gimbal.stop", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, stop), "deg", 0.0, 0.5, true, NULL,
+     "largest angle of the gimbal"},
+    IMKI_BALANCE_FIELDS(imk_rate_gyro),
+    IMKI_TORQUE_FIELDS(imk_rate_gyro),
+    {"pickoff.noise", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, pickoff_noise), "urad/sqrt(Hz)",
+     0.0, 1.0, false, NULL, "white noise of the angle pickoff, two-sided"},
+    {"pickoff.resolution", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, pickoff_resolution), "urad",
+     0.0, 0.1, false, NULL, "step of the angle pickoff; 0: none"},
+};
+
+imki_gimbal imki_rate_gyro_gimbal(const imk_rate_gyro *d)
+{
+    return imki_gimbal_of(d->momentum * (1.0 + d->momentum_error), d->output_inertia,
+                          d->spin_inertia - d->input_inertia, &d->balance);
+}
+
+double imki_rate_gyro_stiffness(const imk_rate_gyro *d)
+{
+    return d->stiffness * (1.0 + d->stiffness_error);
+}
+
+/* ---- closed forms ---------------------------------------------------------------------------- */
+
+double imk_rate_gyro_sensitivity(const imk_rate_gyro *d)
+{
+    return d->momentum * (1.0 + d->momentum_error) / imki_rate_gyro_stiffness(d);
+}
+
+double imk_rate_gyro_natural_frequency(const imk_rate_gyro *d)
+{
+    return sqrt(imki_rate_gyro_stiffness(d) / d->output_inertia);
+}
+
+double imk_rate_gyro_damping_ratio(const imk_rate_gyro *d)
+{
+    return 0.5 * d->damping / sqrt(imki_rate_gyro_stiffness(d) * d->output_inertia);
+}
+
+double imk_rate_gyro_bandwidth(const imk_rate_gyro *d)
+{
+    const double z = imk_rate_gyro_damping_ratio(d), m = 1.0 - 2.0 * z * z;
+    const double root = sqrt(m * m + 1.0);
+    const double ratio = m > 0.0 ? m + root : 1.0 / (root - m); /* no cancellation either way */
+    return imk_rate_gyro_natural_frequency(d) / (2.0 * IMKI_PI) * sqrt(ratio);
+}
+
+double imk_rate_gyro_cubic(const imk_rate_gyro *d)
+{
+    const double s = imk_rate_gyro_sensitivity(d);
+    return (d->spin_inertia - d->input_inertia) / imki_rate_gyro_stiffness(d) - 0.5 * s * s;
+}
+
+static double torque_noise(const imk_rate_gyro *d)
+{
+    const double thermal = imk_thermal_torque(d->damping);
+    return sqrt(thermal * thermal + d->torque.noise * d->torque.noise);
+}
+
+double imk_rate_gyro_random_walk(const imk_rate_gyro *d)
+{
+    const double reading = d->stiffness / d->momentum; /* per angle */
+    const double torque = torque_noise(d) / imki_rate_gyro_stiffness(d);
+    return reading * sqrt(torque * torque + d->pickoff_noise * d->pickoff_noise);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+imk_status imk_rate_gyro_validate(const imk_rate_gyro *d, imk_error *error)
+{
+    if (d->cookie != COOKIE)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "rate_gyro", NULL,
+                             "a design made by imk_rate_gyro_default()");
+    const imk_status status = imk_design_check(&imk_rate_gyro_instrument, d, error);
+    if (status != IMK_OK)
+        return status;
+    if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "gimbal.output_inertia",
+                                  d->output_inertia, d->input_inertia + d->spin_inertia,
+                                  "moments of inertia none of which exceeds the sum of the others");
+    const double range = d->stop / imk_rate_gyro_sensitivity(d);
+    const double softening = (d->spin_inertia - d->input_inertia) * range * range;
+    if (!(softening < imki_rate_gyro_stiffness(d)))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "spring.stiffness", d->stiffness,
+                                  softening, "a spring that holds against the anisoinertia");
+    return IMK_OK;
+}
+
+/* ---- error model ----------------------------------------------------------------------------- */
+
+void imk_rate_gyro_reduce(const imk_rate_gyro *d, imk_model *model)
+{
+    imk_triad *triad = imki_reduction_begin(model, &imk_rate_gyro_instrument);
+    const imki_gimbal gimbal = imki_rate_gyro_gimbal(d);
+    const double reading = d->stiffness / d->momentum; /* per angle [rad/s/rad] */
+    const double stiffness = imki_rate_gyro_stiffness(d), per_torque = reading / stiffness;
+    const double gain = (1.0 + d->momentum_error) / (1.0 + d->stiffness_error);
+    imki_reduce_torques(&d->torque, &gimbal, per_torque, triad);
+    triad->scale_factor.fixed.value[0] = gain - 1.0;
+    imki_reduce_scale_temperature(-d->stiffness_temperature, triad);
+    /* With th0 = M/k the angle is th0 + s w (1 - (th0 + s w)^2/2) + D w^2 (th0 + s w)/k,
+     * D = Iz - Ix. */
+    const double s = imk_rate_gyro_sensitivity(d), th0 = d->torque.fixed / stiffness;
+    triad->cross_axis.value[0][2] = -gain * th0; /* the input axis turns away with the gimbal */
+    triad->nonlinearity.k3.value[0] = gain * imk_rate_gyro_cubic(d);
+    triad->nonlinearity.k2.value[0] =
+        reading * th0 * (gimbal.inertia_difference / stiffness - s * s);
+    triad->noise.white.value[0] = imk_rate_gyro_random_walk(d);
+    triad->bandwidth.value[0] = imk_rate_gyro_bandwidth(d);
+    const double z = imk_rate_gyro_damping_ratio(d);
+    triad->damping.value[0] = z < 0.05 ? 0.05 : z > 50.0 ? 50.0 : z;
+    triad->range.value[0] = reading * d->stop;
+    triad->dead_band.value[0] = d->friction * per_torque;
+    triad->resolution.value[0] = reading * d->pickoff_resolution;
+}
+
+/* ---- description ----------------------------------------------------------------------------- */
+
+static const imk_signal outputs[] = {
+    {"angular_rate", "rad/s", "deg/s", "measured rate about x, the mean over the sample"}};
+
+static const imk_signal signals[IMKI_RATE_GYRO_SIGNALS] = {
+    {"gimbal_angle", "rad", "deg", "angle of the gimbal against the case"},
+    {"gimbal_rate", "rad/s", "deg/s", "rate of the gimbal against the case"},
+    {"error_torque", "N*m", "uNm", "slow error torque on the gimbal"},
+    {"spring_torque", "N*m", "uNm", "torque of the torsion bar"}};
+
+static const imk_view views[] = {
+    {.title = "Gimbal angle after the rate begins",
+     .caption = "The gimbal swings to the angle at which the torsion bar balances the gyroscopic "
+                "torque; the "
+                "damper decides how often it overshoots.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {0},
+     .duration = 0.2,
+     .rate = 2000.0,
+     .input = 10.0 * IMKI_PI / 180.0},
+    {.title = "Phase portrait of the gimbal",
+     .caption = "Rate against angle: a spiral into the balance, an ellipse without a damper.",
+     .x = 0,
+     .curve_count = 1,
+     .y = {1},
+     .duration = 0.2,
+     .rate = 4000.0,
+     .input = 10.0 * IMKI_PI / 180.0},
+};
+
+static void set_default(void *design)
+{
+    *(imk_rate_gyro *)design = imk_rate_gyro_default();
+}
+
+static imk_status validate(const void *design, imk_error *error)
+{
+    return imk_rate_gyro_validate(design, error);
+}
+
+static void reduce(const void *design, imk_model *model)
+{
+    imk_rate_gyro_reduce(design, model);
+}
+
+const imk_instrument imk_rate_gyro_instrument = {
+    .name = "rate_gyro",
+    .title = "spring-restrained rate gyro",
+    .technology = "",
+    .source = "figures chosen, of the size of miniature torsion-bar rate gyros; see rate_gyro.h",
+    .sensor = IMK_GYRO,
+    .design_size = sizeof(imk_rate_gyro),
+    .state_size = sizeof(imki_rate_gyro_state),
+    IMKI_TABLES,
+    .set_default = set_default,
+    .validate = validate,
+    .init = imki_rate_gyro_init,
+    .step = imki_rate_gyro_step,
+    .observe = imki_rate_gyro_observe,
+    .reduce = reduce,
+    .step_length = imki_rate_gyro_step_length};

@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The floated rate-integrating gyro: design, closed forms and error model. The dynamics are in
+ * rate_integrating_gyro_dynamics.c. */
+#include "rate_integrating_gyro_internal.h"
+
+#include <math.h>
+
+enum { COOKIE = 0x52494721 };
+
+typedef imk_rate_integrating_gyro design_of; /* short, for the table */
+
+imk_rate_integrating_gyro imk_rate_integrating_gyro_default(void)
+{
+    /* Gain H/C of 1, time constant 1.6 ms. 1 arcsec/h is 1.3467e-9 rad/s: the repeatability is 4,
+     * the instability 1 of them times H. Noise 1e-4 deg/sqrt(h). */
+    return (imk_rate_integrating_gyro){
+        .cookie = COOKIE,
+        .momentum = 0.04,
+        .output_inertia = 6.4e-5,
+        .input_inertia = 6.2e-5,
+        .spin_inertia = 7e-5,
+        .damping = 0.04,
+        .stop = IMKI_PI / 180.0, /* 1 deg */
+        .balance = {0.3, 2e-9, 3e-9, 2e-9, 2.5e-9},
+        .torque = {1e-9, 2e-12, 2.1547e-10, 5.3867e-11, 1.1636e-9},
+        .pickoff_noise = 1e-10,
+        .rebalance = IMK_REBALANCE_ANALOG,
+        .torquer_limit = 0.0215,
+        .torquer_temperature = 1e-5,
+        .pulse_frequency = 6400.0,
+        .pulse_lead = 1.6e-3,
+        .loop_frequency = 4.0,
+        .loop_damping = 2.5, /* a peak of 4 % */
+    };
+}
+
+static const imk_design_field fields[] = {
+    {"wheel.momentum", IMK_DESIGN_NUMBER, offsetof(design_of, momentum), "kg*m^2/s", 1e-8, 1e3,
+     false, NULL, "angular momentum of the wheel"},
+    {"wheel.momentum_error", IMK_DESIGN_NUMBER, offsetof(design_of, momentum_error), "ppm", -0.5,
+     0.5, false, NULL, "relative error of the wheel's speed"},
+    {"float.output_inertia", IMK_DESIGN_NUMBER, offsetof(design_of, output_inertia), "kg*m^2", 0.0,
+     10.0, true, NULL, "inertia of the float about the output axis"},
+    {"float.input_inertia", IMK_DESIGN_NUMBER, offsetof(design_of, input_inertia), "kg*m^2", 0.0,
+     10.0, true, NULL, "inertia of the float about the input axis"},
+    {"float.spin_inertia", IMK_DESIGN_NUMBER, offsetof(design_of, spin_inertia), "kg*m^2", 0.0,
+     10.0, true, NULL, "inertia of the float about the spin axis"},
+    {"float.damping", IMK_DESIGN_NUMBER, offsetof(design_of, damping), "N*m*s/rad", 0.0, 1e4, true,
+     NULL, "viscous damping by the liquid"},
+    {"float.stiffness", IMK_DESIGN_NUMBER, offsetof(design_of, stiffness), "N*m/rad", 0.0, 1e3,
+     false, NULL, "spring of the flex leads"},
+    {"float.stop", IMK_DESIGN_NUMBER, offsetof(design_of, stop), "deg", 0.0, 0.5, true, NULL,
+     "largest angle of the float"},
+    IMKI_BALANCE_FIELDS(design_of),
+    IMKI_TORQUE_FIELDS(design_of),
+    {"pickoff.noise", IMK_DESIGN_NUMBER, offsetof(design_of, pickoff_noise), "nrad/sqrt(Hz)", 0.0,
+     1.0, false, NULL, "white noise of the angle pickoff, two-sided"},
+    {"pickoff.resolution", IMK_DESIGN_NUMBER, offsetof(design_of, pickoff_resolution), "urad", 0.0,
+     0.1, false, NULL, "step of the angle pickoff, read in the open loop; 0: none"},
+    {"rebalance", IMK_DESIGN_CHOICE, offsetof(design_of, rebalance), "1", 0.0, 3.0, false,
+     "open|analog|ternary|binary", "how the torquer brings the float back"},
+    {"torquer.limit", IMK_DESIGN_NUMBER, offsetof(design_of, torquer_limit), "N*m", 0.0, 100.0,
+     true, NULL, "largest torque, and that of the pulses"},
+    {"torquer.error", IMK_DESIGN_NUMBER, offsetof(design_of, torquer_error), "ppm", -0.5, 0.5,
+     false, NULL, "relative error of the torque per current"},
+    {"torquer.temperature", IMK_DESIGN_NUMBER, offsetof(design_of, torquer_temperature), "ppm/K",
+     -2e-3, 2e-3, false, NULL, "relative change of the torque per current with temperature"},
+    {"pulse.frequency", IMK_DESIGN_NUMBER, offsetof(design_of, pulse_frequency), "Hz", 0.0, 1e7,
+     true, NULL, "torque pulses per second"},
+    {"pulse.lead", IMK_DESIGN_NUMBER, offsetof(design_of, pulse_lead), "ms", 0.0, 10.0, false, NULL,
+     "lead of the pulse logic against the lag of the float"},
+    {"loop.frequency", IMK_DESIGN_NUMBER, offsetof(design_of, loop_frequency), "Hz", 0.0, 1e5, true,
+     NULL, "natural frequency of the analog loop"},
+    {"loop.damping", IMK_DESIGN_NUMBER, offsetof(design_of, loop_damping), "1", 0.0, 50.0, true,
+     NULL, "damping ratio of the analog loop"},
+};
+
+imki_gimbal imki_rate_integrating_gyro_gimbal(const imk_rate_integrating_gyro *d)
+{
+    return imki_gimbal_of(d->momentum * (1.0 + d->momentum_error), d->output_inertia,
+                          d->spin_inertia - d->input_inertia, &d->balance);
+}
+
+/* ---- closed forms ---------------------------------------------------------------------------- */
+
+double imk_rate_integrating_gyro_gain(const imk_rate_integrating_gyro *d)
+{
+    return d->momentum * (1.0 + d->momentum_error) / d->damping;
+}
+
+double imk_rate_integrating_gyro_time_constant(const imk_rate_integrating_gyro *d)
+{
+    return d->output_inertia / d->damping;
+}
+
+double imk_rate_integrating_gyro_range(const imk_rate_integrating_gyro *d)
+{
+    return d->torquer_limit / d->momentum;
+}
+
+double imk_rate_integrating_gyro_pulse(const imk_rate_integrating_gyro *d)
+{
+    return d->torquer_limit / (d->momentum * d->pulse_frequency);
+}
+
+void imk_rate_integrating_gyro_loop(const imk_rate_integrating_gyro *d, double *proportional,
+                                    double *integral)
+{
+    const double w = 2.0 * IMKI_PI * d->loop_frequency;
+    *proportional = 2.0 * d->loop_damping * w * d->damping;
+    *integral = w * w * d->damping;
+}
+
+/* What the reading has more than the torques on the float, as a factor. */
+static double torquer_gain(const imk_rate_integrating_gyro *d)
+{
+    return d->rebalance == IMK_REBALANCE_OPEN ? 1.0 : 1.0 / (1.0 + d->torquer_error);
+}
+
+double imk_rate_integrating_gyro_random_walk(const imk_rate_integrating_gyro *d)
+{
+    const double thermal = imk_thermal_torque(d->damping);
+    return sqrt(thermal * thermal + d->torque.noise * d->torque.noise) / d->momentum *
+           torquer_gain(d);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+imk_status imk_rate_integrating_gyro_validate(const imk_rate_integrating_gyro *d, imk_error *error)
+{
+    double k1, k2;
+    if (d->cookie != COOKIE)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "rate_integrating_gyro", NULL,
+                             "a design made by imk_rate_integrating_gyro_default()");
+    const imk_status status = imk_design_check(&imk_rate_integrating_gyro_instrument, d, error);
+    if (status != IMK_OK)
+        return status;
+    if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "float.output_inertia",
+                                  d->output_inertia, d->input_inertia + d->spin_inertia,
+                                  "moments of inertia none of which exceeds the sum of the others");
+    imk_rate_integrating_gyro_loop(d, &k1, &k2);
+    /* Routh: C (K1 + k) > I K2, with the gain of the torquer in both */
+    if (d->rebalance == IMK_REBALANCE_ANALOG &&
+        !(d->damping * (k1 + d->stiffness / (1.0 + d->torquer_error)) > d->output_inertia * k2)) {
+        const double highest = d->loop_frequency * d->damping * k1 / (d->output_inertia * k2);
+        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "loop.frequency", d->loop_frequency,
+                                  highest, "a loop slow enough for the lag I/C of the float");
+    }
+    return IMK_OK;
+}
+
+/* ---- error model ----------------------------------------------------------------------------- */
+
+/* |T/(H w)|^2 at the frequency w. */
+static double closed_loop_power(const void *design, double w)
+{
+    const imk_rate_integrating_gyro *d = design;
+    double k1, k2;
+    imk_rate_integrating_gyro_loop(d, &k1, &k2);
+    k1 *= 1.0 + d->torquer_error;
+    k2 *= 1.0 + d->torquer_error;
+    const double real = k2 - d->damping * w * w;
+    const double imaginary = (k1 + d->stiffness - d->output_inertia * w * w) * w;
+    return (k2 * k2 + k1 * k1 * w * w) / (real * real + imaginary * imaginary);
+}
+
+void imk_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *d, imk_model *model)
+{
+    imk_triad *triad = imki_reduction_begin(model, &imk_rate_integrating_gyro_instrument);
+    const imki_gimbal gimbal = imki_rate_integrating_gyro_gimbal(d);
+    const double gain = torquer_gain(d), scale = (1.0 + d->momentum_error) * gain;
+    const bool open = d->rebalance == IMK_REBALANCE_OPEN;
+    double step = 0.0;
+    imki_reduce_torques(&d->torque, &gimbal, gain / d->momentum, triad);
+    triad->scale_factor.fixed.value[0] = scale - 1.0;
+    if (!open) /* 1/(1 + e + a dT): -a/(1 + e) relative */
+        imki_reduce_scale_temperature(-gain * d->torquer_temperature, triad);
+    triad->noise.white.value[0] = imk_rate_integrating_gyro_random_walk(d);
+    if (open) {
+        step = d->pickoff_resolution * d->damping / d->momentum;
+        triad->bandwidth.value[0] =
+            1.0 / (2.0 * IMKI_PI * imk_rate_integrating_gyro_time_constant(d));
+    } else {
+        triad->range.value[0] = imk_rate_integrating_gyro_range(d);
+    }
+    if (d->rebalance == IMK_REBALANCE_ANALOG)
+        imki_reduce_response(closed_loop_power, d, 2.0 * IMKI_PI * d->loop_frequency, triad);
+    else if (!open)
+        step =
+            imk_rate_integrating_gyro_pulse(d) * (d->rebalance == IMK_REBALANCE_BINARY ? 2.0 : 1.0);
+    triad->noise.quantization.value[0] = step / sqrt(12.0);
+}
+
+/* ---- description ----------------------------------------------------------------------------- */
+
+static const imk_signal outputs[] = {
+    {"angular_rate", "rad/s", "deg/s", "measured rate about x, the mean over the sample"}};
+
+static const imk_signal signals[IMKI_RATE_INTEGRATING_GYRO_SIGNALS] = {
+    {"float_angle", "rad", "arcsec", "angle of the float against the case"},
+    {"float_rate", "rad/s", "deg/s", "rate of the float against the case"},
+    {"error_torque", "N*m", "uNm", "slow error torque on the float"},
+    {"torquer_torque", "N*m", "mNm", "torque that the torquer is told to give"},
+    {"stored_angle", "rad", "arcsec", "case angle that the float holds, (C th + I th')/H"}};
+
+static const imk_view views[] = {
+    {.title = "Float angle after the rate begins",
+     .caption = "The float starts to turn with the rate of the case, and the loop brings it back "
+                "while its "
+                "integral takes over the torque.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {0},
+     .duration = 0.2,
+     .rate = 3200.0,
+     .input = 10.0 * IMKI_PI / 180.0},
+    {.title = "Torquer and float",
+     .caption =
+         "The torque that the loop asks for: smooth in the analog loop, pulses in the others.",
+     .x = -1,
+     .curve_count = 1,
+     .y = {3},
+     .duration = 0.1,
+     .rate = 6400.0,
+     .input = 10.0 * IMKI_PI / 180.0},
+};
+
+static void set_default(void *design)
+{
+    *(imk_rate_integrating_gyro *)design = imk_rate_integrating_gyro_default();
+}
+
+static imk_status validate(const void *design, imk_error *error)
+{
+    return imk_rate_integrating_gyro_validate(design, error);
+}
+
+static void reduce(const void *design, imk_model *model)
+{
+    imk_rate_integrating_gyro_reduce(design, model);
+}
+
+const imk_instrument imk_rate_integrating_gyro_instrument = {
+    .name = "rate_integrating_gyro",
+    .title = "floated rate-integrating gyro",
+    .technology = "",
+    .source =
+        "drift of the floated gyros in R. A. Harris, Navigation 21 (1974); dimensions chosen, see "
+        "rate_integrating_gyro.h",
+    .sensor = IMK_GYRO,
+    .design_size = sizeof(imk_rate_integrating_gyro),
+    .state_size = sizeof(imki_rate_integrating_gyro_state),
+    IMKI_TABLES,
+    .set_default = set_default,
+    .validate = validate,
+    .init = imki_rate_integrating_gyro_init,
+    .step = imki_rate_integrating_gyro_step,
+    .observe = imki_rate_integrating_gyro_observe,
+    .reduce = reduce,
+    .step_length = imki_rate_integrating_gyro_step_length};

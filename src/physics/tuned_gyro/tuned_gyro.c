@@ -1,0 +1,363 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The dynamically tuned gyro: design, closed forms and error model. The rotor and its loop are in
+ * tuned_gyro_rotor.c, the instrument's steps in tuned_gyro_dynamics.c. */
+#include "tuned_gyro_internal.h"
+
+#include <math.h>
+
+enum { COOKIE = 0x44544721 };
+
+imk_tuned_gyro imk_tuned_gyro_default(void)
+{
+    /* Damping: H/(N d) of 100 s. Torques: 0.05 deg/h fixed, 0.001
+     * deg/h/K, 0.03 deg/h repeatability, 0.005 deg/h instability, 0.002 deg/sqrt(h), times H. */
+    imk_tuned_gyro d = {
+        .cookie = COOKIE,
+        .spin_frequency = 200.0,
+        .axial_inertia = 8e-6,
+        .transverse_inertia = 4.6e-6,
+        .gimbal_inertia_x = 1e-7,
+        .gimbal_inertia_y = 1e-7,
+        .gimbal_inertia_z = 1.6e-7,
+        .hinge_damping = 8e-8,
+        .mass = 0.04,
+        .axial_offset = 1e-7,
+        .quadrature_offset = 2e-8,
+        .axial_compliance = 3e-8,
+        .radial_compliance = 2.5e-8,
+        .torque = {2.46e-9, 4.9e-11, 1.48e-9, 2.46e-10, 5.9e-9},
+        .pickoff_noise = 1e-9,
+        .pickoff_offset_x = 1e-5,
+        .pickoff_offset_y = 1e-5,
+        .pickoff_range = 0.01,
+        .torquer_limit = 0.0177,
+        .torquer_temperature = 2e-5,
+        .captured = true,
+        .loop_frequency = 4.0,
+        .loop_damping = 2.5, /* a peak of 4 % */
+        .loop_filter = 120.0,
+    };
+    /* Equal flexures with P D = Q^2 (see ellipse_at() below): P (P + b) = (J N^2)^2. */
+    const double speed = 2.0 * IMKI_PI * d.spin_frequency, dynamic = 4e-8 * speed * speed;
+    const double b = 4.0 * (d.axial_inertia - 2.0 * d.transverse_inertia) * speed * speed;
+    const double p = -2.0 * dynamic * dynamic / (sqrt(b * b + 4.0 * dynamic * dynamic) - b);
+    d.stiffness_x = d.stiffness_y = 0.5 * (dynamic + p);
+    return d;
+}
+
+#define AT(member) offsetof(imk_tuned_gyro, member)
+
+static const imk_design_field fields[] = {
+    {"wheel.spin_frequency", IMK_DESIGN_NUMBER, AT(spin_frequency), "Hz", 0.1, 1e4, false, NULL,
+     "turns of the shaft per second"},
+    {"wheel.speed_error", IMK_DESIGN_NUMBER, AT(speed_error), "ppm", -0.5, 0.5, false, NULL,
+     "relative error of the speed"},
+    {"rotor.axial_inertia", IMK_DESIGN_NUMBER, AT(axial_inertia), "kg*m^2", 1e-12, 10.0, false,
+     NULL, "inertia of the rotor about its axis"},
+    {"rotor.transverse_inertia", IMK_DESIGN_NUMBER, AT(transverse_inertia), "kg*m^2", 0.0, 10.0,
+     true, NULL, "inertia of the rotor across its axis"},
+    {"gimbal.inertia_x", IMK_DESIGN_NUMBER, AT(gimbal_inertia_x), "kg*m^2", 0.0, 10.0, true, NULL,
+     "inertia of the gimbal about the flexures of the shaft"},
+    {"gimbal.inertia_y", IMK_DESIGN_NUMBER, AT(gimbal_inertia_y), "kg*m^2", 0.0, 10.0, true, NULL,
+     "inertia of the gimbal about the flexures of the rotor"},
+    {"gimbal.inertia_z", IMK_DESIGN_NUMBER, AT(gimbal_inertia_z), "kg*m^2", 0.0, 10.0, true, NULL,
+     "inertia of the gimbal about the shaft"},
+    {"hinge.stiffness_x", IMK_DESIGN_NUMBER, AT(stiffness_x), "N*m/rad", 0.0, 1e4, true, NULL,
+     "stiffness between shaft and gimbal"},
+    {"hinge.stiffness_y", IMK_DESIGN_NUMBER, AT(stiffness_y), "N*m/rad", 0.0, 1e4, true, NULL,
+     "stiffness between gimbal and rotor"},
+    {"hinge.damping", IMK_DESIGN_NUMBER, AT(hinge_damping), "N*m*s/rad", 0.0, 1.0, false, NULL,
+     "damping of either pair of flexures"},
+    {"rotor.mass", IMK_DESIGN_NUMBER, AT(mass), "kg", 0.0, 100.0, true, NULL, "mass of the rotor"},
+    {"rotor.axial_offset", IMK_DESIGN_NUMBER, AT(axial_offset), "nm", -1e-3, 1e-3, false, NULL,
+     "centre of mass from the joint, along the shaft"},
+    {"rotor.quadrature_offset", IMK_DESIGN_NUMBER, AT(quadrature_offset), "nm", -1e-3, 1e-3, false,
+     NULL, "effective offset of the torque that is along the force"},
+    {"rotor.axial_compliance", IMK_DESIGN_NUMBER, AT(axial_compliance), "nm/N", 0.0, 1e-3, false,
+     NULL, "shift of the rotor per force along the shaft"},
+    {"rotor.radial_compliance", IMK_DESIGN_NUMBER, AT(radial_compliance), "nm/N", 0.0, 1e-3, false,
+     NULL, "shift of the rotor per force across the shaft"},
+    IMKI_TORQUE_FIELDS(imk_tuned_gyro),
+    {"pickoff.noise", IMK_DESIGN_NUMBER, AT(pickoff_noise), "nrad/sqrt(Hz)", 0.0, 1.0, false, NULL,
+     "white noise of the tilt pickoffs, two-sided"},
+    {"pickoff.offset_x", IMK_DESIGN_NUMBER, AT(pickoff_offset_x), "urad", -0.1, 0.1, false, NULL,
+     "reading without tilt about x"},
+    {"pickoff.offset_y", IMK_DESIGN_NUMBER, AT(pickoff_offset_y), "urad", -0.1, 0.1, false, NULL,
+     "reading without tilt about y"},
+    {"pickoff.range", IMK_DESIGN_NUMBER, AT(pickoff_range), "mrad", 0.0, 0.5, true, NULL,
+     "largest tilt that is read"},
+    {"torquer.limit", IMK_DESIGN_NUMBER, AT(torquer_limit), "N*m", 0.0, 100.0, true, NULL,
+     "largest torque of the torquers"},
+    {"torquer.error", IMK_DESIGN_NUMBER, AT(torquer_error), "ppm", -0.5, 0.5, false, NULL,
+     "relative error of the torque per current"},
+    {"torquer.temperature", IMK_DESIGN_NUMBER, AT(torquer_temperature), "ppm/K", -2e-3, 2e-3, false,
+     NULL, "relative change of the torque per current with temperature"},
+    {"loop.captured", IMK_DESIGN_SWITCH, AT(captured), "1", 0.0, 1.0, false, NULL,
+     "the loop keeps the rotor in line with the shaft"},
+    {"loop.frequency", IMK_DESIGN_NUMBER, AT(loop_frequency), "Hz", 0.0, 1e4, true, NULL,
+     "natural frequency of the loop"},
+    {"loop.damping", IMK_DESIGN_NUMBER, AT(loop_damping), "1", 0.0, 50.0, true, NULL,
+     "damping ratio of the loop"},
+    {"loop.filter", IMK_DESIGN_NUMBER, AT(loop_filter), "Hz", 0.0, 1e5, true, NULL,
+     "corner of the filter of the pickoffs"},
+};
+
+/* ---- closed forms ---------------------------------------------------------------------------- */
+
+static double gimbal_sum(const imk_tuned_gyro *d)
+{
+    return d->gimbal_inertia_x + d->gimbal_inertia_y - d->gimbal_inertia_z;
+}
+
+/* A rotor that stands tilted in the case moves at the frequency N in the axes of the shaft, on an
+ * ellipse: the sum of a circle backwards, the steady tilt a = th_x - i th_y, and one forwards, b,
+ * which is a motion at 2N in the case. For steady torque t = T_x - i T_y and rate w = w_x - i w_y
+ * the equations of tuned_gyro.h give
+ *
+ *     P a + Q b = 2 t - i (2 C + j) N w,   Q a + D b = -i j N w
+ *     P = kx + ky - J N^2 + 2 i d N,   Q = kx - ky - J N^2,   D = P + 4 (C - 2A) N^2
+ *
+ * with j = Ag - Bg + Cg. Hence t = K a + i H w with K = (P - Q^2/D)/2 and
+ * H = N (C + j/2 - j Q/(2D)); d is left out of D. */
+typedef struct ellipse {
+    double p, q, d;
+} ellipse;
+
+static ellipse ellipse_at(const imk_tuned_gyro *d, double speed)
+{
+    const double square = speed * speed, dynamic = gimbal_sum(d) * square;
+    ellipse e;
+    e.p = d->stiffness_x + d->stiffness_y - dynamic;
+    e.q = d->stiffness_x - d->stiffness_y - dynamic;
+    e.d = e.p + 4.0 * (d->axial_inertia - 2.0 * d->transverse_inertia) * square;
+    return e;
+}
+
+static double spring_at(const imk_tuned_gyro *d, double speed)
+{
+    const ellipse e = ellipse_at(d, speed);
+    return 0.5 * (e.p - e.q * e.q / e.d);
+}
+
+double imk_tuned_gyro_first_speed(const imk_tuned_gyro *d)
+{
+    return sqrt((d->stiffness_x + d->stiffness_y) / gimbal_sum(d));
+}
+
+/* The spring falls with the speed. */
+double imk_tuned_gyro_tuned_speed(const imk_tuned_gyro *d)
+{
+    double low = 0.5 * imk_tuned_gyro_first_speed(d), high = 4.0 * low;
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        if (spring_at(d, middle) > 0.0)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+double imk_tuned_gyro_speed(const imk_tuned_gyro *d)
+{
+    return 2.0 * IMKI_PI * d->spin_frequency * (1.0 + d->speed_error);
+}
+
+double imk_tuned_gyro_momentum(const imk_tuned_gyro *d, double speed)
+{
+    const ellipse e = ellipse_at(d, speed);
+    const double j = d->gimbal_inertia_x - d->gimbal_inertia_y + d->gimbal_inertia_z;
+    return speed * (d->axial_inertia + 0.5 * j * (1.0 - e.q / e.d));
+}
+
+double imk_tuned_gyro_residual_spring(const imk_tuned_gyro *d)
+{
+    return spring_at(d, imk_tuned_gyro_speed(d));
+}
+
+double imk_tuned_gyro_time_constant(const imk_tuned_gyro *d)
+{
+    const double speed = imk_tuned_gyro_speed(d);
+    return imk_tuned_gyro_momentum(d, speed) / (speed * d->hinge_damping);
+}
+
+double imk_tuned_gyro_figure_of_merit(const imk_tuned_gyro *d)
+{
+    return d->axial_inertia / gimbal_sum(d);
+}
+
+double imk_tuned_gyro_nutation(const imk_tuned_gyro *d)
+{
+    return imk_tuned_gyro_momentum(d, imk_tuned_gyro_speed(d)) /
+           (d->transverse_inertia + 0.5 * d->gimbal_inertia_x);
+}
+
+/* The half of the vibration that turns forwards, W, drives the ellipse's forward circle:
+ * D b = i N W (2 (C - 2A) - J), and 2 t = Q b + i N W J. */
+double imk_tuned_gyro_vibration_drift(const imk_tuned_gyro *d)
+{
+    const double speed = imk_tuned_gyro_speed(d), sum = gimbal_sum(d);
+    const ellipse e = ellipse_at(d, speed);
+    const double forward = 2.0 * (d->axial_inertia - 2.0 * d->transverse_inertia) - sum;
+    return 0.25 * speed * fabs(e.q * forward / e.d + sum) / imk_tuned_gyro_momentum(d, speed);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static imk_status refuse(imk_error *error, const char *field, double value, double limit,
+                         const char *expected)
+{
+    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
+}
+
+imk_status imk_tuned_gyro_validate(const imk_tuned_gyro *d, imk_error *error)
+{
+    if (d->cookie != COOKIE)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "tuned_gyro", NULL,
+                             "a design made by imk_tuned_gyro_default()");
+    const imk_status status = imk_design_check(&imk_tuned_gyro_instrument, d, error);
+    if (status != IMK_OK)
+        return status;
+    if (!(d->axial_inertia <= 2.0 * d->transverse_inertia))
+        return refuse(error, "rotor.axial_inertia", d->axial_inertia, 2.0 * d->transverse_inertia,
+                      "at most twice the transverse inertia, as of every body");
+    if (!(d->axial_inertia > d->transverse_inertia))
+        return refuse(error, "rotor.axial_inertia", d->axial_inertia, d->transverse_inertia,
+                      "a flat rotor: a long one does not turn steadily about its axis");
+    if (!imki_inertias_possible(d->gimbal_inertia_x, d->gimbal_inertia_y, d->gimbal_inertia_z))
+        return refuse(error, "gimbal.inertia_z", d->gimbal_inertia_z,
+                      d->gimbal_inertia_x + d->gimbal_inertia_y,
+                      "moments of inertia none of which exceeds the sum of the others");
+    if (!(gimbal_sum(d) > 0.0))
+        return refuse(error, "gimbal.inertia_z", d->gimbal_inertia_z,
+                      d->gimbal_inertia_x + d->gimbal_inertia_y,
+                      "a gimbal that nods against the springs: inertia_z below the sum of the "
+                      "others, or no speed tunes it");
+    if (!(2.0 * (2.0 * d->transverse_inertia - d->axial_inertia) > gimbal_sum(d)))
+        return refuse(error, "rotor.transverse_inertia", d->transverse_inertia,
+                      0.5 * d->axial_inertia + 0.25 * gimbal_sum(d),
+                      "a nutation well below twice the speed of the shaft, where the gimbal drives "
+                      "it");
+    if (d->captured && !imki_capture_loop_stable(d, imki_tuned_gyro_longest_step(d)))
+        return refuse(error, "loop.frequency", d->loop_frequency, d->loop_filter,
+                      "a loop that drives neither itself nor the nutation: lower it, and put its "
+                      "filter between it and the nutation");
+    return IMK_OK;
+}
+
+/* ---- error model ----------------------------------------------------------------------------- */
+
+/* |G|^2 of G = L/(1 + L), L = F (2 z w s + w^2)/s^2, F the Butterworth filter. */
+static double loop_power(const void *design, double w)
+{
+    const imk_tuned_gyro *d = design;
+    const double w0 = 2.0 * IMKI_PI * d->loop_frequency, wf = 2.0 * IMKI_PI * d->loop_filter;
+    /* G = wf^2 (2 z w0 s + w0^2)/[s^2 (s^2 + sqrt2 wf s + wf^2) + wf^2 (2 z w0 s + w0^2)] */
+    const double real = wf * wf * w0 * w0, imaginary = wf * wf * 2.0 * d->loop_damping * w0 * w;
+    const double below_real = real - w * w * (wf * wf - w * w);
+    const double below_imaginary = imaginary - w * w * sqrt(2.0) * wf * w;
+    return (real * real + imaginary * imaginary) /
+           (below_real * below_real + below_imaginary * below_imaginary);
+}
+
+void imk_tuned_gyro_reduce(const imk_tuned_gyro *d, imk_model *model)
+{
+    imk_triad *triad = imki_reduction_begin(model, &imk_tuned_gyro_instrument);
+    const double speed = imk_tuned_gyro_speed(d);
+    const double nominal = imk_tuned_gyro_momentum(d, speed / (1.0 + d->speed_error));
+    const double momentum = imk_tuned_gyro_momentum(d, speed);
+    const double torquer = 1.0 / (1.0 + d->torquer_error);
+    const double scale = d->captured ? momentum / nominal * torquer : 1.0;
+    const double per_torque = scale / momentum;
+    const double thermal = imk_thermal_torque(d->hinge_damping);
+    const double compliance = d->axial_compliance - d->radial_compliance;
+    const imki_gimbal gimbal = {.moment_z = d->mass * d->axial_offset,
+                                .anisoelastic = d->mass * d->mass * compliance};
+    imki_reduce_torques(&d->torque, &gimbal, per_torque, triad);
+    triad->g_sensitivity.value[0][1] = d->mass * d->quadrature_offset * per_torque;
+    triad->scale_factor.fixed.value[0] = scale - 1.0;
+    triad->noise.white.value[0] =
+        sqrt(thermal * thermal + d->torque.noise * d->torque.noise) * per_torque;
+    if (!d->captured)
+        return;
+    triad->bias.fixed.value[0] += (imk_tuned_gyro_residual_spring(d) * d->pickoff_offset_y -
+                                   speed * d->hinge_damping * d->pickoff_offset_x) *
+                                  per_torque;
+    triad->misalignment.value[0][2] = scale * d->pickoff_offset_y;
+    imki_reduce_scale_temperature(-torquer * d->torquer_temperature, triad);
+    triad->range.value[0] = d->torquer_limit / nominal;
+    imki_reduce_response(loop_power, d, 2.0 * IMKI_PI * d->loop_frequency, triad);
+}
+
+/* ---- description ----------------------------------------------------------------------------- */
+
+static const imk_signal outputs[] = {
+    {"angular_rate", "rad/s", "deg/s", "measured rate about x, the mean over the sample"},
+    {"angular_rate_y", "rad/s", "deg/s", "measured rate about y, the mean over the sample"}};
+
+static const imk_signal signals[IMKI_TUNED_GYRO_SIGNALS] = {
+    {"tilt_x", "rad", "arcsec", "tilt of the rotor about x"},
+    {"tilt_y", "rad", "arcsec", "tilt of the rotor about y"},
+    {"hinge_1", "rad", "arcsec", "angle of the flexures of the shaft"},
+    {"hinge_2", "rad", "arcsec", "angle of the flexures of the rotor"},
+    {"command_x", "rad/s", "deg/s", "rate about x that the loop asks for"},
+    {"command_y", "rad/s", "deg/s", "rate about y that the loop asks for"}};
+
+static const imk_view views[] = {
+    {.title = "Rotor after the rate begins",
+     .caption = "The rotor is left behind by the case, nutates, and the loop brings it back.",
+     .x = -1,
+     .curve_count = 2,
+     .y = {0, 1},
+     .duration = 0.1,
+     .rate = 6400.0,
+     .input = 10.0 * IMKI_PI / 180.0},
+    {.title = "Path of the rotor",
+     .caption = "Tilt about y against tilt about x: nutation on the way back.",
+     .x = 0,
+     .curve_count = 1,
+     .y = {1},
+     .duration = 0.1,
+     .rate = 12800.0,
+     .input = 10.0 * IMKI_PI / 180.0},
+    {.title = "What the flexures see",
+     .caption = "Angles of the two pairs of flexures, in axes that turn with the shaft.",
+     .x = -1,
+     .curve_count = 2,
+     .y = {2, 3},
+     .duration = 0.05,
+     .rate = 12800.0,
+     .input = 10.0 * IMKI_PI / 180.0},
+};
+
+static void set_default(void *design)
+{
+    *(imk_tuned_gyro *)design = imk_tuned_gyro_default();
+}
+
+static imk_status validate(const void *design, imk_error *error)
+{
+    return imk_tuned_gyro_validate(design, error);
+}
+
+static void reduce(const void *design, imk_model *model)
+{
+    imk_tuned_gyro_reduce(design, model);
+}
+
+const imk_instrument imk_tuned_gyro_instrument = {
+    .name = "tuned_gyro",
+    .title = "dynamically tuned gyro",
+    .technology = "",
+    .source = "figures chosen, of the size of small strapdown tuned gyros; see tuned_gyro.h",
+    .sensor = IMK_GYRO,
+    .design_size = sizeof(imk_tuned_gyro),
+    .state_size = sizeof(imki_tuned_gyro_state),
+    IMKI_TABLES,
+    .set_default = set_default,
+    .validate = validate,
+    .init = imki_tuned_gyro_init,
+    .step = imki_tuned_gyro_step,
+    .observe = imki_tuned_gyro_observe,
+    .reduce = reduce,
+    .step_length = imki_tuned_gyro_step_length};
