@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The command `imukit`, and the manual pages and shell completion it writes about itself.
 
-file(GLOB cli_sources CONFIGURE_DEPENDS cli/*.c)
+file(GLOB_RECURSE cli_sources CONFIGURE_DEPENDS cli/*.c)
 if(NOT cli_sources)
   return()
 endif()
@@ -9,9 +9,11 @@ endif()
 list(FILTER cli_sources EXCLUDE REGEX "/campaign_run(_mpi)?\\.c$")
 pkg_check_modules(jansson REQUIRED IMPORTED_TARGET jansson)
 add_library(imukit-command-objects OBJECT ${cli_sources})
+target_include_directories(imukit-command-objects PRIVATE cli)
 target_link_libraries(imukit-command-objects PRIVATE imukit-io PkgConfig::jansson)
 target_compile_options(imukit-command-objects PRIVATE ${imukit_seldom_run})
-add_executable(imukit-command $<TARGET_OBJECTS:imukit-command-objects> cli/campaign_run.c)
+add_executable(imukit-command $<TARGET_OBJECTS:imukit-command-objects> cli/campaign/campaign_run.c)
+target_include_directories(imukit-command PRIVATE cli)
 set_target_properties(imukit-command PROPERTIES OUTPUT_NAME imukit)
 target_link_libraries(imukit-command PRIVATE imukit-io PkgConfig::jansson m)
 
@@ -21,7 +23,8 @@ elseif(IMUKIT_MPI)
   find_package(MPI REQUIRED COMPONENTS C)
 endif()
 if(IMUKIT_MPI AND MPI_C_FOUND)
-  add_executable(imukit-mpi $<TARGET_OBJECTS:imukit-command-objects> cli/campaign_run_mpi.c)
+  add_executable(imukit-mpi $<TARGET_OBJECTS:imukit-command-objects> cli/campaign/campaign_run_mpi.c)
+  target_include_directories(imukit-mpi PRIVATE cli)
   target_link_libraries(imukit-mpi PRIVATE imukit-io PkgConfig::jansson MPI::MPI_C m)
 endif()
 

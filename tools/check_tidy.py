@@ -60,7 +60,7 @@ class Texts:
     def read(self, file):
         if file not in self.text:
             self.text[file] = file.read_text(encoding="utf-8")
-            places = [file.parent, pathlib.Path("include"), pathlib.Path("src")]
+            places = [file.parent, *map(pathlib.Path, ["include", "src", "cli"])]
             found = [next((place / name for place in places if (place / name).exists()), None)
                      for name in INCLUDE.findall(self.text[file])]
             self.included[file] = [path for path in found if path]
@@ -92,7 +92,7 @@ def stale(files, deep):
         analyzer = f"max-nodes={225000 if deep else 10000}"
         if not defines.search(texts.read(file)): # a function has one body
             analyzer += f",model-path={MODELS}"
-        flags = ["-std=c17", "-Iinclude", "-Isrc", *WARNINGS, *flags,
+        flags = ["-std=c17", "-Iinclude", "-Isrc", "-Icli", *WARNINGS, *flags,
                  "-Xclang", "-analyzer-config", "-Xclang", analyzer]
         whole = "\0".join([*flags, texts.all_of(file)]).encode()
         key = hashlib.sha256(version + rules + whole).hexdigest()

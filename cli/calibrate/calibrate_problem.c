@@ -1,0 +1,509 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From the options and the logs to a solution: what is known before, what each log adds, and the
+ * one estimate of all of them together. */
+#include "calibrate_parts.h"
+#include "shell/place_text.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Room for this many observations and turns at first; as many again while that is too little. */
+enum { CAPACITY = 1024, CAPACITY_MAX = 1 << 20 };
+
+/* Where the accelerometers' own axes are the frame, those of a table are others: the mounting of
+ * the unit is then estimated, from nothing known within this [rad]. */
+static const double loose_mounting = 0.1;
+
+bool bench_is_known(imk_procedure procedure)
+{
+    return procedure != IMK_PROCEDURE_MULTIPOSITION && procedure != IMK_PROCEDURE_THERMAL;
+}
+
+/* ---- what is known before -------------------------------------------------------------------- */
+
+/* "415 count/(m/s^2)": one number, or one for each axis. */
+static int parse_counts(const char *option_name, const char *text, const char *unit, int axes,
+                        double *value)
+{
+    double read[IMK_AXES_MAX], sigma[IMK_AXES_MAX];
+    size_t count = 0;
+    imk_error error;
+    const imk_status status =
+        imk_quantity_parse(text, text + strlen(text), imk_unit_of(unit).dimension, IMK_AXES_MAX,
+                           read, sigma, &count, NULL, &error);
+    if (status != IMK_OK || (count != 1 && count != (size_t)axes))
+        return command_misused("--%s \"%s\": expected one number, or one for each of %d axes, with "
+                               "a unit such as %s",
+                               option_name, text, axes, unit);
+    for (int i = 0; i < axes; i++)
+        value[i] = read[count == 1 ? 0 : i];
+    return -1;
+}
+
+static int apply_counts(const calibrate_options *o, int sensor, imk_triad *triad)
+{
+    static const char *const units[2] = {"count/(rad/s)", "count/(m/s^2)"};
+    static const char *const sensitivity[2] = {"gyro-sensitivity", "accel-sensitivity"};
+    static const char *const zero[2] = {"gyro-zero", "accel-zero"};
+    int code = -1;
+    if (o->sensitivity[sensor])
+        code = parse_counts(sensitivity[sensor], o->sensitivity[sensor], units[sensor],
+                            triad->axis_count, triad->sensitivity.value);
+    if (code < 0 && o->zero_offset[sensor])
+        code = parse_counts(zero[sensor], o->zero_offset[sensor], "count", triad->axis_count,
+                            triad->zero_offset.value);
+    for (int i = 0; code < 0 && i < triad->axis_count; i++) {
+        if (o->sensitivity[sensor] && triad->sensitivity.value[i] == 0)
+            return command_misused("--%s: a sensitivity of 0 makes no counts", sensitivity[sensor]);
+        if (triad->zero_offset.value[i] != 0 && triad->sensitivity.value[i] == 0)
+            return command_misused("--%s needs --%s", zero[sensor], sensitivity[sensor]);
+    }
+    return code;
+}
+
+/* Counts per unit say nothing about readings that have a unit. */
+static int check_counts(const bench *b, int sensor, bool counts)
+{
+    static const char *const names[2] = {"gyro", "accel"};
+    const calibrate_options *o = b->options;
+    if (counts || (!o->sensitivity[sensor] && !o->zero_offset[sensor]))
+        return -1;
+    return command_misused("--%s-%s is for readings in counts, and those of %s have a unit",
+                           names[sensor], o->sensitivity[sensor] ? "sensitivity" : "zero",
+                           b->log[0].path);
+}
+
+/* Axes of the logs; a model that is given must have them. */
+static int match_axes(bench *b, imk_model *model, bool given)
+{
+    static const char *const names[2] = {"gyro", "accelerometer"};
+    imk_triad *triad[2] = {&model->gyro, &model->accel};
+    for (int sensor = 0; sensor < 2; sensor++) {
+        int axes = 0;
+        bool counts = false;
+        for (size_t k = 0; k < b->log_count; k++) {
+            const imk_test_record *record = &b->log[k].record;
+            const int here = record->axis_count[sensor];
+            if (here > 0 && axes > 0 && here != axes)
+                return command_failed("%s has %d %s axes and the others have %d", b->log[k].path,
+                                      here, names[sensor], axes);
+            if (here > 0 && axes > 0 && counts != record->counts[sensor])
+                return command_failed("%s: its %s readings are in counts and those of other logs "
+                                      "are not, or the reverse",
+                                      b->log[k].path, names[sensor]);
+            axes = here > 0 ? here : axes;
+            counts = here > 0 ? record->counts[sensor] : counts;
+        }
+        const int code = axes > 0 ? check_counts(b, sensor, counts) : -1;
+        if (code >= 0)
+            return code;
+        if (given && axes > 0 && (!triad[sensor]->present || triad[sensor]->axis_count != axes))
+            return command_failed("%s has %d %s axes, the log has %d: they cannot be matched",
+                                  b->options->into ? b->options->into : b->options->model,
+                                  triad[sensor]->present ? triad[sensor]->axis_count : 0,
+                                  names[sensor], axes);
+        if (!given) {
+            triad[sensor]->present = axes > 0;
+            triad[sensor]->axis_count = axes > 0 ? axes : 3;
+            for (int i = 3; i < axes; i++)
+                triad[sensor]->direction[i][i % 3] = 1;
+        }
+        b->nominal[sensor] = counts && triad[sensor]->sensitivity.value[0] == 0;
+    }
+    return -1;
+}
+
+int bench_known_before(bench *b)
+{
+    const calibrate_options *o = b->options;
+    imk_model *model = &b->calibration->model;
+    const char *given = o->into ? o->into : o->model;
+    int code = given ? command_model(given, model, o->into ? &b->document : NULL) : -1;
+    if (code < 0 && given && model->residual_of[0])
+        code = command_failed("%s is what is left after compensating with \"%s\": to calibrate "
+                              "again, take the log before it was compensated, and that model with "
+                              "--into",
+                              given, model->residual_of);
+    for (int sensor = 0; code < 0 && sensor < 2; sensor++)
+        code = apply_counts(o, sensor, sensor == 0 ? &model->gyro : &model->accel);
+    if (code < 0)
+        code = match_axes(b, model, given != NULL);
+    b->before = *model;
+    return code;
+}
+
+/* Gravity and the Earth's rotation. */
+static int set_place(bench *b)
+{
+    const calibrate_options *o = b->options;
+    imk_calibration *c = b->calibration;
+    int code = o->position ? place_parse(o->position, &b->place) : -1;
+    if (code >= 0)
+        return code;
+    b->place_known = o->position != NULL;
+    if (b->place_known) {
+        c->latitude = b->place.latitude;
+        c->gravity = imk_normal_gravity(b->place.latitude, b->place.height);
+    }
+    if (!isnan(o->gravity)) {
+        if (!(o->gravity > 9.5 && o->gravity < 10.1))
+            return command_misused("--gravity %.6g m/s^2: expected 9.5 to 10.1 m/s^2, which is "
+                                   "what there is on Earth",
+                                   o->gravity);
+        c->gravity = o->gravity;
+    }
+    if (o->no_earth)
+        c->earth_rate = 0;
+    return -1;
+}
+
+/* Where gravity is the reference, its amount is the scale of the accelerometers. */
+static void warn_of_gravity(const bench *b)
+{
+    bool needed = false;
+    for (size_t k = 0; k < b->log_count; k++)
+        needed = needed || (b->log[k].record.axis_count[1] > 0 &&
+                            b->log[k].procedure < IMK_PROCEDURE_RATE_TABLE);
+    if (needed && !b->place_known && isnan(b->options->gravity))
+        command_warn("gravity",
+                     "the place is not known: gravity is taken as %.5f m/s^2, that of 45 deg and "
+                     "sea level, and differs from it by up to 0.3 %%, which goes into the scale "
+                     "factors; add --position \"48.1 deg, 11.6 deg, 520 m\" or --gravity "
+                     "9.80780m/s^2",
+                     b->calibration->gravity);
+}
+
+/* ---- procedures ------------------------------------------------------------------------------ */
+
+static int procedure_of(const char *name, size_t length, bench *b, size_t log)
+{
+    const char *names[IMK_PROCEDURES + 1];
+    char given[40];
+    snprintf(given, sizeof given, "%.*s", (int)(length < 39 ? length : 39), name);
+    for (int p = 0; p < IMK_PROCEDURES; p++) {
+        names[p] = imk_procedure_name((imk_procedure)p);
+        if (strcmp(names[p], given) == 0) {
+            b->log[log].procedure = (imk_procedure)p;
+            return -1;
+        }
+    }
+    names[IMK_PROCEDURES] = "repeatability";
+    if (strcmp(given, "repeatability") == 0) {
+        b->repeatability = true;
+        return -1;
+    }
+    const char *nearest = command_nearest(given, IMK_PROCEDURES + 1, names);
+    return command_misused("--procedure %s: there is no such procedure%s%s%s; there are "
+                           "multiposition, sixposition, ferraris, rate-table, tumble, centrifuge, "
+                           "spin, thermal and repeatability",
+                           given, nearest ? " (did you mean " : "", nearest ? nearest : "",
+                           nearest ? "?)" : "");
+}
+
+/* One for all logs, or one for each. */
+static int assign_procedures(bench *b)
+{
+    const char *text = b->options->procedure;
+    size_t count = 1;
+    if (!text)
+        return command_misused("what was done is missing: add --procedure multiposition for a unit "
+                               "turned by hand from rest to rest; the others are in imukit "
+                               "calibrate --help");
+    for (const char *c = text; *c; c++)
+        count += *c == ',';
+    if (count != 1 && count != b->log_count)
+        return command_misused("--procedure %s: %zu procedures for %zu log%s; give one for all, or "
+                               "one for each",
+                               text, count, b->log_count, b->log_count == 1 ? "" : "s");
+    for (size_t k = 0; k < b->log_count; k++) {
+        const size_t length = strcspn(text, ",");
+        int code = procedure_of(text, length, b, k);
+        if (code >= 0)
+            return code;
+        if (count > 1)
+            text += length + 1;
+    }
+    if (b->repeatability && count > 1)
+        return command_misused("--procedure: repeatability compares all logs, each of one power "
+                               "cycle; it cannot stand beside another procedure");
+    return -1;
+}
+
+static void set_if(double *target, double value)
+{
+    if (!isnan(value))
+        *target = value;
+}
+
+static int settle(const bench *b, bench_log *log)
+{
+    const calibrate_options *o = b->options;
+    imk_procedure_settings s = imk_procedure_default(log->procedure);
+    set_if(&s.stationary.initial_rest, o->initial_rest);
+    set_if(&s.stationary.window, o->window);
+    set_if(&s.stationary.minimum, o->minimum);
+    set_if(&s.minimum, o->minimum);
+    set_if(&s.placement_sigma, o->placement);
+    if (b->calibration->frame != IMK_FRAME_REFERENCE && bench_is_known(log->procedure))
+        s.fixture_sigma = loose_mounting;
+    set_if(&s.fixture_sigma, o->mounting);
+    set_if(&s.turn_angle, o->turn_angle);
+    set_if(&s.trim, o->trim);
+    set_if(&s.settle, o->settle);
+    set_if(&s.reference_temperature, o->reference_temperature);
+    s.temperature_order = (int)o->temperature_order.value;
+    log->settings = s;
+    return bench_switch_terms(o, log->procedure, &log->settings);
+}
+
+/* Forces on the accelerometers are known, and with them how the triad stands in the housing. */
+static bool knows_force(imk_procedure procedure)
+{
+    return bench_is_known(procedure) && procedure != IMK_PROCEDURE_RATE_TABLE &&
+           procedure != IMK_PROCEDURE_SPIN;
+}
+
+static int choose_frame(bench *b)
+{
+    bool known = false, force = false, gravity = false;
+    for (size_t k = 0; k < b->log_count; k++) {
+        known = known || bench_is_known(b->log[k].procedure);
+        force = force || knows_force(b->log[k].procedure);
+        gravity = gravity || b->log[k].procedure == IMK_PROCEDURE_MULTIPOSITION;
+    }
+    /* A table for the gyros and poses for the accelerometers: the poses fix the frame. */
+    const bool reference = known && (force || !gravity);
+    b->calibration->frame = b->options->frame >= 0 ? (imk_triad_frame)b->options->frame
+                            : reference            ? IMK_FRAME_REFERENCE
+                                                   : IMK_FRAME_UPPER;
+    if (!known && b->calibration->frame == IMK_FRAME_REFERENCE)
+        return command_misused("--frame reference: gravity alone does not tell how the triad "
+                               "stands in the housing; add a log of sixposition, ferraris, tumble "
+                               "or rate-table, or choose upper-triangular, lower-triangular or "
+                               "symmetric");
+    return -1;
+}
+
+/* An option that no procedure looks at was meant for another one. */
+static int check_used(const bench *b)
+{
+    const calibrate_options *o = b->options;
+    bool referenced = false, ferraris = false, thermal = false;
+    for (size_t k = 0; k < b->log_count && !b->repeatability; k++) {
+        const imk_procedure p = b->log[k].procedure;
+        ferraris = ferraris || p == IMK_PROCEDURE_FERRARIS;
+        thermal = thermal || p == IMK_PROCEDURE_THERMAL;
+        referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
+                     p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
+    }
+    const char *none = "--%s is not used by --procedure %s: it is of %s";
+    if (o->motion && !referenced && !thermal)
+        return command_misused(none, "motion", o->procedure,
+                               "rate-table, tumble, centrifuge, spin and thermal");
+    if (o->motion_offset && !o->motion)
+        return command_misused("--motion-offset is of --motion");
+    if (o->table_axis >= 0 && !referenced)
+        return command_misused(none, "table-axis", o->procedure, "rate-table");
+    if (!isnan(o->turn_angle) && !ferraris)
+        return command_misused(none, "turn-angle", o->procedure, "ferraris");
+    if (o->temperature_order.given && !thermal)
+        return command_misused(none, "temperature-order", o->procedure, "thermal");
+    if (!isnan(o->reference_temperature) && !thermal)
+        return command_misused(none, "reference-temperature", o->procedure, "thermal");
+    return -1;
+}
+
+int bench_choose(bench *b)
+{
+    imk_calibration_default(b->calibration);
+    b->calibration->robust = b->options->robust == 0;
+    int code = assign_procedures(b);
+    if (code < 0)
+        code = check_used(b);
+    if (code < 0)
+        code = set_place(b);
+    if (code < 0)
+        code = choose_frame(b);
+    for (size_t k = 0; code < 0 && k < b->log_count; k++)
+        code = settle(b, &b->log[k]);
+    return code;
+}
+
+int bench_prepare(bench *b)
+{
+    int code = bench_choose(b);
+    if (code < 0 && b->options->motion) {
+        imk_error error;
+        const imk_geodetic *place = b->place_known ? &b->place : NULL;
+        if (imk_motion_read(b->options->motion, NULL, place, 1, &b->motion, &error) != IMK_OK)
+            code = command_error(&error, b->options->motion);
+    }
+    for (size_t k = 0; code < 0 && k < b->log_count; k++) {
+        code = bench_load(b, &b->log[k]);
+        if (code < 0)
+            code = bench_reference(b, &b->log[k]);
+    }
+    if (code < 0)
+        code = bench_known_before(b);
+    if (code < 0 && !b->repeatability)
+        warn_of_gravity(b);
+    if (code < 0 && b->options->estimate)
+        code = bench_free_terms(b);
+    return code;
+}
+
+/* ---- logs ------------------------------------------------------------------------------------ */
+
+/* Where it stands still: for the doubts, the table of poses and the plot. */
+static int detect(const bench *b, bench_log *log)
+{
+    enum { INTERVALS = 256 };
+    imk_error error;
+    const imk_model *model = &b->calibration->model;
+    const size_t size = imk_static_workspace_size(&log->record, &log->settings.stationary);
+    void *workspace = malloc(size > 0 ? size : 1);
+    const bool drawn = b->options->plot || b->options->report;
+    size_t capacity = INTERVALS;
+    imk_status status = IMK_ERROR_MEMORY;
+    if (drawn)
+        log->activity = command_memory(NULL, log->record.count * sizeof *log->activity);
+    for (int attempt = 0; workspace && attempt < 2; attempt++) {
+        free(log->interval);
+        log->interval = malloc(capacity * sizeof *log->interval);
+        if (!log->interval)
+            break;
+        status = imk_static_detect(&log->record, &log->settings.stationary, model, workspace, size,
+                                   log->interval, capacity, &log->interval_count, log->activity,
+                                   &log->stationary, &error);
+        if (status != IMK_OK || log->interval_count <= capacity)
+            break;
+        capacity = log->interval_count;
+    }
+    free(workspace);
+    if (status == IMK_ERROR_MEMORY)
+        return command_failed("memory is exhausted");
+    if (status == IMK_OK) {
+        log->doubt_count =
+            imk_record_doubts(&log->record, &log->stationary, log->interval_count, log->interval,
+                              b->calibration->gravity, model, BENCH_DOUBTS_MAX, log->doubt);
+        doubts_of_named_holds(log);
+        return -1;
+    }
+    /* A log too short for holds may still do for a table. */
+    log->interval_count = 0;
+    log->stationary.window = 0;
+    free(log->activity);
+    log->activity = NULL;
+    return bench_is_known(log->procedure) ? -1 : bench_observe_failed(b, log, &error);
+}
+
+static bool grow(imk_calibration *c)
+{
+    size_t capacity = c->observation_capacity > 0 ? 2 * c->observation_capacity : CAPACITY;
+    imk_observation *observation = realloc(c->observation, capacity * sizeof *observation);
+    if (!observation)
+        return false;
+    c->observation = observation;
+    imk_turn *turn = realloc(c->turn, capacity * sizeof *turn);
+    if (!turn)
+        return false;
+    c->turn = turn;
+    c->observation_capacity = c->turn_capacity = capacity;
+    return true;
+}
+
+static bool wants_room(imk_status status, const imk_error *error, const imk_calibration *c)
+{
+    return status == IMK_ERROR_WORKSPACE && strcmp(error->field, "workspace") != 0 &&
+           c->observation_capacity < CAPACITY_MAX;
+}
+
+/* The findings of the thermal procedure, for the table; the problem has been given its part. */
+static int look_at_temperature(const bench *b, bench_log *log)
+{
+    imk_error error;
+    imk_thermal_settings settings = imk_thermal_default();
+    const size_t size = imk_thermal_workspace_size();
+    void *workspace = malloc(size);
+    log->thermal = calloc(1, sizeof *log->thermal);
+    settings.reference_temperature = log->settings.reference_temperature;
+    settings.order = log->settings.temperature_order > 0 ? log->settings.temperature_order : -1;
+    imk_status status = IMK_ERROR_MEMORY;
+    if (workspace && log->thermal)
+        status = imk_thermal_analyse(&log->record, &settings, &b->calibration->model, workspace,
+                                     size, log->thermal, &error);
+    free(workspace);
+    if (status == IMK_ERROR_MEMORY)
+        return command_failed("memory is exhausted");
+    if (status == IMK_OK)
+        return -1;
+    /* Several poses: nothing can be said about each by itself. */
+    free(log->thermal);
+    log->thermal = NULL;
+    return status == IMK_ERROR_CONFLICT ? -1 : bench_observe_failed(b, log, &error);
+}
+
+int bench_observe(bench *b, bench_log *log)
+{
+    imk_error error;
+    imk_calibration *c = b->calibration;
+    int code = detect(b, log);
+    if (code >= 0)
+        return code;
+    const size_t size = imk_procedure_workspace_size(log->procedure, &log->record, &log->settings);
+    void *workspace = malloc(size);
+    imk_status status = IMK_ERROR_MEMORY;
+    if (workspace && (c->observation || grow(c)))
+        do
+            status = imk_procedure_observe(log->procedure, c, &log->record, &log->settings,
+                                           b->options->estimate != NULL, workspace, size,
+                                           &log->findings, &error);
+        while (wants_room(status, &error, c) && grow(c));
+    free(workspace);
+    if (status == IMK_ERROR_MEMORY)
+        return command_failed("memory is exhausted");
+    if (status != IMK_OK)
+        return bench_observe_failed(b, log, &error);
+    return log->procedure == IMK_PROCEDURE_THERMAL ? look_at_temperature(b, log) : -1;
+}
+
+/* ---- solution -------------------------------------------------------------------------------- */
+
+/* Sensitivities that were found are names for what the parameters are relative to: short ones do
+ * as well. */
+static void shorten_nominal(bench *b)
+{
+    imk_triad *triad[2] = {&b->calibration->model.gyro, &b->calibration->model.accel};
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int i = 0; b->nominal[sensor] && i < triad[sensor]->axis_count; i++) {
+            double *s = &triad[sensor]->sensitivity.value[i];
+            double *zero = &triad[sensor]->zero_offset.value[i];
+            if (*s == 0 || !isfinite(*s))
+                continue;
+            const double step = pow(10, floor(log10(fabs(*s))) - 3);
+            *s = step < 1 ? floor(*s / step + 0.5) / (1 / step) : floor(*s / step + 0.5) * step;
+            *zero = floor(*zero + 0.5);
+        }
+}
+
+int bench_solve(bench *b)
+{
+    imk_error error;
+    shorten_nominal(b);
+    const size_t size = imk_calibration_workspace_size(b->calibration);
+    void *workspace = malloc(size > 0 ? size : 1);
+    b->result = malloc(sizeof *b->result);
+    imk_status status = IMK_ERROR_MEMORY;
+    if (workspace && b->result)
+        status = imk_calibration_solve(b->calibration, workspace, size, b->result, &error);
+    free(workspace);
+    if (status == IMK_OK) {
+        b->doubt_count = imk_solution_doubts(b->calibration, b->result, BENCH_DOUBTS_MAX, b->doubt);
+        return -1;
+    }
+    free(b->result);
+    b->result = NULL;
+    return status == IMK_ERROR_MEMORY ? command_failed("memory is exhausted")
+                                      : bench_solve_failed(b, &error);
+}

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit convert: parameter files of kalibr, Gazebo and others become models, and models such
+ * files. */
+#include "convert_parameters.h"
+
+#include "shell/json_output.h"
+
+#include "imukit/model_file.h"
+#include "imukit/parameter_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Position 0 is what is in force when the option is not given. The names stand in the order of
+ * imk_parameter_format and imk_density. */
+static const char formats[] =
+    "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
+static const char target_formats[] =
+    "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
+
+const option parameter_option_table[PARAMETER_OPTIONS] = {
+    {"from", 0, OPTION_CHOICE, "FORMAT", NULL, formats,
+     "of the parameter file read; default: by its content", offsetof(parameter_options, from)},
+    {"to", 0, OPTION_CHOICE, "FORMAT", NULL, target_formats,
+     "of the parameter file written; default: a model file", offsetof(parameter_options, to)},
+    {"density", 0, OPTION_CHOICE, "SIDES", NULL, "as-the-program|two-sided|one-sided",
+     "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)",
+     offsetof(parameter_options, density)},
+    {"sensor", 0, OPTION_TEXT, "NAME", NULL, NULL, "which of several in the parameter file",
+     offsetof(parameter_options, sensor)},
+    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print what was assumed and left out as JSON",
+     offsetof(parameter_options, json)},
+    {"flicker", 0, OPTION_CHOICE, "CHOICE", NULL,
+     "random-walk|gauss-markov|two-gauss-markov|left-out",
+     "--to filter: what stands for bias instability, which no filter state is",
+     offsetof(parameter_options, flicker)},
+    {"tau-from", 0, OPTION_QUANTITY, "TIME", "s", "1e-9..1e9",
+     "--to filter: shortest averaging time at which that has to hold; default 1 s",
+     offsetof(parameter_options, tau_from)},
+    {"tau-to", 0, OPTION_QUANTITY, "TIME", "s", "1e-9..1e9",
+     "--to filter: the longest; default 1000 s", offsetof(parameter_options, tau_to)},
+};
+
+/* Does the name end in one of these? */
+static bool has_ending(const char *path, size_t count, const char *const *endings)
+{
+    size_t length = strlen(path);
+    for (size_t i = 0; i < count; i++) {
+        size_t end = strlen(endings[i]);
+        if (length > end && strcmp(path + length - end, endings[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+bool parameters_or_model(const char *path)
+{
+    static const char *const endings[] = {".yaml", ".yml", ".json"};
+    return has_ending(path, sizeof endings / sizeof endings[0], endings);
+}
+
+static bool only_parameters(const char *path)
+{
+    static const char *const endings[] = {".m",     ".sdf",    ".xml",   ".urdf",
+                                          ".world", ".params", ".param", ".parm"};
+    return has_ending(path, sizeof endings / sizeof endings[0], endings);
+}
+
+int parameters_wanted(const parameter_options *options, const char *in, bool model_due,
+                      bool *wanted)
+{
+    imk_error error;
+    imk_parameter_format format;
+    *wanted = options->from > 0 || options->to > 0;
+    const bool named = only_parameters(in) || parameters_or_model(in);
+    if (*wanted || !(named || model_due)) /* logs are not looked into */
+        return -1;
+    const imk_status status = imk_parameter_format_detect(in, &format, &error);
+    if (status == IMK_ERROR_UNSUPPORTED && !named) /* too long: a log */
+        return -1;
+    if (status != IMK_OK)
+        return command_error(&error, in);
+    *wanted = format != IMK_PARAMETERS_UNKNOWN || only_parameters(in);
+    return -1;
+}
+
+/* What was left out is a warning; what was assumed is worth a line. */
+static void print_notes(const imk_parameter_notes *notes)
+{
+    for (size_t i = 0; i < notes->count; i++) {
+        const char *text = notes->note[i].text;
+        if (notes->note[i].lost)
+            command_warn("lost", "%s", text);
+        else
+            fprintf(stderr, "imukit convert: note: %s\n", text);
+    }
+}
+
+static void add_notes(json_t *list, const imk_parameter_notes *notes)
+{
+    for (size_t i = 0; i < notes->count; i++)
+        json_array_append_new(list, json_pack("{s:s, s:o}", "kind",
+                                              notes->note[i].lost ? "lost" : "assumed", "text",
+                                              json_text(notes->note[i].text)));
+}
+
+/* What the two halves of a conversion have to say. */
+typedef struct conversion_notes {
+    imk_parameter_notes read, written;
+} conversion_notes;
+
+static int print_json(const parameter_options *o, imk_parameter_format from, const char *in,
+                      const char *out, const conversion_notes *notes)
+{
+    json_t *list = json_array();
+    add_notes(list, &notes->read);
+    add_notes(list, &notes->written);
+    const char *source = imk_parameter_format_name(from);
+    const char *target = imk_parameter_format_name((imk_parameter_format)o->to);
+    json_t *inputs =
+        json_pack("{s:o, s:s}", "file", json_text(in), "format", source ? source : "model");
+    json_t *result = json_pack("{s:o, s:s, s:o}", "file", json_text(out), "format",
+                               target ? target : "model", "notes", list);
+    return json_print("convert", inputs, result, EXIT_DONE);
+}
+
+static int read_source(const parameter_options *o, const imk_parameter_settings *settings,
+                       const char *in, imk_model *model, imk_parameter_format *format,
+                       imk_parameter_notes *notes)
+{
+    imk_error error;
+    imk_parameter_settings reading = *settings;
+    reading.format = (imk_parameter_format)o->from;
+    if (o->from == 0 && imk_parameter_format_detect(in, &reading.format, &error) != IMK_OK)
+        return command_error(&error, in);
+    *format = reading.format;
+    const bool is_model = reading.format == IMK_PARAMETERS_UNKNOWN && !only_parameters(in);
+    if (is_model && o->sensor)
+        return command_misused("--sensor is of a parameter file with several, and %s is a model",
+                               in);
+    if (is_model)
+        return command_model(in, model, NULL);
+    if (imk_parameters_read(in, &reading, model, notes, &error) != IMK_OK)
+        return command_log_error(&error, in);
+    return -1;
+}
+
+static int write_target(const parameter_options *o, const imk_parameter_settings *settings,
+                        const char *in, const char *out, const imk_model *model,
+                        imk_parameter_notes *notes)
+{
+    imk_error error;
+    imk_parameter_settings writing = *settings;
+    writing.format = (imk_parameter_format)o->to;
+    writing.sensor = NULL;
+    if (o->to == 0)
+        return imk_model_write(out, model, NULL, &error) == IMK_OK ? -1
+                                                                   : command_error(&error, NULL);
+    imk_status status = imk_parameters_write(out, &writing, model, notes, &error);
+    if (status == IMK_OK)
+        return -1;
+    bool of_output = status == IMK_ERROR_OPEN || status == IMK_ERROR_WRITE;
+    return command_log_error(&error, of_output ? NULL : in);
+}
+
+int convert_parameters(const parameter_options *options, double rate, const char *in,
+                       const char *out)
+{
+    imk_parameter_settings settings = imk_parameter_settings_default();
+    settings.rate = rate;
+    settings.density = (imk_density)options->density;
+    settings.sensor = options->sensor;
+    settings.filter.flicker = (imk_filter_flicker)options->flicker;
+    if (options->tau_from > 0)
+        settings.filter.from = options->tau_from;
+    if (options->tau_to > 0)
+        settings.filter.to = options->tau_to;
+    if (!(settings.filter.from <= settings.filter.to))
+        return command_misused("--tau-from %g s is later than --tau-to %g s", settings.filter.from,
+                               settings.filter.to);
+    if (options->json && strcmp(out, "-") == 0)
+        return command_misused("--json and the file would both go to standard output");
+    imk_model *model = malloc(sizeof *model);
+    conversion_notes *notes = calloc(1, sizeof *notes);
+    imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
+    if (!model || !notes) {
+        free(model);
+        free(notes);
+        return command_failed("memory is exhausted");
+    }
+    int code = read_source(options, &settings, in, model, &format, &notes->read);
+    if (code < 0)
+        code = write_target(options, &settings, in, out, model, &notes->written);
+    if (code < 0) {
+        print_notes(&notes->read);
+        print_notes(&notes->written);
+        code = options->json ? print_json(options, format, in, out, notes) : EXIT_DONE;
+    }
+    free(notes);
+    free(model);
+    return code;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parameter files of other programs: the part of `convert` that turns them into models and back. */
+#ifndef IMUKIT_CONVERT_PARAMETERS_H
+#define IMUKIT_CONVERT_PARAMETERS_H
+
+#include "shell/command.h"
+
+typedef struct parameter_options {
+    int from, to; /* imk_parameter_format; 0: not given */
+    int density;  /* imk_density; 0: not given */
+    const char *sensor;
+    bool json;
+    int flicker;             /* imk_filter_flicker */
+    double tau_from, tau_to; /* [s]; 0: not given */
+} parameter_options;
+
+enum { PARAMETER_OPTIONS = 8 };
+extern const option parameter_option_table[PARAMETER_OPTIONS];
+
+/* By its name: a parameter file, or a model file. */
+bool parameters_or_model(const char *path);
+
+/* Is this a conversion of parameters: by the options, or by what the file holds?
+ * @param model_due  a log cannot become what is written, so that any file is looked into
+ * @return -1 or the exit code, the message printed */
+int parameters_wanted(const parameter_options *options, const char *in, bool model_due,
+                      bool *wanted);
+
+/* @param rate  [Hz], 0: not given. @return the exit code, messages printed */
+int convert_parameters(const parameter_options *options, double rate, const char *in,
+                       const char *out);
+
+#endif

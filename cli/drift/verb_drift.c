@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit drift: how far off a navigator will be, which term is to blame, and how good it must
+ * become. */
+#include "campaign/campaign_run.h"
+#include "drift_parts.h"
+
+#include "imukit/thread_pool.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const option navigation_option_table[] = {
+    {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
+     "how long; default: 24h, with --motion its length, with --want its time",
+     offsetof(drift_options, duration)},
+    {"times", 0, OPTION_TEXT, "TIMES", NULL, NULL,
+     "when to look instead, such as \"1min, 10min, 1h\"", offsetof(drift_options, times)},
+    {"aligned", 0, OPTION_CHOICE, "HOW", NULL, "given|self",
+     "given (the default): the attitude at the start is true, but for --initial-attitude; self: "
+     "the unit finds it at rest from its own readings",
+     offsetof(drift_options, aligned)},
+    {"align-time", 0, OPTION_QUANTITY, "TIME", "s", NULL, "length of that alignment; default 300s",
+     offsetof(drift_options, align_time)},
+    {"initial-attitude", 0, OPTION_TEXT, "ANGLES", NULL, NULL,
+     "1 sigma of the error at the start: \"0.05 deg\", or about north, east and down, \"0.01 0.01 "
+     "0.1 deg\"; default 0",
+     offsetof(drift_options, initial_attitude)},
+    {"initial-velocity", 0, OPTION_TEXT, "SPEEDS", NULL, NULL, "likewise, \"0.1 m/s\"; default 0",
+     offsetof(drift_options, initial_velocity)},
+    {"initial-position", 0, OPTION_TEXT, "LENGTHS", NULL, NULL, "likewise, \"10 m\"; default 0",
+     offsetof(drift_options, initial_position)},
+    {"vertical", 0, OPTION_CHOICE, "HOW", NULL, "slaved|free",
+     "slaved (the default): height follows the truth, as with a barometer; free: it grows without "
+     "bound",
+     offsetof(drift_options, vertical)},
+    {"compensated", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "beside it the same after calibration: values that the model knows are taken out, their "
+     "uncertainty stays",
+     offsetof(drift_options, compensated)},
+    {"want", 0, OPTION_TEXT, "WISH", NULL, NULL,
+     "the inverse question, \"CEP 1 nmi @ 1h\": what each term must become, and which devices "
+     "would do; also R95, DRMS, height, velocity, tilt, heading",
+     offsetof(drift_options, want)},
+};
+
+static const option place_option_table[] = {
+    {"motion", 'm', OPTION_FILE, "MOTION", NULL, NULL,
+     "a motion script (.yaml) or a table of poses; default: at rest as the options below say",
+     offsetof(drift_options, motion)},
+    {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", NULL, "of the samples; default 100Hz",
+     offsetof(drift_options, rate)},
+    {"latitude", 0, OPTION_QUANTITY, "ANGLE", "deg", "-90..90", "geodetic; default 45deg",
+     offsetof(drift_options, latitude)},
+    {"height", 0, OPTION_QUANTITY, "LENGTH", "m", "-10000..100000",
+     "above the ellipsoid; default 0m", offsetof(drift_options, height)},
+    {"roll", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "default 0deg: level",
+     offsetof(drift_options, roll)},
+    {"pitch", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "default 0deg: level",
+     offsetof(drift_options, pitch)},
+    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "from north to east; default 0deg",
+     offsetof(drift_options, yaw)},
+};
+
+static const option output_option_table[] = {
+    {"monte-carlo", 'n', OPTION_INTEGER, "N", NULL, "1-4294967295",
+     "simulate and navigate so many runs as well, without linearising",
+     offsetof(drift_options, monte_carlo)},
+    {"seed", 's', OPTION_INTEGER, "N", NULL, NULL,
+     "of the runs: the same seed makes the same bytes on every machine; default 1",
+     offsetof(drift_options, seed)},
+    {"shard", 0, OPTION_TEXT, "I/N", NULL, NULL,
+     "only part I of N of the runs, for imukit merge; with -o PART.h5",
+     offsetof(drift_options, shard)},
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
+     "threads to use; default: all processors. The results do not depend on it",
+     offsetof(drift_options, threads)},
+    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
+     "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started again, it "
+     "goes on. Else figures and terms against time (.csv)",
+     offsetof(drift_options, output)},
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+     "draw the growth and the shares of the terms", offsetof(drift_options, plot)},
+    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
+     offsetof(drift_options, report)},
+    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(drift_options, json)},
+};
+
+#define GROUP(title, table)                                                                        \
+    {                                                                                              \
+        title, sizeof(table) / sizeof(table)[0], table, 0                                          \
+    }
+
+static int run(int count, char **words);
+
+const verb drift_verb = {
+    .name = "drift",
+    .summary = "how far off after a minute, an hour, a day, and which term is to blame",
+    .operands = "MODEL... | RESULTS.h5",
+    .operands_minimum = 1,
+    .operands_maximum = DRIFT_MODELS_MAX,
+    .examples =
+        {{"imukit drift tactical --duration 1h --monte-carlo 100",
+          "error growth of a class by covariance, with the budget of its terms, beside a hundred "
+          "simulated runs"},
+         {"imukit drift model.yaml --aligned self --want \"CEP 1 nmi @ 1h\" --report drift.html",
+          "what each term must become for a mile in an hour, and which devices would do"}},
+    .description =
+        "MODEL is a model file or a name from `imukit devices`; several are compared. The unit "
+        "navigates by itself, at rest or on a motion, and the figures say how far off it is: CEP "
+        "is the radius of the circle that holds half of all outcomes, R95 95 % of them.\n\nValues "
+        "that the model knows (bias.fixed, misalignment) shift every run alike; terms of which a "
+        "size is known (repeatability, noise) scatter. The covariance is linear: ~ marks where "
+        "attitude errors are too large for it.\n\nRESULTS.h5 is what --monte-carlo or imukit merge "
+        "wrote: its statistics are printed.",
+    .groups = {GROUP("Navigation", navigation_option_table),
+               {"Terms", TERM_OPTIONS, term_options, offsetof(drift_options, terms)},
+               GROUP("Motion and place", place_option_table),
+               GROUP("Runs and output", output_option_table)},
+    .run = run};
+
+/* ---- checks ---- */
+
+static bool ends_in(const char *text, const char *ending)
+{
+    const size_t length = strlen(text), size = strlen(ending);
+    return length > size && strcmp(text + length - size, ending) == 0;
+}
+
+static bool is_csv(const char *path)
+{
+    return ends_in(path, ".csv") || ends_in(path, ".csv.gz") || ends_in(path, ".csv.zst");
+}
+
+static int check_runs(const drift_options *o, size_t models)
+{
+    if (models > 1)
+        return command_misused("--monte-carlo is of one model at a time");
+    if (o->shard && !o->output)
+        return command_misused("--shard makes a part for imukit merge: add -o PART.h5");
+    if (o->output && !is_csv(o->output) && command_is_stream(o->output))
+        return command_misused("-o %s: runs are kept in a file beside their results while they are "
+                               "made; give a name ending in .csv or .h5",
+                               o->output);
+    if (o->output && !ends_in(o->output, ".h5") && !is_csv(o->output))
+        return command_misused("-o %s: expected a name ending in .h5, .csv, .csv.gz or .csv.zst",
+                               o->output);
+    return -1;
+}
+
+static int check(const drift_options *o, bool runs, size_t models)
+{
+    int code = command_check_plot(o->plot);
+    if (code < 0 && runs)
+        code = check_runs(o, models);
+    if (code >= 0)
+        return code;
+    if (!runs && o->shard)
+        return command_misused("--shard is a part of --monte-carlo N: add it");
+    if (!runs && o->output && !is_csv(o->output) && !command_is_stream(o->output))
+        return command_misused(
+            "-o %s: figures against time are written as .csv (%s holds runs: add "
+            "--monte-carlo 1000)",
+            o->output, ends_in(o->output, ".h5") ? ".h5" : "a results file");
+    if (o->want && models > 1)
+        return command_misused("--want is of one model at a time");
+    return -1;
+}
+
+/* ---- doing it ---- */
+
+static int open_models(const drift_options *o, const char **operands, drift_result *r)
+{
+    int code = -1;
+    for (size_t m = 0; m < DRIFT_MODELS_MAX && operands[m] && code < 0; m++) {
+        r->name[m] = operands[m];
+        r->model[m] = malloc(sizeof *r->model[m]);
+        r->model_count = m + 1;
+        if (!r->model[m])
+            return command_failed("memory is exhausted");
+        code = command_model(operands[m], r->model[m], NULL);
+        if (code < 0)
+            code = term_selection_apply(&o->terms, r->model[m]);
+    }
+    return code;
+}
+
+/* Standard output has the tables, or JSON, or the CSV of -o -. */
+static int show(const drift_result *r, const drift_answer *answer)
+{
+    const drift_options *o = r->options;
+    int code = -1;
+    drift_warn(r);
+    if (o->output && !r->found)
+        code = drift_write_csv(r, o->output);
+    if (code < 0 && o->report)
+        code = drift_report(r, answer, o->report);
+    if (code < 0 && o->json)
+        code = drift_print_json(r, answer);
+    else if (code < 0 && !options_stdout_taken()) {
+        drift_print(r);
+        if (answer)
+            drift_answer_print(r, answer);
+    }
+    if (code < 0 && o->plot)
+        code = drift_draw(r, o->plot);
+    return code;
+}
+
+/* A part of a campaign has no figures worth showing: what to do with it is said. */
+static void show_shard(const drift_options *o, const drift_result *r)
+{
+    printf("%s: %llu runs.\nNext, with all parts: imukit merge PART.h5... -o WHOLE.h5\n", o->output,
+           (unsigned long long)r->run_count);
+}
+
+static int drift(const drift_options *o, drift_result *r, bool runs)
+{
+    drift_answer answer = {0};
+    imk_thread_pool *pool = imk_thread_pool_create(campaign_threads(o->threads.value));
+    const imk_executor executor = imk_thread_pool_executor(pool);
+    int code = drift_analyse(r, &executor);
+    if (code < 0 && r->scene->want.asked)
+        code = drift_answer_find(r, &executor, &answer);
+    imk_thread_pool_destroy(pool);
+    if (code < 0 && runs)
+        code = drift_runs(r);
+    if (code < 0 && o->shard)
+        show_shard(o, r);
+    else if (code < 0)
+        code = show(r, r->scene->want.asked ? &answer : NULL);
+    drift_answer_free(&answer);
+    return code;
+}
+
+static int run(int count, char **words)
+{
+    const double missing = (double)NAN;
+    drift_options o = {.duration = missing,
+                       .rate = missing,
+                       .align_time = missing,
+                       .latitude = missing,
+                       .seed = {.value = 1}};
+    const char *operands[DRIFT_MODELS_MAX + 1] = {NULL};
+    drift_scene scene = {.time = NULL};
+    int code = options_parse(&drift_verb, count, words, &o, operands);
+    if (code >= 0)
+        return code;
+    const bool runs = o.monte_carlo.given;
+    size_t models = 0;
+    while (models < DRIFT_MODELS_MAX && operands[models])
+        models++;
+    code = check(&o, runs, models);
+    if (code >= 0)
+        return code;
+    for (size_t m = 0; m < models && models > 1; m++)
+        if (ends_in(operands[m], ".h5"))
+            return command_misused("%s: a results file is shown by itself; several parts of a "
+                                   "campaign are put together by imukit merge",
+                                   operands[m]);
+    if (models == 1 && ends_in(operands[0], ".h5"))
+        return runs ? command_misused("%s holds runs that were made already: leave --monte-carlo "
+                                      "out",
+                                      operands[0])
+                    : drift_show_results(&o, operands[0]);
+    drift_result *r = calloc(1, sizeof *r);
+    if (!r)
+        return command_failed("memory is exhausted");
+    r->options = &o;
+    r->scene = &scene;
+    code = open_models(&o, operands, r);
+    if (code < 0)
+        code = drift_scene_open(&o, &scene);
+    if (code < 0)
+        code = drift(&o, r, runs);
+    drift_result_free(r);
+    drift_scene_free(&scene);
+    free(r);
+    return code < 0 ? EXIT_DONE : code;
+}

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit merge: the shards of a Monte Carlo campaign become one results file. */
+#define _POSIX_C_SOURCE 200809L
+#include "shell/json_output.h"
+
+#include "imukit/campaign.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct merge_options {
+    const char *output;
+    bool partial, json;
+} merge_options;
+
+static const option merge_option_table[] = {
+    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
+     "results file: .h5 or .csv (.csv.gz, .csv.zst)", offsetof(merge_options, output)},
+    {"partial", 0, OPTION_FLAG, NULL, NULL, NULL, "write what is there although runs are missing",
+     offsetof(merge_options, partial)},
+    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(merge_options, json)},
+};
+
+/* More than a command line holds. */
+enum { FILES_MAX = 1000000 };
+
+static int run(int count, char **words);
+
+const verb merge_verb = {
+    .name = "merge",
+    .summary = "shards of a Monte Carlo campaign into one results file",
+    .operands = "SHARD...",
+    .operands_minimum = 1,
+    .operands_maximum = FILES_MAX,
+    .examples = {{"imukit merge shard-*.h5 -o all.h5",
+                  "the file, byte for byte, of the campaign computed in one piece"},
+                 {"imukit merge shard-*.h5 -o some.h5 --partial",
+                  "the runs that are there, with their numbers; the rest can be merged later"}},
+    .description =
+        "SHARD is a results file of imukit drift --monte-carlo … --shard i/N, or of a merge "
+        "before. The order does not matter.\n\n"
+        "A file that is damaged, or of another campaign, seed or version than most, is named and "
+        "left out. When runs are missing then, nothing is written, and the shards to compute again "
+        "are named; --partial writes what there is.\n\n"
+        "docs/clusters.md shows campaigns on many machines, docs/campaign-file.md the format.",
+    .groups = {{"Options", sizeof merge_option_table / sizeof merge_option_table[0],
+                merge_option_table, 0}},
+    .run = run};
+
+static void warn_complaints(const imk_campaign_merge_report *report)
+{
+    for (size_t i = 0; i < report->complaint_count; i++) {
+        char text[900];
+        imk_error_text(&report->complaint[i].error, report->complaint[i].path, text, sizeof text);
+        command_warn("file_left_out", "%s", text);
+    }
+}
+
+/* Is there a file that could not be read, and may have runs that are missing? */
+static bool has_unreadable(const imk_campaign_merge_report *r)
+{
+    for (size_t i = 0; i < r->complaint_count; i++)
+        if (r->complaint[i].error.status == IMK_ERROR_OPEN &&
+            (strcmp(r->complaint[i].path, "-") == 0 || access(r->complaint[i].path, F_OK) == 0))
+            return true;
+    return false;
+}
+
+/* What to do about the runs that are not there. */
+static void describe_missing(const imk_campaign_merge_report *r, char *text, size_t size)
+{
+    if (has_unreadable(r))
+        snprintf(
+            text, size,
+            "runs %s of %llu are missing, which may be in a file that could not be read: merge "
+            "again with files that can",
+            r->missing, (unsigned long long)r->run_count);
+    else if (r->shard_count > 0 && r->shards[0])
+        snprintf(
+            text, size,
+            "runs %s of %llu are missing; compute again with --shard i/%llu for i = %s (Slurm: "
+            "sbatch --array=%s), then merge again",
+            r->missing, (unsigned long long)r->run_count, (unsigned long long)r->shard_count,
+            r->shards, r->shards);
+    else
+        snprintf(text, size, "runs %s of %llu are missing", r->missing,
+                 (unsigned long long)r->run_count);
+}
+
+static int print_json(const merge_options *o, size_t count, const char *const *paths,
+                      const imk_campaign_merge_report *r, int code)
+{
+    json_t *inputs = json_array(), *left_out = json_array();
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(inputs, json_text(paths[i]));
+    for (size_t i = 0; i < r->complaint_count; i++) {
+        char text[900];
+        imk_error_text(&r->complaint[i].error, NULL, text, sizeof text);
+        json_array_append_new(left_out, json_pack("{s:o, s:s}", "file",
+                                                  json_text(r->complaint[i].path), "reason", text));
+    }
+    json_t *result =
+        json_pack("{s:o, s:I, s:I, s:s, s:I, s:s, s:o}", "output",
+                  code == EXIT_DONE ? json_text(o->output) : json_null(), "run_count",
+                  (json_int_t)r->run_count, "runs", (json_int_t)r->present, "missing_runs",
+                  r->missing, "shard_count", (json_int_t)r->shard_count, "missing_shards",
+                  r->shards, "left_out", left_out);
+    return json_print("merge", json_pack("{s:o}", "shards", inputs), result, code);
+}
+
+static int merge(const merge_options *o, size_t count, const char *const *paths,
+                 imk_campaign_complaint *complaints)
+{
+    imk_campaign_merge_report report = {.complaint = complaints};
+    imk_error error;
+    char missing[3400];
+    int code = EXIT_DONE;
+    const imk_status status =
+        imk_campaign_merge(count, paths, o->output, o->partial, &report, &error);
+    warn_complaints(&report);
+    describe_missing(&report, missing, sizeof missing);
+    if (status == IMK_ERROR_CONFLICT && report.missing[0])
+        code = command_failed("%s (--partial merges what there is)", missing);
+    else if (status != IMK_OK)
+        code = command_error(&error, NULL);
+    else if (report.missing[0])
+        command_warn("runs_missing", "%s", missing);
+    if (o->json)
+        return print_json(o, count, paths, &report, code);
+    if (code == EXIT_DONE)
+        printf("%s: %llu of %llu runs from %zu of %zu files\n", o->output,
+               (unsigned long long)report.present, (unsigned long long)report.run_count,
+               count - report.complaint_count, count);
+    return code;
+}
+
+static int run(int count, char **words)
+{
+    merge_options o = {0};
+    const char **paths = calloc(FILES_MAX, sizeof *paths);
+    if (!paths)
+        return command_failed("memory is exhausted");
+    int code = options_parse(&merge_verb, count, words, &o, paths);
+    if (code < 0 && !o.output)
+        code = command_misused("-o FILE is missing: the results file to write");
+    size_t files = 0;
+    while (files < FILES_MAX && paths[files])
+        files++;
+    if (code < 0) {
+        imk_campaign_complaint *complaints = calloc(files + 1, sizeof *complaints);
+        code = complaints ? merge(&o, files, paths, complaints)
+                          : command_failed("memory is exhausted");
+        free(complaints);
+    }
+    free(paths);
+    return code;
+}

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The command imukit: finds the verb and hands it the rest of the line. */
+#define _POSIX_C_SOURCE 200809L
+#include "campaign/campaign_run.h"
+#include "command.h"
+#include "json_output.h"
+#include "memory_guard.h"
+
+#include "imukit/output_file.h"
+
+#include <signal.h>
+#include <string.h>
+
+static const verb *const verbs[] = {
+    &identify_verb, &calibrate_verb, &evaluate_verb, &simulate_verb, &compensate_verb,
+    &allan_verb,    &spectrum_verb,  &devices_verb,  &grade_verb,    &convert_verb,
+    &physics_verb,  &drift_verb,     &navigate_verb, &merge_verb};
+enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
+
+const verb *const *command_verbs(size_t *count)
+{
+    *count = VERB_COUNT;
+    return verbs;
+}
+
+void command_welcome(FILE *out)
+{
+    const char *bold = command_color(out, COLOR_BOLD), *reset = command_color(out, COLOR_RESET);
+    fprintf(out,
+            "imukit %s: the errors of gyros and accelerometers, from logs, in logs\n\n"
+            "%sFirst result%s (no sensor needed)\n"
+            "  imukit simulate AHRS --rate 100Hz --duration 1h --seed 1 -o static.csv\n"
+            "  imukit identify static.csv -o model.yaml --report report.html\n\n"
+            "%sWith your own sensor%s: leave it still for an hour or more, log it, and run\n"
+            "  imukit identify LOG.csv -o model.yaml --report report.html\n"
+            "The message names the option to add if the units or the rate are not in the file.\n\n"
+            "%sVerbs%s\n",
+            IMK_VERSION, bold, reset, bold, reset, bold, reset);
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        fprintf(out, "  %-10s %s\n", verbs[i]->name, verbs[i]->summary);
+    fprintf(out, "\n  imukit VERB --help   examples and options of a verb\n"
+                 "  imukit --version\n");
+}
+
+static const verb *find_verb(const char *name)
+{
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        if (strcmp(verbs[i]->name, name) == 0)
+            return verbs[i];
+    return NULL;
+}
+
+static int unknown_verb(const char *name)
+{
+    const char *names[VERB_COUNT + 1];
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        names[i] = verbs[i]->name;
+    names[VERB_COUNT] = "help";
+    const char *nearest = command_nearest(name, VERB_COUNT + 1, names);
+    if (nearest)
+        return command_misused("there is no verb \"%s\"; did you mean \"%s\"?", name, nearest);
+    return command_misused("there is no verb \"%s\"; the verbs are listed by imukit --help", name);
+}
+
+/* The page imukit(1), which lists the verbs. */
+static void main_manual(void)
+{
+    printf(".TH IMUKIT 1 \"\" \"imukit %s\" \"imukit\"\n.SH NAME\n"
+           "imukit \\- the errors of gyros and accelerometers, from logs, in logs\n"
+           ".SH SYNOPSIS\n.B imukit\n.I VERB\n[operands] [options]\n.SH VERBS\n",
+           IMK_VERSION);
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        printf(".TP\n.BR imukit\\-%s (1)\n%s\n", verbs[i]->name, verbs[i]->summary);
+    fputs(
+        ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nno colours when set\n"
+        ".TP\n.B TMPDIR\nwhere figures are drawn before they are put in place, and where a copy of "
+        "a pipe is kept that is read twice\n"
+        ".TP\n.B IMUKIT_GNUPLOT_SECONDS\nhow long gnuplot may take for a figure; default 120\n",
+        stdout);
+}
+
+/* imukit help [VERB], and the hidden forms packaging uses: help --man [VERB], help --completion. */
+static int help(int count, char **words)
+{
+    bool manual = count > 0 && strcmp(words[0], "--man") == 0;
+    if (count > 0 && strcmp(words[0], "--completion") == 0) {
+        if (count > 1 && strcmp(words[1], "bash") != 0)
+            return command_misused("help --completion %s: only bash is known", words[1]);
+        options_completion(verbs, VERB_COUNT, stdout);
+        return command_finish(EXIT_DONE);
+    }
+    const char *name = manual ? (count > 1 ? words[1] : NULL) : count > 0 ? words[0] : NULL;
+    if (!name) {
+        if (manual)
+            main_manual();
+        else
+            command_welcome(stdout);
+        return command_finish(EXIT_DONE);
+    }
+    const verb *v = find_verb(name);
+    if (!v)
+        return unknown_verb(name);
+    if (manual)
+        options_manual(v, stdout);
+    else
+        options_help(v, stdout);
+    return command_finish(EXIT_DONE);
+}
+
+static const int ending_signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE, SIGQUIT,
+                                     SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM};
+enum { ENDING_SIGNALS = sizeof ending_signals / sizeof ending_signals[0] };
+
+/* Interrupted: leave no half-written file behind, and end as the signal would have. */
+static void interrupted(int number)
+{
+    imk_output_file_abandon_all();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+/* A second signal, which shells and timeout(1) send soon after the first, waits until the files are
+ * gone. A signal that the parent has switched off, as nohup(1) does, stays off; but of gnuplot we
+ * need to know how it ended. A file beyond the limit of its size is an error of write() like any
+ * other, with a sentence. */
+static void catch_signals(void)
+{
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGCHLD, SIG_DFL);
+    struct sigaction action = {.sa_handler = interrupted}, before;
+    sigemptyset(&action.sa_mask);
+    for (int i = 0; i < ENDING_SIGNALS; i++)
+        sigaddset(&action.sa_mask, ending_signals[i]);
+    for (int i = 0; i < ENDING_SIGNALS; i++)
+        if (sigaction(ending_signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(ending_signals[i], &action, NULL);
+}
+
+/* The command after its name. */
+static int obey(int argc, char **argv)
+{
+    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        command_welcome(stdout);
+        return command_finish(EXIT_DONE);
+    }
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+        printf("imukit %s\n", IMK_VERSION);
+        return command_finish(EXIT_DONE);
+    }
+    if (strcmp(argv[1], "help") == 0)
+        return help(argc - 2, argv + 2);
+    if (argv[1][0] == '-')
+        return command_misused("an option must follow a verb: imukit VERB %s", argv[1]);
+    const verb *v = find_verb(argv[1]);
+    if (!v)
+        return unknown_verb(argv[1]);
+    command_begin(v->name);
+    command_line_keep(argc, argv);
+    return command_finish(v->run(argc - 2, argv + 2));
+}
+
+int main(int argc, char **argv)
+{
+    catch_signals();
+    memory_guard();
+    json_begin();
+    campaign_begin(&argc, &argv);
+    return campaign_end(obey(argc, argv));
+}

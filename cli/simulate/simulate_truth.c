@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The truth behind a log, row by row: where the unit was at the stamp, and what perfect sensors
+ * would have read over the row. */
+#include "shell/progress.h"
+#include "simulate_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK_ROWS = 4096, STATE_COLUMNS = 10, SENSOR_COLUMNS = 6 };
+
+static const struct {
+    const char *name;
+    imk_quantity quantity;
+    int axis;
+    const char *unit;
+} truth_columns[1 + STATE_COLUMNS + SENSOR_COLUMNS] = {
+    {"time", IMK_QUANTITY_TIME, -1, "s"},
+    {"latitude", IMK_QUANTITY_OTHER, -1, "deg"},
+    {"longitude", IMK_QUANTITY_OTHER, -1, "deg"},
+    {"height", IMK_QUANTITY_OTHER, -1, "m"},
+    {"vel_north", IMK_QUANTITY_OTHER, -1, "m/s"},
+    {"vel_east", IMK_QUANTITY_OTHER, -1, "m/s"},
+    {"vel_down", IMK_QUANTITY_OTHER, -1, "m/s"},
+    {"roll", IMK_QUANTITY_OTHER, -1, "deg"},
+    {"pitch", IMK_QUANTITY_OTHER, -1, "deg"},
+    {"yaw", IMK_QUANTITY_OTHER, -1, "deg"},
+    {"true_time", IMK_QUANTITY_OTHER, -1, "s"},
+    {"gyro_x", IMK_QUANTITY_ANGULAR_RATE, 0, "deg/s"},
+    {"gyro_y", IMK_QUANTITY_ANGULAR_RATE, 1, "deg/s"},
+    {"gyro_z", IMK_QUANTITY_ANGULAR_RATE, 2, "deg/s"},
+    {"accel_x", IMK_QUANTITY_SPECIFIC_FORCE, 0, "m/s^2"},
+    {"accel_y", IMK_QUANTITY_SPECIFIC_FORCE, 1, "m/s^2"},
+    {"accel_z", IMK_QUANTITY_SPECIFIC_FORCE, 2, "m/s^2"},
+};
+enum { COLUMNS = sizeof truth_columns / sizeof truth_columns[0] };
+
+typedef struct truth {
+    const scene *scene;
+    const imk_trajectory *trajectory; /* NULL: recorded */
+    imk_simulator *simulator;
+    imk_random random;
+    size_t parts;                    /* of a row: vibration may be faster than rows */
+    double boundary[BLOCK_ROWS + 1]; /* of parts, as many as fit */
+    double part[SENSOR_COLUMNS][BLOCK_ROWS];
+    double block[COLUMNS][BLOCK_ROWS];
+} truth;
+
+static void fill_state(truth *t, uint64_t row, size_t k)
+{
+    imk_motion_state state;
+    double roll, pitch, yaw, time = imk_simulator_true_time(t->simulator, (int64_t)row);
+    imk_trajectory_state(t->trajectory, time, &state);
+    imk_matrix3_to_euler(state.c_nb, &roll, &pitch, &yaw);
+    const double values[STATE_COLUMNS] = {state.place.latitude,
+                                          state.place.longitude,
+                                          state.place.height,
+                                          state.velocity_ned.v[0],
+                                          state.velocity_ned.v[1],
+                                          state.velocity_ned.v[2],
+                                          roll,
+                                          pitch,
+                                          yaw,
+                                          time};
+    for (size_t c = 0; c < STATE_COLUMNS; c++)
+        t->block[1 + c][k] = values[c];
+}
+
+static void copy_recorded(truth *t, uint64_t first, size_t count)
+{
+    const imk_recorded_motion *recorded = t->scene->simulation.motion.recorded;
+    for (size_t i = 0; i < 3; i++) {
+        memcpy(t->block[1 + STATE_COLUMNS + i], recorded->angular_rate[i] + first,
+               count * sizeof(double));
+        memcpy(t->block[4 + STATE_COLUMNS + i], recorded->specific_force[i] + first,
+               count * sizeof(double));
+    }
+}
+
+/* Means over rows from the means over their parts, which vibration moves through less than a
+ * sixteenth of a cycle. */
+static void fill_sensors(truth *t, uint64_t first, size_t count)
+{
+    const size_t rows_at_once = BLOCK_ROWS / t->parts;
+    double *rate[3] = {t->part[0], t->part[1], t->part[2]};
+    double *force[3] = {t->part[3], t->part[4], t->part[5]};
+    for (size_t row = 0; row < count; row += rows_at_once) {
+        const size_t now = count - row < rows_at_once ? count - row : rows_at_once;
+        const int64_t before = (int64_t)(first + row) - 1;
+        double end = imk_simulator_true_time(t->simulator, before);
+        for (size_t k = 0; k < now; k++) {
+            const double begin = end;
+            end = imk_simulator_true_time(t->simulator, before + 1 + (int64_t)k);
+            for (size_t j = 0; j < t->parts; j++)
+                t->boundary[k * t->parts + j] =
+                    begin + (end - begin) * ((double)j / (double)t->parts);
+        }
+        t->boundary[now * t->parts] = end;
+        imk_trajectory_means(t->trajectory, t->random.kernel, now * t->parts, t->boundary, rate,
+                             NULL, force);
+        for (size_t i = 0; i < SENSOR_COLUMNS; i++)
+            for (size_t k = 0; k < now; k++) {
+                double sum = 0;
+                for (size_t j = 0; j < t->parts; j++)
+                    sum += t->part[i][k * t->parts + j];
+                t->block[1 + STATE_COLUMNS + i][row + k] = sum / (double)t->parts;
+            }
+    }
+}
+
+static size_t choose_columns(const truth *t, imk_log_column *columns, double **data, truth *memory)
+{
+    size_t count = 0;
+    for (size_t c = 0; c < COLUMNS; c++) {
+        bool state = c > 0 && c <= STATE_COLUMNS;
+        if (state && !t->trajectory)
+            continue;
+        columns[count] = (imk_log_column){.quantity = truth_columns[c].quantity,
+                                          .axis = truth_columns[c].axis,
+                                          .unit = imk_unit_of(truth_columns[c].unit)};
+        snprintf(columns[count].name, sizeof columns[count].name, "%s", truth_columns[c].name);
+        data[count++] = memory->block[c];
+    }
+    return count;
+}
+
+static int stream(truth *t, const imk_executor *executor, const char *path)
+{
+    imk_error error;
+    imk_log_writer *writer;
+    imk_log_column columns[COLUMNS];
+    double *data[COLUMNS];
+    const size_t count = choose_columns(t, columns, data, t);
+    const uint64_t rows = t->scene->rows;
+    if (imk_log_create(path, count, columns, IMK_LOG_SHORTEST, NULL, rows, &writer, &error) !=
+        IMK_OK)
+        return command_error(&error, NULL);
+    progress p = progress_begin("writing the truth", "rows", 1);
+    imk_status status = IMK_OK;
+    for (uint64_t first = 0; first < rows && status == IMK_OK; first += BLOCK_ROWS) {
+        size_t now = rows - first < BLOCK_ROWS ? (size_t)(rows - first) : BLOCK_ROWS;
+        for (size_t k = 0; k < now; k++) {
+            t->block[0][k] = t->scene->start + (double)(first + k) / t->scene->simulation.rate;
+            if (t->trajectory)
+                fill_state(t, first + k, k);
+        }
+        if (t->trajectory)
+            fill_sensors(t, first, now);
+        else
+            copy_recorded(t, first, now);
+        status = imk_log_write(writer, now, (const double *const *)data, executor);
+        progress_update(&p, first + now, rows);
+    }
+    progress_end(&p);
+    if (imk_log_commit(writer, &error) != IMK_OK)
+        return command_error(&error, NULL);
+    return status == IMK_OK ? -1 : command_failed("%s", imk_status_text(status));
+}
+
+static size_t truth_parts(const imk_trajectory *trajectory, const imk_simulation *simulation)
+{
+    const size_t needed = imk_trajectory_substeps(trajectory, 1.0 / simulation->rate);
+    return needed < BLOCK_ROWS ? needed : BLOCK_ROWS;
+}
+
+int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
+                   const imk_executor *executor, const char *path)
+{
+    imk_error error;
+    imk_trajectory_piece rest_piece;
+    imk_trajectory rest;
+    const double attitude[3] = {o->roll, o->pitch, o->yaw};
+    const imk_simulation *simulation = &s->simulation;
+    const size_t size = imk_simulator_size(model, simulation);
+    void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
+    truth *t = malloc(sizeof *t);
+    int code = -1;
+    if (!memory || !t) {
+        code = command_failed("memory is exhausted");
+    } else {
+        t->scene = s;
+        t->random = imk_random_seeded(o->seed.value);
+        t->trajectory = simulation->motion.trajectory;
+        if (!t->trajectory && !simulation->motion.recorded) {
+            imk_geodetic place = {simulation->latitude, 0.0, simulation->height};
+            if (imk_trajectory_standstill(place, attitude, simulation->earth, &rest_piece, &rest,
+                                          &error) != IMK_OK)
+                code = command_error(&error, NULL);
+            t->trajectory = &rest;
+        }
+        t->parts = code < 0 && t->trajectory ? truth_parts(t->trajectory, simulation) : 1;
+        /* Only for the true times of its rows. */
+        if (code < 0 &&
+            imk_simulator_start(memory, size, model, simulation, &t->simulator, &error) != IMK_OK)
+            code = command_error(&error, NULL);
+        if (code < 0)
+            code = stream(t, executor, path);
+    }
+    free(t);
+    free(memory);
+    return code;
+}

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* imukit simulate: model + motion -> log, one run or many. */
+#include "shell/file_clash.h"
+#include "simulate_parts.h"
+
+#include "imukit/model_file.h"
+#include "imukit/thread_pool.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const option simulate_option_table[] = {
+    {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", NULL,
+     "sample rate, such as 100Hz; required unless a recorded motion has one",
+     offsetof(simulate_options, rate)},
+    {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
+     "length, such as 2h; default: the whole motion", offsetof(simulate_options, duration)},
+    {"output", 'o', OPTION_OUTPUT, "LOG", NULL, NULL,
+     "where to write: .csv (also .gz, .zst) or .npy; - (the default) is standard output; a "
+     "directory, DIR/, with --runs",
+     offsetof(simulate_options, output)},
+    {"seed", 's', OPTION_INTEGER, "N", NULL, NULL,
+     "the same seed makes the same bytes on every machine; default 1",
+     offsetof(simulate_options, seed)},
+    {"run", 0, OPTION_INTEGER, "N", NULL, "0-4294967295",
+     "another run of the same sensor: other noise, other run-to-run biases; default 0",
+     offsetof(simulate_options, run)},
+    {"runs", 0, OPTION_INTEGER, "N", NULL, "1-4294967295",
+     "so many runs, from --run on, into DIR/run_000.csv and so on",
+     offsetof(simulate_options, runs)},
+    {"format", 0, OPTION_TEXT, "EXTENSION", NULL, NULL,
+     "of the logs of --runs: csv (default), csv.gz, csv.zst or npy",
+     offsetof(simulate_options, format)},
+    {"truth", 0, OPTION_OUTPUT, "FILE", NULL, NULL,
+     "write the true motion, and what perfect sensors would have read, row by row",
+     offsetof(simulate_options, truth)},
+    {"increments", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "write increments of angle and velocity (dtheta_x, dvel_x) instead of rates",
+     offsetof(simulate_options, increments)},
+    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
+     "digits after the point, 0 to 17; default: as many as the number needs",
+     offsetof(simulate_options, decimals)},
+    {"gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
+     "of the gyro columns; default deg/s, or deg for increments",
+     offsetof(simulate_options, gyro_unit)},
+    {"accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
+     "of the accelerometer columns; default m/s^2, or m/s for increments",
+     offsetof(simulate_options, accel_unit)},
+    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
+     "threads to use; default: all processors. The bytes do not depend on it",
+     offsetof(simulate_options, threads)},
+};
+
+static const option motion_option_table[] = {
+    {"motion", 'm', OPTION_FILE, "MOTION", NULL, NULL,
+     "a motion script (.yaml), a table of poses, or a log of true rates and forces; default: at "
+     "rest as the options below say",
+     offsetof(simulate_options, motion)},
+    {"temperature", 't', OPTION_FILE, "PROFILE", NULL, NULL,
+     "a constant such as 25degC, a profile (.yaml), or a table of time and temperature",
+     offsetof(simulate_options, temperature)},
+    {"substeps", 0, OPTION_INTEGER, "N", NULL, "1-512",
+     "parts into which a sample is divided, for vibration and bandwidth; default: as needed",
+     offsetof(simulate_options, substeps)},
+    {"latitude", 0, OPTION_QUANTITY, "ANGLE", "deg", "-90..90", "geodetic; default 45deg",
+     offsetof(simulate_options, latitude)},
+    {"height", 0, OPTION_QUANTITY, "LENGTH", "m", "-10000..100000",
+     "above the ellipsoid; default 0m", offsetof(simulate_options, height)},
+    {"roll", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "default 0deg: level",
+     offsetof(simulate_options, roll)},
+    {"pitch", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "default 0deg: level",
+     offsetof(simulate_options, pitch)},
+    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "from north to east; default 0deg",
+     offsetof(simulate_options, yaw)},
+    {"no-earth", 0, OPTION_FLAG, NULL, NULL, NULL, "without Earth rate and gravity",
+     offsetof(simulate_options, no_earth)},
+};
+
+_Static_assert(IMK_SUBSTEPS_MAX == 512, "as the range of --substeps says");
+
+static int run(int count, char **words);
+
+const verb simulate_verb = {
+    .name = "simulate",
+    .summary = "model + motion -> log of a sensor unit with all its errors",
+    .operands = "MODEL",
+    .operands_minimum = 1,
+    .operands_maximum = 1,
+    .examples = {{"imukit simulate AHRS --rate 100Hz --duration 1h --seed 1 -o static.csv",
+                  "an hour of a unit of AHRS grade, level at 45 degrees north"},
+                 {"imukit simulate model.yaml --motion car.yaml --temperature 25degC --rate 100Hz "
+                  "--runs 20 -o runs/ --truth runs/truth.csv",
+                  "a model file on a motion script, twenty runs and the truth"}},
+    .description =
+        "MODEL is a model file or a name from `imukit devices`. The log has a time column, one "
+        "column per axis, and the temperature when it is given; a model with a sensitivity makes "
+        "counts. Axes are forward-right-down, so at rest and level accel_z is about -9.8 m/s^2. A "
+        "row is the mean over the interval that ends at its time; row 0 shows the unit before the "
+        "motion begins.",
+    .groups = {{"Options", sizeof simulate_option_table / sizeof simulate_option_table[0],
+                simulate_option_table, 0},
+               {"Terms", TERM_OPTIONS, term_options, offsetof(simulate_options, terms)},
+               {"Motion and place", sizeof motion_option_table / sizeof motion_option_table[0],
+                motion_option_table, 0}},
+    .run = run};
+
+/* ---- runs ---- */
+
+static bool is_directory(const char *path)
+{
+    struct stat status;
+    const size_t length = path ? strlen(path) : 0;
+    return length > 0 &&
+           (path[length - 1] == '/' || (stat(path, &status) == 0 && S_ISDIR(status.st_mode)));
+}
+
+/* One log per run, DIR/run_000.csv and so on. */
+static int simulate_runs(const simulate_options *o, const imk_model *model, scene *s,
+                         const log_layout *layout, const imk_executor *executor)
+{
+    const size_t length = strlen(o->output);
+    for (uint64_t i = 0; i < o->runs.value; i++) {
+        char path[4096], label[64];
+        const uint64_t number = o->run.value + i;
+        int written = snprintf(path, sizeof path, "%s%srun_%03llu.%s", o->output,
+                               o->output[length - 1] == '/' ? "" : "/", (unsigned long long)number,
+                               o->format ? o->format : "csv");
+        if (written < 0 || (size_t)written >= sizeof path)
+            return command_failed("%s: the name is too long", o->output);
+        snprintf(label, sizeof label, "run %llu (%llu of %llu)", (unsigned long long)number,
+                 (unsigned long long)i + 1, (unsigned long long)o->runs.value);
+        s->simulation.run = (uint32_t)number;
+        int code = simulate_log(o, model, s, layout, executor, &(log_target){path, label});
+        if (code != EXIT_DONE)
+            return code;
+    }
+    return EXIT_DONE;
+}
+
+static int write_logs(const simulate_options *o, const imk_model *model, scene *s,
+                      const log_layout *layout, const imk_executor *executor)
+{
+    /* A truth that cannot be written is known before the logs are made. */
+    int code = o->truth ? simulate_truth(o, model, s, executor, o->truth) : -1;
+    if (code >= 0)
+        return code;
+    if (o->runs.given)
+        return simulate_runs(o, model, s, layout, executor);
+    return simulate_log(o, model, s, layout, executor,
+                        &(log_target){o->output ? o->output : "-", "simulating"});
+}
+
+static int simulate(const simulate_options *o, const imk_model *model)
+{
+    scene s;
+    log_layout layout;
+    int code = scene_open(o, model, &s);
+    if (code < 0)
+        code = log_layout_make(o, model, &s, &layout);
+    const bool made = code < 0 && o->runs.given && mkdir(o->output, 0777) == 0;
+    if (code < 0 && o->runs.given && !made && errno != EEXIST)
+        code = command_failed("%s: %s", o->output, strerror(errno));
+    if (code < 0) {
+        imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
+        imk_executor executor = imk_thread_pool_executor(pool);
+        code = write_logs(o, model, &s, &layout, &executor);
+        imk_thread_pool_destroy(pool);
+    }
+    if (made && code != EXIT_DONE)
+        (void)rmdir(o->output); /* it stays when a log is in it */
+    scene_free(&s);
+    return code;
+}
+
+/* A file where the log of a run goes would be lost. */
+static int check_run_folder(const simulate_options *o)
+{
+    const struct {
+        const char *option, *path;
+    } files[] = {{"truth", o->truth}, {"motion", o->motion}, {"temperature", o->temperature}};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        const char *slash = files[i].path ? strrchr(files[i].path, '/') : NULL;
+        const char *name = slash ? slash + 1 : files[i].path;
+        if (name && strncmp(name, "run_", 4) == 0 && file_is_in(files[i].path, o->output))
+            return command_misused("--%s %s has the name of a run in -o %s: give another name",
+                                   files[i].option, files[i].path, o->output);
+    }
+    return -1;
+}
+
+/* Files that would be written one over the other, or into each other. */
+static int check_outputs(const simulate_options *o)
+{
+    static const char *const formats[] = {"csv", "csv.gz", "csv.zst", "npy"};
+    const char *output = o->output ? o->output : "-";
+    if (o->runs.given && !is_directory(o->output))
+        return command_misused("--runs writes one log per run into a directory: add -o DIR/");
+    if (!o->runs.given && *output && output[strlen(output) - 1] == '/')
+        return command_misused("-o %s is a directory: name a file, or add --runs N", output);
+    bool known = !o->format;
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
+        known = known || strcmp(o->format, formats[i]) == 0;
+    if (!known)
+        return command_misused("--format %s: expected csv, csv.gz, csv.zst or npy", o->format);
+    if (o->format && !o->runs.given)
+        return command_misused("--format is for --runs: a single log has it in its name, -o LOG.%s",
+                               o->format);
+    if (o->truth && strcmp(o->truth, "-") == 0 && strcmp(output, "-") == 0)
+        return command_misused("the log and the truth cannot both go to standard output: add -o "
+                               "LOG");
+    return o->runs.given ? check_run_folder(o) : -1;
+}
+
+static int check(const simulate_options *o)
+{
+    if (o->runs.given && o->runs.value > UINT32_MAX - o->run.value + 1)
+        return command_misused("run numbers: expected at most %u", UINT32_MAX);
+    return check_outputs(o);
+}
+
+static int run(int count, char **words)
+{
+    double missing = (double)NAN;
+    simulate_options o = {
+        .rate = missing, .duration = missing, .latitude = missing, .seed = {.value = 1}};
+    const char *operands[OPERANDS_MAX];
+    int code = options_parse(&simulate_verb, count, words, &o, operands);
+    if (code < 0)
+        code = check(&o);
+    if (code >= 0)
+        return code;
+    imk_model *model = malloc(sizeof *model);
+    if (!model)
+        return command_failed("memory is exhausted");
+    code = command_model(operands[0], model, NULL);
+    if (code < 0)
+        code = term_selection_apply(&o.terms, model);
+    if (code < 0)
+        code = simulate(&o, model);
+    free(model);
+    return code;
+}
