@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# One test per file tests/<module>/test_*.c (cmocka), named by the file, labelled by the module.
+# One test per file test_*.c in tests/<module>/ (cmocka), named by the file, labelled by the module.
 
 if(IMUKIT_TESTS STREQUAL AUTO)
   pkg_check_modules(cmocka QUIET IMPORTED_TARGET cmocka)
@@ -19,20 +19,19 @@ if(IMUKIT_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL Debug)
 endif()
 
 # Nearly all are one program, imukit-tests, which is linked once: `imukit-tests test_allan` runs the
-# main of tests/identify/test_allan.c, compiled under the file's name. Tests that put functions of
+# main of tests/identify/allan/test_allan.c, compiled under the file's name. Tests that put functions of
 # their own in the place of the C library's are programs apart. IMUKIT_TEST_FILTER takes some tests
 # only, for checks that need no more.
 set(test_programs_apart test_campaign test_campaign_merge)
 set(IMUKIT_TEST_FILTER "" CACHE STRING "Regular expression: build only tests of such names")
-file(GLOB test_sources CONFIGURE_DEPENDS tests/*/test_*.c)
+file(GLOB_RECURSE test_sources CONFIGURE_DEPENDS tests/test_*.c)
 list(FILTER test_sources INCLUDE REGEX "/(${IMUKIT_TEST_FILTER})[^/]*$")
 set(test_list "")
 set(test_targets imukit-tests)
 add_executable(imukit-tests tests/main.c tests/cli/run_command.c)
 foreach(source ${test_sources})
   get_filename_component(name ${source} NAME_WE)
-  get_filename_component(folder ${source} DIRECTORY)
-  get_filename_component(module ${folder} NAME)
+  string(REGEX REPLACE ".*/tests/([a-z]+)/.*" "\\1" module ${source})
   if(name IN_LIST test_programs_apart)
     add_executable(${name} ${source})
     list(APPEND test_targets ${name})

@@ -5,7 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
-tests=$(grep -lE 'imk_thread_pool_create' tests/*/test_*.c)
+tests=$(grep -rlE --include='test_*.c' imk_thread_pool_create tests)
 names="($(basename -s .c $tests | paste -sd'|'))"
 cmake -S . -B "$build" -DIMUKIT_TESTS=ON >/dev/null
 cmake --build "$build" -j "$(nproc)" --target imukit-tests >/dev/null

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Problems at the edge of what the estimator takes: a refusal that says why, or a finite result;
+ * never a crash, never a number that is none. */
+#include "calibrate/estimator_bench.h"
+#include "check.h"
+
+static void expect_finite(const bench *b)
+{
+    const imk_calibration_result *r = &b->result;
+    for (size_t p = 0; p < r->parameter_count; p++) {
+        assert_true(isfinite(r->value[p]) && isfinite(r->sigma[p]) && r->sigma[p] > 0.0);
+        assert_true(isfinite(imk_calibration_half_width(r, (int)p, 0.95)));
+    }
+    assert_true(isfinite(r->chi_square) && isfinite(r->degrees_of_freedom));
+}
+
+static bench *poses(uint64_t seed, int count)
+{
+    bench *b = bench_new(seed, 1);
+    bench_free_static(b);
+    bench_know_the_rest(b);
+    for (int i = 0; i < count; i++)
+        bench_pose(b, 1.0);
+    return b;
+}
+
+/* A turn is looked at after the observations it is between: these say which record. */
+static void turns_of_no_record(void **state)
+{
+    (void)state;
+    static const double still[4] = {0.0};
+    imk_test_record record = {.count = 4, .dt = 0.01, .axis_count = {3, 3}};
+    for (int s = 0; s < 2; s++)
+        for (int i = 0; i < 3; i++)
+            record.reading[s][i] = still;
+    const imk_test_record other = record;
+    bench *b = poses(51, 24);
+    imk_calibration *c = &b->calibration;
+    c->record_count = 2;
+    c->record[0] = &record;
+    c->record[1] = &other;
+    c->turn[0] = (imk_turn){.from = 0, .to = 1, .begin = 0, .end = 4, .sigma = 1e-3};
+    c->turn_count = 1;
+    b->observation[0].record = b->observation[1].record = 77;
+    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    assert_string_equal(b->error.field, "observation");
+    b->observation[0].record = 0;
+    b->observation[1].record = 1;
+    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    assert_string_equal(b->error.field, "turn");
+    b->observation[1].record = 0;
+    c->turn[0].end = 0; /* of no length */
+    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    c->turn[0].end = 5; /* beyond the record */
+    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    c->record[1] = NULL;
+    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    assert_string_equal(b->error.field, "record");
+    bench_free(b);
+}
+
+/* Samples that are missing: the turn says nothing, and counts as refused. */
+static void turn_over_missing_samples(void **state)
+{
+    (void)state;
+    static double none[4] = {0.0};
+    none[2] = (double)NAN;
+    imk_test_record record = {.count = 4, .dt = 0.01, .axis_count = {3, 3}};
+    for (int s = 0; s < 2; s++)
+        for (int i = 0; i < 3; i++)
+            record.reading[s][i] = none;
+    bench *b = poses(52, 24);
+    imk_calibration *c = &b->calibration;
+    c->record_count = 1;
+    c->record[0] = &record;
+    c->turn[0] = (imk_turn){.from = 0, .to = 1, .begin = 0, .end = 4, .sigma = 1e-3};
+    c->turn_count = 1;
+    b->observation[0].record = b->observation[1].record = 0;
+    for (int robust = 0; robust < 2; robust++) {
+        c->robust = robust;
+        if (robust) /* a bad pose: weights are given anew */
+            b->observation[5].reading[IMK_ACCEL][0] += 1.0;
+        CHECK_OK(bench_solve(b));
+        expect_finite(b);
+        assert_int_equal(b->result.turns_refused, 1);
+        assert_true(c->turn[0].weight == 0.0 && isnan(c->turn[0].residual[0]));
+        assert_int_equal(b->result.group[IMK_GROUP_TURN].count, 0);
+    }
+    bench_free(b);
+}
+
+static void numbers_beyond_reason(void **state)
+{
+    (void)state;
+    static const double gravities[] = {0.0, -9.8, (double)NAN, (double)INFINITY};
+    bench *b = poses(53, 24);
+    imk_calibration *c = &b->calibration;
+    for (size_t i = 0; i < sizeof gravities / sizeof *gravities; i++) {
+        c->gravity = gravities[i];
+        CHECK_STATUS(bench_solve(b), IMK_ERROR_RANGE);
+        assert_string_equal(b->error.field, "gravity");
+    }
+    c->gravity = 9.8;
+    c->latitude = 1.58;
+    CHECK_STATUS(bench_solve(b), IMK_ERROR_RANGE);
+    c->latitude = -1.5707963267948966; /* the pole */
+    CHECK_OK(bench_solve(b));
+    expect_finite(b);
+    c->prior_sigma[0] = (double)NAN;
+    CHECK_STATUS(bench_solve(b), IMK_ERROR_RANGE);
+    c->prior_sigma[0] = 0.0;
+    c->fixture_count = 1;
+    c->fixture_sigma[0] = -1.0;
+    CHECK_STATUS(bench_solve(b), IMK_ERROR_RANGE);
+    c->fixture_sigma[0] = 1e6; /* nothing hangs on it */
+    CHECK_OK(bench_solve(b));
+    expect_finite(b);
+    /* Sigmas whose squares are no numbers. */
+    for (int k = 0; k < 2; k++) {
+        bench *other = poses(53, 24);
+        for (int i = 0; i < 24; i++)
+            for (int s = 0; s < 2; s++)
+                for (int axis = 0; axis < 3; axis++)
+                    other->observation[i].sigma[s][axis] = k == 0 ? 1e-200 : 1e200;
+        assert_int_not_equal(bench_solve(other), IMK_OK);
+        bench_free(other);
+    }
+    /* All of one axis is missing: its bias has no observations. */
+    for (int i = 0; i < 24; i++)
+        b->observation[i].reading[IMK_ACCEL][2] = (double)NAN;
+    assert_int_not_equal(bench_solve(b), IMK_OK);
+    bench_free(b);
+}
+
+static void one_observation_more_than_there_is_room(void **state)
+{
+    (void)state;
+    bench *b = poses(54, 24);
+    b->calibration.observation_capacity = 24;
+    const imk_observation again = b->observation[0];
+    assert_int_equal(imk_calibration_observe(&b->calibration, &again), -1);
+    assert_int_equal(b->calibration.observation_count, 24);
+    bench_free(b);
+}
+
+/* Readings in counts of 1e9. */
+static void large_counts(void **state)
+{
+    (void)state;
+    bench *b = poses(55, 24);
+    const imk_test_record record = {.count = 1, .dt = 0.01, .counts = {true, true}};
+    b->calibration.record[0] = &record;
+    b->calibration.record_count = 1;
+    imk_triad *triads[2] = {&b->calibration.model.gyro, &b->calibration.model.accel};
+    for (int i = 0; i < 24; i++)
+        for (int s = 0; s < 2; s++)
+            for (int axis = 0; axis < 3; axis++) {
+                triads[s]->sensitivity.value[axis] = 1e8;
+                b->observation[i].record = 0;
+                b->observation[i].reading[s][axis] *= 1e8;
+                b->observation[i].sigma[s][axis] *= 1e8;
+            }
+    CHECK_OK(bench_solve(b));
+    expect_finite(b);
+    for (size_t p = 0; p < b->result.parameter_count; p++)
+        CHECK_CLOSE(b->result.value[p], imk_model_parameter_get(&b->truth, b->result.parameter[p]),
+                    8.0 * b->result.sigma[p]);
+    bench_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(turns_of_no_record),
+        cmocka_unit_test(turn_over_missing_samples),
+        cmocka_unit_test(numbers_beyond_reason),
+        cmocka_unit_test(one_observation_more_than_there_is_room),
+        cmocka_unit_test(large_counts),
+    };
+    return cmocka_run_group_tests_name("estimator_inputs", tests, NULL, NULL);
+}
