@@ -7,7 +7,7 @@
 file(GLOB_RECURSE core_sources CONFIGURE_DEPENDS src/base/*.c src/model/*.c src/noise/*.c
      src/motion/*.c src/simulate/*.c src/identify/*.c src/physics/*.c src/compensate/*.c
      src/calibrate/*.c src/navigate/*.c)
-file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.c src/report/*.c)
+file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/jobs/*.c src/report/*.c src/io/*.c)
 set(IMUKIT_FILE_FILTER "" CACHE STRING "Regular expression: build only files of such names")
 list(FILTER core_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
 list(FILTER io_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")

@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Allan deviations as CSV, tables, JSON, a figure and a page. */
+/* Allan deviations as a table in a file, and as a result to be shown. */
 #include "allan_output.h"
 
 #include "log/channel_units.h"
-#include "shell/json_output.h"
-#include "shell/page_table.h"
-#include "shell/text_table.h"
-
-#include <stdlib.h>
 
 /* Unit of the deviation as programs read it: phase is per second, TDEV times a second. */
 static imk_unit plain_unit(const allan_result *result, const imk_log_column *column,
@@ -96,231 +91,175 @@ int allan_write_csv(const allan_result *result, const char *output)
     return -1;
 }
 
-/* Averaging times down, the channels of one kind across; no rows when there are none. */
-static text_table make_table(const allan_result *result, channel_kind kind, size_t k)
+/* Averaging times down, the channels of one kind across; nothing when there are none. */
+static void show_table(const allan_result *a, channel_kind kind, size_t k, imk_result *result)
 {
-    const log_channels *channels = &result->channels;
-    size_t member[IMK_LOG_COLUMNS_MAX], members = 0;
+    const log_channels *channels = &a->channels;
+    const allan_curve *member[IMK_LOG_COLUMNS_MAX], *first = NULL;
+    const imk_log_column *column[IMK_LOG_COLUMNS_MAX];
+    size_t members = 0;
     bool gaps = false;
-    for (size_t c = 0; c < channels->count; c++)
-        if (channel_kind_of(log_channel_column(channels, c)) == kind &&
-            result->curve[c][k].count > 0) {
-            member[members++] = c;
-            gaps = gaps || result->curve[c][k].used;
-        }
-    text_table table = text_table_make(1 + members + (gaps ? members : 0));
+    for (size_t c = 0; c < channels->count; c++) {
+        const imk_log_column *of = log_channel_column(channels, c);
+        if (channel_kind_of(of) != kind || a->curve[c][k].count == 0)
+            continue;
+        column[members] = of;
+        member[members++] = &a->curve[c][k];
+        gaps = gaps || a->curve[c][k].used;
+    }
     if (members == 0)
-        return table;
-    const allan_curve *first = &result->curve[member[0]][k];
-    imk_unit unit = readable_unit(result, log_channel_column(channels, member[0]),
-                                  result->statistic[k], first->deviation[first->count / 2]);
-    text_table_row(&table);
-    text_table_set(&table, 0, "tau [s]");
-    for (size_t j = 0; j < members; j++) {
-        const char *name = log_channel_column(channels, member[j])->name;
-        text_table_set(&table, 1 + j, "%s [%s]", name, unit.text);
-        if (gaps)
-            text_table_set(&table, 1 + members + j, "%s used [%%]", name);
-    }
+        return;
+    first = member[0];
+    const imk_unit unit =
+        readable_unit(a, column[0], a->statistic[k], first->deviation[first->count / 2]);
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    if (a->statistic_count > 1)
+        imk_result_line(result, "%s (%s)", imk_allan_title(a->statistic[k]),
+                        imk_allan_name(a->statistic[k]));
+    imk_result_for(result, IMK_FOR_BOTH);
+    imk_table *table = imk_result_table(result, 0);
+    imk_table_row(table, "tau [s]");
+    for (size_t j = 0; j < members; j++)
+        imk_table_add(table, "%s [%s]", column[j]->name, unit.text);
+    for (size_t j = 0; gaps && j < members; j++)
+        imk_table_add(table, "%s used [%%]", column[j]->name);
     for (size_t i = 0; i < first->count; i++) {
-        text_table_row(&table);
-        text_table_set(&table, 0, "%.6g", first->tau[i]);
-        for (size_t j = 0; j < members; j++) {
-            const allan_curve *curve = &result->curve[member[j]][k];
-            text_table_set(&table, 1 + j, "%.4g (%.4g to %.4g)", curve->deviation[i] / unit.scale,
-                           curve->lower[i] / unit.scale, curve->upper[i] / unit.scale);
-            if (gaps)
-                text_table_set(&table, 1 + members + j, "%.3g",
-                               curve->used ? 100 * curve->used[i] : 100);
-        }
+        imk_table_row(table, "%.6g", first->tau[i]);
+        for (size_t j = 0; j < members; j++)
+            imk_table_add(table, "%.4g (%.4g to %.4g)", member[j]->deviation[i] / unit.scale,
+                          member[j]->lower[i] / unit.scale, member[j]->upper[i] / unit.scale);
+        for (size_t j = 0; gaps && j < members; j++)
+            imk_table_add(table, "%.3g", member[j]->used ? 100 * member[j]->used[i] : 100);
     }
-    return table;
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    imk_result_line(result, "%s", "");
 }
 
-/* What a statistic cannot be taken of is said, not left out in silence. */
-static void print_missing(const allan_result *result, size_t k)
+static void show_tables(const allan_result *a, imk_result *result)
 {
-    if (result->curve[0][k].count == 0)
-        printf("%s: the record allows no such averaging time\n\n",
-               imk_allan_title(result->statistic[k]));
-}
-
-void allan_print_tables(const allan_result *result)
-{
-    for (size_t k = 0; k < result->statistic_count; k++) {
-        print_missing(result, k);
-        for (channel_kind kind = CHANNEL_GYRO; kind < CHANNEL_KINDS; kind++) {
-            text_table table = make_table(result, kind, k);
-            if (table.rows > 0) {
-                if (result->statistic_count > 1)
-                    printf("%s (%s)\n", imk_allan_title(result->statistic[k]),
-                           imk_allan_name(result->statistic[k]));
-                text_table_print(&table, stdout);
-                putchar('\n');
-            }
-            text_table_free(&table);
-        }
+    for (size_t k = 0; k < a->statistic_count; k++) {
+        imk_result_for(result, IMK_FOR_PAGE);
+        if (a->statistic_count > 1)
+            imk_result_heading(result, imk_allan_title(a->statistic[k]));
+        /* What a statistic cannot be taken of is said, not left out in silence. */
+        imk_result_for(result, IMK_FOR_TERMINAL);
+        if (a->curve[0][k].count == 0)
+            imk_result_line(result, "%s: the record allows no such averaging time\n",
+                            imk_allan_title(a->statistic[k]));
+        for (channel_kind kind = CHANNEL_GYRO; kind < CHANNEL_KINDS; kind++)
+            show_table(a, kind, k, result);
     }
-    printf("In brackets: %g %% confidence.\n", 100 * result->options->confidence);
+    imk_result_line(result, "In brackets: %g %% confidence.", 100 * a->options->confidence);
 }
 
-static json_t *json_points(const allan_curve *curve, imk_unit unit)
+static void show_points(const allan_curve *curve, imk_unit unit, imk_result *result)
 {
-    json_t *points = json_array();
+    imk_result_array(result, "points");
     for (size_t i = 0; i < curve->count; i++) {
         const imk_allan_point *p = &curve->point[i];
-        json_array_append_new(points,
-                              json_pack("{s:o, s:o, s:o, s:o, s:o, s:I, s:s, s:o}", "tau",
-                                        json_quantity(curve->tau[i], "s"), "deviation",
-                                        json_quantity(p->deviation / unit.scale, unit.text),
-                                        "lower", json_quantity(p->lower / unit.scale, unit.text),
-                                        "upper", json_quantity(p->upper / unit.scale, unit.text),
-                                        "edf", json_number(p->edf), "count", (json_int_t)p->count,
-                                        "noise", noise_name(p->type), "used",
-                                        json_number(curve->used ? curve->used[i] : 1)));
+        imk_result_object(result, NULL);
+        imk_result_quantity(result, "tau", curve->tau[i], "s");
+        imk_result_quantity(result, "deviation", p->deviation / unit.scale, unit.text);
+        imk_result_quantity(result, "lower", p->lower / unit.scale, unit.text);
+        imk_result_quantity(result, "upper", p->upper / unit.scale, unit.text);
+        imk_result_number(result, "edf", p->edf);
+        imk_result_count(result, "count", (long long)p->count);
+        imk_result_text(result, "noise", noise_name(p->type));
+        imk_result_number(result, "used", curve->used ? curve->used[i] : 1);
+        imk_result_end(result);
     }
-    return points;
+    imk_result_end(result);
 }
 
-int allan_print_json(const allan_result *result)
+static void show_data(const allan_result *a, imk_result *result)
 {
     static const char *const biases[] = {"removed", "published", "left"};
-    const allan_options *o = result->options;
-    const log_channels *channels = &result->channels;
-    json_t *list = json_array();
+    const allan_options *o = a->options;
+    const log_channels *channels = &a->channels;
+    imk_result_object(result, "inputs");
+    imk_result_text(result, "log", a->path);
+    imk_result_count(result, "rows", (long long)channels->rows);
+    imk_result_quantity(result, "interval", channels->dt, "s");
+    imk_result_text(result, "statistic", o->statistic ? o->statistic : "oadev");
+    imk_result_number(result, "confidence", o->confidence);
+    imk_result_text(result, "edf", o->edf ? "greenhall-riley" : "exact");
+    imk_result_text(result, "bias", biases[o->bias]);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    imk_result_array(result, "channels");
     for (size_t c = 0; c < channels->count; c++)
-        for (size_t k = 0; k < result->statistic_count; k++) {
+        for (size_t k = 0; k < a->statistic_count; k++) {
             const imk_log_column *column = log_channel_column(channels, c);
-            json_array_append_new(
-                list, json_pack("{s:o, s:s, s:o}", "name", json_text(column->name), "statistic",
-                                imk_allan_name(result->statistic[k]), "points",
-                                json_points(&result->curve[c][k],
-                                            plain_unit(result, column, result->statistic[k]))));
+            imk_result_object(result, NULL);
+            imk_result_text(result, "name", column->name);
+            imk_result_text(result, "statistic", imk_allan_name(a->statistic[k]));
+            show_points(&a->curve[c][k], plain_unit(a, column, a->statistic[k]), result);
+            imk_result_end(result);
         }
-    json_t *inputs =
-        json_pack("{s:o, s:I, s:o, s:s, s:f, s:s, s:s}", "log", json_text(result->path), "rows",
-                  (json_int_t)channels->rows, "interval", json_quantity(channels->dt, "s"),
-                  "statistic", o->statistic ? o->statistic : "oadev", "confidence", o->confidence,
-                  "edf", o->edf ? "greenhall-riley" : "exact", "bias", biases[o->bias]);
-    int code = json_print("allan", inputs, json_pack("{s:o}", "channels", list), EXIT_DONE);
-    return code == EXIT_DONE ? -1 : code;
+    imk_result_end(result);
+    imk_result_end(result);
+}
+
+static void show_curve(const allan_curve *curve, const char *name, int color, double scale,
+                       imk_figure_builder *figure)
+{
+    const imk_curve band = {"",         IMK_CURVE_BAND,   color,        curve->count,
+                            curve->tau, curve->deviation, curve->lower, curve->upper};
+    imk_curve points = {name,       IMK_CURVE_POINTS, color, curve->count,
+                        curve->tau, curve->deviation, NULL,  NULL};
+    imk_figure_curve(figure, &band, scale);
+    imk_figure_curve(figure, &points, scale);
 }
 
 /* One panel per kind of sensor (TDEV has panels of its own), one colour per channel and statistic,
  * intervals as bands. */
-typedef struct allan_figure {
-    imk_figure figure;
-    imk_panel panel[2 * CHANNEL_KINDS];
-    imk_curve curve[2 * IMK_LOG_COLUMNS_MAX * IMK_ALLAN_STATISTICS];
-    char name[IMK_LOG_COLUMNS_MAX * IMK_ALLAN_STATISTICS][80];
-    char label[2 * CHANNEL_KINDS][100];
-    double *memory; /* deviations and limits in the unit of their panel */
-} allan_figure;
-
-static void add_curve(allan_figure *f, size_t *used, const char *name, const allan_curve *curve,
-                      double scale, int color, double **rest)
-{
-    double *deviation = *rest, *lower = deviation + curve->count, *upper = lower + curve->count;
-    *rest = upper + curve->count;
-    for (size_t i = 0; i < curve->count; i++) {
-        deviation[i] = curve->deviation[i] / scale;
-        lower[i] = curve->lower[i] / scale;
-        upper[i] = curve->upper[i] / scale;
-    }
-    f->curve[(*used)++] =
-        (imk_curve){"", IMK_CURVE_BAND, color, curve->count, curve->tau, deviation, lower, upper};
-    f->curve[(*used)++] =
-        (imk_curve){name, IMK_CURVE_POINTS, color, curve->count, curve->tau, deviation, NULL, NULL};
-}
-
-static void add_panel(allan_figure *f, const allan_result *result, channel_kind kind, bool time,
-                      size_t *used, double **rest)
+static void show_panel(const allan_result *a, channel_kind kind, bool time,
+                       imk_figure_builder *figure)
 {
     static const char *const titles[] = {"Gyros", "Accelerometers", "Channels"};
-    size_t first = *used, panel = f->figure.panel_count;
     imk_unit unit = {.scale = 0};
-    for (size_t c = 0; c < result->channels.count; c++)
-        for (size_t k = 0; k < result->statistic_count; k++) {
-            const imk_log_column *column = log_channel_column(&result->channels, c);
-            const allan_curve *curve = &result->curve[c][k];
-            const imk_allan_statistic statistic = result->statistic[k];
+    int color = 0;
+    for (size_t c = 0; c < a->channels.count; c++)
+        for (size_t k = 0; k < a->statistic_count; k++) {
+            const imk_log_column *column = log_channel_column(&a->channels, c);
+            const allan_curve *curve = &a->curve[c][k];
+            const imk_allan_statistic statistic = a->statistic[k];
+            const bool alone = a->statistic_count == 1;
+            char text[120];
             if (channel_kind_of(column) != kind || (statistic == IMK_ALLAN_TIME) != time ||
                 curve->count == 0)
                 continue;
-            if (!(unit.scale > 0))
-                unit = readable_unit(result, column, statistic, curve->deviation[curve->count / 2]);
-            char *name = f->name[*used / 2];
-            snprintf(name, sizeof f->name[0], "%.50s%s%s", column->name,
-                     result->statistic_count > 1 ? " " : "",
-                     result->statistic_count > 1 ? imk_allan_name(statistic) : "");
-            add_curve(f, used, name, curve, unit.scale, (int)(*used - first) / 2, rest);
+            if (color == 0) {
+                unit = readable_unit(a, column, statistic, curve->deviation[curve->count / 2]);
+                const char *what = alone && statistic == IMK_ALLAN_OVERLAPPING ? "Allan deviation"
+                                   : alone || time ? imk_allan_title(statistic)
+                                                   : "deviation";
+                snprintf(text, sizeof text, "%.40s [%s]", what, unit.text);
+                const imk_panel panel = {.title = titles[kind],
+                                         .x_label = "averaging time [s]",
+                                         .y_label = text,
+                                         .x_logarithmic = true,
+                                         .y_logarithmic = true};
+                imk_figure_panel(figure, &panel);
+            }
+            snprintf(text, sizeof text, "%.50s%s%s", column->name, alone ? "" : " ",
+                     alone ? "" : imk_allan_name(statistic));
+            show_curve(curve, text, color++, unit.scale, figure);
         }
-    if (*used == first)
-        return;
-    const char *what = result->statistic_count == 1 ? imk_allan_title(result->statistic[0])
-                       : time                       ? imk_allan_title(IMK_ALLAN_TIME)
-                                                    : "deviation";
-    snprintf(f->label[panel], sizeof f->label[panel], "%.40s [%s]",
-             result->statistic_count == 1 && result->statistic[0] == IMK_ALLAN_OVERLAPPING
-                 ? "Allan deviation"
-                 : what,
-             unit.text);
-    f->panel[panel] = (imk_panel){titles[kind], "averaging time [s]", f->label[panel],  true,
-                                  true,         *used - first,        f->curve + first, 0,
-                                  NULL,         IMK_KEY_UPPER};
-    f->figure.panel_count++;
 }
 
-static allan_figure *make_figure(const allan_result *result)
+void allan_show(const allan_result *a, imk_result *result)
 {
-    size_t points = 0, used = 0;
-    for (size_t c = 0; c < result->channels.count; c++)
-        for (size_t k = 0; k < result->statistic_count; k++)
-            points += result->curve[c][k].count;
-    allan_figure *f = command_memory(NULL, sizeof *f);
-    *f = (allan_figure){.memory = command_memory(NULL, (3 * points + 1) * sizeof *f->memory),
-                        .figure = {result->path, 0, 2, f->panel}};
-    double *rest = f->memory;
+    const log_channels *channels = &a->channels;
+    show_data(a, result);
+    imk_result_title(result, "Allan deviation", "%.120s: %zu samples of %zu channels, %g Hz",
+                     a->path, channels->rows, channels->count, 1 / channels->dt);
+    imk_figure_builder *figure = imk_result_figure(
+        result, a->path, 2, "Points: the deviations. Bands: their confidence intervals.");
     for (int time = 0; time < 2; time++)
         for (channel_kind kind = CHANNEL_GYRO; kind < CHANNEL_KINDS; kind++)
-            add_panel(f, result, kind, time == 1, &used, &rest);
-    return f;
-}
-
-static void free_figure(allan_figure *f)
-{
-    free(f->memory);
-    free(f);
-}
-
-int allan_draw(const allan_result *result, const char *plot)
-{
-    imk_error error;
-    allan_figure *f = make_figure(result);
-    imk_status status = imk_figure_write(&f->figure, plot, &error);
-    free_figure(f);
-    return status == IMK_OK ? -1 : command_error(&error, NULL);
-}
-
-int allan_write_report(const allan_result *result, const char *path)
-{
-    char subtitle[300];
-    allan_figure *f = make_figure(result);
-    snprintf(subtitle, sizeof subtitle, "%.120s: %zu samples of %zu channels, %g Hz", result->path,
-             result->channels.rows, result->channels.count, 1 / result->channels.dt);
-    imk_page *page = imk_page_create("Allan deviation", subtitle);
-    imk_page_figure(page, &f->figure, "Points: the deviations. Bands: their confidence intervals.");
-    for (size_t k = 0; k < result->statistic_count; k++) {
-        if (result->statistic_count > 1)
-            imk_page_heading(page, imk_allan_title(result->statistic[k]));
-        for (channel_kind kind = CHANNEL_GYRO; kind < CHANNEL_KINDS; kind++) {
-            text_table table = make_table(result, kind, k);
-            page_put_table(page, &table);
-            text_table_free(&table);
-        }
-    }
-    imk_page_heading(page, "This page was made by");
-    imk_page_code(page, command_line());
-    free_figure(f);
-    return page_write(page, path);
+            show_panel(a, kind, time == 1, figure);
+    show_tables(a, result);
+    imk_result_for(result, IMK_FOR_PAGE);
+    show_origin(result);
 }

@@ -5,6 +5,7 @@
 
 #include "log/allan_curve.h"
 #include "log/log_input.h"
+#include "shell/show.h"
 
 typedef struct allan_options {
     log_input log;
@@ -25,11 +26,8 @@ typedef struct allan_result {
     allan_curve curve[IMK_LOG_COLUMNS_MAX][IMK_ALLAN_STATISTICS];
 } allan_result;
 
-/* Each returns -1 or the exit code, the message printed. */
+/* @return -1 or the exit code, the message printed */
 int allan_write_csv(const allan_result *result, const char *output);
-int allan_print_json(const allan_result *result);
-int allan_draw(const allan_result *result, const char *plot);
-int allan_write_report(const allan_result *result, const char *path);
-void allan_print_tables(const allan_result *result);
+void allan_show(const allan_result *a, imk_result *result);
 
 #endif

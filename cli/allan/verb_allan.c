@@ -301,18 +301,13 @@ static int compute(allan_result *r, const imk_executor *executor)
 static int show(const allan_result *r)
 {
     const allan_options *o = r->options;
-    int code = -1;
-    if (o->output)
-        code = allan_write_csv(r, o->output);
-    if (code < 0 && o->report)
-        code = allan_write_report(r, o->report);
-    if (code < 0 && o->json)
-        code = allan_print_json(r);
-    if (code < 0 && !o->json && !o->output && !options_stdout_taken())
-        allan_print_tables(r);
-    if (code < 0 && o->plot)
-        code = allan_draw(r, o->plot);
-    return code < 0 ? EXIT_DONE : code;
+    const int code = o->output ? allan_write_csv(r, o->output) : -1;
+    if (code >= 0)
+        return code;
+    imk_result *result = show_begin("allan");
+    allan_show(r, result);
+    const show_options options = {o->report, o->plot, o->json, o->output != NULL};
+    return show_end(result, &options, EXIT_DONE);
 }
 
 static int run(int count, char **words)

@@ -7,7 +7,7 @@
  * the data into a corner. */
 #include "figure_internal.h"
 
-#include "io/file/growing_text_internal.h"
+#include "growing_text_internal.h"
 
 #include "imukit/decimal.h"
 #include "imukit/utf8.h"
