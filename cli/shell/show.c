@@ -91,9 +91,9 @@ static void print(const imk_result *result, bool json)
 /* Letters have room for less: a figure of their own where there is one. @return -1 or the code */
 static int draw(const imk_result *result, const char *plot)
 {
-    const imk_figure *figure = NULL;
+    const imk_figure *figure = imk_result_figure_get(result, IMK_FOR_PLOT, 0);
     imk_error error;
-    if (strcmp(plot, "term") == 0)
+    if (!figure && strcmp(plot, "term") == 0)
         figure = imk_result_figure_get(result, IMK_FOR_TERMINAL, 0);
     if (!figure)
         figure = imk_result_figure_get(result, IMK_FOR_PAGE, 0);

@@ -54,7 +54,12 @@ IMK_API void imk_result_numbers(imk_result *result, const char *key, size_t coun
 /** @} */
 
 /** For whom what is added to the display from here on is meant; at first for both. */
-typedef enum imk_audience { IMK_FOR_TERMINAL = 1, IMK_FOR_PAGE = 2, IMK_FOR_BOTH = 3 } imk_audience;
+typedef enum imk_audience {
+    IMK_FOR_TERMINAL = 1,
+    IMK_FOR_PAGE = 2,
+    IMK_FOR_BOTH = 3,
+    IMK_FOR_PLOT = 4 /**< a figure that stands nowhere: what a plot draws before all others */
+} imk_audience;
 IMK_API void imk_result_for(imk_result *result, imk_audience audience);
 
 /** @name Display
@@ -64,7 +69,11 @@ IMK_API void imk_result_title(imk_result *result, const char *title, const char 
     __attribute__((format(printf, 3, 4)));
 /** A heading of the page; on the terminal a line. */
 IMK_API void imk_result_heading(imk_result *result, const char *text);
-/** A paragraph of the page; on the terminal a line. */
+/** What stands between the two is bold, in a line for the terminal alone. */
+#define IMK_BOLD "\x0e"
+#define IMK_PLAIN "\x0f"
+/** A paragraph of the page; on the terminal a line, where control characters and what is no UTF-8
+ *  become "?". */
 IMK_API void imk_result_line(imk_result *result, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /** A finding in words: a coloured box of the page, a line on the terminal.

@@ -3,6 +3,8 @@
 #include "growing_text_internal.h"
 #include "result_internal.h"
 
+#include "imukit/utf8.h"
+
 #include <stdlib.h>
 
 enum { SPACE = 2 /* between columns */ };
@@ -57,6 +59,22 @@ static imk_status put_table(imki_text *out, const imk_table *table, const char *
     return IMK_OK;
 }
 
+/* What a terminal could take for a command becomes "?". */
+static void put_line(imki_text *out, const char *text, const char *bold, const char *plain)
+{
+    while (*text) {
+        const size_t length = imk_utf8_length(text);
+        if (*text == IMK_BOLD[0] || *text == IMK_PLAIN[0])
+            imki_text_put(out, *text == IMK_BOLD[0] ? bold : plain);
+        else if (imk_utf8_printable(text) > 0 || *text == '\n' || *text == '\t')
+            imki_text_put_bytes(out, text, length);
+        else
+            imki_text_put_char(out, '?');
+        text += length > 0 ? length : 1;
+    }
+    imki_text_put_char(out, '\n');
+}
+
 imk_status imk_result_to_text(const imk_result *result, const char *bold, const char *plain,
                               char **text, size_t *size)
 {
@@ -65,14 +83,17 @@ imk_status imk_result_to_text(const imk_result *result, const char *bold, const 
         return IMK_ERROR_MEMORY;
     imki_arena scratch = {.allocator = result->arena.allocator};
     imk_status status = IMK_OK;
+    plain = bold && plain ? plain : "";
+    bold = bold ? bold : "";
     for (const imki_block *b = result->first; b && status == IMK_OK; b = b->next) {
         if (!(b->audience & IMK_FOR_TERMINAL))
             continue;
         if (b->kind == IMKI_BLOCK_TABLE)
-            status =
-                put_table(&out, &b->table, bold ? bold : "", bold && plain ? plain : "", &scratch);
-        else if (b->kind <= IMKI_BLOCK_CODE)
+            status = put_table(&out, &b->table, bold, plain, &scratch);
+        else if (b->kind == IMKI_BLOCK_CODE)
             imki_text_add(&out, "%s\n", b->text);
+        else if (b->kind < IMKI_BLOCK_CODE)
+            put_line(&out, b->text, bold, plain);
     }
     imki_arena_free(&scratch);
     char *made = imki_text_take(&out, size);

@@ -119,11 +119,33 @@ static void test_text(void **state)
     imk_result_free(r);
 }
 
+/* Names of strangers are no commands to a terminal; what stands out is marked. */
+static void test_line(void **state)
+{
+    (void)state;
+    char *text;
+    size_t size;
+    imk_result *r = imk_result_create(NULL);
+    imk_result_line(r, "%s: " IMK_BOLD "good" IMK_PLAIN ", \xC2\xB5\n", "a\x1b[2J\xff");
+    assert_int_equal(imk_result_to_text(r, NULL, NULL, &text, &size), IMK_OK);
+    assert_string_equal(text, "a?[2J?: good, \xC2\xB5\n\n");
+    free(text);
+    assert_int_equal(imk_result_to_text(r, "<", ">", &text, &size), IMK_OK);
+    assert_string_equal(text, "a?[2J?: <good>, \xC2\xB5\n\n");
+    free(text);
+    imk_result_free(r);
+}
+
 static void test_figure(void **state)
 {
     (void)state;
     imk_result *r = imk_result_create(NULL);
+    imk_result_for(r, IMK_FOR_PLOT);
+    assert_non_null(imk_result_figure(r, "plot", 1, ""));
+    imk_result_for(r, IMK_FOR_BOTH);
     put_display(r);
+    assert_non_null(imk_result_figure_get(r, IMK_FOR_PLOT, 0));
+    assert_null(imk_result_figure_get(r, IMK_FOR_PLOT, 1));
     const imk_figure *figure = imk_result_figure_get(r, IMK_FOR_PAGE, 0);
     assert_non_null(figure);
     assert_int_equal(figure->panel_count, 1);
@@ -200,8 +222,9 @@ static void test_readable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_json), cmocka_unit_test(test_text),   cmocka_unit_test(test_figure),
-        cmocka_unit_test(test_page), cmocka_unit_test(test_memory), cmocka_unit_test(test_readable),
+        cmocka_unit_test(test_json),     cmocka_unit_test(test_text), cmocka_unit_test(test_line),
+        cmocka_unit_test(test_figure),   cmocka_unit_test(test_page), cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_readable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
