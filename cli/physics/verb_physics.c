@@ -3,6 +3,8 @@
 #include "physics_parts.h"
 #include "shell/progress.h"
 
+#include "imukit/names.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -182,8 +184,7 @@ static int check_numbers(const physics_options *o)
         return command_misused("--signal-rate: expected a rate above 0");
     if (!isnan(o->duration) && o->duration * fmax(o->output_rate, o->signal_rate) > 9e15)
         return command_misused("--duration %g s: too many samples", o->duration);
-    const size_t length = o->animate ? strlen(o->animate) : 0;
-    if (o->animate && (length < 5 || strcmp(o->animate + length - 4, ".svg") != 0))
+    if (o->animate && !imk_has_ending(o->animate, ".svg"))
         return command_misused("--animate %s: expected a name ending in .svg", o->animate);
     return command_check_plot(o->plot);
 }

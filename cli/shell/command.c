@@ -207,10 +207,8 @@ int command_model(const char *name, imk_model *model, imk_document **document)
 
 int command_check_plot(const char *plot)
 {
-    size_t length = plot ? strlen(plot) : 0;
-    if (!plot || strcmp(plot, "term") == 0 ||
-        (length > 4 &&
-         (strcmp(plot + length - 4, ".svg") == 0 || strcmp(plot + length - 4, ".png") == 0)))
+    if (!plot || strcmp(plot, "term") == 0 || imk_has_ending(plot, ".svg") ||
+        imk_has_ending(plot, ".png"))
         return -1;
     return command_misused("--plot %s: expected a name ending in .svg or .png, or the word term",
                            plot);
