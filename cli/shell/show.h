@@ -21,6 +21,8 @@ void show_origin(imk_result *result);
 /* Write the page, print JSON or text, draw, and free the result.
  * @return the exit code: `code`, or another one when something could not be written */
 int show_end(imk_result *result, const show_options *options, int code);
+/* Print the text to standard error now: standard output is for a log. */
+void show_aside(const imk_result *result);
 /* A model file as text, or why there is none. */
 void show_model(imk_result *result, const char *title, const imk_model *model);
 
