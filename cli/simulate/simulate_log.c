@@ -1,9 +1,110 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One run into one log, written as it is made. */
+/* One run into one log: its columns, and its rows written as they are made. */
+#include "log/log_columns.h"
 #include "shell/progress.h"
 #include "simulate_parts.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+/* ---- columns ---- */
+
+/* A kind of sensor as the options want it written. */
+typedef struct sensor_columns {
+    const char *name;
+    imk_quantity quantity;
+    imk_unit unit;
+    double interval; /* of increments [s]; 0: rates */
+} sensor_columns;
+
+static void describe_triad(const imk_triad *triad, const sensor_columns *sensor, log_layout *layout)
+{
+    int axes[IMK_AXES_MAX];
+    log_axes(triad, axes);
+    for (int i = 0; triad->present && i < triad->axis_count; i++) {
+        imk_log_column *column = &layout->column[layout->count];
+        *column =
+            (imk_log_column){.quantity = sensor->quantity, .axis = axes[i], .unit = sensor->unit};
+        log_axis_name(sensor->name, axes[i], column->name, sizeof column->name);
+        layout->factor[layout->count] = 1;
+        if (triad->sensitivity.value[i] != 0) {
+            column->unit = imk_unit_of("count");
+        } else if (sensor->interval > 0) {
+            column->increment = true;
+            layout->factor[layout->count] = sensor->interval;
+        }
+        layout->count++;
+        layout->channels++;
+    }
+}
+
+/* Decimals that hold every multiple of 1/rate after a start, up to nine. */
+static int time_decimals(double rate, double start)
+{
+    double scale = 1;
+    for (int decimals = 0; decimals < 9; decimals++, scale *= 10)
+        if (scale / rate == floor(scale / rate) && scale * start == floor(scale * start))
+            return decimals;
+    return 9;
+}
+
+/* Counts are of the rate, whatever unit is asked for. */
+static int check_counts(const simulate_options *o, const imk_model *model)
+{
+    const bool gyro = model->gyro.present && model->gyro.sensitivity.value[0] != 0;
+    const bool accel = model->accel.present && model->accel.sensitivity.value[0] != 0;
+    if (o->increments && (gyro || accel))
+        return command_misused("--increments: a model with a sensitivity makes counts, which are "
+                               "rates; leave the option out");
+    if (o->gyro_unit && gyro)
+        return command_misused("--gyro-unit %s: the model's gyros have a sensitivity and make "
+                               "counts; leave the option out",
+                               o->gyro_unit);
+    if (o->accel_unit && accel)
+        return command_misused("--accel-unit %s: the model's accelerometers have a sensitivity "
+                               "and make counts; leave the option out",
+                               o->accel_unit);
+    return -1;
+}
+
+int log_layout_make(const simulate_options *o, const imk_model *model, const scene *s,
+                    log_layout *layout)
+{
+    const bool steps = o->increments;
+    sensor_columns gyro = {.name = steps ? "dtheta" : "gyro",
+                           .quantity = IMK_QUANTITY_ANGULAR_RATE};
+    sensor_columns accel = {.name = steps ? "dvel" : "accel",
+                            .quantity = IMK_QUANTITY_SPECIFIC_FORCE};
+    gyro.interval = accel.interval = steps ? 1 / s->simulation.rate : 0;
+    gyro.unit = imk_unit_of(steps ? "deg" : "deg/s");
+    accel.unit = imk_unit_of(steps ? "m/s" : "m/s^2");
+    int code = log_unit_asked("gyro-unit", o->gyro_unit, &gyro.unit);
+    if (code < 0)
+        code = log_unit_asked("accel-unit", o->accel_unit, &accel.unit);
+    if (code < 0)
+        code = check_counts(o, model);
+    if (code >= 0)
+        return code;
+    *layout = (log_layout){.count = 1, .temperature = s->simulation.temperature != NULL};
+    layout->column[0] = (imk_log_column){
+        .name = "time", .quantity = IMK_QUANTITY_TIME, .axis = -1, .unit = imk_unit_of("s")};
+    layout->factor[0] = 1;
+    describe_triad(&model->gyro, &gyro, layout);
+    describe_triad(&model->accel, &accel, layout);
+    if (layout->temperature) {
+        layout->factor[layout->count] = 1;
+        layout->column[layout->count++] = (imk_log_column){.name = "temperature",
+                                                           .quantity = IMK_QUANTITY_TEMPERATURE,
+                                                           .axis = -1,
+                                                           .unit = imk_unit_of("degC")};
+    }
+    for (size_t c = 0; c < layout->count; c++)
+        layout->decimals[c] =
+            c == 0 ? time_decimals(s->simulation.rate, s->start) : (int)o->decimals.value;
+    return -1;
+}
+
+/* ---- rows ---- */
 
 /* Rows made and written at a time: long enough to share among threads, short enough for the
  * cache of a small machine. */
@@ -99,18 +200,14 @@ int simulate_log(const simulate_options *o, const imk_model *model, const scene 
     recording r = {
         .scene = s, .layout = layout, .executor = executor, .drops = model->timing.drops.value > 0};
     const size_t size = imk_simulator_size(model, &s->simulation);
-    void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
-    double *block = malloc(layout->count * BLOCK_ROWS * sizeof *block);
-    int code = -1;
-    for (size_t c = 0; block && c < layout->count; c++)
+    void *memory = command_aligned(size);
+    double *block = command_memory(NULL, layout->count * BLOCK_ROWS * sizeof *block);
+    for (size_t c = 0; c < layout->count; c++)
         r.column[c] = block + c * BLOCK_ROWS;
-    if (!memory || !block)
-        code = command_failed("memory is exhausted");
-    else if (imk_simulator_start(memory, size, model, &s->simulation, &r.simulator, &error) !=
-             IMK_OK)
-        code = command_error(&error, NULL);
-    if (code < 0)
-        code = create(o, &r, target->path);
+    int code =
+        imk_simulator_start(memory, size, model, &s->simulation, &r.simulator, &error) == IMK_OK
+            ? create(o, &r, target->path)
+            : command_error(&error, NULL);
     if (code < 0)
         code = stream(&r, target->label);
     free(block);

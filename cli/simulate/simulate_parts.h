@@ -33,7 +33,7 @@ typedef struct scene {
 int scene_open(const simulate_options *o, const imk_model *model, scene *s);
 void scene_free(scene *s);
 
-/* ---- simulate_columns.c ---- */
+/* ---- simulate_log.c ---- */
 
 enum { SIMULATE_COLUMNS_MAX = 2 + 2 * IMK_AXES_MAX }; /* time, channels, temperature */
 
@@ -49,10 +49,6 @@ typedef struct log_layout {
 /* @return -1 or the exit code */
 int log_layout_make(const simulate_options *o, const imk_model *model, const scene *s,
                     log_layout *layout);
-/* Decimals that hold every multiple of 1/rate after a start, up to nine. */
-int time_decimals(double rate, double start);
-
-/* ---- simulate_log.c, simulate_truth.c ---- */
 
 typedef struct log_target {
     const char *path, *label; /* what the progress says: "run 3 (4 of 20)" */
@@ -61,8 +57,8 @@ typedef struct log_target {
 /* One run of the scene into one file. @return the exit code, the message printed */
 int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
                  const log_layout *layout, const imk_executor *executor, const log_target *target);
-/* What perfect sensors would have read, and where the unit was. @return -1 or the exit code, the
- * message printed */
+/* simulate_truth.c: what perfect sensors would have read, and where the unit was. @return -1 or the
+ * exit code, the message printed */
 int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
                    const imk_executor *executor, const char *path);
 

@@ -109,7 +109,7 @@ static void fill_sensors(truth *t, uint64_t first, size_t count)
     }
 }
 
-static size_t choose_columns(const truth *t, imk_log_column *columns, double **data, truth *memory)
+static size_t choose_columns(truth *t, imk_log_column *columns, double **data)
 {
     size_t count = 0;
     for (size_t c = 0; c < COLUMNS; c++) {
@@ -120,7 +120,7 @@ static size_t choose_columns(const truth *t, imk_log_column *columns, double **d
                                           .axis = truth_columns[c].axis,
                                           .unit = imk_unit_of(truth_columns[c].unit)};
         snprintf(columns[count].name, sizeof columns[count].name, "%s", truth_columns[c].name);
-        data[count++] = memory->block[c];
+        data[count++] = t->block[c];
     }
     return count;
 }
@@ -131,7 +131,7 @@ static int stream(truth *t, const imk_executor *executor, const char *path)
     imk_log_writer *writer;
     imk_log_column columns[COLUMNS];
     double *data[COLUMNS];
-    const size_t count = choose_columns(t, columns, data, t);
+    const size_t count = choose_columns(t, columns, data);
     const uint64_t rows = t->scene->rows;
     if (imk_log_create(path, count, columns, IMK_LOG_SHORTEST, NULL, rows, &writer, &error) !=
         IMK_OK)
@@ -173,30 +173,22 @@ int simulate_truth(const simulate_options *o, const imk_model *model, const scen
     const double attitude[3] = {o->roll, o->pitch, o->yaw};
     const imk_simulation *simulation = &s->simulation;
     const size_t size = imk_simulator_size(model, simulation);
-    void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
-    truth *t = malloc(sizeof *t);
-    int code = -1;
-    if (!memory || !t) {
-        code = command_failed("memory is exhausted");
-    } else {
-        t->scene = s;
-        t->random = imk_random_seeded(o->seed.value);
-        t->trajectory = simulation->motion.trajectory;
-        if (!t->trajectory && !simulation->motion.recorded) {
-            imk_geodetic place = {simulation->latitude, 0.0, simulation->height};
-            if (imk_trajectory_standstill(place, attitude, simulation->earth, &rest_piece, &rest,
-                                          &error) != IMK_OK)
-                code = command_error(&error, NULL);
-            t->trajectory = &rest;
-        }
-        t->parts = code < 0 && t->trajectory ? truth_parts(t->trajectory, simulation) : 1;
-        /* Only for the true times of its rows. */
-        if (code < 0 &&
-            imk_simulator_start(memory, size, model, simulation, &t->simulator, &error) != IMK_OK)
-            code = command_error(&error, NULL);
-        if (code < 0)
-            code = stream(t, executor, path);
+    void *memory = command_aligned(size);
+    truth *t = command_memory(NULL, sizeof *t);
+    imk_status status = IMK_OK;
+    t->scene = s;
+    t->random = imk_random_seeded(o->seed.value);
+    t->trajectory = simulation->motion.trajectory;
+    if (!t->trajectory && !simulation->motion.recorded) {
+        imk_geodetic place = {simulation->latitude, 0.0, simulation->height};
+        status = imk_trajectory_standstill(place, attitude, simulation->earth, &rest_piece, &rest,
+                                           &error);
+        t->trajectory = &rest;
     }
+    t->parts = status == IMK_OK && t->trajectory ? truth_parts(t->trajectory, simulation) : 1;
+    if (status == IMK_OK) /* only for the true times of its rows */
+        status = imk_simulator_start(memory, size, model, simulation, &t->simulator, &error);
+    const int code = status == IMK_OK ? stream(t, executor, path) : command_error(&error, NULL);
     free(t);
     free(memory);
     return code;

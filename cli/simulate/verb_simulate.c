@@ -233,9 +233,7 @@ static int run(int count, char **words)
         code = check(&o);
     if (code >= 0)
         return code;
-    imk_model *model = malloc(sizeof *model);
-    if (!model)
-        return command_failed("memory is exhausted");
+    imk_model *model = command_memory(NULL, sizeof *model);
     code = command_model(operands[0], model, NULL);
     if (code < 0)
         code = term_selection_apply(&o.terms, model);
