@@ -110,6 +110,11 @@ static int draw(const imk_result *result, const char *plot)
     return imk_figure_write(figure, plot, &error) == IMK_OK ? -1 : command_error(&error, NULL);
 }
 
+int show_plot(const imk_result *result, const char *plot)
+{
+    return draw(result, plot);
+}
+
 int show_end(imk_result *result, const show_options *options, int code)
 {
     int failed = options->report ? write_page(result, options->report) : -1;

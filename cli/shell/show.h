@@ -23,6 +23,8 @@ void show_origin(imk_result *result);
 int show_end(imk_result *result, const show_options *options, int code);
 /* Print the text to standard error now: standard output is for a log. */
 void show_aside(const imk_result *result);
+/* Draw now, where the picture comes before the text. @return -1 or the exit code */
+int show_plot(const imk_result *result, const char *plot);
 /* A model file as text, or why there is none. */
 void show_model(imk_result *result, const char *title, const imk_model *model);
 

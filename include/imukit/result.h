@@ -38,6 +38,9 @@ IMK_API void imk_result_object(imk_result *result, const char *key);
 IMK_API void imk_result_array(imk_result *result, const char *key);
 /** End the object or array that was begun last. */
 IMK_API void imk_result_end(imk_result *result);
+/** A key that is made at run time, which lives as long as the result. */
+IMK_API const char *imk_result_key(imk_result *result, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /** null when it is not finite. */
 IMK_API void imk_result_number(imk_result *result, const char *key, double value);
 IMK_API void imk_result_count(imk_result *result, const char *key, long long value);

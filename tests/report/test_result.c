@@ -136,6 +136,20 @@ static void test_line(void **state)
     imk_result_free(r);
 }
 
+static void test_key(void **state)
+{
+    (void)state;
+    char *text;
+    size_t size;
+    imk_result *r = imk_result_create(NULL);
+    for (int i = 0; i < 2; i++)
+        imk_result_count(r, imk_result_key(r, "sigma[%d]", i), i);
+    assert_int_equal(imk_result_to_json(r, &text, &size), IMK_OK);
+    assert_string_equal(text, "{\"sigma[0]\": 0, \"sigma[1]\": 1}\n");
+    free(text);
+    imk_result_free(r);
+}
+
 static void test_figure(void **state)
 {
     (void)state;
@@ -222,9 +236,9 @@ static void test_readable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_json),     cmocka_unit_test(test_text), cmocka_unit_test(test_line),
-        cmocka_unit_test(test_figure),   cmocka_unit_test(test_page), cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_readable),
+        cmocka_unit_test(test_json),   cmocka_unit_test(test_text),     cmocka_unit_test(test_line),
+        cmocka_unit_test(test_figure), cmocka_unit_test(test_key),      cmocka_unit_test(test_page),
+        cmocka_unit_test(test_memory), cmocka_unit_test(test_readable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
