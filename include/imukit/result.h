@@ -13,6 +13,7 @@
 #define IMUKIT_RESULT_H
 
 #include "imukit/allocator.h"
+#include "imukit/readable.h"
 #include "imukit/report.h"
 #include "imukit/status.h"
 
@@ -138,13 +139,6 @@ IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
                                       bool *complete, imk_error *error);
 /** @} */
-
-/** A value to as many decimals as two digits of its uncertainty need, or `digits` significant ones
- *  when the uncertainty is 0; "-" for no number. */
-IMK_API void imk_readable_value(double value, double uncertainty, int digits, char *text,
-                                size_t size);
-/** "2 h 46 min 40 s", "12.5 s" */
-IMK_API void imk_readable_duration(double seconds, char *text, size_t size);
 
 #ifdef __cplusplus
 }

@@ -4,9 +4,13 @@
  * A written value must read back to the same double, so a raw estimate would fill the file with
  * seventeen digits in SI. Rounded to a hundredth of its 1-sigma uncertainty it is short and in the
  * usual unit, and what is simulated from the file is what the file says. */
-#include "identify_parts.h"
+#include "identify_log_internal.h"
+
+#include "imukit/decimal.h"
+#include "imukit/units.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Digits of a bound, and of a parameter whose uncertainty is not known. */
@@ -76,7 +80,7 @@ static void round_lists(imk_noise *noise, const char *unit)
 }
 
 /* Unit of the parameter a dotted key of the evidence names. */
-static const char *unit_of_key(const char *key, const term_display *terms, const char *plain)
+static const char *unit_of_key(const char *key, const imk_term_display *terms, const char *plain)
 {
     if (strncmp(key, "noise.", 6) != 0)
         return plain;
@@ -93,9 +97,9 @@ static void round_triad(imk_triad *triad, imk_evidence *evidence, imk_quantity q
     imk_noise *noise = &triad->noise;
     imk_axes *axes[IMK_NOISE_TERMS] = {&noise->quantization, &noise->white,
                                        &noise->bias_instability, &noise->random_walk, &noise->ramp};
-    term_display terms[IMK_NOISE_TERMS];
+    imk_term_display terms[IMK_NOISE_TERMS];
     for (int term = 0; term < IMK_NOISE_TERMS; term++) {
-        terms[term] = identify_term(&column, (imk_noise_term)term);
+        terms[term] = imk_channel_term(&column, (imk_noise_term)term);
         round_axes(axes[term], terms[term].unit.text);
     }
     round_lists(noise, unit);
@@ -105,7 +109,7 @@ static void round_triad(imk_triad *triad, imk_evidence *evidence, imk_quantity q
         round_interval(&evidence->interval[i], unit_of_key(evidence->interval[i].key, terms, unit));
 }
 
-void identify_round_model(imk_model *model)
+void imki_round_model(imk_model *model)
 {
     round_triad(&model->gyro, &model->gyro_evidence, IMK_QUANTITY_ANGULAR_RATE, "deg/h");
     round_triad(&model->accel, &model->accel_evidence, IMK_QUANTITY_SPECIFIC_FORCE, "ug");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers and durations as a person reads them. */
-#include "imukit/result.h"
+#include "imukit/readable.h"
 
 #include <math.h>
 #include <stdio.h>

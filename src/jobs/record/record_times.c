@@ -9,7 +9,7 @@
  *     jitter  = sqrt(mean((step - interval)^2)) over the positive steps that are no gap
  *
  * A time that is not finite makes no step, neither to it nor from it. */
-#include "log_findings_internal.h"
+#include "record_times_internal.h"
 
 #include "imukit/samples.h"
 
@@ -37,7 +37,7 @@ static double median_of_copy(const double *values, size_t count)
     return median_of(copy, count);
 }
 
-static double median_of_pending(const imki_log_times *times)
+static double median_of_pending(const imki_record_times *times)
 {
     double size[IMKI_STEP_GROUP];
     for (size_t i = 0; i < times->pending; i++)
@@ -45,7 +45,7 @@ static double median_of_pending(const imki_log_times *times)
     return median_of(size, times->pending);
 }
 
-void imki_log_times_start(imki_log_times *times, double given_interval)
+void imki_record_times_start(imki_record_times *times, double given_interval)
 {
     times->given_interval = given_interval;
     times->last_time = (double)NAN;
@@ -53,7 +53,7 @@ void imki_log_times_start(imki_log_times *times, double given_interval)
 }
 
 /* The interval with what is known now; 0 when nothing is. */
-static double interval_now(const imki_log_times *times)
+static double interval_now(const imki_record_times *times)
 {
     if (times->given_interval > 0.0)
         return times->given_interval;
@@ -70,11 +70,11 @@ typedef struct judgement {
     double sum, square_sum;
 } judgement;
 
-static judgement judge(const imki_log_times *times, double interval, double reference)
+static judgement judge(const imki_record_times *times, double interval, double reference)
 {
     judgement j = {0};
     for (size_t i = 0; i < times->pending; i++) {
-        const imki_log_step step = times->step[i];
+        const imki_record_step step = times->step[i];
         const size_t intervals = imk_step_intervals(step.size, interval);
         if (intervals > 1) {
             if (j.gaps++ == 0)
@@ -90,7 +90,7 @@ static judgement judge(const imki_log_times *times, double interval, double refe
     return j;
 }
 
-static void add_judgement(imki_log_times *times, const judgement *j)
+static void add_judgement(imki_record_times *times, const judgement *j)
 {
     imk_log_findings *found = &times->findings;
     if (found->gaps == 0)
@@ -102,7 +102,7 @@ static void add_judgement(imki_log_times *times, const judgement *j)
     times->deviation_square_sum += j->square_sum;
 }
 
-static void close_group(imki_log_times *times)
+static void close_group(imki_record_times *times)
 {
     if (times->groups == IMKI_STEP_GROUP && times->upper_groups < IMKI_STEP_GROUP) {
         times->upper[times->upper_groups++] = median_of(times->median, times->groups);
@@ -118,7 +118,8 @@ static void close_group(imki_log_times *times)
     times->pending = 0;
 }
 
-void imki_log_times_add(imki_log_times *times, size_t first_row, size_t count, const double *time)
+void imki_record_times_add(imki_record_times *times, size_t first_row, size_t count,
+                           const double *time)
 {
     imk_log_findings *found = &times->findings;
     for (size_t i = 0; i < count; i++) {
@@ -132,7 +133,7 @@ void imki_log_times_add(imki_log_times *times, size_t first_row, size_t count, c
             times->last_time = (double)NAN;
         }
         if (step > 0.0 && isfinite(step)) {
-            times->step[times->pending++] = (imki_log_step){step, first_row + i};
+            times->step[times->pending++] = (imki_record_step){step, first_row + i};
             if (times->pending == IMKI_STEP_GROUP)
                 close_group(times);
         } else if (step == 0.0) {
@@ -145,7 +146,7 @@ void imki_log_times_add(imki_log_times *times, size_t first_row, size_t count, c
     }
 }
 
-imk_log_findings imki_log_times_findings(const imki_log_times *times)
+imk_log_findings imki_record_times_findings(const imki_record_times *times)
 {
     imk_log_findings found = times->findings;
     const double interval = interval_now(times);
