@@ -306,7 +306,8 @@ static int show(const allan_result *r)
         return code;
     imk_result *result = show_begin("allan");
     allan_show(r, result);
-    const show_options options = {o->report, o->plot, o->json, o->output != NULL};
+    const show_options options = {
+        .report = o->report, .plot = o->plot, .json = o->json, .quiet = o->output != NULL};
     return show_end(result, &options, EXIT_DONE);
 }
 

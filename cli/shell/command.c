@@ -156,6 +156,13 @@ void *command_memory(void *at, size_t size)
     return memory;
 }
 
+void *command_zeroed(size_t size)
+{
+    void *memory = calloc(1, size);
+    (void)command_unless_memory(memory ? IMK_OK : IMK_ERROR_MEMORY);
+    return memory;
+}
+
 /* The remedy of the log reader is "add --option value … (why)": the options are what stands
  * between.
  * "--columns with 7 names" asks for what only the user knows. */

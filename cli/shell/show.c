@@ -4,6 +4,7 @@
 
 #include "imukit/model_file.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -84,16 +85,17 @@ static void print(const imk_result *result, bool json)
         status = imk_result_to_text(result, command_color(stdout, COLOR_BOLD),
                                     command_color(stdout, COLOR_RESET), &text, &size);
     (void)command_unless_memory(status);
-    fwrite(text, 1, size, stdout);
+    if (fwrite(text, 1, size, stdout) < size) /* the reason is lost with the next call */
+        (void)command_failed("standard output: %s", strerror(errno));
     free(text);
 }
 
 /* Letters have room for less: a figure of their own where there is one. @return -1 or the code */
 static int draw(const imk_result *result, const char *plot)
 {
-    const imk_figure *figure = NULL;
+    const imk_figure *figure = imk_result_figure_get(result, IMK_FOR_PLOT, 0);
     imk_error error;
-    if (strcmp(plot, "term") == 0)
+    if (!figure && strcmp(plot, "term") == 0)
         figure = imk_result_figure_get(result, IMK_FOR_TERMINAL, 0);
     if (!figure)
         figure = imk_result_figure_get(result, IMK_FOR_PAGE, 0);
@@ -101,6 +103,13 @@ static int draw(const imk_result *result, const char *plot)
         figure = imk_result_figure_get(result, IMK_FOR_TERMINAL, 0);
     (void)command_unless_memory(figure ? IMK_OK : IMK_ERROR_MEMORY);
     return imk_figure_write(figure, plot, &error) == IMK_OK ? -1 : command_error(&error, NULL);
+}
+
+static int draw_nothing(const char *lacking)
+{
+    imk_error error;
+    (void)imk_error_set(&error, IMK_ERROR_EMPTY, "plot", NULL, lacking);
+    return command_error(&error, NULL);
 }
 
 int show_end(imk_result *result, const show_options *options, int code)
@@ -112,7 +121,9 @@ int show_end(imk_result *result, const show_options *options, int code)
     } else if (failed < 0 && !options->quiet && !options_stdout_taken()) {
         print(result, false);
     }
-    if (failed < 0 && options->plot)
+    if (failed < 0 && options->plot && options->lacking)
+        failed = draw_nothing(options->lacking);
+    else if (failed < 0 && options->plot)
         failed = draw(result, options->plot);
     imk_result_free(result);
     return failed < 0 ? code : failed;
