@@ -136,19 +136,11 @@ static void add_interval(const evaluate_row *row, imk_table *table)
         imk_table_add(table, "%s%s", isfinite(high) ? "up to " : "", isfinite(high) ? b : "");
 }
 
-/* A line between the tables of the terminal. */
-static void show_gap(imk_result *result)
-{
-    imk_result_for(result, IMK_FOR_TERMINAL);
-    imk_result_line(result, "%s", "");
-}
-
 /* Figures that are not determined are left out, unless they have a limit. */
 static void show_figures(const evaluation *v, const char *name, const evaluate_sheet *sheet,
-                         imk_audience audience, imk_result *result)
+                         imk_result *result)
 {
     const bool limits = v->limit_count > 0;
-    imk_result_for(result, audience);
     imk_table *table = imk_result_table(result, 1U << 1 | 1U << 2);
     for (const evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
         const imk_evaluation_figure *f = &row->figure;
@@ -166,18 +158,17 @@ static void show_figures(const evaluation *v, const char *name, const evaluate_s
         if (limits)
             imk_table_add(table, "%s\t%s", row->limit, evaluate_verdict_text(row->verdict));
     }
-    if ((audience & IMK_FOR_TERMINAL) && imk_table_rows(table) > 0)
-        show_gap(result);
+    if (imk_table_rows(table) > 0)
+        imk_result_gap(result);
 }
 
-static void show_levels(const evaluate_channel *c, imk_audience audience, imk_result *result)
+static void show_levels(const evaluate_channel *c, imk_result *result)
 {
     static const char *const heads[] = {"mean",    "1 sigma",      "rising",
                                         "falling", "off the line", "off the best line"};
     const imk_unit *unit = &c->reading_unit, *reference = &c->reference_unit;
     if (c->result.levels == 0)
         return;
-    imk_result_for(result, audience);
     imk_table *table = imk_result_table(result, 0xff);
     imk_table_row(table, "reference [%s]\treadings", reference->text);
     for (size_t k = 0; k < 6; k++)
@@ -194,8 +185,7 @@ static void show_levels(const evaluate_channel *c, imk_audience audience, imk_re
             imk_table_add(table, "%s", isfinite(value[i]) ? text : "-");
         }
     }
-    if (audience & IMK_FOR_TERMINAL)
-        show_gap(result);
+    imk_result_gap(result);
 }
 
 /* ---- words ----------------------------------------------------------------------------------- */
@@ -331,15 +321,17 @@ static void show_channel(const evaluation *v, const evaluate_channel *c, imk_res
     imk_result_heading(result, c->name);
     imk_result_for(result, IMK_FOR_BOTH);
     show_basis(c, result);
-    show_gap(result);
-    show_figures(v, c->name, &c->sheet, IMK_FOR_TERMINAL, result);
+    imk_result_gap(result);
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    show_figures(v, c->name, &c->sheet, result);
     if (v->options->levels)
-        show_levels(c, IMK_FOR_TERMINAL, result);
-    show_figures(v, "figure", &c->sheet, IMK_FOR_PAGE, result);
+        show_levels(c, result);
+    imk_result_for(result, IMK_FOR_PAGE);
+    show_figures(v, "figure", &c->sheet, result);
     imk_result_for(result, IMK_FOR_BOTH);
     show_remarks(c, result);
     if (c + 1 < v->channel + v->channel_count || v->rest_count > 0)
-        show_gap(result);
+        imk_result_gap(result);
     imk_result_for(result, IMK_FOR_PAGE);
     if (c->result.levels > 1)
         evaluate_show_panels(
@@ -376,8 +368,9 @@ void evaluate_show(const evaluation *v, imk_result *result)
     imk_result_for(result, IMK_FOR_PAGE);
     if (v->rest_count > 0)
         imk_result_heading(result, "At rest");
+    imk_result_for(result, IMK_FOR_BOTH);
     for (size_t k = 0; k < v->rest_count; k++)
-        show_figures(v, v->rest[k].name, &v->rest[k].sheet, IMK_FOR_BOTH, result);
+        show_figures(v, v->rest[k].name, &v->rest[k].sheet, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (o->report)
         imk_result_line(result, "Report: %s", o->report);
@@ -388,7 +381,7 @@ void evaluate_show(const evaluation *v, imk_result *result)
         char text[EVALUATE_NAME + 20];
         snprintf(text, sizeof text, "Levels of %s", v->channel[k].name);
         imk_result_heading(result, text);
-        show_levels(&v->channel[k], IMK_FOR_PAGE, result);
+        show_levels(&v->channel[k], result);
     }
     show_origin(result);
     show_plot(v, result);

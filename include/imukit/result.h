@@ -72,6 +72,8 @@ IMK_API void imk_result_heading(imk_result *result, const char *text);
 /** A paragraph of the page; on the terminal a line. */
 IMK_API void imk_result_line(imk_result *result, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/** An empty line on the terminal; nothing on the page. */
+IMK_API void imk_result_gap(imk_result *result);
 /** A finding in words: a coloured box of the page, a line on the terminal.
  *  @param level  0 good, 1 note, 2 warning */
 IMK_API void imk_result_finding(imk_result *result, int level, const char *text);
