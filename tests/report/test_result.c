@@ -71,6 +71,7 @@ static void put_display(imk_result *r)
     imk_result_line(r, "only %s", "on the page");
     imk_result_for(r, IMK_FOR_TERMINAL);
     imk_result_line(r, "only %s", "on the terminal");
+    imk_result_gap(r);
     imk_result_for(r, IMK_FOR_BOTH);
     imk_table *table = imk_result_table(r, 2);
     imk_table_row(table, "tau\t%s", "value");
@@ -81,10 +82,16 @@ static void put_display(imk_result *r)
     imk_figure_builder *figure = imk_result_figure(r, "figure", 1, "Caption");
     imk_figure_panel(figure, &(imk_panel){.title = "p", .x_label = "x", .y_label = "y"});
     imk_figure_curve(figure, &(imk_curve){"c", IMK_CURVE_LINE, 0, 3, x, y, NULL, NULL}, 10);
+    imk_figure_curve(figure, &(imk_curve){.label = "points"}, 1);
+    for (int i = 0; i < 5; i++)
+        imk_figure_point(figure, i, 2 * i);
+    imk_figure_curve(figure, &(imk_curve){.label = "bars"}, 1);
+    for (int i = 0; i < 5; i++)
+        imk_figure_bar(figure, i, 2 * i, 2 * i - 1, 2 * i + 1);
     imk_figure_region(figure, &(imk_region){"r", 1, 0, 1, 0, 1, false});
 }
 
-static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n"
+static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n\n"
                                     "tau  value\n"
                                     "\xC2\xB5s       7  more?[0m\n"
                                     "            end\n";
@@ -163,10 +170,16 @@ static void test_figure(void **state)
     const imk_figure *figure = imk_result_figure_get(r, IMK_FOR_PAGE, 0);
     assert_non_null(figure);
     assert_int_equal(figure->panel_count, 1);
-    assert_int_equal(figure->panels[0].curve_count, 1);
+    assert_int_equal(figure->panels[0].curve_count, 3);
     assert_true(figure->panels[0].curves[0].x[2] == 3);
     assert_true(figure->panels[0].curves[0].y[2] == 3); /* 30 by the scale of 10 */
     assert_null(figure->panels[0].curves[0].lower);
+    const imk_curve *points = &figure->panels[0].curves[1], *bars = &figure->panels[0].curves[2];
+    assert_int_equal(points->count, 5);
+    assert_true(points->x[4] == 4 && points->y[3] == 6);
+    assert_null(points->lower);
+    assert_int_equal(bars->count, 5);
+    assert_true(bars->y[0] == 0 && bars->lower[2] == 3 && bars->upper[4] == 9);
     assert_string_equal(figure->panels[0].regions[0].label, "r");
     assert_null(imk_result_figure_get(r, IMK_FOR_PAGE, 1));
     imk_result_free(r);
@@ -182,12 +195,14 @@ static void test_page(void **state)
     imk_result *r = imk_result_create(NULL);
     imk_result_title(r, "Title <1>", "%d channels", 3);
     imk_result_line(r, "one");
+    imk_result_gap(r);
     imk_result_for(r, IMK_FOR_TERMINAL);
     imk_result_line(r, "two");
     assert_int_equal(imk_result_to_page(r, &text, &size, &complete, &error), IMK_OK);
     assert_non_null(strstr(text, "<h1>Title &lt;1&gt;</h1>"));
     assert_non_null(strstr(text, "<p>one</p>"));
     assert_null(strstr(text, "two"));
+    assert_null(strstr(text, "<p></p>"));
     assert_true(complete);
     free(text);
     imk_result_free(r);
