@@ -343,7 +343,7 @@ static void show_channel(const evaluation *v, const evaluate_channel *c, imk_res
 }
 
 /* All channels in one; a single panel keeps its own width, two stand side by side. */
-static void show_plot(const evaluation *v, imk_result *result)
+static void show_plotted(const evaluation *v, imk_result *result)
 {
     bool two = false;
     for (size_t k = 0; k < v->channel_count; k++)
@@ -384,5 +384,5 @@ void evaluate_show(const evaluation *v, imk_result *result)
         show_levels(&v->channel[k], result);
     }
     show_origin(result);
-    show_plot(v, result);
+    show_plotted(v, result);
 }
