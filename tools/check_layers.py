@@ -10,8 +10,9 @@ neighbour. The command includes public headers and its own.
 
 Rooms: a folder holds at most 35 files.
 
-Loops: where one file uses what another defines, and that one, perhaps through others, what the first
-defines, there are at most three of them, of one folder. The names are those of the compiled objects.
+Loops: where one file uses what another defines, and that one, perhaps through others, what the
+first defines, there are at most three of them, of one folder. Who uses what is read from the
+compiled objects.
 """
 import collections
 import os
@@ -47,16 +48,21 @@ PUBLIC = {
 }
 MODULE_OF = {name: module for module, names in PUBLIC.items() for name in names.split()}
 # Headers that gather others, for users: each public header is in one of them.
-GATHERING = {"imukit", "io"}
+GATHERING = {"imukit", "physics", "io"}
 
 ROOM = 35
 LOOP = 3
 TREES = ("src", "cli", "tests")
-OBJECTS = ["imukit-objects", "imukit-io-objects", "imukit-command-objects"]
+OBJECTS = ["imukit-objects", "imukit-physics-objects", "imukit-io-objects",
+           "imukit-command-objects"]
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / os.environ.get("BUILD", "build")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+
+
+def code_files():
+    return [file for tree in ("src", "cli") for file in sorted((ROOT / tree).rglob("*.[ch]"))]
 
 
 def includes(file):
@@ -80,14 +86,16 @@ def included_file(file, target):
     """Where a header lies: public, beside its includer, or below src (cli, for the command)."""
     own = ROOT / ("cli" if module_of(file) == "cli" else "src")
     places = (ROOT / "include" / target, file.parent / target, own / target)
-    return next((place for place in places if place.exists()), None)
+    return next((place.resolve() for place in places if place.exists()), None)
 
 
 def wrong_include(file, target):
     """What is wrong with an #include, or None."""
     module, header = module_of(file), included_file(file, target)
     if header is None:
-        return "cli includes public headers and its own" if module == "cli" else "no such header"
+        return "no such header"
+    if module == "cli" and header.relative_to(ROOT).parts[0] == "src":
+        return "cli includes public headers and its own"
     if header.parent.name == "imukit" and header.stem in GATHERING - {"io"}:
         return None if module == "cli" else "it gathers headers for users"
     included = module_of(header)
@@ -107,8 +115,7 @@ def check_layers():
             yield f"{header.relative_to(ROOT)}: add it to the list in tools/check_layers.py"
         if header.stem not in gathered | GATHERING:
             yield f"{header.relative_to(ROOT)} is in none of {', '.join(sorted(GATHERING))}"
-    files = [file for tree in ("src", "cli") for file in sorted((ROOT / tree).rglob("*.[ch]"))]
-    for file in files + [header for header in headers if header.stem not in GATHERING]:
+    for file in code_files() + [header for header in headers if header.stem not in GATHERING]:
         for number, target in includes(file):
             if wrong := wrong_include(file, target):
                 yield f"{file.relative_to(ROOT)}:{number}: includes {target}: {wrong}"
@@ -132,21 +139,22 @@ def check_rooms():
 
 def symbols():
     """For each source file: the names its object defines, and those it uses."""
-    subprocess.run(["cmake", "-S", ROOT, "-B", BUILD], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", BUILD, "-j", str(os.cpu_count()), "--target", *OBJECTS],
-                   check=True, stdout=subprocess.DEVNULL)
+    for command in (["cmake", "-S", ROOT, "-B", BUILD],
+                    ["cmake", "--build", BUILD, "-j", str(os.cpu_count()), "--target", *OBJECTS]):
+        if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode != 0:
+            sys.exit("it does not compile")
     defined, used = {}, {}
-    for target in OBJECTS:
-        folder = BUILD / f"CMakeFiles/{target}.dir"
-        for source in (f.relative_to(ROOT) for t in ("src", "cli") for f in (ROOT / t).rglob("*.c")):
-            path = folder / f"{source}.o"
-            if not path.exists():
-                continue
-            names = [line.split() for line in
-                     subprocess.run(["nm", "-P", path], capture_output=True, text=True,
-                                    check=True).stdout.splitlines()]
-            defined[source.as_posix()] = {name for name, kind, *_ in names if kind in "TDRBV"}
-            used[source.as_posix()] = {name for name, kind, *_ in names if kind == "U"}
+    sources = [file.relative_to(ROOT).as_posix() for file in code_files()
+               if file.suffix == ".c"]
+    objects = [(source, BUILD / f"CMakeFiles/{target}.dir/{source}.o")
+               for source in sources for target in OBJECTS]
+    for source, path in objects:
+        if not path.exists():  # in another target, or not for this machine
+            continue
+        listing = subprocess.run(["nm", "-P", path], capture_output=True, text=True, check=True)
+        names = [line.split() for line in listing.stdout.splitlines()]
+        defined[source] = {name for name, kind, *_ in names if kind in "TDRBV"}
+        used[source] = {name for name, kind, *_ in names if kind == "U"}
     return defined, used
 
 
@@ -192,14 +200,18 @@ def describe(loop, graph):
 # ---- all -----------------------------------------------------------------------------------------
 
 def main():
-    found = [*check_layers(), *check_rooms()]
+    failed = False
+    for line in [*check_layers(), *check_rooms()]:
+        print(line, flush=True)
+        failed = True
     graph = links(*symbols())
     loops = find_loops(graph)
-    for loop in filter(is_wrong, loops):
-        found += describe(loop, graph)
-    print("\n".join(found + [f"{len(graph)} files, {len(rooms())} folders, {len(loops)} loops of "
-                             f"at most {max(map(len, loops), default=0)} files"]))
-    return 1 if found else 0
+    for loop in loops:
+        if is_wrong(loop):
+            print("\n".join(describe(loop, graph)))
+            failed = True
+    print(f"{len(graph)} files, {len(rooms())} folders, {len(loops)} loops")
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":
