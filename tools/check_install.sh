@@ -26,7 +26,10 @@ gcc -std=c17 examples/simulate_model.c $(pkg-config --cflags --libs imukit-io) \
 gcc -std=c17 examples/read_log.c $(pkg-config --cflags imukit-io) -Wl,-Bstatic \
     -L"$library" -limukit-io -limukit-physics -limukit -Wl,-Bdynamic $(pkg-config --libs --static imukit-io) \
     -o "$out/read_static"
+gcc -std=c17 tests/identity/physics_hash.c $(pkg-config --cflags --libs imukit-physics) \
+    -Wl,-rpath,"$library" -lm -o "$out/physics_shared"
 "$out/simulate_shared" tactical "$log"
+"$out/physics_shared" >/dev/null
 "$out/read_static" "$log"
 if objdump -p "$out/read_static" | grep 'NEEDED.*imukit'; then
     echo "the program linked with the archives asks for the shared library"
