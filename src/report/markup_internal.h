@@ -3,7 +3,7 @@
 #ifndef IMUKIT_REPORT_MARKUP_INTERNAL_H
 #define IMUKIT_REPORT_MARKUP_INTERNAL_H
 
-#include "io/file/growing_text_internal.h"
+#include "growing_text_internal.h"
 
 /* Written so that nothing in it is markup; control characters, which neither language allows, are
  * left out. NULL is "". */

@@ -2,7 +2,7 @@
 /* Text that grows in memory: whole whatever the length of a piece, and none where memory failed. */
 #include "check.h"
 
-#include "io/file/growing_text_internal.h"
+#include "report/growing_text_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
