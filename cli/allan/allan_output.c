@@ -7,6 +7,8 @@
 #include "shell/page_table.h"
 #include "shell/text_table.h"
 
+#include "imukit/figure_file.h"
+
 #include <stdlib.h>
 
 /* Unit of the deviation as programs read it: phase is per second, TDEV times a second. */

@@ -3,6 +3,8 @@
  * make. */
 #include "evaluate_parts.h"
 
+#include "imukit/figure_file.h"
+
 #include <math.h>
 #include <stdlib.h>
 

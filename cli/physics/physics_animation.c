@@ -2,6 +2,8 @@
 /* A view in motion: a point that walks along the path of one signal against another. */
 #include "physics_parts.h"
 
+#include "imukit/figure_file.h"
+
 #include <math.h>
 #include <stdlib.h>
 

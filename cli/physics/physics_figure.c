@@ -3,7 +3,7 @@
  * found. */
 #include "physics_parts.h"
 
-#include "imukit/report.h"
+#include "imukit/figure_file.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -200,12 +200,16 @@ int command_model(const char *name, imk_model *model, imk_document **document)
 
 int command_check_plot(const char *plot)
 {
-    size_t length = plot ? strlen(plot) : 0;
-    if (!plot || strcmp(plot, "term") == 0 ||
-        (length > 4 &&
-         (strcmp(plot + length - 4, ".svg") == 0 || strcmp(plot + length - 4, ".png") == 0)))
+    static const char *const endings[] = {".svg", ".png", ".pdf"};
+    const size_t length = plot ? strlen(plot) : 0;
+    if (!plot || strcmp(plot, "term") == 0)
         return -1;
-    return command_misused("--plot %s: expected a name ending in .svg or .png, or the word term",
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
+        if (length > strlen(endings[i]) &&
+            strcmp(plot + length - strlen(endings[i]), endings[i]) == 0)
+            return -1;
+    return command_misused("--plot %s: expected a name ending in .svg, .png or .pdf, or the word "
+                           "term",
                            plot);
 }
 

@@ -142,10 +142,6 @@ static void add(run_files *files, const char *taker, const char *given, option_k
     add_name(files, taker, given, "", kind);
     if (ends_with(given, ".npy"))
         add_name(files, taker, given, ".columns", kind);
-    if (kind == OPTION_OUTPUT && (ends_with(given, ".svg") || ends_with(given, ".png"))) {
-        add_name(files, taker, given, ".gp", kind);
-        add_name(files, taker, given, ".dat", kind);
-    }
 }
 
 static void add_all(run_files *files, const verb *v, const void *settings,

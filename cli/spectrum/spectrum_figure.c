@@ -3,6 +3,8 @@
  * as large points at their peaks. */
 #include "spectrum_figure.h"
 
+#include "imukit/figure_file.h"
+
 #include <math.h>
 #include <stdlib.h>
 

@@ -11,7 +11,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum {
     WIDTH = 7200,
@@ -353,24 +352,4 @@ imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t 
         return imk_error_set(error, IMK_ERROR_MEMORY, "animation", NULL, NULL);
     *svg = made;
     return IMK_OK;
-}
-
-imk_status imk_animation_write(const imk_animation *animation, const char *path, imk_error *error)
-{
-    const size_t length = strlen(path);
-    char *svg;
-    size_t size;
-    imk_output_file *file;
-    if (length < 5 || strcmp(path + length - 4, ".svg") != 0)
-        return imk_error_set(error, IMK_ERROR_FORMAT, "animation", path, "a name ending in .svg");
-    imk_status status = imk_animation_svg(animation, &svg, &size, error);
-    if (status != IMK_OK)
-        return status;
-    status = imk_output_file_open(path, &file, error);
-    if (status == IMK_OK) {
-        imk_output_file_write(file, svg, size);
-        status = imk_output_file_commit(file, error);
-    }
-    free(svg);
-    return status;
 }
