@@ -28,7 +28,7 @@ arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -st
 { cmake -S . -B "$build" && cmake --build "$build" -j "$(nproc)" --target imukit-physics; } \
     >"$out/build.log" 2>&1 || { cat "$out/build.log"; exit 1; }
 # What includes a header of imukit-io needs more.
-io='campaign|design_file|firmware_file|io|log|model_file|motion_file|output_file|parameter_file'
+io='campaign|design_file|figure_file|firmware_file|io|log|model_file|motion_file|output_file|parameter_file'
 programs=$(grep -LE "\"imukit/($io|report|thread_pool)\.h\"" examples/*.c)
 run=0
 for source in $programs tests/identity/simulate_hash.c tests/identity/physics_hash.c; do
