@@ -97,7 +97,7 @@ typedef struct imk_array_source {
 
 /** A source of `rows` rows in one array per column.
  *  @param names  gyro_x [rad/s], accel_x [m/s^2], time [s], temperature [K] and so on, without
- * units
+ *                units
  *  @param rate   [Hz]; 0: from a column named time
  *  @param memory what the source is about, until it is not used any more
  *  @return IMK_ERROR_COLUMN (too many, or a name twice), IMK_ERROR_RATE_MISSING, IMK_ERROR_MEMORY
