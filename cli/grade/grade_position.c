@@ -108,16 +108,6 @@ static void find_needs(grade_case *one, const imk_drift_analysis *a)
     free(need);
 }
 
-static void list_omitted(grade_case *one, const imk_drift_analysis *a)
-{
-    size_t used = 0;
-    for (size_t i = 0; i < a->omitted_count && used + 1 < sizeof one->omitted; i++) {
-        const int more = snprintf(one->omitted + used, sizeof one->omitted - used, "%s%s",
-                                  i > 0 ? ", " : "", a->omitted[i]);
-        used += more > 0 ? (size_t)more : 0;
-    }
-}
-
 /* ---- all ---- */
 
 static int analyse_way(grade_case *one, int way)
@@ -145,7 +135,8 @@ static int analyse_way(grade_case *one, int way)
         if (way == GRADE_GIVEN) {
             find_shares(one, analysis);
             find_needs(one, analysis);
-            list_omitted(one, analysis);
+            for (size_t i = 0; i < analysis->omitted_count; i++)
+                list_add_item(&one->omitted, "%s", analysis->omitted[i]);
         }
     }
     free(memory);

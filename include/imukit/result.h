@@ -76,6 +76,8 @@ IMK_API void imk_result_heading(imk_result *result, const char *text);
  *  become "?". */
 IMK_API void imk_result_line(imk_result *result, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/** An empty line of the terminal, whose page keeps its distances by itself. */
+IMK_API void imk_result_gap(imk_result *result);
 /** A finding in words: a coloured box of the page, a line on the terminal.
  *  @param level  0 good, 1 note, 2 warning */
 IMK_API void imk_result_finding(imk_result *result, int level, const char *text);

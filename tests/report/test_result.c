@@ -127,11 +127,14 @@ static void test_line(void **state)
     size_t size;
     imk_result *r = imk_result_create(NULL);
     imk_result_line(r, "%s: " IMK_BOLD "good" IMK_PLAIN ", \xC2\xB5\n", "a\x1b[2J\xff");
+    imk_result_gap(r);
+    imk_result_for(r, IMK_FOR_PAGE);
+    imk_result_gap(r);
     assert_int_equal(imk_result_to_text(r, NULL, NULL, &text, &size), IMK_OK);
-    assert_string_equal(text, "a?[2J?: good, \xC2\xB5\n\n");
+    assert_string_equal(text, "a?[2J?: good, \xC2\xB5\n\n\n");
     free(text);
     assert_int_equal(imk_result_to_text(r, "<", ">", &text, &size), IMK_OK);
-    assert_string_equal(text, "a?[2J?: <good>, \xC2\xB5\n\n");
+    assert_string_equal(text, "a?[2J?: <good>, \xC2\xB5\n\n\n");
     free(text);
     imk_result_free(r);
 }
@@ -168,11 +171,12 @@ static void test_page(void **state)
     imk_result *r = imk_result_create(NULL);
     imk_result_title(r, "Title <1>", "%d channels", 3);
     imk_result_line(r, "one");
+    imk_result_gap(r);
     imk_result_for(r, IMK_FOR_TERMINAL);
     imk_result_line(r, "two");
     assert_int_equal(imk_result_to_page(r, &text, &size, &complete, &error), IMK_OK);
     assert_non_null(strstr(text, "<h1>Title &lt;1&gt;</h1>"));
-    assert_non_null(strstr(text, "<p>one</p>"));
+    assert_non_null(strstr(text, "<p>one</p>\n<footer"));
     assert_null(strstr(text, "two"));
     assert_true(complete);
     free(text);
