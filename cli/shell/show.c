@@ -4,6 +4,7 @@
 
 #include "imukit/model_file.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,7 +91,8 @@ static void print(const imk_result *result, bool json)
         status = imk_result_to_text(result, command_color(stdout, COLOR_BOLD),
                                     command_color(stdout, COLOR_RESET), &text, &size);
     (void)command_unless_memory(status);
-    fwrite(text, 1, size, stdout);
+    if (fwrite(text, 1, size, stdout) < size) /* a later flush would not know why */
+        command_failed("standard output: %s", strerror(errno));
     free(text);
 }
 
