@@ -124,23 +124,21 @@ static int analyse_way(grade_case *one, int way)
         return command_error(&error, one->operand);
     const size_t size = imk_drift_covariance_size(one->model, &settings);
     void *memory = drift_memory(size);
-    int code = -1;
-    if (!memory)
-        code = command_failed("memory is exhausted");
-    else if (imk_drift_covariance(one->model, &settings, memory, size, NULL, &analysis, &error) !=
-             IMK_OK)
-        code = command_error(&error, one->operand);
-    else {
-        keep_figures(analysis, &one->way[way]);
-        if (way == GRADE_GIVEN) {
-            find_shares(one, analysis);
-            find_needs(one, analysis);
-            for (size_t i = 0; i < analysis->omitted_count; i++)
-                list_add_item(&one->omitted, "%s", analysis->omitted[i]);
-        }
+    (void)command_unless_memory(memory ? IMK_OK : IMK_ERROR_MEMORY);
+    if (imk_drift_covariance(one->model, &settings, memory, size, NULL, &analysis, &error) !=
+        IMK_OK) {
+        free(memory);
+        return command_error(&error, one->operand);
+    }
+    keep_figures(analysis, &one->way[way]);
+    if (way == GRADE_GIVEN) {
+        find_shares(one, analysis);
+        find_needs(one, analysis);
+        for (size_t i = 0; i < analysis->omitted_count; i++)
+            list_add_item(&one->omitted, "%s", analysis->omitted[i]);
     }
     free(memory);
-    return code;
+    return -1;
 }
 
 /* A position needs three of each along body x, y, z: imk_drift_validate() knows. */
