@@ -4,6 +4,7 @@
 #include "calibrate_parts.h"
 
 #include "imukit/distributions.h"
+#include "imukit/names.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,12 +12,8 @@
 
 static bool is_model(const char *path)
 {
-    static const char *const ends[] = {".yaml", ".yml", ".json"};
-    const size_t length = strlen(path);
-    for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++)
-        if (length > strlen(ends[k]) && strcmp(path + length - strlen(ends[k]), ends[k]) == 0)
-            return true;
-    return false;
+    return imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml") ||
+           imk_has_ending(path, ".json");
 }
 
 bool bench_has_run_models(const bench *b)

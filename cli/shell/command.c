@@ -163,6 +163,13 @@ void *command_zeroed(size_t size)
     return memory;
 }
 
+void *command_aligned(size_t size)
+{
+    void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
+    (void)command_unless_memory(memory ? IMK_OK : IMK_ERROR_MEMORY);
+    return memory;
+}
+
 /* The remedy of the log reader is "add --option value … (why)": the options are what stands
  * between.
  * "--columns with 7 names" asks for what only the user knows. */
@@ -207,10 +214,8 @@ int command_model(const char *name, imk_model *model, imk_document **document)
 
 int command_check_plot(const char *plot)
 {
-    size_t length = plot ? strlen(plot) : 0;
-    if (!plot || strcmp(plot, "term") == 0 ||
-        (length > 4 &&
-         (strcmp(plot + length - 4, ".svg") == 0 || strcmp(plot + length - 4, ".png") == 0)))
+    if (!plot || strcmp(plot, "term") == 0 || imk_has_ending(plot, ".svg") ||
+        imk_has_ending(plot, ".png"))
         return -1;
     return command_misused("--plot %s: expected a name ending in .svg or .png, or the word term",
                            plot);

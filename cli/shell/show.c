@@ -80,7 +80,7 @@ static int write_page(const imk_result *result, const char *path)
     return -1;
 }
 
-static void print(const imk_result *result, bool json)
+static void print(const imk_result *result, bool json, FILE *out)
 {
     char *text = NULL;
     size_t size = 0;
@@ -88,12 +88,17 @@ static void print(const imk_result *result, bool json)
     if (json)
         status = imk_result_to_json(result, &text, &size);
     else
-        status = imk_result_to_text(result, command_color(stdout, COLOR_BOLD),
-                                    command_color(stdout, COLOR_RESET), &text, &size);
+        status = imk_result_to_text(result, command_color(out, COLOR_BOLD),
+                                    command_color(out, COLOR_RESET), &text, &size);
     (void)command_unless_memory(status);
-    if (fwrite(text, 1, size, stdout) < size) /* a later flush would not know why */
-        command_failed("standard output: %s", strerror(errno));
+    if (fwrite(text, 1, size, out) != size && out == stdout)
+        (void)command_failed("standard output: %s", strerror(errno));
     free(text);
+}
+
+void show_aside(const imk_result *result)
+{
+    print(result, false, stderr);
 }
 
 /* Letters have room for less: a figure of their own where there is one. @return -1 or the code */
@@ -111,16 +116,30 @@ static int draw(const imk_result *result, const char *plot)
     return imk_figure_write(figure, plot, &error) == IMK_OK ? -1 : command_error(&error, NULL);
 }
 
+int show_plot(const imk_result *result, const char *plot)
+{
+    return draw(result, plot);
+}
+
+static int draw_nothing(const char *lacking)
+{
+    imk_error error;
+    (void)imk_error_set(&error, IMK_ERROR_EMPTY, "plot", NULL, lacking);
+    return command_error(&error, NULL);
+}
+
 int show_end(imk_result *result, const show_options *options, int code)
 {
     int failed = options->report ? write_page(result, options->report) : -1;
     if (failed < 0 && options->json) {
         add_warnings(result);
-        print(result, true);
+        print(result, true, stdout);
     } else if (failed < 0 && !options->quiet && !options_stdout_taken()) {
-        print(result, false);
+        print(result, false, stdout);
     }
-    if (failed < 0 && options->plot)
+    if (failed < 0 && options->plot && options->lacking)
+        failed = draw_nothing(options->lacking);
+    else if (failed < 0 && options->plot)
         failed = draw(result, options->plot);
     imk_result_free(result);
     return failed < 0 ? code : failed;

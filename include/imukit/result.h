@@ -13,6 +13,7 @@
 #define IMUKIT_RESULT_H
 
 #include "imukit/allocator.h"
+#include "imukit/readable.h"
 #include "imukit/report.h"
 #include "imukit/status.h"
 
@@ -36,8 +37,13 @@ IMK_API void imk_result_free(imk_result *result);
  *  @{ */
 IMK_API void imk_result_object(imk_result *result, const char *key);
 IMK_API void imk_result_array(imk_result *result, const char *key);
+/** A copy of a key that lives as long as the result. */
+IMK_API const char *imk_result_keep(imk_result *result, const char *key);
 /** End the object or array that was begun last. */
 IMK_API void imk_result_end(imk_result *result);
+/** A key that is made at run time, which lives as long as the result. */
+IMK_API const char *imk_result_key(imk_result *result, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /** null when it is not finite. */
 IMK_API void imk_result_number(imk_result *result, const char *key, double value);
 IMK_API void imk_result_count(imk_result *result, const char *key, long long value);
@@ -82,7 +88,7 @@ IMK_API void imk_result_heading(imk_result *result, const char *text);
  *  become "?". */
 IMK_API void imk_result_line(imk_result *result, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/** An empty line of the terminal, whose page keeps its distances by itself. */
+/** An empty line on the terminal; nothing on the page. */
 IMK_API void imk_result_gap(imk_result *result);
 /** A finding in words: a coloured box of the page, a line on the terminal.
  *  @param level  0 good, 1 note, 2 warning */
@@ -120,6 +126,11 @@ IMK_API imk_figure_builder *imk_result_figure(imk_result *result, const char *ti
 IMK_API void imk_figure_panel(imk_figure_builder *figure, const imk_panel *panel);
 /** Add a curve to the last panel. @param scale  its y, lower and upper are divided by it */
 IMK_API void imk_figure_curve(imk_figure_builder *figure, const imk_curve *curve, double scale);
+/** Add a point to the last curve, which was begun without any. */
+IMK_API void imk_figure_point(imk_figure_builder *figure, double x, double y);
+/** The same with its error bar, or a piece of a band: all points of a curve have one, or none. */
+IMK_API void imk_figure_bar(imk_figure_builder *figure, double x, double y, double lower,
+                            double upper);
 /** Add a region to the last panel. */
 IMK_API void imk_figure_region(imk_figure_builder *figure, const imk_region *region);
 /** The figure number `index` of those meant for all of `audience`; NULL beyond the last. */
@@ -146,13 +157,6 @@ IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
                                       bool *complete, imk_error *error);
 /** @} */
-
-/** A value to as many decimals as two digits of its uncertainty need, or `digits` significant ones
- *  when the uncertainty is 0; "-" for no number. */
-IMK_API void imk_readable_value(double value, double uncertainty, int digits, char *text,
-                                size_t size);
-/** "2 h 46 min 40 s", "12.5 s" */
-IMK_API void imk_readable_duration(double seconds, char *text, size_t size);
 
 #ifdef __cplusplus
 }

@@ -6,12 +6,12 @@
  * of the same path, whose offset is w - s(t). Where the path jumps, dots hop instead. */
 #include "markup_internal.h"
 
+#include "imukit/names.h"
 #include "imukit/report.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum {
     WIDTH = 7200,
@@ -357,11 +357,10 @@ imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t 
 
 imk_status imk_animation_write(const imk_animation *animation, const char *path, imk_error *error)
 {
-    const size_t length = strlen(path);
     char *svg;
     size_t size;
     imk_output_file *file;
-    if (length < 5 || strcmp(path + length - 4, ".svg") != 0)
+    if (!imk_has_ending(path, ".svg"))
         return imk_error_set(error, IMK_ERROR_FORMAT, "animation", path, "a name ending in .svg");
     imk_status status = imk_animation_svg(animation, &svg, &size, error);
     if (status != IMK_OK)

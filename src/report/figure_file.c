@@ -6,6 +6,8 @@
 
 #include "imukit/utf8.h"
 
+#include "imukit/names.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,12 +38,6 @@ static imk_status write_file(const char *path, const char *text, size_t size, im
         return status;
     imk_output_file_write(file, text, size);
     return imk_output_file_commit(file, error);
-}
-
-static bool ends_with(const char *text, const char *end)
-{
-    size_t length = strlen(text), end_length = strlen(end);
-    return length > end_length && strcmp(text + length - end_length, end) == 0;
 }
 
 /* ---- without gnuplot ------------------------------------------------------------------------- */
@@ -155,9 +151,9 @@ imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_erro
         const char *no_color = getenv("NO_COLOR");
         drawing.color = isatty(STDOUT_FILENO) && !(no_color && *no_color);
         target = "-";
-    } else if (ends_with(path, ".svg")) {
+    } else if (imk_has_ending(path, ".svg")) {
         drawing.terminal = IMKI_TERMINAL_SVG;
-    } else if (ends_with(path, ".png")) {
+    } else if (imk_has_ending(path, ".png")) {
         drawing.terminal = IMKI_TERMINAL_PNG;
     } else {
         return imk_error_set(error, IMK_ERROR_FORMAT, "plot", path,

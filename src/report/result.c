@@ -5,6 +5,7 @@
 #include "imukit/utf8.h"
 
 #include <math.h>
+#include <stdarg.h>
 
 imk_result *imk_result_create(const imk_allocator *allocator)
 {
@@ -56,11 +57,28 @@ void imk_result_array(imk_result *result, const char *key)
         result->open = made;
 }
 
+const char *imk_result_keep(imk_result *result, const char *key)
+{
+    const char *kept = result ? imki_arena_text(&result->arena, key) : NULL;
+    return kept ? kept : "";
+}
+
 void imk_result_end(imk_result *result)
 {
     /* Where memory failed, what was to be ended may not have been begun. */
     if (result && result->open->parent)
         result->open = result->open->parent;
+}
+
+const char *imk_result_key(imk_result *result, const char *format, ...)
+{
+    if (!result)
+        return "";
+    va_list arguments;
+    va_start(arguments, format);
+    const char *key = imki_arena_format(&result->arena, format, arguments);
+    va_end(arguments);
+    return key;
 }
 
 void imk_result_number(imk_result *result, const char *key, double value)

@@ -71,6 +71,7 @@ static void put_display(imk_result *r)
     imk_result_line(r, "only %s", "on the page");
     imk_result_for(r, IMK_FOR_TERMINAL);
     imk_result_line(r, "only %s", "on the terminal");
+    imk_result_gap(r);
     imk_result_for(r, IMK_FOR_BOTH);
     imk_table *table = imk_result_table(r, 2);
     imk_table_row(table, "tau\t%s", "value");
@@ -81,10 +82,16 @@ static void put_display(imk_result *r)
     imk_figure_builder *figure = imk_result_figure(r, "figure", 1, "Caption");
     imk_figure_panel(figure, &(imk_panel){.title = "p", .x_label = "x", .y_label = "y"});
     imk_figure_curve(figure, &(imk_curve){"c", IMK_CURVE_LINE, 0, 3, x, y, NULL, NULL}, 10);
+    imk_figure_curve(figure, &(imk_curve){.label = "points"}, 1);
+    for (int i = 0; i < 5; i++)
+        imk_figure_point(figure, i, 2 * i);
+    imk_figure_curve(figure, &(imk_curve){.label = "bars"}, 1);
+    for (int i = 0; i < 5; i++)
+        imk_figure_bar(figure, i, 2 * i, 2 * i - 1, 2 * i + 1);
     imk_figure_region(figure, &(imk_region){"r", 1, 0, 1, 0, 1, false});
 }
 
-static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n"
+static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n\n"
                                     "tau  value\n"
                                     "\xC2\xB5s       7  more?[0m\n"
                                     "            end\n";
@@ -166,6 +173,20 @@ static void test_line(void **state)
     imk_result_free(r);
 }
 
+static void test_key(void **state)
+{
+    (void)state;
+    char *text;
+    size_t size;
+    imk_result *r = imk_result_create(NULL);
+    for (int i = 0; i < 2; i++)
+        imk_result_count(r, imk_result_key(r, "sigma[%d]", i), i);
+    assert_int_equal(imk_result_to_json(r, &text, &size), IMK_OK);
+    assert_string_equal(text, "{\"sigma[0]\": 0, \"sigma[1]\": 1}\n");
+    free(text);
+    imk_result_free(r);
+}
+
 static void test_figure(void **state)
 {
     (void)state;
@@ -179,10 +200,16 @@ static void test_figure(void **state)
     const imk_figure *figure = imk_result_figure_get(r, IMK_FOR_PAGE, 0);
     assert_non_null(figure);
     assert_int_equal(figure->panel_count, 1);
-    assert_int_equal(figure->panels[0].curve_count, 1);
+    assert_int_equal(figure->panels[0].curve_count, 3);
     assert_true(figure->panels[0].curves[0].x[2] == 3);
     assert_true(figure->panels[0].curves[0].y[2] == 3); /* 30 by the scale of 10 */
     assert_null(figure->panels[0].curves[0].lower);
+    const imk_curve *points = &figure->panels[0].curves[1], *bars = &figure->panels[0].curves[2];
+    assert_int_equal(points->count, 5);
+    assert_true(points->x[4] == 4 && points->y[3] == 6);
+    assert_null(points->lower);
+    assert_int_equal(bars->count, 5);
+    assert_true(bars->y[0] == 0 && bars->lower[2] == 3 && bars->upper[4] == 9);
     assert_string_equal(figure->panels[0].regions[0].label, "r");
     assert_null(imk_result_figure_get(r, IMK_FOR_PAGE, 1));
     imk_result_free(r);
@@ -205,6 +232,7 @@ static void test_page(void **state)
     assert_non_null(strstr(text, "<h1>Title &lt;1&gt;</h1>"));
     assert_non_null(strstr(text, "<p>one</p>\n<footer"));
     assert_null(strstr(text, "two"));
+    assert_null(strstr(text, "<p></p>"));
     assert_true(complete);
     free(text);
     imk_result_free(r);
@@ -253,9 +281,11 @@ static void test_readable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_json),   cmocka_unit_test(test_read),     cmocka_unit_test(test_text),
-        cmocka_unit_test(test_line),   cmocka_unit_test(test_figure),   cmocka_unit_test(test_page),
-        cmocka_unit_test(test_memory), cmocka_unit_test(test_readable),
+        cmocka_unit_test(test_json),     cmocka_unit_test(test_text),
+        cmocka_unit_test(test_line),     cmocka_unit_test(test_figure),
+        cmocka_unit_test(test_key),      cmocka_unit_test(test_page),
+        cmocka_unit_test(test_read),     cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_readable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
