@@ -117,8 +117,7 @@ static int analyse(const drift_result *r, drift_case *one, const imk_executor *e
     if (imk_drift_validate(one->model, &one->settings, &error) != IMK_OK)
         return refuse(one, &error);
     const size_t size = imk_drift_covariance_size(one->model, &one->settings);
-    one->memory = drift_memory(size);
-    (void)command_unless_memory(one->memory ? IMK_OK : IMK_ERROR_MEMORY);
+    one->memory = command_aligned(size);
     one->figures = command_memory(NULL, one->settings.time_count * sizeof *one->figures);
     if (imk_drift_covariance(one->model, &one->settings, one->memory, size, executor,
                              &one->analysis, &error) != IMK_OK)

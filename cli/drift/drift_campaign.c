@@ -165,7 +165,8 @@ static int show(drift_result *r, const imk_campaign_results *results)
         return code;
     imk_result *result = show_begin("drift");
     drift_show_results(r, results, result);
-    return show_end(result, &(show_options){o->report, o->plot, o->json, false}, EXIT_DONE);
+    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
+                    EXIT_DONE);
 }
 
 int drift_results(const drift_options *o, const char *path)

@@ -16,14 +16,14 @@ typedef struct band {
     int color;
 } band;
 
-/* Times and lengths in the units of the axes, and room for as many values. */
+/* Times in the unit of their axis, and room for as many values. */
 typedef struct drawing {
     const drift_result *of;
     imk_figure_builder *figure;
     const char *time_label;
     double unit, length; /* [s], [m] */
     size_t count;
-    double *time, *low, *high;
+    double *time, *below;
 } drawing;
 
 static bool is_drawn(const imk_drift_figures *f)
@@ -47,34 +47,27 @@ static void begin_panel(const drawing *d, const char *title, const char *y_label
 static void add_line(const drawing *d, const drift_case *one, imk_drift_wish wish,
                      const char *label, int color)
 {
-    for (size_t t = 0; t < d->count; t++)
-        d->low[t] =
-            is_drawn(&one->figures[t]) ? imk_drift_wished(&one->figures[t], wish) : (double)NAN;
-    imk_figure_curve(
-        d->figure,
-        &(imk_curve){label, IMK_CURVE_LINE, color, d->count, d->time, d->low, NULL, NULL},
-        d->length);
+    imk_figure_curve(d->figure, &(imk_curve){.label = label, .color = color}, 1);
+    for (size_t t = 0; t < d->count; t++) {
+        const imk_drift_figures *f = &one->figures[t];
+        imk_figure_point(d->figure, d->time[t],
+                         is_drawn(f) ? imk_drift_wished(f, wish) / d->length : (double)NAN);
+    }
 }
 
-/* Points with their intervals. */
+/* Points with their intervals; too few runs have no upper limit. */
 static void add_runs(const drawing *d, imk_drift_wish wish, const char *label, int color)
 {
     const drift_result *r = d->of;
-    const size_t rows = r->scene->row_count;
-    double *time = command_memory(NULL, 4 * rows * sizeof *time);
-    double *found = time + rows, *low = found + rows, *high = low + rows;
-    for (size_t k = 0; k < rows; k++) {
-        time[k] = d->time[r->scene->row[k]];
-        found[k] = imk_drift_wished(&r->found[k], wish);
-        low[k] = imk_drift_wished(&r->low[k], wish);
-        high[k] = imk_drift_wished(&r->high[k], wish);
-        if (!isfinite(high[k])) /* too few runs for an upper limit */
-            high[k] = found[k];
-    }
     imk_figure_curve(d->figure,
-                     &(imk_curve){label, IMK_CURVE_POINTS, color, rows, time, found, low, high},
-                     d->length);
-    free(time);
+                     &(imk_curve){.label = label, .style = IMK_CURVE_POINTS, .color = color}, 1);
+    for (size_t k = 0; k < r->scene->row_count; k++) {
+        const double found = imk_drift_wished(&r->found[k], wish) / d->length,
+                     low = imk_drift_wished(&r->low[k], wish) / d->length,
+                     high = imk_drift_wished(&r->high[k], wish) / d->length;
+        imk_figure_bar(d->figure, d->time[r->scene->row[k]], found, low,
+                       isfinite(high) ? high : found);
+    }
 }
 
 /* CEP of each case; of one case also R95. */
@@ -156,25 +149,27 @@ static bool has_shares(const drift_case *one, size_t t)
     return is_drawn(&one->figures[t]) && variance(&one->analysis->total[t]) > 0;
 }
 
-/* Bands from 0 to 100 %, each on the ones before; the rest is the last. */
+/* Bands from 0 to 100 %, each on the ones before; the rest, where it shows, is the last. */
 static void add_bands(const drawing *d, const drift_case *one, const band *bands, size_t count)
 {
+    double *below = d->below, rest = 0;
     for (size_t t = 0; t < d->count; t++)
-        d->low[t] = has_shares(one, t) ? 0 : (double)NAN;
+        below[t] = has_shares(one, t) ? 0 : (double)NAN;
     for (size_t b = 0; b <= count; b++) {
-        double most = 0;
+        const band *of = b < count ? &bands[b] : &(band){.label = "others", .color = OTHERS};
+        for (size_t t = 0; t < d->count && b == count; t++)
+            rest = fmax(rest, 100 - below[t]);
+        if (b == count && !(rest > 0.5))
+            break;
+        imk_figure_curve(
+            d->figure,
+            &(imk_curve){.label = of->label, .style = IMK_CURVE_LAYER, .color = of->color}, 1);
         for (size_t t = 0; t < d->count; t++) {
-            d->high[t] = d->low[t] + (b < count ? 100 * share_at(one->analysis, bands[b].source, t)
-                                                : 100 - d->low[t]);
-            most = d->high[t] - d->low[t] > most ? d->high[t] - d->low[t] : most;
+            const double above = b < count ? below[t] + 100 * share_at(one->analysis, of->source, t)
+                                           : below[t] + (100 - below[t]);
+            imk_figure_bar(d->figure, d->time[t], above, below[t], above);
+            below[t] = above;
         }
-        if (b < count || most > 0.5)
-            imk_figure_curve(d->figure,
-                             &(imk_curve){b < count ? bands[b].label : "others", IMK_CURVE_LAYER,
-                                          b < count ? bands[b].color : OTHERS, d->count, d->time,
-                                          d->high, d->low, d->high},
-                             1);
-        memcpy(d->low, d->high, d->count * sizeof *d->low);
     }
 }
 
@@ -236,9 +231,8 @@ void drift_show_figure(const drift_result *r, bool shares, imk_result *result)
                                        : 1,
                  .length = largest(r) >= 2000 ? 1000 : 1,
                  .count = count,
-                 .time = command_memory(NULL, 3 * count * sizeof *d.time)};
-    d.low = d.time + count;
-    d.high = d.low + count;
+                 .time = command_memory(NULL, 2 * count * sizeof *d.time)};
+    d.below = d.time + count;
     for (size_t t = 0; t < count; t++)
         d.time[t] = scene->time[t] / d.unit;
     d.figure = imk_result_figure(

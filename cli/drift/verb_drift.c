@@ -188,7 +188,8 @@ static int show(const drift_result *r, const drift_answer *answer)
         return code;
     imk_result *result = show_begin("drift");
     drift_show(r, answer, result);
-    return show_end(result, &(show_options){o->report, o->plot, o->json, false}, EXIT_DONE);
+    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
+                    EXIT_DONE);
 }
 
 /* A part of a campaign has no figures worth showing: what to do with it is said. */

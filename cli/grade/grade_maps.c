@@ -146,42 +146,41 @@ bool grade_stands(const grade_result *r, int map)
 /* The presets show what the classes look like here. */
 static void add_presets(bool gyro, imk_figure_builder *figure)
 {
-    enum { PRESETS = 5 };
-    double x[PRESETS], y[PRESETS];
     imk_model *model = command_memory(NULL, sizeof *model);
-    for (size_t i = 0; i < PRESETS; i++) {
+    imk_figure_curve(figure,
+                     &(imk_curve){.label = "presets, strategic to control",
+                                  .style = IMK_CURVE_POINTS,
+                                  .color = 7},
+                     1);
+    for (size_t i = 0; i < 5; i++) {
         imk_device_model(imk_device_get(i), model);
         const imk_grade_result table = imk_grade_model(model);
         const imk_triad *triad = gyro ? &model->gyro : &model->accel;
-        x[i] = triad->scale_factor.repeatability.value[0] / imk_unit_of("ppm").scale;
-        y[i] = gyro ? table.gyro_bias / imk_unit_of("deg/h").scale
-                    : table.accel_bias / imk_unit_of("ug").scale;
+        imk_figure_point(figure,
+                         triad->scale_factor.repeatability.value[0] / imk_unit_of("ppm").scale,
+                         gyro ? table.gyro_bias / imk_unit_of("deg/h").scale
+                              : table.accel_bias / imk_unit_of("ug").scale);
     }
     free(model);
-    imk_figure_curve(figure,
-                     &(imk_curve){"presets, strategic to control", IMK_CURVE_POINTS, 7, PRESETS, x,
-                                  y, NULL, NULL},
-                     1);
 }
 
 /* A point, or a line over the range of the axis that is not known. */
 static void add_model(const grade_case *one, int color, int map, imk_figure_builder *figure)
 {
     const spot s = find_spot(one, map);
-    const bool point = !isnan(s.x) && !isnan(s.y);
-    double x[2], y[2];
+    const bool line = isnan(s.x) || isnan(s.y);
     char label[120];
     if (isnan(s.x) && isnan(s.y))
         return;
-    for (size_t i = 0; i < 2; i++) {
-        x[i] = isnan(s.x) ? maps[map].x_range[i] : s.x;
-        y[i] = isnan(s.y) ? maps[map].y_range[i] : s.y;
-    }
     snprintf(label, sizeof label, "%.60s%s", one->operand, s.remark);
     imk_figure_curve(figure,
-                     &(imk_curve){label, point ? IMK_CURVE_MARKS : IMK_CURVE_DASHES, color % 6,
-                                  point ? 1 : 2, x, y, NULL, NULL},
+                     &(imk_curve){.label = label,
+                                  .style = line ? IMK_CURVE_DASHES : IMK_CURVE_MARKS,
+                                  .color = color % 6},
                      1);
+    for (size_t i = 0; i < (line ? 2 : 1); i++)
+        imk_figure_point(figure, isnan(s.x) ? maps[map].x_range[i] : s.x,
+                         isnan(s.y) ? maps[map].y_range[i] : s.y);
 }
 
 static void add_panel(const grade_result *r, int map, imk_figure_builder *figure)

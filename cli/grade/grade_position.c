@@ -123,8 +123,7 @@ static int analyse_way(grade_case *one, int way)
     if (imk_drift_validate(one->model, &settings, &error) != IMK_OK)
         return command_error(&error, one->operand);
     const size_t size = imk_drift_covariance_size(one->model, &settings);
-    void *memory = drift_memory(size);
-    (void)command_unless_memory(memory ? IMK_OK : IMK_ERROR_MEMORY);
+    void *memory = command_aligned(size);
     if (imk_drift_covariance(one->model, &settings, memory, size, NULL, &analysis, &error) !=
         IMK_OK) {
         free(memory);

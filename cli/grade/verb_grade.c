@@ -74,7 +74,9 @@ static int show(const grade_result *r, const grade_options *o)
     imk_result *result = show_begin("grade");
     grade_show(r, map, result);
     const int code = show_end(
-        result, &(show_options){o->report, stands ? o->plot : NULL, o->json, false}, EXIT_DONE);
+        result,
+        &(show_options){.report = o->report, .plot = stands ? o->plot : NULL, .json = o->json},
+        EXIT_DONE);
     return code == EXIT_DONE && o->plot && !stands
                ? command_failed("--map: nothing of the model stands on this map")
                : code;

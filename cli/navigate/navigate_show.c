@@ -3,7 +3,6 @@
 #include "navigate_parts.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static const double degree = 0.017453292519943295;
 /* Beyond this sigma a heading is as good as any other [rad]. */
@@ -234,18 +233,14 @@ static void add_line(const navigation *n, const struct line *l, imk_figure_build
 {
     const size_t every = n->track_rows / POINTS_MAX + 1;
     const size_t points = (n->track_rows + every - 1) / every;
-    const bool at_rest = navigate_at_rest(n);
-    double *x = command_memory(NULL, 2 * points * sizeof *x), *y = x + points;
+    const bool about_track = l->y >= TRACK_SIGMA && !navigate_at_rest(n);
+    imk_figure_curve(figure, &(imk_curve){.label = l->label, .style = l->style, .color = l->color},
+                     1);
     for (size_t k = 0; k < points; k++) {
         const size_t row = k + 1 == points ? n->track_rows - 1 : k * every;
-        x[k] = n->track[l->x][row];
-        y[k] = l->factor * n->track[l->y][row];
-        if (l->y >= TRACK_SIGMA)
-            y[k] += at_rest ? 0.0 : n->track[TRACK_NORTH + l->y - TRACK_SIGMA][row];
+        const double middle = about_track ? n->track[TRACK_NORTH + l->y - TRACK_SIGMA][row] : 0.0;
+        imk_figure_point(figure, n->track[l->x][row], middle + l->factor * n->track[l->y][row]);
     }
-    imk_figure_curve(figure, &(imk_curve){l->label, l->style, l->color, points, x, y, NULL, NULL},
-                     1);
-    free(x);
 }
 
 static void show_track(const navigation *n, imk_result *result)

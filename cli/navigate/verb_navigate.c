@@ -132,7 +132,7 @@ static int show(const navigation *n)
         return code;
     imk_result *result = show_begin("navigate");
     navigate_show(n, warned, result);
-    return show_end(result, &(show_options){o->report, o->plot, o->json, false},
+    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
                     o->strict && warned ? EXIT_FAILED : EXIT_DONE);
 }
 
