@@ -24,6 +24,12 @@ void show_origin(imk_result *result)
     imk_result_code(result, command_line());
 }
 
+void show_warnings(imk_result *result)
+{
+    for (size_t i = 0; i < command_warning_count(); i++)
+        imk_result_finding(result, 2, command_warning_get(i)->message);
+}
+
 void show_model(imk_result *result, const char *title, const imk_model *model)
 {
     char *text = NULL, reason[900];

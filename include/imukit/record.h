@@ -2,8 +2,8 @@
 /** @file record.h
  *  Records of sensors: what their columns are, where their rows come from, and one in memory.
  *
- *  Jobs (job.h) take a record source: a file is one kind (imk_log_source(), log.h), arrays in
- * memory are another (imk_array_source()). */
+ *  Jobs (job.h) take a record source: a file is one kind (imk_log_source(), log.h), arrays
+ *  in memory are another (imk_array_source_make()); they give to a record sink. */
 #ifndef IMUKIT_RECORD_H
 #define IMUKIT_RECORD_H
 

@@ -55,6 +55,12 @@ IMK_API void imk_result_quantity(imk_result *result, const char *key, double val
 /** An array of numbers. */
 IMK_API void imk_result_numbers(imk_result *result, const char *key, size_t count,
                                 const double *values);
+/** A value that is JSON already, an object: it is shown like the rest. Its keys are copied.
+ *  @return false: it is none; null is added */
+IMK_API bool imk_result_json(imk_result *result, const char *key, const char *text);
+/** The text at a path of the data, "model.gyro.noise.gauss_markov[1].sigma"; NULL: none is there.
+ */
+IMK_API const char *imk_result_find(const imk_result *result, const char *path);
 /** @} */
 
 /** For whom what is added to the display from here on is meant; at first for both. */
@@ -136,6 +142,9 @@ IMK_API const imk_figure *imk_result_figure_get(const imk_result *result, imk_au
  *  @{ */
 /** The data. Numbers are the shortest decimals that read back to the same double. */
 IMK_API imk_status imk_result_to_json(const imk_result *result, char **text, size_t *size);
+/** The data on one line, members in the order of their keys and numbers to 17 digits: equal data
+ *  give equal text. */
+IMK_API imk_status imk_result_to_key(const imk_result *result, char **text, size_t *size);
 /** What is meant for the terminal. @param bold,plain  escape sequences around the heads of tables;
  *  NULL: none */
 IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold, const char *plain,

@@ -110,6 +110,33 @@ static void test_json(void **state)
     imk_result_free(r);
 }
 
+/* Data that was JSON is data like other, can be looked up, and is told from other data. */
+static void test_read(void **state)
+{
+    (void)state;
+    char *text;
+    size_t size;
+    imk_result *r = imk_result_create(NULL);
+    assert_true(imk_result_json(
+        r, "z",
+        "{\"b\": [{\"c\": \"\\u00B5 \\\"1\\\"\"}, 8, -1.5e-7, 1e20], \"a\": {\"n\": null, "
+        "\"t\": true, \"r\": 0.1}, \"e\": []}"));
+    assert_false(imk_result_json(r, "y", "{\"b\": "));
+    imk_result_number(r, "x", 2);
+    assert_string_equal(imk_result_find(r, "z.b[0].c"), "\xC2\xB5 \"1\"");
+    assert_null(imk_result_find(r, "z.b[1]"));
+    assert_null(imk_result_find(r, "z.b[9]"));
+    assert_null(imk_result_find(r, "z.b[0].c.d"));
+    assert_null(imk_result_find(r, "z.aa.n"));
+    assert_int_equal(imk_result_to_key(r, &text, &size), IMK_OK);
+    assert_string_equal(text, "{\"x\":2.0,\"y\":null,\"z\":{\"a\":{\"n\":null,\"r\":"
+                              "0.10000000000000001,\"t\":true},\"b\":[{\"c\":\"\xC2\xB5 "
+                              "\\\"1\\\"\"},8,-1.4999999999999999e-7,1e20],\"e\":[]}}");
+    assert_int_equal(size, strlen(text));
+    free(text);
+    imk_result_free(r);
+}
+
 static void test_text(void **state)
 {
     (void)state;
@@ -134,11 +161,14 @@ static void test_line(void **state)
     size_t size;
     imk_result *r = imk_result_create(NULL);
     imk_result_line(r, "%s: " IMK_BOLD "good" IMK_PLAIN ", \xC2\xB5\n", "a\x1b[2J\xff");
+    imk_result_gap(r);
+    imk_result_for(r, IMK_FOR_PAGE);
+    imk_result_gap(r);
     assert_int_equal(imk_result_to_text(r, NULL, NULL, &text, &size), IMK_OK);
-    assert_string_equal(text, "a?[2J?: good, \xC2\xB5\n\n");
+    assert_string_equal(text, "a?[2J?: good, \xC2\xB5\n\n\n");
     free(text);
     assert_int_equal(imk_result_to_text(r, "<", ">", &text, &size), IMK_OK);
-    assert_string_equal(text, "a?[2J?: <good>, \xC2\xB5\n\n");
+    assert_string_equal(text, "a?[2J?: <good>, \xC2\xB5\n\n\n");
     free(text);
     imk_result_free(r);
 }
@@ -199,7 +229,7 @@ static void test_page(void **state)
     imk_result_line(r, "two");
     assert_int_equal(imk_result_to_page(r, &text, &size, &error), IMK_OK);
     assert_non_null(strstr(text, "<h1>Title &lt;1&gt;</h1>"));
-    assert_non_null(strstr(text, "<p>one</p>"));
+    assert_non_null(strstr(text, "<p>one</p>\n<footer"));
     assert_null(strstr(text, "two"));
     assert_null(strstr(text, "<p></p>"));
     free(text);
@@ -249,9 +279,11 @@ static void test_readable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_json),   cmocka_unit_test(test_text),     cmocka_unit_test(test_line),
-        cmocka_unit_test(test_figure), cmocka_unit_test(test_key),      cmocka_unit_test(test_page),
-        cmocka_unit_test(test_memory), cmocka_unit_test(test_readable),
+        cmocka_unit_test(test_json),     cmocka_unit_test(test_text),
+        cmocka_unit_test(test_line),     cmocka_unit_test(test_figure),
+        cmocka_unit_test(test_key),      cmocka_unit_test(test_page),
+        cmocka_unit_test(test_read),     cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_readable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
