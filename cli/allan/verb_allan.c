@@ -223,7 +223,8 @@ static int show(const imk_allan_log *a, const allan_options *o, const char *path
     imk_show_allan_log(a, path, result);
     imk_result_for(result, IMK_FOR_PAGE);
     show_origin(result);
-    const show_options options = {o->report, o->plot, o->json, o->output != NULL};
+    const show_options options = {
+        .report = o->report, .plot = o->plot, .json = o->json, .quiet = o->output != NULL};
     return show_end(result, &options, EXIT_DONE);
 }
 

@@ -85,7 +85,8 @@ static void print(const imk_result *result, bool json, FILE *out)
         status = imk_result_to_text(result, command_color(out, COLOR_BOLD),
                                     command_color(out, COLOR_RESET), &text, &size);
     (void)command_unless_memory(status);
-    if (fwrite(text, 1, size, out) != size && out == stdout)
+    if (fwrite(text, 1, size, out) < size &&
+        out == stdout) /* the reason is lost with the next call */
         (void)command_failed("standard output: %s", strerror(errno));
     free(text);
 }
@@ -115,6 +116,13 @@ int show_plot(const imk_result *result, const char *plot)
     return draw(result, plot);
 }
 
+static int draw_nothing(const char *lacking)
+{
+    imk_error error;
+    (void)imk_error_set(&error, IMK_ERROR_EMPTY, "plot", NULL, lacking);
+    return command_error(&error, NULL);
+}
+
 int show_end(imk_result *result, const show_options *options, int code)
 {
     int failed = options->report ? write_page(result, options->report) : -1;
@@ -124,7 +132,9 @@ int show_end(imk_result *result, const show_options *options, int code)
     } else if (failed < 0 && !options->quiet && !options_stdout_taken()) {
         print(result, false, stdout);
     }
-    if (failed < 0 && options->plot)
+    if (failed < 0 && options->plot && options->lacking)
+        failed = draw_nothing(options->lacking);
+    else if (failed < 0 && options->plot)
         failed = draw(result, options->plot);
     imk_result_free(result);
     return failed < 0 ? code : failed;

@@ -11,7 +11,8 @@
 typedef struct show_options {
     const char *report, *plot; /* NULL: nowhere */
     bool json;
-    bool quiet; /* nothing on the terminal, as the caller knows (a table went there) */
+    bool quiet;          /* nothing on the terminal, as the caller knows (a table went there) */
+    const char *lacking; /* what a figure would need, "observations to draw"; NULL: there is one */
 } show_options;
 
 /* An empty result of this verb: ends the command where memory is exhausted. */

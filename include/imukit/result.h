@@ -116,6 +116,11 @@ IMK_API imk_figure_builder *imk_result_figure(imk_result *result, const char *ti
 IMK_API void imk_figure_panel(imk_figure_builder *figure, const imk_panel *panel);
 /** Add a curve to the last panel. @param scale  its y, lower and upper are divided by it */
 IMK_API void imk_figure_curve(imk_figure_builder *figure, const imk_curve *curve, double scale);
+/** Add a point to the last curve, which was begun without any. */
+IMK_API void imk_figure_point(imk_figure_builder *figure, double x, double y);
+/** The same with its error bar, or a piece of a band: all points of a curve have one, or none. */
+IMK_API void imk_figure_bar(imk_figure_builder *figure, double x, double y, double lower,
+                            double upper);
 /** Add a region to the last panel. */
 IMK_API void imk_figure_region(imk_figure_builder *figure, const imk_region *region);
 /** The figure number `index` of those meant for all of `audience`; NULL beyond the last. */

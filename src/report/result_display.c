@@ -230,6 +230,43 @@ void imk_figure_curve(imk_figure_builder *figure, const imk_curve *curve, double
     made->upper = imki_arena_numbers(arena, curve->upper, curve->count, scale);
 }
 
+static double *extended(imki_arena *arena, const double *values, size_t count, double value)
+{
+    double *made = imki_arena_extend(arena, (void *)values, count, sizeof *made);
+    if (made)
+        made[count] = value;
+    return made;
+}
+
+/* The last curve; NULL where there is none. */
+static imk_curve *last_curve(imk_figure_builder *figure)
+{
+    const imk_panel *panel = last_panel(figure);
+    return panel && panel->curve_count > 0 ? (imk_curve *)panel->curves + panel->curve_count - 1
+                                           : NULL;
+}
+
+void imk_figure_point(imk_figure_builder *figure, double x, double y)
+{
+    imk_curve *curve = last_curve(figure);
+    if (!curve)
+        return;
+    curve->x = extended(figure->arena, curve->x, curve->count, x);
+    curve->y = extended(figure->arena, curve->y, curve->count, y);
+    curve->count = curve->x && curve->y ? curve->count + 1 : 0;
+}
+
+void imk_figure_bar(imk_figure_builder *figure, double x, double y, double lower, double upper)
+{
+    imk_curve *curve = last_curve(figure);
+    if (!curve)
+        return;
+    curve->lower = extended(figure->arena, curve->lower, curve->count, lower);
+    curve->upper = extended(figure->arena, curve->upper, curve->count, upper);
+    imk_figure_point(figure, x, y);
+    curve->count = curve->lower && curve->upper ? curve->count : 0;
+}
+
 void imk_figure_region(imk_figure_builder *figure, const imk_region *region)
 {
     imk_panel *panel = last_panel(figure);

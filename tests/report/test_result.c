@@ -81,6 +81,12 @@ static void put_display(imk_result *r)
     imk_figure_builder *figure = imk_result_figure(r, "figure", 1, "Caption");
     imk_figure_panel(figure, &(imk_panel){.title = "p", .x_label = "x", .y_label = "y"});
     imk_figure_curve(figure, &(imk_curve){"c", IMK_CURVE_LINE, 0, 3, x, y, NULL, NULL}, 10);
+    imk_figure_curve(figure, &(imk_curve){.label = "points"}, 1);
+    for (int i = 0; i < 5; i++)
+        imk_figure_point(figure, i, 2 * i);
+    imk_figure_curve(figure, &(imk_curve){.label = "bars"}, 1);
+    for (int i = 0; i < 5; i++)
+        imk_figure_bar(figure, i, 2 * i, 2 * i - 1, 2 * i + 1);
     imk_figure_region(figure, &(imk_region){"r", 1, 0, 1, 0, 1, false});
 }
 
@@ -163,10 +169,16 @@ static void test_figure(void **state)
     const imk_figure *figure = imk_result_figure_get(r, IMK_FOR_PAGE, 0);
     assert_non_null(figure);
     assert_int_equal(figure->panel_count, 1);
-    assert_int_equal(figure->panels[0].curve_count, 1);
+    assert_int_equal(figure->panels[0].curve_count, 3);
     assert_true(figure->panels[0].curves[0].x[2] == 3);
     assert_true(figure->panels[0].curves[0].y[2] == 3); /* 30 by the scale of 10 */
     assert_null(figure->panels[0].curves[0].lower);
+    const imk_curve *points = &figure->panels[0].curves[1], *bars = &figure->panels[0].curves[2];
+    assert_int_equal(points->count, 5);
+    assert_true(points->x[4] == 4 && points->y[3] == 6);
+    assert_null(points->lower);
+    assert_int_equal(bars->count, 5);
+    assert_true(bars->y[0] == 0 && bars->lower[2] == 3 && bars->upper[4] == 9);
     assert_string_equal(figure->panels[0].regions[0].label, "r");
     assert_null(imk_result_figure_get(r, IMK_FOR_PAGE, 1));
     imk_result_free(r);
