@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One run into one log: its columns, and its rows written as they are made. */
-#include "log/log_columns.h"
+#include "log/written_columns.h"
 #include "shell/progress.h"
 #include "simulate_parts.h"
 
