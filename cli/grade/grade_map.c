@@ -5,6 +5,8 @@
  * A model that does not state one of the two is a line along it; what it costs none states. */
 #include "grade_parts.h"
 
+#include "imukit/figure_file.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

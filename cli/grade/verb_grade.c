@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const option grade_option_table[] = {
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the maps: stability of bias against that of scale factor, of gyros and of "
      "accelerometers, and cost against performance",
      offsetof(grade_options, plot)},

@@ -47,6 +47,14 @@ imk_log_settings log_input_settings(const log_input *input)
     return settings;
 }
 
+int log_input_check(const log_input *input)
+{
+    if (input->gaps == GAPS_KEEP && !input->missing_allowed)
+        return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
+                               "bridge or --gaps longest");
+    return -1;
+}
+
 int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader)
 {
     imk_error error;
@@ -83,10 +91,9 @@ int log_input_load(const log_input *input, const char *path, log_channels *chann
     imk_log_reader *reader;
     imk_findings findings = {.count = 0};
     memset(channels, 0, sizeof *channels);
-    if (input->gaps == GAPS_KEEP && !input->missing_allowed)
-        return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
-                               "bridge or --gaps longest");
-    int code = log_input_open(input, path, false, &reader);
+    int code = log_input_check(input);
+    if (code < 0)
+        code = log_input_open(input, path, false, &reader);
     if (code >= 0)
         return code;
     job_progress shown = job_progress_begin(path);

@@ -6,30 +6,6 @@
 
 #include <string.h>
 
-void log_axis_name(const char *sensor, int axis, char *text, size_t size)
-{
-    if (axis >= 0 && axis < 3)
-        snprintf(text, size, "%s_%c", sensor, "xyz"[axis]);
-    else
-        snprintf(text, size, "%s_%d", sensor, axis);
-}
-
-void log_axes(const imk_triad *triad, int axis[IMK_AXES_MAX])
-{
-    bool named = true, taken[3] = {false};
-    for (int i = 0; i < triad->axis_count; i++) {
-        axis[i] = -1;
-        for (int k = 0; k < 3; k++)
-            if (triad->direction[i][k] >= 1)
-                axis[i] = k;
-        named = named && axis[i] >= 0 && !taken[axis[i]];
-        if (named)
-            taken[axis[i]] = true;
-    }
-    for (int i = 0; i < triad->axis_count && !named; i++)
-        axis[i] = i;
-}
-
 int log_unit_asked(const char *option_name, const char *text, imk_unit *unit)
 {
     const imk_dimension due = unit->dimension;

@@ -6,11 +6,6 @@
 #include "imukit/log.h"
 #include "imukit/model.h"
 
-/* "gyro_x", "accel_3": of a sensor by its number, 0 to 2 along the axes of the body. */
-void log_axis_name(const char *sensor, int axis, char *text, size_t size);
-/* The number in that name for each sensor of a triad: up to three along body axes are called by
- * them, others are numbered. */
-void log_axes(const imk_triad *triad, int axis[IMK_AXES_MAX]);
 /* The unit that an option asks for, which is to be of the dimension of the one it replaces; NULL
  * text leaves that. @return -1 or the exit code, the message printed */
 int log_unit_asked(const char *option_name, const char *text, imk_unit *unit);

@@ -5,6 +5,8 @@
 
 #include "shell/page_table.h"
 
+#include "imukit/figure_file.h"
+
 #include <math.h>
 #include <stdlib.h>
 

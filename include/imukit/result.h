@@ -37,6 +37,8 @@ IMK_API void imk_result_free(imk_result *result);
  *  @{ */
 IMK_API void imk_result_object(imk_result *result, const char *key);
 IMK_API void imk_result_array(imk_result *result, const char *key);
+/** A copy of a key that lives as long as the result. */
+IMK_API const char *imk_result_keep(imk_result *result, const char *key);
 /** End the object or array that was begun last. */
 IMK_API void imk_result_end(imk_result *result);
 /** A key that is made at run time, which lives as long as the result. */
@@ -80,6 +82,8 @@ IMK_API void imk_result_heading(imk_result *result, const char *text);
  *  become "?". */
 IMK_API void imk_result_line(imk_result *result, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/** An empty line on the terminal; nothing on the page. */
+IMK_API void imk_result_gap(imk_result *result);
 /** A finding in words: a coloured box of the page, a line on the terminal.
  *  @param level  0 good, 1 note, 2 warning */
 IMK_API void imk_result_finding(imk_result *result, int level, const char *text);
@@ -138,11 +142,10 @@ IMK_API imk_status imk_result_to_json(const imk_result *result, char **text, siz
  *  NULL: none */
 IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold, const char *plain,
                                       char **text, size_t *size);
-/** What is meant for the page, self-contained.
- *  @param complete  false: figures are left out because gnuplot is not installed
- *  @param error     also says why a figure could not be drawn */
+/** What is meant for the page, self-contained. @param error  also says why a figure could not be
+ *  drawn */
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
-                                      bool *complete, imk_error *error);
+                                      imk_error *error);
 /** @} */
 
 #ifdef __cplusplus

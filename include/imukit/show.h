@@ -7,6 +7,7 @@
 
 #include "imukit/allan_log.h"
 #include "imukit/result.h"
+#include "imukit/spectrum_log.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -14,6 +15,10 @@ extern "C" {
 
 /** Deviations: a table for each statistic and kind of sensor, a figure. */
 IMK_API void imk_show_allan_log(const imk_allan_log *allan, const char *name, imk_result *result);
+
+/** Densities, lines and parameters: a table for each kind of sensor, a figure. */
+IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char *name,
+                                   imk_result *result);
 
 #ifdef __cplusplus
 }

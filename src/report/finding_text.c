@@ -72,6 +72,20 @@ static const struct message {
                         "--gaps bridge)"},
     {"allan_fit", "{name}: Allan deviations fitted from {0.3g} s to {1.3g} s, chi-square {2.1f} "
                   "for {3} degrees of freedom ({4.2g} by chance)."},
+    /* spectrum_log.c */
+    {"too_few_for_spectrum", "{0} rows are too few for a spectrum; 64 are needed, and some "
+                             "thousands useful"},
+    {"segments_missing", "column {name}: every segment has missing samples; ask for a coarser "
+                         "--resolution, or use --gaps longest"},
+    {"resolution", "--resolution {0g} Hz: {name}; this record of {1g} s at {2g} Hz allows about "
+                   "{3.2g} Hz to {4.2g} Hz"},
+    {"from_beyond", "{1.6g} Hz"},
+    {"gaps", "{name}: {0} of {1} segments have missing samples and were left out"},
+    {"lines", "{name}: more than {0} lines; the strongest are listed"},
+    {"fit", "{name}: the noise parameters could not be fitted: {0t}"},
+    {"misfit", "{name}: the four noise terms do not explain the spectrum (misfit {0.1f}, worst at "
+               "{1.3g} Hz: {2.2f} of the fit); an output filter, a resonance or a correlated noise "
+               "is there: see imukit identify, or fit a part with --from and --to"},
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 

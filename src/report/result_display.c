@@ -56,6 +56,13 @@ void imk_result_line(imk_result *result, const char *format, ...)
     (void)add(result, IMKI_BLOCK_LINE, text);
 }
 
+void imk_result_gap(imk_result *result)
+{
+    imki_block *made = add(result, IMKI_BLOCK_LINE, "");
+    if (made)
+        made->audience &= IMK_FOR_TERMINAL;
+}
+
 void imk_result_finding(imk_result *result, int level, const char *text)
 {
     imki_block *made = add(result, IMKI_BLOCK_FINDING, text);

@@ -71,6 +71,7 @@ static void put_display(imk_result *r)
     imk_result_line(r, "only %s", "on the page");
     imk_result_for(r, IMK_FOR_TERMINAL);
     imk_result_line(r, "only %s", "on the terminal");
+    imk_result_gap(r);
     imk_result_for(r, IMK_FOR_BOTH);
     imk_table *table = imk_result_table(r, 2);
     imk_table_row(table, "tau\t%s", "value");
@@ -90,7 +91,7 @@ static void put_display(imk_result *r)
     imk_figure_region(figure, &(imk_region){"r", 1, 0, 1, 0, 1, false});
 }
 
-static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n"
+static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n\n"
                                     "tau  value\n"
                                     "\xC2\xB5s       7  more?[0m\n"
                                     "            end\n";
@@ -189,18 +190,18 @@ static void test_page(void **state)
     (void)state;
     char *text;
     size_t size;
-    bool complete;
     imk_error error;
     imk_result *r = imk_result_create(NULL);
     imk_result_title(r, "Title <1>", "%d channels", 3);
     imk_result_line(r, "one");
+    imk_result_gap(r);
     imk_result_for(r, IMK_FOR_TERMINAL);
     imk_result_line(r, "two");
-    assert_int_equal(imk_result_to_page(r, &text, &size, &complete, &error), IMK_OK);
+    assert_int_equal(imk_result_to_page(r, &text, &size, &error), IMK_OK);
     assert_non_null(strstr(text, "<h1>Title &lt;1&gt;</h1>"));
     assert_non_null(strstr(text, "<p>one</p>"));
     assert_null(strstr(text, "two"));
-    assert_true(complete);
+    assert_null(strstr(text, "<p></p>"));
     free(text);
     imk_result_free(r);
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The truth behind a log, row by row: where the unit was at the stamp, and what perfect sensors
+/* The truth behind a record, row by row: where the unit was at the stamp, and what perfect sensors
  * would have read over the row. */
-#include "shell/progress.h"
-#include "simulate_parts.h"
+#include "imukit/simulate_log.h"
 
-#include <math.h>
-#include <stdlib.h>
+#include "jobs/arena_internal.h"
+#include "jobs/job_internal.h"
+
+#include <stdio.h>
 #include <string.h>
 
 enum { BLOCK_ROWS = 4096, STATE_COLUMNS = 10, SENSOR_COLUMNS = 6 };
@@ -37,7 +38,7 @@ static const struct {
 enum { COLUMNS = sizeof truth_columns / sizeof truth_columns[0] };
 
 typedef struct truth {
-    const scene *scene;
+    const imk_simulate_log_settings *settings;
     const imk_trajectory *trajectory; /* NULL: recorded */
     imk_simulator *simulator;
     imk_random random;
@@ -69,7 +70,7 @@ static void fill_state(truth *t, uint64_t row, size_t k)
 
 static void copy_recorded(truth *t, uint64_t first, size_t count)
 {
-    const imk_recorded_motion *recorded = t->scene->simulation.motion.recorded;
+    const imk_recorded_motion *recorded = t->settings->simulation.motion.recorded;
     for (size_t i = 0; i < 3; i++) {
         memcpy(t->block[1 + STATE_COLUMNS + i], recorded->angular_rate[i] + first,
                count * sizeof(double));
@@ -125,23 +126,22 @@ static size_t choose_columns(truth *t, imk_log_column *columns, double **data)
     return count;
 }
 
-static int stream(truth *t, const imk_executor *executor, const char *path)
+static imk_status stream(truth *t, const imk_record_sink *sink, const imk_job *job,
+                         imk_error *error)
 {
-    imk_error error;
-    imk_log_writer *writer;
     imk_log_column columns[COLUMNS];
     double *data[COLUMNS];
+    int decimals[COLUMNS];
     const size_t count = choose_columns(t, columns, data);
-    const uint64_t rows = t->scene->rows;
-    if (imk_log_create(path, count, columns, IMK_LOG_SHORTEST, NULL, rows, &writer, &error) !=
-        IMK_OK)
-        return command_error(&error, NULL);
-    progress p = progress_begin("writing the truth", "rows", 1);
-    imk_status status = IMK_OK;
+    const uint64_t rows = t->settings->rows;
+    for (size_t c = 0; c < count; c++)
+        decimals[c] = -1;
+    imk_status status = sink->begin(sink->context, count, columns, decimals, rows, error);
     for (uint64_t first = 0; first < rows && status == IMK_OK; first += BLOCK_ROWS) {
-        size_t now = rows - first < BLOCK_ROWS ? (size_t)(rows - first) : BLOCK_ROWS;
+        const size_t now = rows - first < BLOCK_ROWS ? (size_t)(rows - first) : BLOCK_ROWS;
         for (size_t k = 0; k < now; k++) {
-            t->block[0][k] = t->scene->start + (double)(first + k) / t->scene->simulation.rate;
+            t->block[0][k] =
+                t->settings->start + (double)(first + k) / t->settings->simulation.rate;
             if (t->trajectory)
                 fill_state(t, first + k, k);
         }
@@ -149,13 +149,11 @@ static int stream(truth *t, const imk_executor *executor, const char *path)
             fill_sensors(t, first, now);
         else
             copy_recorded(t, first, now);
-        status = imk_log_write(writer, now, (const double *const *)data, executor);
-        progress_update(&p, first + now, rows);
+        status = sink->write(sink->context, now, (const double *const *)data, job->executor, error);
+        if (status == IMK_OK)
+            status = imki_job_progress(job, "writing the truth", "rows", first + now, rows, error);
     }
-    progress_end(&p);
-    if (imk_log_commit(writer, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return status == IMK_OK ? -1 : command_failed("%s", imk_status_text(status));
+    return status;
 }
 
 static size_t truth_parts(const imk_trajectory *trajectory, const imk_simulation *simulation)
@@ -164,32 +162,45 @@ static size_t truth_parts(const imk_trajectory *trajectory, const imk_simulation
     return needed < BLOCK_ROWS ? needed : BLOCK_ROWS;
 }
 
-int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
-                   const imk_executor *executor, const char *path)
+/* A unit at rest is on a trajectory too. */
+static imk_status choose_trajectory(truth *t, imk_trajectory_piece *piece, imk_trajectory *rest,
+                                    imk_error *error)
 {
-    imk_error error;
+    const imk_simulation *s = &t->settings->simulation;
+    const double attitude[3] = {s->roll, s->pitch, s->yaw};
+    imk_status status = IMK_OK;
+    t->trajectory = s->motion.trajectory;
+    if (!t->trajectory && !s->motion.recorded) {
+        const imk_geodetic place = {s->latitude, 0.0, s->height};
+        status = imk_trajectory_standstill(place, attitude, s->earth, piece, rest, error);
+        t->trajectory = rest;
+    }
+    t->parts = status == IMK_OK && t->trajectory ? truth_parts(t->trajectory, s) : 1;
+    return status;
+}
+
+imk_status imk_simulate_truth_run(const imk_model *model, const imk_simulate_log_settings *settings,
+                                  const imk_record_sink *sink, const imk_job *job, imk_error *error)
+{
+    const imk_job alone = {.memory = 0};
+    job = job ? job : &alone;
+    imki_arena arena = {.allocator = job->allocator};
     imk_trajectory_piece rest_piece;
     imk_trajectory rest;
-    const double attitude[3] = {o->roll, o->pitch, o->yaw};
-    const imk_simulation *simulation = &s->simulation;
-    const size_t size = imk_simulator_size(model, simulation);
-    void *memory = command_aligned(size);
-    truth *t = command_memory(NULL, sizeof *t);
-    imk_status status = IMK_OK;
-    t->scene = s;
-    t->random = imk_random_seeded(o->seed.value);
-    t->trajectory = simulation->motion.trajectory;
-    if (!t->trajectory && !simulation->motion.recorded) {
-        imk_geodetic place = {simulation->latitude, 0.0, simulation->height};
-        status = imk_trajectory_standstill(place, attitude, simulation->earth, &rest_piece, &rest,
-                                           &error);
-        t->trajectory = &rest;
+    const size_t size = imk_simulator_size(model, &settings->simulation);
+    void *memory = imki_arena_take(&arena, size > 256 ? size : 256); /* a cache line begins there */
+    truth *t = imki_arena_take(&arena, sizeof *t);
+    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (memory && t) {
+        t->settings = settings;
+        t->random = imk_random_seeded(settings->simulation.seed);
+        status = choose_trajectory(t, &rest_piece, &rest, error);
     }
-    t->parts = status == IMK_OK && t->trajectory ? truth_parts(t->trajectory, simulation) : 1;
     if (status == IMK_OK) /* only for the true times of its rows */
-        status = imk_simulator_start(memory, size, model, simulation, &t->simulator, &error);
-    const int code = status == IMK_OK ? stream(t, executor, path) : command_error(&error, NULL);
-    free(t);
-    free(memory);
-    return code;
+        status =
+            imk_simulator_start(memory, size, model, &settings->simulation, &t->simulator, error);
+    if (status == IMK_OK)
+        status = stream(t, sink, job, error);
+    imki_arena_free(&arena);
+    return status;
 }
