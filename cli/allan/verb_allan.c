@@ -1,12 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit allan: Allan deviations of a log with confidence intervals. */
-#include "allan_output.h"
+#include "log/log_input.h"
+#include "shell/job_progress.h"
+#include "shell/show.h"
 
 #include "imukit/decimal.h"
+#include "imukit/show.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+typedef struct allan_options {
+    log_input log;
+    int edf, type, bias;
+    const char *statistic, *tau, *output, *plot, *report;
+    double confidence;
+    bool json;
+    option_integer threads;
+} allan_options;
 
 static const option allan_option_table[] = {
     {"statistic", 0, OPTION_TEXT, "NAME,NAME…|all", NULL, NULL,
@@ -75,7 +87,7 @@ const verb allan_verb = {
     .run = run};
 
 /* Names of --statistic. @return -1 or the exit code */
-static int parse_statistics(const char *text, allan_result *r)
+static int parse_statistics(const char *text, imk_allan_log_settings *r)
 {
     const char *names[IMK_ALLAN_STATISTICS];
     for (size_t k = 0; k < IMK_ALLAN_STATISTICS; k++)
@@ -149,201 +161,130 @@ static double *parse_times(const char *text, size_t *count, int *code)
     return times;
 }
 
-/* Factors of a statistic at listed times: those in its range. With one statistic a time outside is
- * an error; with several it is left out of those that do not reach it. */
-static size_t *factors_of_times(const allan_result *r, imk_allan_statistic statistic, size_t n,
-                                size_t time_count, const double *times, size_t *count, int *code)
-{
-    const double dt = r->channels.dt;
-    size_t lowest, highest, step;
-    imk_allan_range(statistic, n, &lowest, &highest, &step);
-    const double unit = dt * (double)step * imk_allan_averaging(statistic, 1);
-    size_t *factors = malloc((time_count + 1) * sizeof *factors);
-    *count = 0;
-    *code = factors ? -1 : command_failed("memory is exhausted");
-    for (size_t i = 0; i < time_count && *code < 0; i++) {
-        const double place = floor(times[i] / unit + 0.5);
-        const bool inside =
-            place >= 1 && place <= (double)(highest / step) && (size_t)place * step >= lowest;
-        if (!inside && r->statistic_count == 1)
-            *code = command_misused("--tau %s: %g s is outside what this record allows, %g s to "
-                                    "%g s",
-                                    r->options->tau, times[i],
-                                    dt * imk_allan_averaging(statistic, lowest),
-                                    dt * imk_allan_averaging(statistic, highest));
-        else if (inside && (*count == 0 || (size_t)place * step > factors[*count - 1]))
-            factors[(*count)++] = (size_t)place * step;
-    }
-    if (*code >= 0) {
-        free(factors);
-        factors = NULL;
-    }
-    return factors;
-}
-
-/* Averaging factors of --tau for one statistic; NULL after a message, with the exit code. */
-static size_t *parse_tau(const allan_result *r, imk_allan_statistic statistic, size_t n,
-                         size_t *count, int *code)
+/* Averaging times of --tau. @return -1 or the exit code; *times is to be freed */
+static int parse_tau(const char *text, imk_allan_log_settings *settings, double **times)
 {
     static const char *const grids[] = {"octave", "decade", "all", "many"};
-    const char *text = r->options->tau;
+    int code = -1;
     for (int i = 0; i < 4; i++)
         if (!text || strcmp(text, grids[i]) == 0) {
-            size_t *factors = allan_factors_of(statistic, (imk_allan_grid)i, n, count);
-            *code = factors ? -1 : command_failed("memory is exhausted");
-            return factors;
+            settings->grid = (imk_allan_grid)i;
+            return code;
         }
-    size_t time_count;
-    double *times = parse_times(text, &time_count, code);
-    if (!times)
-        return NULL;
-    size_t *factors = factors_of_times(r, statistic, n, time_count, times, count, code);
-    free(times);
-    return factors;
+    settings->times = *times = parse_times(text, &settings->time_count, &code);
+    return code;
 }
 
-/* A column that never changes has no noise to analyse: almost always a wrong column. */
-static int check_constant(const char *path, const log_channels *channels)
+static void write_rows(const imk_allan_log *a, size_t channel, size_t k, imk_output_file *file)
 {
-    for (size_t c = 0; c < channels->count; c++) {
-        const double *data = log_channel_data(channels, c);
-        size_t first = 0, i;
-        while (first < channels->rows && !isfinite(data[first]))
-            first++;
-        if (first == channels->rows)
-            return command_failed("%s: column %s has no finite value in %zu rows; leave it out "
-                                  "with --columns, or check the log",
-                                  path, log_channel_column(channels, c)->name, first);
-        i = first;
-        while (i < channels->rows && (data[i] == data[first] || !isfinite(data[i])))
-            i++;
-        if (i == channels->rows)
-            return command_failed("%s: column %s is constant in all %zu rows: there is no noise to "
-                                  "analyse; leave it out with --columns, or check the log",
-                                  path, log_channel_column(channels, c)->name, channels->rows);
+    const imk_allan_statistic statistic = a->settings.statistic[k];
+    const imk_allan_curve *curve = &a->curve[channel][k];
+    const imk_unit unit = imk_allan_log_unit(a, channel, statistic);
+    for (size_t i = 0; i < curve->count; i++) {
+        const imk_allan_point *point = &curve->point[i];
+        const double values[] = {curve->tau[i], point->deviation / unit.scale,
+                                 point->lower / unit.scale, point->upper / unit.scale};
+        imk_output_file_print(file, "%s", imk_even_record_column(&a->record, channel)->name);
+        for (int j = 0; j < 4; j++) {
+            char text[IMK_DECIMAL_SIZE];
+            text[imk_decimal_shortest(values[j], text)] = '\0';
+            imk_output_file_print(file, ",%s", text);
+        }
+        char edf[IMK_DECIMAL_SIZE], used[IMK_DECIMAL_SIZE];
+        edf[imk_decimal_significant(point->edf, 6, edf)] = '\0';
+        used[imk_decimal_significant(curve->used ? curve->used[i] : 1, 6, used)] = '\0';
+        imk_output_file_print(file, ",%s,%zu,%s,%s,%s,%s\n", edf, point->count, unit.text,
+                              imk_allan_name(statistic), imk_power_law_name(point->type), used);
     }
+}
+
+static int write_csv(const imk_allan_log *a, const char *output)
+{
+    imk_output_file *file;
+    imk_error error;
+    if (imk_output_file_open(output, &file, &error) != IMK_OK)
+        return command_error(&error, NULL);
+    imk_output_file_print(file, "channel,tau [s],deviation [unit],lower,upper,edf,count,unit,"
+                                "statistic,noise,used\n");
+    for (size_t c = 0; c < a->record.count; c++)
+        for (size_t k = 0; k < a->settings.statistic_count; k++)
+            write_rows(a, c, k, file);
+    if (imk_output_file_commit(file, &error) != IMK_OK)
+        return command_error(&error, NULL);
     return -1;
 }
 
-/* The record as running sums, in place of the data. n is the number of rates. */
-static double *running_sums(const allan_options *o, const log_channels *channels, size_t channel,
-                            size_t n, const imk_executor *executor)
+static int show(const imk_allan_log *a, const allan_options *o, const char *path)
 {
-    double *data = log_channel_data(channels, channel);
-    if (o->type == 0)
-        imk_allan_sums(n, data, data, executor);
-    else
-        for (size_t i = 0; i <= n; i++)
-            data[i] /= channels->dt;
-    return data;
+    const int code = o->output ? write_csv(a, o->output) : -1;
+    if (code >= 0)
+        return code;
+    imk_result *result = show_begin("allan");
+    imk_show_allan_log(a, path, result);
+    imk_result_for(result, IMK_FOR_PAGE);
+    show_origin(result);
+    const show_options options = {
+        .report = o->report, .plot = o->plot, .json = o->json, .quiet = o->output != NULL};
+    return show_end(result, &options, EXIT_DONE);
 }
 
-static bool has_missing(const log_channels *channels, size_t channel)
+/* A time that the record does not allow is a wrong option, not a wrong log. */
+static int tell(const allan_options *o, const char *path, const imk_allan_log *a, imk_status status,
+                const imk_error *error)
 {
-    return log_channel_finite(channels, channel) < channels->rows;
+    const imk_findings none = {.count = 0}, *findings = a ? &a->findings : &none;
+    const imk_finding *failure = status == IMK_ERROR_RANGE ? imk_findings_failure(findings) : NULL;
+    char text[300];
+    if (!failure)
+        return log_input_tell(path, findings, status, error);
+    imk_finding_text(failure, text, sizeof text);
+    return command_misused("--tau %s: %s", o->tau, text);
 }
 
-static int compute_curve(allan_result *r, size_t channel, size_t k, size_t n, const double *data,
-                         bool missing, const imk_executor *executor)
+static int analyse(const allan_options *o, const char *path, const imk_allan_log_settings *settings)
 {
-    const allan_options *o = r->options;
-    const char *name = log_channel_column(&r->channels, channel)->name;
-    imk_allan_settings settings = imk_allan_default();
-    settings.statistic = r->statistic[k];
-    settings.confidence = o->confidence;
-    settings.greenhall_riley = o->edf == 1;
-    settings.bias = (imk_allan_bias_removal)o->bias;
-    size_t count = 0;
-    int code;
-    size_t *factors = parse_tau(r, settings.statistic, n, &count, &code);
-    imk_status status = IMK_OK;
-    if (factors && count == 0 && r->statistic_count == 1)
-        status = IMK_ERROR_TOO_SHORT;
-    else if (factors && count > 0 && missing)
-        status = allan_curve_with_gaps(&settings, n, data, r->channels.dt, count, factors, executor,
-                                       &r->curve[channel][k]);
-    else if (factors && count > 0)
-        status = allan_curve_compute(&settings, n, data, r->channels.dt, count, factors, name,
-                                     executor, &r->curve[channel][k]);
-    free(factors);
-    if (status != IMK_OK)
-        code = command_failed("%s: column %s: %s: %s", r->path, name,
-                              imk_allan_name(settings.statistic), imk_status_text(status));
+    imk_log_reader *reader;
+    int code = log_input_open(&o->log, path, false, &reader);
+    if (code >= 0)
+        return code;
+    imk_allan_log *a;
+    imk_error error;
+    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
+    const imk_executor executor = imk_thread_pool_executor(pool);
+    job_progress shown = job_progress_begin(path);
+    const imk_job job = job_progress_job(&shown, &executor);
+    const imk_record_source source = imk_log_source(reader);
+    const imk_status status = imk_allan_log_run(&source, settings, &job, &a, &error);
+    job_progress_end(&shown);
+    imk_thread_pool_destroy(pool);
+    imk_log_close(reader);
+    code = tell(o, path, a, status, &error);
+    if (code < 0)
+        code = show(a, o, path);
+    imk_allan_log_free(a);
     return code;
-}
-
-static int compute(allan_result *r, const imk_executor *executor)
-{
-    const allan_options *o = r->options;
-    const log_channels *channels = &r->channels;
-    size_t n = o->type == 0 ? channels->rows : channels->rows - 1;
-    int code = check_constant(r->path, channels);
-    if (code < 0 && n < 3)
-        code = command_failed("%s: %zu rows are too few for an Allan deviation", r->path,
-                              channels->rows);
-    for (size_t c = 0; code < 0 && c < channels->count; c++) {
-        const bool missing = has_missing(channels, c);
-        const char *name = log_channel_column(channels, c)->name;
-        if (missing &&
-            (o->type == 1 || r->statistic_count > 1 || r->statistic[0] != IMK_ALLAN_OVERLAPPING))
-            return command_failed("%s: column %s has missing samples: only oadev of rates is "
-                                  "defined with them; leave out --statistic and --type, or use "
-                                  "--gaps bridge or --gaps longest",
-                                  r->path, name);
-        const double *data =
-            missing ? log_channel_data(channels, c) : running_sums(o, channels, c, n, executor);
-        for (size_t k = 0; code < 0 && k < r->statistic_count; k++)
-            code = compute_curve(r, c, k, n, data, missing, executor);
-    }
-    return code;
-}
-
-static int show(const allan_result *r)
-{
-    const allan_options *o = r->options;
-    int code = -1;
-    if (o->output)
-        code = allan_write_csv(r, o->output);
-    if (code < 0 && o->report)
-        code = allan_write_report(r, o->report);
-    if (code < 0 && o->json)
-        code = allan_print_json(r);
-    if (code < 0 && !o->json && !o->output && !options_stdout_taken())
-        allan_print_tables(r);
-    if (code < 0 && o->plot)
-        code = allan_draw(r, o->plot);
-    return code < 0 ? EXIT_DONE : code;
 }
 
 static int run(int count, char **words)
 {
     allan_options o = {.confidence = 0.95, .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
     const char *operands[OPERANDS_MAX];
+    imk_allan_log_settings settings = imk_allan_log_default();
+    double *times = NULL;
     int code = options_parse(&allan_verb, count, words, &o, operands);
     if (code < 0)
         code = command_check_plot(o.plot);
-    if (code >= 0)
-        return code;
-    allan_result *r = calloc(1, sizeof *r);
-    if (!r)
-        return command_failed("memory is exhausted");
-    r->options = &o;
-    r->path = operands[0];
-    code = parse_statistics(o.statistic, r);
     if (code < 0)
-        code = log_input_load(&o.log, r->path, &r->channels);
-    if (code < 0) {
-        imk_thread_pool *pool = imk_thread_pool_create(o.threads.value);
-        imk_executor executor = imk_thread_pool_executor(pool);
-        code = compute(r, &executor);
-        imk_thread_pool_destroy(pool);
-        if (code < 0)
-            code = show(r);
-        for (size_t c = 0; c < r->channels.count; c++)
-            for (size_t k = 0; k < r->statistic_count; k++)
-                allan_curve_free(&r->curve[c][k]);
-        log_channels_free(&r->channels);
-    }
-    free(r);
+        code = parse_statistics(o.statistic, &settings);
+    if (code < 0)
+        code = parse_tau(o.tau, &settings, &times);
+    settings.gaps = (imk_gap_policy)o.log.gaps;
+    settings.phase = o.type == 1;
+    settings.confidence = o.confidence;
+    settings.greenhall_riley = o.edf == 1;
+    settings.bias = (imk_allan_bias_removal)o.bias;
+    if (code < 0)
+        code = analyse(&o, operands[0], &settings);
+    free(times);
     return code;
 }

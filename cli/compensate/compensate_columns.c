@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which column of a log is which axis of a model, and what the corrected log looks like. */
 #include "compensate_parts.h"
+#include "log/log_units.h"
+
+#include "imukit/simulate_log.h"
 
 #include <string.h>
 
@@ -10,32 +13,6 @@ static const char *const sensors[2] = {"gyro", "accel"};
 static bool in_counts(const imk_log_column *column)
 {
     return imk_dimension_equal(column->unit.dimension, imk_unit_of("count").dimension);
-}
-
-/* Up to three sensors along body axes are called by them, others are numbered, as simulate does.
- * @return the axis of the log's column for each of the model's */
-static void name_axes(const imk_triad *triad, int axis[IMK_AXES_MAX])
-{
-    bool named = true, taken[3] = {false};
-    for (int i = 0; i < triad->axis_count; i++) {
-        axis[i] = -1;
-        for (int k = 0; k < 3; k++)
-            if (triad->direction[i][k] >= 1)
-                axis[i] = k;
-        named = named && axis[i] >= 0 && !taken[axis[i]];
-        if (named)
-            taken[axis[i]] = true;
-    }
-    for (int i = 0; i < triad->axis_count && !named; i++)
-        axis[i] = i;
-}
-
-static void axis_label(int sensor, int axis, char *text, size_t size)
-{
-    if (axis < 3)
-        snprintf(text, size, "%s_%c", sensors[sensor], "xyz"[axis]);
-    else
-        snprintf(text, size, "%s_%d", sensors[sensor], axis);
 }
 
 static size_t columns_of(const imk_log_reader *reader, int sensor)
@@ -73,11 +50,11 @@ static int match_sensor(const compensate_options *o, const imk_log_reader *reade
                         compensate_columns *columns)
 {
     int axis[IMK_AXES_MAX], code = -1;
-    char label[16];
-    name_axes(triad, axis);
+    char label[48];
+    imk_triad_axes(triad, axis);
     for (int i = 0; i < triad->axis_count && code < 0; i++) {
         int column = imk_log_column_find(reader, quantities[sensor], axis[i]);
-        axis_label(sensor, axis[i], label, sizeof label);
+        imk_axis_name(sensors[sensor], axis[i], label);
         columns->axis[sensor][i] = column;
         if (column < 0)
             code = command_failed("%s has no column %s: %s describes %d %s axes, which are all "
@@ -101,10 +78,10 @@ static const char *needed_for(const imk_model *model, int sensor)
 {
     static const char *const needs[2][2] = {{"accel.lever_arm", ""},
                                             {"gyro.g_sensitivity", "gyro.g2_sensitivity"}};
-    term_list list = compensate_taken_out(model);
-    for (size_t i = 0; i < list.count; i++)
+    const imk_firmware_keys list = compensate_taken_out(model);
+    for (int i = 0; i < list.count; i++)
         for (size_t k = 0; k < 2; k++)
-            if (strcmp(list.name[i], needs[sensor][k]) == 0)
+            if (strcmp(list.key[i], needs[sensor][k]) == 0)
                 return needs[sensor][k];
     return NULL;
 }
@@ -143,25 +120,14 @@ int compensate_match(const compensate_options *o, const imk_log_reader *reader, 
 /* Units as read; of counts and increments SI and the usual ones of rates. */
 static int choose_unit(const compensate_options *o, int sensor, imk_log_column *column)
 {
-    const char *text = sensor == IMK_GYRO ? o->to_gyro_unit : o->to_accel_unit;
-    imk_unit due = imk_unit_of(sensor == IMK_GYRO ? "rad/s" : "m/s^2"), unit;
-    imk_error error;
+    const imk_unit due = imk_unit_of(sensor == IMK_GYRO ? "rad/s" : "m/s^2");
     if (in_counts(column))
         column->unit = due;
     else if (column->increment)
         column->unit = sensor == IMK_GYRO ? imk_unit_of("deg/s") : due;
     column->increment = false;
-    if (!text)
-        return -1;
-    const char *option_name = sensor == IMK_GYRO ? "to-gyro-unit" : "to-accel-unit";
-    if (imk_unit_parse(text, text + strlen(text), &unit, &error) != IMK_OK)
-        return command_misused("--%s %s: the unit is not known", option_name, text);
-    if (!imk_dimension_equal(unit.dimension, due.dimension))
-        return command_misused("--%s %s: expected %s such as %s", option_name, text,
-                               imk_dimension_name(due.dimension),
-                               imk_dimension_examples(due.dimension));
-    column->unit = unit;
-    return -1;
+    return sensor == IMK_GYRO ? log_unit_asked("to-gyro-unit", o->to_gyro_unit, &column->unit)
+                              : log_unit_asked("to-accel-unit", o->to_accel_unit, &column->unit);
 }
 
 /* Axis of the model that a column holds, with its sensor; -1 when it is none. */
@@ -185,7 +151,7 @@ static int add_corrected(const compensate_options *o, const imk_compensator *c, 
         return -1;
     imk_log_column *column = &columns->column[columns->count];
     *column = *source;
-    axis_label(sensor, source->axis, column->name, sizeof column->name);
+    imk_axis_name(sensors[sensor], source->axis, column->name);
     columns->content[columns->count].source = -1;
     columns->content[columns->count].sensor = sensor;
     columns->content[columns->count].component = solved ? source->axis : axis;
@@ -203,7 +169,7 @@ static int add_copied(const compensate_options *o, const imk_log_column *source,
     columns->content[columns->count++].source = index;
     if (!source->increment)
         return -1;
-    axis_label(sensor, source->axis, column->name, sizeof column->name);
+    imk_axis_name(sensors[sensor], source->axis, column->name);
     return choose_unit(o, sensor, column);
 }
 
@@ -215,11 +181,8 @@ int compensate_describe(const compensate_options *o, const imk_log_reader *reade
     for (size_t k = 0; k < imk_log_column_count(reader) && code < 0; k++) {
         const imk_log_column *source = imk_log_column_get(reader, k);
         int sensor, axis = axis_of(compensator, columns, (int)k, &sensor);
-        if (axis >= 0) {
-            code = add_corrected(o, compensator, sensor, axis, source, columns);
-        } else {
-            code = add_copied(o, source, (int)k, columns);
-        }
+        code = axis >= 0 ? add_corrected(o, compensator, sensor, axis, source, columns)
+                         : add_copied(o, source, (int)k, columns);
     }
     if (code < 0 && o->flags && columns->count == IMK_LOG_COLUMNS_MAX)
         return command_failed("there is no room for a column of flags beside %d others",

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit compensate MODEL --emit-c DIR: the correction as C code for the device. */
 #include "compensate_parts.h"
-#include "shell/json_output.h"
+#include "shell/growing_list.h"
 
-#include "imukit/firmware_file.h"
-
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,22 +23,6 @@ const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
 static const char *const arithmetics[3] = {"float", "double", "fixed"};
 static const char *const motions[2] = {"rate", "force"}, *const units[2] = {"rad/s", "m/s^2"};
 
-static void print_keys(const char *label, const imk_firmware_keys *keys)
-{
-    fprintf(stderr, "%s:", label);
-    for (int i = 0; i < keys->count; i++)
-        fprintf(stderr, "%s %s", i > 0 ? "," : "", keys->key[i]);
-    fputs(keys->count > 0 ? "\n" : " nothing\n", stderr);
-}
-
-static json_t *json_keys(const imk_firmware_keys *keys)
-{
-    json_t *array = json_array();
-    for (int i = 0; i < keys->count; i++)
-        json_array_append_new(array, json_string(keys->key[i]));
-    return array;
-}
-
 /* The terms that the code leaves in although compensate takes them out of a log. */
 static void warn_of_terms(const imk_firmware_keys *left_in)
 {
@@ -55,49 +36,49 @@ static void warn_of_terms(const imk_firmware_keys *left_in)
                              left_in->key[i]);
 }
 
-static int print_json(const compensate_options *o, const imk_firmware *plan, const char *model_name,
-                      const char *name, const imk_firmware_keys *taken_out,
-                      const imk_firmware_keys *left_in)
+static void show_files(const char *directory, const char *name, imk_result *result)
 {
-    json_t *files = json_array(), *bound = json_object();
     static const char *const endings[3] = {".h", ".c", "_test.c"};
-    const size_t size = strlen(o->emission.directory) + strlen(name) + 16;
-    char *path = command_memory(NULL, size);
+    imk_result_array(result, "files");
     for (int i = 0; i < 3; i++) {
-        snprintf(path, size, "%s/%s%s", o->emission.directory, name, endings[i]);
-        json_array_append_new(files, json_text(path));
+        growing_list path = {0};
+        list_add(&path, "%s/%s%s", directory, name, endings[i]);
+        imk_result_text(result, NULL, path.text);
+        list_free(&path);
     }
-    free(path);
-    for (int sensor = 0; sensor < 2; sensor++)
-        if (plan->axis_count[sensor] > 0)
-            json_object_set_new(bound, motions[sensor],
-                                json_quantity(plan->bound[sensor], units[sensor]));
-    json_t *cost =
-        json_pack("{s:i, s:i, s:i}", "multiplications", plan->cost.multiplications, "additions",
-                  plan->cost.additions, "comparisons", plan->cost.comparisons);
-    json_t *result = json_pack(
-        "{s:o, s:o, s:s, s:i, s:o, s:o, s:o, s:o}", "files", files, "function", json_text(name),
-        "arithmetic", arithmetics[plan->arithmetic], "iterations", plan->iterations, "bound", bound,
-        "cost", cost, "taken_out", json_keys(taken_out), "left_in", json_keys(left_in));
-    return json_print("compensate", json_pack("{s:o}", "model", json_text(model_name)), result,
-                      EXIT_DONE);
+    imk_result_end(result);
 }
 
-static void print_summary(const compensate_options *o, const imk_firmware *plan, const char *name)
+static void show_cost(const imk_firmware *plan, imk_result *result)
 {
-    const char *directory = o->emission.directory;
+    imk_result_object(result, "bound");
     for (int sensor = 0; sensor < 2; sensor++)
         if (plan->axis_count[sensor] > 0)
-            fprintf(stderr, "The %s is within %.2g %s of the exact correction%s\n", motions[sensor],
-                    plan->bound[sensor], units[sensor],
-                    plan->limit_stated[sensor] ? "" : " (no range is stated: of small motions)");
-    fprintf(stderr, "%d multiplications, %d additions, %d comparisons a sample\n",
-            plan->cost.multiplications, plan->cost.additions, plan->cost.comparisons);
-    fprintf(stderr,
-            "Wrote %s/%s.h, .c and _test.c. Next, for example:\n"
-            "    arm-none-eabi-gcc -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard -O2 -c "
-            "%s/%s.c\n",
-            directory, name, directory, name);
+            imk_result_quantity(result, motions[sensor], plan->bound[sensor], units[sensor]);
+    imk_result_end(result);
+    imk_result_object(result, "cost");
+    imk_result_count(result, "multiplications", plan->cost.multiplications);
+    imk_result_count(result, "additions", plan->cost.additions);
+    imk_result_count(result, "comparisons", plan->cost.comparisons);
+    imk_result_end(result);
+}
+
+static void show_summary(const char *directory, const char *name, const imk_firmware *plan,
+                         imk_result *result)
+{
+    for (int sensor = 0; sensor < 2; sensor++)
+        if (plan->axis_count[sensor] > 0)
+            imk_result_line(result, "The %s is within %.2g %s of the exact correction%s",
+                            motions[sensor], plan->bound[sensor], units[sensor],
+                            plan->limit_stated[sensor] ? ""
+                                                       : " (no range is stated: of small motions)");
+    imk_result_line(result, "%d multiplications, %d additions, %d comparisons a sample",
+                    plan->cost.multiplications, plan->cost.additions, plan->cost.comparisons);
+    imk_result_line(result,
+                    "Wrote %s/%s.h, .c and _test.c. Next, for example:\n"
+                    "    arm-none-eabi-gcc -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard -O2 "
+                    "-c %s/%s.c",
+                    directory, name, directory, name);
 }
 
 static int emit(const compensate_options *o, const char *model_name, const imk_model *model,
@@ -123,15 +104,21 @@ static int emit(const compensate_options *o, const char *model_name, const imk_m
     if (imk_firmware_write(o->emission.directory, plan, whole, &files, &error) != IMK_OK)
         return command_error(&error, NULL);
     imk_firmware_name(&files, whole, name);
-    const int code = o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE;
-    if (o->json) {
-        const int printed = print_json(o, plan, model_name, name, &taken_out, &left_in);
-        return printed != EXIT_DONE ? printed : code;
-    }
-    print_keys("Taken out", &taken_out);
-    print_keys("Left in", &left_in);
-    print_summary(o, plan, name);
-    return code;
+    imk_result *result = show_begin("compensate");
+    imk_result_object(result, "inputs");
+    imk_result_text(result, "model", model_name);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    show_files(o->emission.directory, name, result);
+    imk_result_text(result, "function", name);
+    imk_result_text(result, "arithmetic", arithmetics[plan->arithmetic]);
+    imk_result_count(result, "iterations", plan->iterations);
+    show_cost(plan, result);
+    compensate_show_keys("taken_out", "Taken out", &taken_out, result);
+    compensate_show_keys("left_in", "Left in", &left_in, result);
+    imk_result_end(result);
+    show_summary(o->emission.directory, name, plan, result);
+    return compensate_end(o, result);
 }
 
 static int check(const compensate_options *o, const char *second)
@@ -149,19 +136,15 @@ int compensate_emit(const compensate_options *o, const char *const *operands)
     int code = check(o, operands[1]);
     if (code >= 0)
         return code;
-    imk_model *models = malloc(2 * sizeof *models);
-    imk_firmware *plan = malloc(sizeof *plan);
-    if (models && plan) {
-        code = command_model(operands[0], &models[1], NULL);
-        if (code < 0) {
-            models[0] = models[1];
-            code = compensate_select(o, &models[0]);
-        }
-        if (code < 0)
-            code = emit(o, operands[0], &models[0], &models[1], plan);
-    } else {
-        code = command_failed("memory is exhausted");
+    imk_model *models = command_memory(NULL, 2 * sizeof *models);
+    imk_firmware *plan = command_memory(NULL, sizeof *plan);
+    code = command_model(operands[0], &models[1], NULL);
+    if (code < 0) {
+        models[0] = models[1];
+        code = compensate_select(o, &models[0]);
     }
+    if (code < 0)
+        code = emit(o, operands[0], &models[0], &models[1], plan);
     free(models);
     free(plan);
     return code;

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Parts of imukit compensate: what a model says about a log's columns, what is taken out of them.
- */
+/* Parts of imukit compensate: what a model says about a log's columns, what is taken out of them, a
+ * log on its way through a compensator, and what is shown of it. */
 #ifndef IMUKIT_COMPENSATE_PARTS_H
 #define IMUKIT_COMPENSATE_PARTS_H
 
 #include "log/log_input.h"
+#include "shell/show.h"
 #include "shell/term_selection.h"
 
 #include "imukit/compensate.h"
+#include "imukit/firmware_file.h"
 #include "imukit/model_file.h"
 
 /* Code instead of a log. */
@@ -49,23 +51,50 @@ int compensate_match(const compensate_options *o, const imk_log_reader *reader, 
 int compensate_describe(const compensate_options *o, const imk_log_reader *reader,
                         const imk_compensator *compensator, compensate_columns *columns);
 
-/* Terms of a model, as their keys in the model file. */
-enum { TERMS_MAX = 64 };
-typedef struct term_list {
-    size_t count;
-    char name[TERMS_MAX][40]; /* "gyro.bias.fixed" */
-} term_list;
 /* Take out the terms that the options name. What the output stage does (range, resolution,
  * quantization) is not a matter of taking out, but tells which readings are saturated: it stays.
  * @return -1 or the exit code, the message printed */
 int compensate_select(const compensate_options *o, imk_model *model);
 /* What compensation takes out. */
-term_list compensate_taken_out(const imk_model *model);
+imk_firmware_keys compensate_taken_out(const imk_model *model);
 /* What it leaves in the log: of the terms of the whole model, as far as the sensors are there. */
-term_list compensate_left_in(const imk_model *model, const imk_model *whole);
+imk_firmware_keys compensate_left_in(const imk_model *model, const imk_model *whole);
 /* --emit-c: the model of the first operand as C code. @return the exit code */
 int compensate_emit(const compensate_options *o, const char *const *operands);
 /* Whether a term needs a temperature, and the name of the first. */
 bool compensate_temperature_term(const imk_model *model, char *name, size_t size);
+
+/* ---- compensate_stream.c ---- */
+
+/* What was met on the way; rows count from 1. */
+typedef struct compensate_counts {
+    uint64_t rows, any_flag, stretches, first_gap, temperatures_held;
+    uint64_t times_missing, first_time_missing; /* whose time is no number */
+    uint64_t flagged[IMK_FLAG_COUNT], first_flagged[IMK_FLAG_COUNT];
+} compensate_counts;
+
+typedef struct compensation {
+    const char *log, *name; /* the operands */
+    imk_model model;        /* what is taken out */
+    imk_model whole;        /* the same before terms were selected */
+    imk_log_reader *reader;
+    compensate_columns columns;
+    imk_compensator compensator;
+    compensate_counts counts;
+} compensation;
+
+/* Read, correct, write. @return -1 or the exit code, the message printed */
+int compensate_stream(const compensate_options *o, compensation *c);
+
+/* ---- compensate_show.c ---- */
+
+/* Warn of samples that are not what they should be. */
+void compensate_warn(const compensate_counts *counts);
+void compensate_show(const compensation *c, imk_result *result);
+/* Terms as an array of the data, and as a line. */
+void compensate_show_keys(const char *key, const char *label, const imk_firmware_keys *keys,
+                          imk_result *result);
+/* Print either, by the options. @return the exit code */
+int compensate_end(const compensate_options *o, imk_result *result);
 
 #endif

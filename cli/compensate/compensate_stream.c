@@ -3,8 +3,9 @@
  * last row of a block then waits, its copied columns included, for the next one. Rows are in the
  * buffers of the log's columns; a corrected value stands in the place of the reading it came from.
  */
-#include "compensate_stream.h"
+#include "compensate_parts.h"
 
+#include "log/log_units.h"
 #include "shell/progress.h"
 
 #include "imukit/samples.h"
@@ -37,14 +38,12 @@ static double *take(double **memory)
     return taken;
 }
 
-/* @return what to free, NULL when memory is exhausted */
+/* @return what to free */
 static double *allocate(stream *s)
 {
     size_t columns = s->column_count + 2 * IMK_AXES_MAX + 2;
     size_t size = columns * (BLOCK_ROWS + 1) + imk_compensate_workspace(BLOCK_ROWS);
-    double *memory = malloc(size * sizeof *memory + BLOCK_ROWS + 1), *next = memory;
-    if (!memory)
-        return NULL;
+    double *memory = command_memory(NULL, size * sizeof *memory + BLOCK_ROWS + 1), *next = memory;
     for (size_t k = 0; k < s->column_count; k++)
         s->data[k] = take(&next);
     for (int sensor = 0; sensor < 2; sensor++)
@@ -58,7 +57,7 @@ static double *allocate(stream *s)
 }
 
 /* The sample interval is known when the first block has been read. */
-static int start(stream *s, const char *log, const char *name)
+static int start(stream *s)
 {
     imk_error error;
     compensation *c = s->compensation;
@@ -70,21 +69,16 @@ static int start(stream *s, const char *log, const char *name)
     if (!(interval > 0)) /* a single row has none, and no use for it */
         interval = 1;
     imk_status status =
-        imk_compensator_start(&c->compensator, c->model, interval, &settings, &error);
+        imk_compensator_start(&c->compensator, &c->model, interval, &settings, &error);
     if (status == IMK_ERROR_KEY_MISSING)
         return command_failed("%s: %s is missing, which bounds the correction: state it in the "
                               "model, or add --rate-limit 500deg/s or --force-limit 10g",
-                              name, error.field);
+                              c->name, error.field);
     if (status != IMK_OK)
-        return command_error(&error, status == IMK_ERROR_RANGE ? log : name);
+        return command_error(&error, status == IMK_ERROR_RANGE ? c->log : c->name);
     c->compensator.temperature_time = s->options->temperature_time;
     imk_compensator_resume(&c->compensator, s->options->powered_for);
     return compensate_describe(s->options, c->reader, &c->compensator, &c->columns);
-}
-
-static const char *label_of(void *reader, size_t index)
-{
-    return imk_log_label(reader, index);
 }
 
 static int create(stream *s)
@@ -102,7 +96,7 @@ static int create(stream *s)
                        fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST, fixed ? decimals : NULL, 0,
                        &s->writer, &error) != IMK_OK)
         return command_error(&error, NULL);
-    imk_log_write_labels(s->writer, label_of, s->compensation->reader);
+    log_copy_labels(s->compensation->reader, s->writer);
     return -1;
 }
 
@@ -212,7 +206,7 @@ static bool write_rows(stream *s, size_t count, uint64_t first_row, const imk_ex
 }
 
 /* @return -1 or the exit code; with a code the writer is still to be abandoned */
-static int copy(stream *s, const char *log, const char *name, const imk_executor *executor)
+static int copy(stream *s, const imk_executor *executor)
 {
     compensation *c = s->compensation;
     imk_error error;
@@ -227,9 +221,9 @@ static int copy(stream *s, const char *log, const char *name, const imk_executor
             place[k] = s->data[k] + s->waiting;
         if (imk_log_read(c->reader, BLOCK_ROWS, place, &got, &error) != IMK_OK) {
             progress_end(&p);
-            return command_log_error(&error, log);
+            return command_log_error(&error, c->log);
         }
-        if (!s->writer && (code = start(s, log, name)) < 0)
+        if (!s->writer && (code = start(s)) < 0)
             code = create(s);
         if (code >= 0)
             break;
@@ -243,12 +237,11 @@ static int copy(stream *s, const char *log, const char *name, const imk_executor
     }
     progress_end(&p);
     if (code < 0 && wrote && c->counts.rows == 0)
-        code = command_failed("%s: there is a header but no data row", log);
+        code = command_failed("%s: there is a header but no data row", c->log);
     return code;
 }
 
-int compensate_stream(const compensate_options *o, compensation *c, const char *log,
-                      const char *name)
+int compensate_stream(const compensate_options *o, compensation *c)
 {
     imk_error error;
     stream s = {.options = o,
@@ -257,12 +250,10 @@ int compensate_stream(const compensate_options *o, compensation *c, const char *
                 .first_time = (double)NAN,
                 .last_time = (double)NAN};
     double *memory = allocate(&s);
-    if (!memory)
-        return command_failed("memory is exhausted");
     c->counts.stretches = 1;
     imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
     imk_executor executor = imk_thread_pool_executor(pool);
-    int code = copy(&s, log, name, &executor);
+    int code = copy(&s, &executor);
     imk_thread_pool_destroy(pool);
     free(memory);
     if (code >= 0)

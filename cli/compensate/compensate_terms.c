@@ -88,13 +88,13 @@ static bool has_noise(const imk_noise *noise, int axis_count)
            noise->sinusoid_count > 0 || noise->resonance_count > 0;
 }
 
-static void add(term_list *list, const char *sensor, const char *name)
+static void add(imk_firmware_keys *list, const char *sensor, const char *name)
 {
-    if (list->count < TERMS_MAX)
-        snprintf(list->name[list->count++], sizeof list->name[0], "%s.%s", sensor, name);
+    if (list->count < IMK_FIRMWARE_KEYS_MAX)
+        snprintf(list->key[list->count++], sizeof list->key[0], "%s.%s", sensor, name);
 }
 
-static void add_taken_out(term_list *list, const imk_triad *triad, const char *sensor)
+static void add_taken_out(imk_firmware_keys *list, const imk_triad *triad, const char *sensor)
 {
     if (triad->present && is_skewed(triad))
         add(list, sensor, "direction");
@@ -103,7 +103,7 @@ static void add_taken_out(term_list *list, const imk_triad *triad, const char *s
             add(list, sensor, terms[i].name);
 }
 
-static void add_left_in(term_list *list, const imk_triad *triad, const imk_triad *whole,
+static void add_left_in(imk_firmware_keys *list, const imk_triad *triad, const imk_triad *whole,
                         const char *sensor)
 {
     if (!triad->present)
@@ -115,17 +115,17 @@ static void add_left_in(term_list *list, const imk_triad *triad, const imk_triad
         add(list, sensor, "noise");
 }
 
-term_list compensate_taken_out(const imk_model *model)
+imk_firmware_keys compensate_taken_out(const imk_model *model)
 {
-    term_list list = {0};
+    imk_firmware_keys list = {0};
     add_taken_out(&list, &model->gyro, "gyro");
     add_taken_out(&list, &model->accel, "accel");
     return list;
 }
 
-term_list compensate_left_in(const imk_model *model, const imk_model *whole)
+imk_firmware_keys compensate_left_in(const imk_model *model, const imk_model *whole)
 {
-    term_list list = {0};
+    imk_firmware_keys list = {0};
     add_left_in(&list, &model->gyro, &whole->gyro, "gyro");
     add_left_in(&list, &model->accel, &whole->accel, "accel");
     const struct {
@@ -144,17 +144,12 @@ term_list compensate_left_in(const imk_model *model, const imk_model *whole)
 int compensate_select(const compensate_options *o, imk_model *model)
 {
     imk_triad *triads[2] = {&model->gyro, &model->accel};
-    imk_axes kept[2][3];
+    const imk_triad whole[2] = {model->gyro, model->accel};
+    const int code = term_selection_apply(&o->terms, model);
     for (int sensor = 0; sensor < 2; sensor++) {
-        kept[sensor][0] = triads[sensor]->range;
-        kept[sensor][1] = triads[sensor]->resolution;
-        kept[sensor][2] = triads[sensor]->noise.quantization;
-    }
-    int code = term_selection_apply(&o->terms, model);
-    for (int sensor = 0; sensor < 2; sensor++) {
-        triads[sensor]->range = kept[sensor][0];
-        triads[sensor]->resolution = kept[sensor][1];
-        triads[sensor]->noise.quantization = kept[sensor][2];
+        triads[sensor]->range = whole[sensor].range;
+        triads[sensor]->resolution = whole[sensor].resolution;
+        triads[sensor]->noise.quantization = whole[sensor].noise.quantization;
     }
     return code;
 }

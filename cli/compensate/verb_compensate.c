@@ -2,8 +2,6 @@
 /* imukit compensate: log + model -> log without the errors the model describes. Rows are corrected
  * as they are read; the memory does not depend on the length of the log. */
 #include "compensate_parts.h"
-#include "compensate_stream.h"
-#include "shell/json_output.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -81,150 +79,56 @@ const verb compensate_verb = {
                 offsetof(compensate_options, log)}},
     .run = run};
 
-/* "gyro.bias.fixed, gyro.misalignment" */
-static void print_list(const char *label, const term_list *list)
-{
-    fprintf(stderr, "%s:", label);
-    for (size_t i = 0; i < list->count; i++)
-        fprintf(stderr, "%s %s", i > 0 ? "," : "", list->name[i]);
-    fputs(list->count > 0 ? "\n" : " nothing\n", stderr);
-}
-
-static json_t *json_list(const term_list *list)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < list->count; i++)
-        json_array_append_new(array, json_string(list->name[i]));
-    return array;
-}
-
-static const struct {
-    const char *code, *meaning;
-} flag_texts[IMK_FLAG_COUNT] = {
-    {"saturated", "saturated, at or beyond the range of an axis"},
-    {"temperature", "temperature outside the valid range of the model's terms, whose end was used"},
-    {"limit", "corrected values beyond the limits up to which the correction is proven"},
-    {"not_finite",
-     "readings that are no finite number, or no temperature yet; what depends on it is nan"},
-    {"acceleration",
-     "angular acceleration for the lever arms not known, or from a saturated rate"}};
-
-static void warn_of_flags(const compensate_counts *counts)
-{
-    for (int i = 0; i < IMK_FLAG_COUNT; i++)
-        if (counts->flagged[i] > 0)
-            command_warn(flag_texts[i].code, "%s: %llu of %llu samples (first: row %llu)",
-                         flag_texts[i].meaning, (unsigned long long)counts->flagged[i],
-                         (unsigned long long)counts->rows,
-                         (unsigned long long)counts->first_flagged[i]);
-    if (counts->temperatures_held > 0)
-        command_warn("temperature_held", "no temperature, the last one used: %llu of %llu samples",
-                     (unsigned long long)counts->temperatures_held,
-                     (unsigned long long)counts->rows);
-    if (counts->times_missing > 0)
-        command_warn(
-            "time_missing",
-            "the time is no finite number: %llu of %llu samples (first: row %llu); each is "
-            "taken for the one after the sample before it",
-            (unsigned long long)counts->times_missing, (unsigned long long)counts->rows,
-            (unsigned long long)counts->first_time_missing);
-    if (counts->stretches > 1)
-        command_warn("gaps",
-                     "gaps and steps back in time: %llu (first: row %llu); each begins a "
-                     "new stretch",
-                     (unsigned long long)(counts->stretches - 1),
-                     (unsigned long long)counts->first_gap);
-}
-
-static int print_json(const compensation *c, const char *log, const char *name, int code)
-{
-    const imk_correction *correction = &c->compensator.correction;
-    json_t *flagged = json_object();
-    for (int i = 0; i < IMK_FLAG_COUNT; i++)
-        json_object_set_new(flagged, flag_texts[i].code,
-                            json_pack("{s:I, s:o}", "count", (json_int_t)c->counts.flagged[i],
-                                      "first_row",
-                                      c->counts.flagged[i] > 0
-                                          ? json_integer((json_int_t)c->counts.first_flagged[i])
-                                          : json_null()));
-    term_list taken_out = compensate_taken_out(c->model);
-    term_list left = compensate_left_in(c->model, c->whole);
-    json_t *result = json_pack(
-        "{s:I, s:I, s:o, s:I, s:o, s:o, s:o, s:o, s:o}", "rows", (json_int_t)c->counts.rows,
-        "stretches", (json_int_t)c->counts.stretches, "flagged", flagged, "iterations",
-        (json_int_t)correction->iterations, "contraction", json_number(correction->contraction),
-        "rate_bound", json_quantity(correction->bound[IMK_GYRO], "rad/s"), "force_bound",
-        json_quantity(correction->bound[IMK_ACCEL], "m/s^2"), "taken_out", json_list(&taken_out),
-        "left_in", json_list(&left));
-    json_t *inputs = json_pack("{s:o, s:o, s:o}", "log", json_text(log), "model", json_text(name),
-                               "interval", json_quantity(c->compensator.dt, "s"));
-    return json_print("compensate", inputs, result, code);
-}
-
-static int report(const compensate_options *o, const compensation *c, const char *log,
-                  const char *name)
-{
-    warn_of_flags(&c->counts);
-    int code = o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE;
-    if (o->json)
-        return print_json(c, log, name, code);
-    term_list taken_out = compensate_taken_out(c->model);
-    term_list left = compensate_left_in(c->model, c->whole);
-    print_list("Taken out", &taken_out);
-    print_list("Left in", &left);
-    fprintf(stderr, "%llu samples, %llu flagged\n", (unsigned long long)c->counts.rows,
-            (unsigned long long)c->counts.any_flag);
-    return code;
-}
-
 /* What can be said before the log is read. */
-static int check_model(const compensate_options *o, const compensation *c, const char *log,
-                       const char *name)
+static int check_model(const compensate_options *o, const compensation *c)
 {
     char term[64];
-    const bool needs = compensate_temperature_term(c->model, term, sizeof term);
+    const bool needs = compensate_temperature_term(&c->model, term, sizeof term);
     if (needs && c->columns.temperature < 0 && isnan(o->temperature))
         return command_failed("%s depends on temperature (%s) and %s has no temperature column: "
                               "add --temperature 25degC",
-                              name, term, log);
+                              c->name, term, c->log);
     if (needs && isnan(o->temperature)) {
         const imk_log_column *column =
             imk_log_column_get(c->reader, (size_t)c->columns.temperature);
         if (imk_dimension_equal(column->unit.dimension, imk_unit_of("count").dimension))
             return command_failed("%s depends on temperature (%s), which %s has in counts only: "
                                   "add --temperature 25degC",
-                                  name, term, log);
+                                  c->name, term, c->log);
     }
-    if (c->model->residual_of[0])
+    if (c->model.residual_of[0])
         command_warn("residual", "%s is what is left after compensating with %s: do that first",
-                     name, c->model->residual_of);
-    if (compensate_taken_out(c->model).count == 0)
+                     c->name, c->model.residual_of);
+    if (compensate_taken_out(&c->model).count == 0)
         command_warn("nothing", "%s has no deterministic term%s: there is nothing to take out",
-                     name, o->terms.only || o->terms.without ? " of those selected" : "");
+                     c->name, o->terms.only || o->terms.without ? " of those selected" : "");
     return -1;
 }
 
-static int compensate(const compensate_options *o, compensation *c, const char *log,
-                      const char *name)
+static int compensate(const compensate_options *o, compensation *c)
 {
     imk_error error;
     imk_log_settings settings = log_input_settings(&o->log);
-    int code = command_model(name, c->whole, NULL);
+    int code = command_model(c->name, &c->whole, NULL);
     if (code >= 0)
         return code;
-    *c->model = *c->whole;
-    code = compensate_select(o, c->model);
+    c->model = c->whole;
+    code = compensate_select(o, &c->model);
     if (code >= 0)
         return code;
-    if (imk_log_open(log, &settings, &c->reader, &error) != IMK_OK)
-        return command_log_error(&error, log);
-    code = compensate_match(o, c->reader, log, name, c->model, &c->columns);
+    if (imk_log_open(c->log, &settings, &c->reader, &error) != IMK_OK)
+        return command_log_error(&error, c->log);
+    code = compensate_match(o, c->reader, c->log, c->name, &c->model, &c->columns);
     if (code < 0)
-        code = check_model(o, c, log, name);
+        code = check_model(o, c);
     if (code < 0)
-        code = compensate_stream(o, c, log, name);
-    if (code < 0)
-        code = report(o, c, log, name);
+        code = compensate_stream(o, c);
+    if (code < 0) {
+        imk_result *result = show_begin("compensate");
+        compensate_warn(&c->counts);
+        compensate_show(c, result);
+        code = compensate_end(o, result);
+    }
     imk_log_close(c->reader);
     return code;
 }
@@ -256,16 +160,10 @@ static int run(int count, char **words)
         return compensate_emit(&o, operands);
     if (!operands[1])
         return command_misused("an operand is missing: imukit compensate LOG MODEL");
-    compensation *c = calloc(1, sizeof *c);
-    imk_model *models = malloc(2 * sizeof *models);
-    if (c && models) {
-        c->model = &models[0];
-        c->whole = &models[1];
-        code = compensate(&o, c, operands[0], operands[1]);
-    } else {
-        code = command_failed("memory is exhausted");
-    }
-    free(models);
+    compensation *c = command_zeroed(sizeof *c);
+    c->log = operands[0];
+    c->name = operands[1];
+    code = compensate(&o, c);
     free(c);
     return code;
 }

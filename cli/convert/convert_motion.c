@@ -128,16 +128,11 @@ static int find_columns(convert_motion *m, imk_log_reader *reader, const char *l
     return -1;
 }
 
-static bool grow(convert_motion *m, size_t capacity)
+static void grow(convert_motion *m, size_t capacity)
 {
-    for (size_t k = 0; k < m->column_count; k++) {
-        double *larger = realloc(m->data[k], capacity * sizeof *larger);
-        if (!larger)
-            return false;
-        m->data[k] = larger;
-    }
+    for (size_t k = 0; k < m->column_count; k++)
+        m->data[k] = command_memory(m->data[k], capacity * sizeof *m->data[k]);
     m->capacity = capacity;
-    return true;
 }
 
 static void free_motion(convert_motion *m)
@@ -159,21 +154,19 @@ int convert_motion_start(const convert_motion_options *o, imk_log_reader *reader
         code = check_options(o);
     if (code >= 0)
         return code;
-    convert_motion *m = calloc(1, sizeof *m);
-    if (!m)
-        return command_failed("memory is exhausted");
-    m->options = *o;
-    m->column_count = imk_log_column_count(reader);
-    m->point = point;
-    m->step_time = (double)NAN;
+    convert_motion *m = command_memory(NULL, sizeof *m);
+    *m = (convert_motion){.options = *o,
+                          .column_count = imk_log_column_count(reader),
+                          .point = point,
+                          .step_time = (double)NAN};
     code = find_columns(m, reader, log);
-    if (code < 0 && !grow(m, CHUNK_ROWS))
-        code = command_failed("memory is exhausted");
-    if (code >= 0)
+    if (code >= 0) {
         free_motion(m);
-    else
-        *motion = m;
-    return code;
+        return code;
+    }
+    grow(m, CHUNK_ROWS);
+    *motion = m;
+    return -1;
 }
 
 /* ---- to another point -------------------------------------------------------------------------
@@ -343,8 +336,8 @@ static imk_status fill(convert_motion *m, imk_log_reader *reader, imk_error *err
 {
     double *place[IMK_LOG_COLUMNS_MAX];
     size_t got;
-    if (m->capacity - m->stored < CHUNK_ROWS && !grow(m, m->stored + CHUNK_ROWS))
-        return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    if (m->capacity - m->stored < CHUNK_ROWS)
+        grow(m, m->stored + CHUNK_ROWS);
     for (size_t k = 0; k < m->column_count; k++)
         place[k] = m->data[k] + m->stored;
     imk_status status = imk_log_read(reader, CHUNK_ROWS, place, &got, error);

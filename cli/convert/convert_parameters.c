@@ -3,9 +3,10 @@
  * files. */
 #include "convert_parameters.h"
 
-#include "shell/json_output.h"
+#include "shell/show.h"
 
 #include "imukit/model_file.h"
+#include "imukit/names.h"
 #include "imukit/parameter_file.h"
 
 #include <stdlib.h>
@@ -41,29 +42,20 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
      "--to filter: the longest; default 1000 s", offsetof(parameter_options, tau_to)},
 };
 
-/* Does the name end in one of these? */
-static bool has_ending(const char *path, size_t count, const char *const *endings)
-{
-    size_t length = strlen(path);
-    for (size_t i = 0; i < count; i++) {
-        size_t end = strlen(endings[i]);
-        if (length > end && strcmp(path + length - end, endings[i]) == 0)
-            return true;
-    }
-    return false;
-}
-
 bool parameters_or_model(const char *path)
 {
-    static const char *const endings[] = {".yaml", ".yml", ".json"};
-    return has_ending(path, sizeof endings / sizeof endings[0], endings);
+    return imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml") ||
+           imk_has_ending(path, ".json");
 }
 
 static bool only_parameters(const char *path)
 {
     static const char *const endings[] = {".m",     ".sdf",    ".xml",   ".urdf",
                                           ".world", ".params", ".param", ".parm"};
-    return has_ending(path, sizeof endings / sizeof endings[0], endings);
+    bool any = false;
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
+        any = any || imk_has_ending(path, endings[i]);
+    return any;
 }
 
 int parameters_wanted(const parameter_options *options, const char *in, bool model_due,
@@ -85,43 +77,30 @@ int parameters_wanted(const parameter_options *options, const char *in, bool mod
 }
 
 /* What was left out is a warning; what was assumed is worth a line. */
-static void print_notes(const imk_parameter_notes *notes)
-{
-    for (size_t i = 0; i < notes->count; i++) {
-        const char *text = notes->note[i].text;
-        if (notes->note[i].lost)
-            command_warn("lost", "%s", text);
-        else
-            fprintf(stderr, "imukit convert: note: %s\n", text);
-    }
-}
-
-static void add_notes(json_t *list, const imk_parameter_notes *notes)
+static void tell(const imk_parameter_notes *notes)
 {
     for (size_t i = 0; i < notes->count; i++)
-        json_array_append_new(list, json_pack("{s:s, s:o}", "kind",
-                                              notes->note[i].lost ? "lost" : "assumed", "text",
-                                              json_text(notes->note[i].text)));
+        if (notes->note[i].lost)
+            command_warn("lost", "%s", notes->note[i].text);
+        else
+            command_note("note: %s", notes->note[i].text);
 }
 
-/* What the two halves of a conversion have to say. */
-typedef struct conversion_notes {
-    imk_parameter_notes read, written;
-} conversion_notes;
-
-static int print_json(const parameter_options *o, imk_parameter_format from, const char *in,
-                      const char *out, const conversion_notes *notes)
+static void show_end_of(const char *file, imk_parameter_format format, imk_result *result)
 {
-    json_t *list = json_array();
-    add_notes(list, &notes->read);
-    add_notes(list, &notes->written);
-    const char *source = imk_parameter_format_name(from);
-    const char *target = imk_parameter_format_name((imk_parameter_format)o->to);
-    json_t *inputs =
-        json_pack("{s:o, s:s}", "file", json_text(in), "format", source ? source : "model");
-    json_t *result = json_pack("{s:o, s:s, s:o}", "file", json_text(out), "format",
-                               target ? target : "model", "notes", list);
-    return json_print("convert", inputs, result, EXIT_DONE);
+    const char *name = imk_parameter_format_name(format);
+    imk_result_text(result, "file", file);
+    imk_result_text(result, "format", name ? name : "model");
+}
+
+static void show_notes(const imk_parameter_notes *notes, imk_result *result)
+{
+    for (size_t i = 0; i < notes->count; i++) {
+        imk_result_object(result, NULL);
+        imk_result_text(result, "kind", notes->note[i].lost ? "lost" : "assumed");
+        imk_result_text(result, "text", notes->note[i].text);
+        imk_result_end(result);
+    }
 }
 
 static int read_source(const parameter_options *o, const imk_parameter_settings *settings,
@@ -163,6 +142,25 @@ static int write_target(const parameter_options *o, const imk_parameter_settings
     return command_log_error(&error, of_output ? NULL : in);
 }
 
+static int show(const parameter_options *o, imk_parameter_format from, const char *in,
+                const char *out, const imk_parameter_notes notes[2])
+{
+    imk_result *result = show_begin("convert");
+    imk_result_object(result, "inputs");
+    show_end_of(in, from, result);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    show_end_of(out, (imk_parameter_format)o->to, result);
+    imk_result_array(result, "notes");
+    for (int k = 0; k < 2; k++) {
+        tell(&notes[k]);
+        show_notes(&notes[k], result);
+    }
+    imk_result_end(result);
+    imk_result_end(result);
+    return show_end(result, &(show_options){.json = o->json, .quiet = true}, EXIT_DONE);
+}
+
 int convert_parameters(const parameter_options *options, double rate, const char *in,
                        const char *out)
 {
@@ -180,22 +178,14 @@ int convert_parameters(const parameter_options *options, double rate, const char
                                settings.filter.to);
     if (options->json && strcmp(out, "-") == 0)
         return command_misused("--json and the file would both go to standard output");
-    imk_model *model = malloc(sizeof *model);
-    conversion_notes *notes = calloc(1, sizeof *notes);
+    imk_model *model = command_memory(NULL, sizeof *model);
+    imk_parameter_notes *notes = command_zeroed(2 * sizeof *notes); /* of reading, of writing */
     imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
-    if (!model || !notes) {
-        free(model);
-        free(notes);
-        return command_failed("memory is exhausted");
-    }
-    int code = read_source(options, &settings, in, model, &format, &notes->read);
+    int code = read_source(options, &settings, in, model, &format, &notes[0]);
     if (code < 0)
-        code = write_target(options, &settings, in, out, model, &notes->written);
-    if (code < 0) {
-        print_notes(&notes->read);
-        print_notes(&notes->written);
-        code = options->json ? print_json(options, format, in, out, notes) : EXIT_DONE;
-    }
+        code = write_target(options, &settings, in, out, model, &notes[1]);
+    if (code < 0)
+        code = show(options, format, in, out, notes);
     free(notes);
     free(model);
     return code;

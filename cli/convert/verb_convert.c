@@ -2,6 +2,7 @@
 /* imukit convert: logs, model files and parameter files of other programs between formats. */
 #include "convert_motion.h"
 #include "convert_parameters.h"
+#include "log/log_units.h"
 #include "log/log_input.h"
 #include "shell/command.h"
 #include "shell/progress.h"
@@ -89,9 +90,7 @@ static int convert_model(const char *in, const char *out)
 {
     imk_error error;
     imk_document *document = NULL;
-    imk_model *model = malloc(sizeof *model);
-    if (!model)
-        return command_failed("memory is exhausted");
+    imk_model *model = command_memory(NULL, sizeof *model);
     int code = command_model(in, model, &document);
     if (code < 0)
         code = imk_model_write(out, model, document, &error) == IMK_OK
@@ -142,31 +141,13 @@ static int select_columns(const convert_options *o, imk_log_reader *reader, conv
 /* Increments were divided by the interval on reading: name and unit follow. */
 static void make_rate(imk_log_column *column)
 {
-    static const char letters[] = "xyz";
-    bool gyro = column->quantity == IMK_QUANTITY_ANGULAR_RATE;
+    const bool gyro = column->quantity == IMK_QUANTITY_ANGULAR_RATE;
     if (!column->increment)
         return;
     column->increment = false;
     column->unit = imk_unit_of(gyro ? "deg/s" : "m/s^2");
     if (column->axis >= 0 && column->axis < 3)
-        snprintf(column->name, sizeof column->name, "%s_%c", gyro ? "gyro" : "accel",
-                 letters[column->axis]);
-}
-
-static int set_unit(imk_log_column *column, const char *option_name, const char *text)
-{
-    imk_unit unit;
-    imk_error error;
-    if (!text)
-        return -1;
-    if (imk_unit_parse(text, text + strlen(text), &unit, &error) != IMK_OK)
-        return command_misused("--%s %s: the unit is not known", option_name, text);
-    if (!imk_dimension_equal(unit.dimension, column->unit.dimension))
-        return command_misused("--%s %s: expected %s such as %s", option_name, text,
-                               imk_dimension_name(column->unit.dimension),
-                               imk_dimension_examples(column->unit.dimension));
-    column->unit = unit;
-    return -1;
+        imk_axis_name(gyro ? "gyro" : "accel", column->axis, column->name);
 }
 
 static int set_units(const convert_options *o, conversion *c)
@@ -183,7 +164,7 @@ static int set_units(const convert_options *o, conversion *c)
         make_rate(&c->column[k]);
         for (size_t i = 0; i < sizeof choices / sizeof choices[0] && code < 0; i++)
             if (c->column[k].quantity == choices[i].quantity)
-                code = set_unit(&c->column[k], choices[i].option_name, choices[i].text);
+                code = log_unit_asked(choices[i].option_name, choices[i].text, &c->column[k].unit);
     }
     return code;
 }
@@ -194,10 +175,11 @@ static int copy_rows(imk_log_reader *reader, convert_motion *motion, imk_log_wri
                      const conversion *c, const char *in, const imk_executor *executor)
 {
     double *read[IMK_LOG_COLUMNS_MAX] = {NULL}, *written[IMK_LOG_COLUMNS_MAX];
-    double *memory = malloc(imk_log_column_count(reader) * BLOCK_ROWS * sizeof *memory);
+    double *memory =
+        command_memory(NULL, imk_log_column_count(reader) * BLOCK_ROWS * sizeof *memory);
     imk_error error;
-    imk_status status = memory ? IMK_OK : imk_error_set(&error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    for (size_t k = 0; k < imk_log_column_count(reader) && memory; k++)
+    imk_status status = IMK_OK;
+    for (size_t k = 0; k < imk_log_column_count(reader); k++)
         read[k] = memory + k * BLOCK_ROWS;
     for (size_t k = 0; k < c->count; k++)
         written[k] = read[c->source[k]];
@@ -229,11 +211,6 @@ static int copy_rows(imk_log_reader *reader, convert_motion *motion, imk_log_wri
     return EXIT_DONE;
 }
 
-static const char *label_of(void *reader, size_t index)
-{
-    return imk_log_label(reader, index);
-}
-
 static int write_log(const convert_options *o, imk_log_reader *reader, convert_motion *motion,
                      const conversion *c, const char *in, const char *out)
 {
@@ -246,7 +223,7 @@ static int write_log(const convert_options *o, imk_log_reader *reader, convert_m
     if (imk_log_create(out, c->count, c->column, fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST,
                        fixed ? decimals : NULL, 0, &writer, &error) != IMK_OK)
         return command_error(&error, NULL);
-    imk_log_write_labels(writer, label_of, reader);
+    log_copy_labels(reader, writer);
     imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
     imk_executor executor = imk_thread_pool_executor(pool);
     int code = copy_rows(reader, motion, writer, c, in, &executor);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit devices: the catalogue of real devices and grade presets. */
-#include "shell/json_output.h"
-#include "shell/text_table.h"
+#include "shell/show.h"
 
 #include "imukit/model_file.h"
 
@@ -32,102 +31,108 @@ const verb devices_verb = {
     .groups = {{"Options", 1, devices_option_table, 0}},
     .run = run};
 
-/* The figures of the overview: gyro N and B, accelerometer N and B. */
-typedef struct headline {
+/* The figures of the overview. */
+static const struct {
     const char *title, *unit, *si;
-    double value; /* SI; 0: not stated */
-} headline;
-enum { HEADLINES = 4 };
+    size_t offset; /* of the term in a model */
+} headlines[] = {
+    {"gyro N", "deg/sqrt(h)", "rad/sqrt(s)", offsetof(imk_model, gyro.noise.white)},
+    {"gyro B", "deg/h", "rad/s", offsetof(imk_model, gyro.noise.bias_instability)},
+    {"accel N", "m/s/sqrt(h)", "m/s/sqrt(s)", offsetof(imk_model, accel.noise.white)},
+    {"accel B", "ug", "m/s^2", offsetof(imk_model, accel.noise.bias_instability)},
+};
+enum { HEADLINES = sizeof headlines / sizeof headlines[0] };
 
-static void headlines(const imk_model *model, headline *line)
+/* SI; 0: not stated. */
+static double headline(const imk_model *model, size_t k)
 {
-    const imk_noise *gyro = &model->gyro.noise, *accel = &model->accel.noise;
-    line[0] = (headline){"gyro N", "deg/sqrt(h)", "rad/sqrt(s)", gyro->white.value[0]};
-    line[1] = (headline){"gyro B", "deg/h", "rad/s", gyro->bias_instability.value[0]};
-    line[2] = (headline){"accel N", "m/s/sqrt(h)", "m/s/sqrt(s)", accel->white.value[0]};
-    line[3] = (headline){"accel B", "ug", "m/s^2", accel->bias_instability.value[0]};
+    return ((const imk_axes *)((const char *)model + headlines[k].offset))->value[0];
 }
 
-static void print_overview(imk_model *model)
+static void show_data(const imk_device *device, const imk_model *model, imk_result *result)
 {
-    headline line[HEADLINES] = {{0}};
-    text_table table = text_table_make(2 + HEADLINES);
-    table.right = 0x3cu; /* the figures */
-    text_table_row(&table);
-    text_table_set(&table, 0, "name");
-    text_table_set(&table, 1, "class");
-    for (size_t d = 0; d < imk_device_count(); d++) {
-        const imk_device *device = imk_device_get(d);
-        imk_device_model(device, model);
-        headlines(model, line);
-        if (d == 0)
-            for (size_t k = 0; k < HEADLINES; k++)
-                text_table_set(&table, 2 + k, "%s [%s]", line[k].title, line[k].unit);
-        text_table_row(&table);
-        text_table_set(&table, 0, "%s", device->name);
-        text_table_set(&table, 1, "%s", device->is_preset ? "grade preset" : device->grade);
-        for (size_t k = 0; k < HEADLINES; k++)
-            if (line[k].value > 0)
-                text_table_set(&table, 2 + k, "%.4g",
-                               line[k].value / imk_unit_of(line[k].unit).scale);
-            else
-                text_table_set(&table, 2 + k, "-");
-    }
-    text_table_print(&table, stdout);
-    text_table_free(&table);
-    printf("\nOne entry with its source: imukit devices NAME\n"
-           "Simulate it: imukit simulate NAME --rate 100Hz --duration 1h -o static.csv\n");
-}
-
-static json_t *device_json(const imk_device *device, imk_model *model)
-{
-    headline line[HEADLINES];
-    json_t *figures = json_object();
-    imk_device_model(device, model);
-    headlines(model, line);
+    imk_result_object(result, NULL);
+    imk_result_text(result, "name", device->name);
+    imk_result_text(result, "grade", device->grade);
+    imk_result_flag(result, "preset", device->is_preset);
+    imk_result_text(result, "source", device->source);
+    imk_result_text(result, "note", device->note);
+    imk_result_object(result, "figures");
     for (size_t k = 0; k < HEADLINES; k++)
-        json_object_set_new(figures, line[k].title,
-                            line[k].value > 0 ? json_quantity(line[k].value, line[k].si)
-                                              : json_null());
-    return json_pack("{s:s, s:s, s:b, s:s, s:s, s:o}", "name", device->name, "grade", device->grade,
-                     "preset", device->is_preset, "source", device->source, "note", device->note,
-                     "figures", figures);
+        if (headline(model, k) > 0)
+            imk_result_quantity(result, headlines[k].title, headline(model, k), headlines[k].si);
+        else
+            imk_result_null(result, headlines[k].title);
+    imk_result_end(result);
+    imk_result_end(result);
 }
 
-static int print_json(const imk_device *only, imk_model *model)
+static void show_row(const imk_device *device, const imk_model *model, imk_table *table)
 {
-    json_t *list = json_array();
-    for (size_t d = 0; d < imk_device_count(); d++) {
-        const imk_device *device = imk_device_get(d);
-        if (!only || device == only)
-            json_array_append_new(list, device_json(device, model));
-    }
-    json_t *inputs = only ? json_pack("{s:s}", "name", only->name) : json_object();
-    return json_print("devices", inputs, json_pack("{s:o}", "devices", list), EXIT_DONE);
+    imk_table_row(table, "%s\t%s", device->name,
+                  device->is_preset ? "grade preset" : device->grade);
+    for (size_t k = 0; k < HEADLINES; k++)
+        if (headline(model, k) > 0)
+            imk_table_add(table, "%.4g", headline(model, k) / imk_unit_of(headlines[k].unit).scale);
+        else
+            imk_table_add(table, "-");
 }
 
-static int print_entry(const imk_device *device, imk_model *model)
+static imk_table *begin_table(imk_result *result)
+{
+    imk_table *table = imk_result_table(result, 0x3cU); /* the figures to the right */
+    imk_table_row(table, "name\tclass");
+    for (size_t k = 0; k < HEADLINES; k++)
+        imk_table_add(table, "%s [%s]", headlines[k].title, headlines[k].unit);
+    imk_result_line(result, "\nOne entry with its source: imukit devices NAME\n"
+                            "Simulate it: imukit simulate NAME --rate 100Hz --duration 1h -o "
+                            "static.csv");
+    return table;
+}
+
+static void show_entry(const imk_device *device, const imk_model *model, imk_result *result)
 {
     char *text = NULL;
-    size_t size;
-    imk_error error;
-    imk_device_model(device, model);
-    if (imk_model_print(model, NULL, &text, &size, &error) != IMK_OK)
-        return command_error(&error, device->name);
-    printf("# %s (%s)\n# source: %s\n", device->name, device->grade, device->source);
+    size_t size = 0;
+    imk_result_line(result, "# %s (%s)\n# source: %s", device->name, device->grade, device->source);
     if (device->note[0])
-        printf("# note: %s\n", device->note);
-    fwrite(text, 1, size, stdout);
+        imk_result_line(result, "# note: %s", device->note);
+    (void)command_unless_memory(imk_model_print(model, NULL, &text, &size, NULL));
+    if (size > 0)
+        text[size - 1] = '\0'; /* the line feed, which the result adds */
+    imk_result_code(result, text);
     free(text);
-    return EXIT_DONE;
+}
+
+/* @param only  NULL: all */
+static void show(const imk_device *only, imk_model *model, imk_result *result)
+{
+    imk_result_object(result, "inputs");
+    if (only)
+        imk_result_text(result, "name", only->name);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    imk_result_array(result, "devices");
+    imk_table *table = only ? NULL : begin_table(result);
+    for (size_t d = 0; d < imk_device_count(); d++) {
+        const imk_device *device = imk_device_get(d);
+        if (only && device != only)
+            continue;
+        imk_device_model(device, model);
+        show_data(device, model, result);
+        if (only)
+            show_entry(device, model, result);
+        else
+            show_row(device, model, table);
+    }
+    imk_result_end(result);
+    imk_result_end(result);
 }
 
 static int unknown(const char *name)
 {
     size_t count = imk_device_count();
-    const char **names = malloc(count * sizeof *names);
-    if (!names)
-        return command_failed("memory is exhausted");
+    const char **names = command_memory(NULL, count * sizeof *names);
     for (size_t d = 0; d < count; d++)
         names[d] = imk_device_get(d)->name;
     const char *nearest = command_nearest(name, count, names);
@@ -148,16 +153,9 @@ static int run(int count, char **words)
     const imk_device *device = operands[0] ? imk_device_find(operands[0]) : NULL;
     if (operands[0] && !device)
         return unknown(operands[0]);
-    imk_model *model = malloc(sizeof *model);
-    if (!model)
-        return command_failed("memory is exhausted");
-    code = EXIT_DONE;
-    if (o.json)
-        code = print_json(device, model);
-    else if (device)
-        code = print_entry(device, model);
-    else
-        print_overview(model);
+    imk_model *model = command_memory(NULL, sizeof *model);
+    imk_result *result = show_begin("devices");
+    show(device, model, result);
     free(model);
-    return code;
+    return show_end(result, &(show_options){.json = o.json}, EXIT_DONE);
 }

@@ -4,6 +4,7 @@
 #include "campaign/campaign_run.h"
 #include "drift_parts.h"
 
+#include "imukit/names.h"
 #include "imukit/thread_pool.h"
 
 #include <math.h>
@@ -121,15 +122,10 @@ const verb drift_verb = {
 
 /* ---- checks ---- */
 
-static bool ends_in(const char *text, const char *ending)
-{
-    const size_t length = strlen(text), size = strlen(ending);
-    return length > size && strcmp(text + length - size, ending) == 0;
-}
-
 static bool is_csv(const char *path)
 {
-    return ends_in(path, ".csv") || ends_in(path, ".csv.gz") || ends_in(path, ".csv.zst");
+    return imk_has_ending(path, ".csv") || imk_has_ending(path, ".csv.gz") ||
+           imk_has_ending(path, ".csv.zst");
 }
 
 static int check_runs(const drift_options *o, size_t models)
@@ -142,7 +138,7 @@ static int check_runs(const drift_options *o, size_t models)
         return command_misused("-o %s: runs are kept in a file beside their results while they are "
                                "made; give a name ending in .csv or .h5",
                                o->output);
-    if (o->output && !ends_in(o->output, ".h5") && !is_csv(o->output))
+    if (o->output && !imk_has_ending(o->output, ".h5") && !is_csv(o->output))
         return command_misused("-o %s: expected a name ending in .h5, .csv, .csv.gz or .csv.zst",
                                o->output);
     return -1;
@@ -161,7 +157,7 @@ static int check(const drift_options *o, bool runs, size_t models)
         return command_misused(
             "-o %s: figures against time are written as .csv (%s holds runs: add "
             "--monte-carlo 1000)",
-            o->output, ends_in(o->output, ".h5") ? ".h5" : "a results file");
+            o->output, imk_has_ending(o->output, ".h5") ? ".h5" : "a results file");
     if (o->want && models > 1)
         return command_misused("--want is of one model at a time");
     return -1;
@@ -174,10 +170,8 @@ static int open_models(const drift_options *o, const char **operands, drift_resu
     int code = -1;
     for (size_t m = 0; m < DRIFT_MODELS_MAX && operands[m] && code < 0; m++) {
         r->name[m] = operands[m];
-        r->model[m] = malloc(sizeof *r->model[m]);
+        r->model[m] = command_memory(NULL, sizeof *r->model[m]);
         r->model_count = m + 1;
-        if (!r->model[m])
-            return command_failed("memory is exhausted");
         code = command_model(operands[m], r->model[m], NULL);
         if (code < 0)
             code = term_selection_apply(&o->terms, r->model[m]);
@@ -185,26 +179,17 @@ static int open_models(const drift_options *o, const char **operands, drift_resu
     return code;
 }
 
-/* Standard output has the tables, or JSON, or the CSV of -o -. */
 static int show(const drift_result *r, const drift_answer *answer)
 {
     const drift_options *o = r->options;
-    int code = -1;
     drift_warn(r);
-    if (o->output && !r->found)
-        code = drift_write_csv(r, o->output);
-    if (code < 0 && o->report)
-        code = drift_report(r, answer, o->report);
-    if (code < 0 && o->json)
-        code = drift_print_json(r, answer);
-    else if (code < 0 && !options_stdout_taken()) {
-        drift_print(r);
-        if (answer)
-            drift_answer_print(r, answer);
-    }
-    if (code < 0 && o->plot)
-        code = drift_draw(r, o->plot);
-    return code;
+    const int code = o->output && !r->found ? drift_write_csv(r, o->output) : -1;
+    if (code >= 0)
+        return code;
+    imk_result *result = show_begin("drift");
+    drift_show(r, answer, result);
+    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
+                    EXIT_DONE);
 }
 
 /* A part of a campaign has no figures worth showing: what to do with it is said. */
@@ -254,18 +239,16 @@ static int run(int count, char **words)
     if (code >= 0)
         return code;
     for (size_t m = 0; m < models && models > 1; m++)
-        if (ends_in(operands[m], ".h5"))
+        if (imk_has_ending(operands[m], ".h5"))
             return command_misused("%s: a results file is shown by itself; several parts of a "
                                    "campaign are put together by imukit merge",
                                    operands[m]);
-    if (models == 1 && ends_in(operands[0], ".h5"))
+    if (models == 1 && imk_has_ending(operands[0], ".h5"))
         return runs ? command_misused("%s holds runs that were made already: leave --monte-carlo "
                                       "out",
                                       operands[0])
-                    : drift_show_results(&o, operands[0]);
-    drift_result *r = calloc(1, sizeof *r);
-    if (!r)
-        return command_failed("memory is exhausted");
+                    : drift_results(&o, operands[0]);
+    drift_result *r = command_zeroed(sizeof *r);
     r->options = &o;
     r->scene = &scene;
     code = open_models(&o, operands, r);

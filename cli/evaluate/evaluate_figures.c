@@ -5,17 +5,105 @@
 #include <math.h>
 #include <string.h>
 
-static evaluate_row row_of(const char *key, const char *title, const char *definition,
-                           imk_evaluation_figure figure, imk_unit unit)
+typedef enum shown_in { IN_SLOPE, IN_READING, IN_REFERENCE, IN_PERCENT, IN_PPM } shown_in;
+
+typedef enum figure_kind {
+    PLAIN = 0,
+    SLOPE_ERROR, /* a slope less 1, where reading and reference are one quantity */
+    OF_RUNS,     /* an imk_repeatability, where there are two runs */
+    AT_REST      /* of the log at rest */
+} figure_kind;
+
+#define AT(member) offsetof(imk_evaluation, member)
+
+typedef struct definition {
+    const char *key, *title, *definition;
+    shown_in unit;
+    figure_kind kind;
+    bool is_signed;
+    size_t at;    /* where it is in imk_evaluation */
+    size_t level; /* the same of its level; 0: no such place */
+} definition;
+
+static const definition definitions[] = {
+    {"sensitivity", "sensitivity (scale factor)",
+     "Slope of the straight line fitted to the mean readings by least squares.", IN_SLOPE, PLAIN,
+     false, AT(sensitivity), 0},
+    {"scale_factor_error", "scale factor error", "Sensitivity less 1.", IN_PPM, SLOPE_ERROR, true,
+     AT(sensitivity), 0},
+    {"zero", "reading at zero (bias)", "Reading of that line where the reference is 0.", IN_READING,
+     PLAIN, true, AT(zero), 0},
+    {"accuracy", "accuracy",
+     "Largest difference between the mean reading of a level and its reference.", IN_READING, PLAIN,
+     false, AT(accuracy), AT(accuracy_level)},
+    {"coverage", "accuracy with coverage",
+     "Half width about the reference that holds the stated share of single readings at the worst "
+     "level: mean error and noise together.",
+     IN_READING, PLAIN, false, AT(coverage), AT(accuracy_level)},
+    {"precision", "precision",
+     "Standard deviation of readings under repeatability conditions: the same reference, reached "
+     "from the same side, in the same run.",
+     IN_READING, PLAIN, false, AT(precision), 0},
+    {"linearity", "linearity, least-squares line",
+     "Largest distance of a level's mean reading (of both directions) from the least-squares line, "
+     "in % of full scale.",
+     IN_PERCENT, PLAIN, false, AT(linearity), AT(linearity_level)},
+    {"linearity_best", "linearity, best line",
+     "The same from the line for which it is smallest (minimax line).", IN_PERCENT, PLAIN, false,
+     AT(linearity_best), AT(alternation)},
+    {"hysteresis", "hysteresis",
+     "Largest difference between the mean readings with rising and with falling reference, in % of "
+     "full scale.",
+     IN_PERCENT, PLAIN, false, AT(hysteresis), AT(hysteresis_level)},
+    {"asymmetry", "asymmetry (K+ - K-)/K",
+     "Difference of the slopes for positive and negative reference, of two lines that meet at "
+     "reference 0, over their mean.",
+     IN_PPM, PLAIN, true, AT(asymmetry), 0},
+    {"resolution", "resolution",
+     "Smallest step of the reference from which on every tested step changed the reading by at "
+     "least half of what the sensitivity lets one expect.",
+     IN_REFERENCE, PLAIN, false, AT(resolution), 0},
+    {"threshold", "threshold", "The same for changes of the reference from 0.", IN_REFERENCE, PLAIN,
+     false, AT(threshold), 0},
+    {"zero_repeatability", "bias repeatability",
+     "Standard deviation, from run to run, of the reading at zero; what noise within the runs "
+     "explains is taken off.",
+     IN_READING, OF_RUNS, false, AT(run_zero), 0},
+    {"sensitivity_repeatability", "scale factor repeatability", "The same of the sensitivity.",
+     IN_PPM, OF_RUNS, false, AT(run_sensitivity), 0},
+    {"bias_instability", "bias instability B, fitted",
+     "Flicker coefficient of the noise at rest, told apart from white noise and random walk by "
+     "maximum likelihood.",
+     IN_READING, AT_REST, false, 0, 0},
+    {"allan_minimum", "Allan minimum / 0.664",
+     "Smallest Allan deviation over 0.664. White noise N and random walk K raise it above B: "
+     "minimum^2 = 0.4413 B^2 + 2 N K/sqrt(3) for the three together.",
+     IN_READING, AT_REST, false, 0, 0},
+};
+enum { DEFINITIONS = sizeof definitions / sizeof *definitions };
+_Static_assert(DEFINITIONS <= (int)EVALUATE_ROWS, "there is room for all");
+
+size_t evaluate_limit_keys(const char *key[EVALUATE_ROWS])
 {
-    evaluate_row row = {.key = key,
-                        .title = title,
-                        .definition = definition,
-                        .figure = figure,
-                        .unit = unit,
-                        .level = -1};
-    if (imk_dimension_si(unit.dimension, row.si, sizeof row.si) == 0 || !row.si[0])
-        snprintf(row.si, sizeof row.si, "1");
+    for (size_t k = 1; k < DEFINITIONS; k++) /* all but the sensitivity */
+        key[k - 1] = definitions[k].key;
+    return DEFINITIONS - 1;
+}
+
+static evaluate_row *add_row(evaluate_sheet *sheet, const definition *d,
+                             imk_evaluation_figure figure, imk_unit unit)
+{
+    evaluate_row *row = &sheet->row[sheet->count++];
+    *row = (evaluate_row){.key = d->key,
+                          .title = d->title,
+                          .definition = d->definition,
+                          .figure = figure,
+                          .unit = unit,
+                          .is_signed = d->is_signed,
+                          .level = -1,
+                          .limit = ""};
+    if (imk_dimension_si(unit.dimension, row->si, sizeof row->si) == 0 || !row->si[0])
+        snprintf(row->si, sizeof row->si, "1");
     return row;
 }
 
@@ -50,142 +138,55 @@ static imk_unit of_difference(imk_unit unit)
     return unit;
 }
 
-static imk_evaluation_figure of_repeatability(const imk_repeatability *r)
+static imk_unit unit_of(const evaluate_channel *c, shown_in unit)
 {
-    const double none = (double)NAN;
-    if (r->runs < 2)
-        return (imk_evaluation_figure){none, none, none};
-    return (imk_evaluation_figure){r->value, r->lower, r->upper};
+    static const char *const fixed[] = {[IN_PERCENT] = "%", [IN_PPM] = "ppm"};
+    return unit == IN_READING     ? of_difference(c->reading_unit)
+           : unit == IN_REFERENCE ? of_difference(c->reference_unit)
+                                  : imk_unit_of(fixed[unit]);
 }
 
-static size_t slope_rows(const evaluate_channel *c, evaluate_row *row)
+static imk_evaluation_figure figure_of(const imk_evaluation *r, const definition *d)
 {
-    const imk_evaluation *r = &c->result;
-    const imk_unit reading = of_difference(c->reading_unit);
-    size_t count = 0;
-    char si[80];
-    const imk_unit unit = slope_unit(c, si, sizeof si);
-    row[count] = row_of("sensitivity", "sensitivity (scale factor)",
-                        "Slope of the straight line fitted to the mean readings by least squares.",
-                        r->sensitivity, unit);
-    memcpy(row[count++].si, si, sizeof si);
-    if (c->settings.same_unit) {
-        const imk_evaluation_figure k = r->sensitivity;
-        row[count] = row_of("scale_factor_error", "scale factor error", "Sensitivity less 1.",
-                            (imk_evaluation_figure){k.value - 1, k.lower - 1, k.upper - 1},
-                            imk_unit_of("ppm"));
-        row[count++].is_signed = true;
+    const void *at = (const char *)r + d->at;
+    if (d->kind == OF_RUNS) {
+        const imk_repeatability *runs = at;
+        const double none = (double)NAN;
+        return runs->runs < 2 ? (imk_evaluation_figure){none, none, none}
+                              : (imk_evaluation_figure){runs->value, runs->lower, runs->upper};
     }
-    row[count] = row_of("zero", "reading at zero (bias)",
-                        "Reading of that line where the reference is 0.", r->zero, reading);
-    row[count++].is_signed = true;
-    return count;
+    const imk_evaluation_figure *f = at;
+    const double less = d->kind == SLOPE_ERROR ? 1 : 0;
+    return (imk_evaluation_figure){f->value - less, f->lower - less, f->upper - less};
 }
 
-static size_t error_rows(const evaluate_channel *c, evaluate_row *row)
+void evaluate_channel_figures(evaluate_channel *c)
 {
     const imk_evaluation *r = &c->result;
-    const imk_unit reading = of_difference(c->reading_unit);
-    size_t count = 0;
-    row[count] = row_of("accuracy", "accuracy",
-                        "Largest difference between the mean reading of a level and its reference.",
-                        r->accuracy, reading);
-    row[count++].level = r->accuracy_level;
-    row[count] = row_of("coverage", "accuracy with coverage",
-                        "Half width about the reference that holds the stated share of single "
-                        "readings at the worst level: mean error and noise together.",
-                        r->coverage, reading);
-    row[count++].level = r->accuracy_level;
-    row[count++] = row_of("precision", "precision",
-                          "Standard deviation of readings under repeatability conditions: the same "
-                          "reference, reached from the same side, in the same run.",
-                          r->precision, reading);
-    return count;
+    char si[80];
+    const imk_unit slope = slope_unit(c, si, sizeof si);
+    c->sheet.count = 0;
+    for (const definition *d = definitions; d < definitions + DEFINITIONS; d++) {
+        if ((d->kind == SLOPE_ERROR && !c->settings.same_unit) ||
+            (d->kind == OF_RUNS && r->runs < 2) || d->kind == AT_REST)
+            continue;
+        const bool is_slope = d->unit == IN_SLOPE;
+        evaluate_row *row =
+            add_row(&c->sheet, d, figure_of(r, d), is_slope ? slope : unit_of(c, d->unit));
+        if (is_slope)
+            memcpy(row->si, si, sizeof si);
+        if (d->level > 0)
+            row->level = *(const int *)(const void *)((const char *)r + d->level);
+    }
 }
 
-static size_t line_rows(const evaluate_channel *c, evaluate_row *row)
-{
-    const imk_evaluation *r = &c->result;
-    size_t count = 0;
-    row[count] = row_of("linearity", "linearity, least-squares line",
-                        "Largest distance of a level's mean reading (of both directions) from the "
-                        "least-squares line, in % of full scale.",
-                        r->linearity, imk_unit_of("%"));
-    row[count++].level = r->linearity_level;
-    row[count] = row_of("linearity_best", "linearity, best line",
-                        "The same from the line for which it is smallest (minimax line).",
-                        r->linearity_best, imk_unit_of("%"));
-    row[count++].level = r->alternation[0];
-    row[count] = row_of("hysteresis", "hysteresis",
-                        "Largest difference between the mean readings with rising and with falling "
-                        "reference, in % of full scale.",
-                        r->hysteresis, imk_unit_of("%"));
-    row[count++].level = r->hysteresis_level;
-    row[count] =
-        row_of("asymmetry", "asymmetry (K+ - K-)/K",
-               "Difference of the slopes for positive and negative reference, of two lines "
-               "that meet at reference 0, over their mean.",
-               r->asymmetry, imk_unit_of("ppm"));
-    row[count++].is_signed = true;
-    return count;
-}
-
-static size_t step_rows(const evaluate_channel *c, evaluate_row *row)
-{
-    const imk_evaluation *r = &c->result;
-    const imk_unit reference = of_difference(c->reference_unit);
-    row[0] = row_of("resolution", "resolution",
-                    "Smallest step of the reference from which on every tested step changed the "
-                    "reading by at least half of what the sensitivity lets one expect.",
-                    r->resolution, reference);
-    row[1] = row_of("threshold", "threshold", "The same for changes of the reference from 0.",
-                    r->threshold, reference);
-    return 2;
-}
-
-static size_t run_rows(const evaluate_channel *c, evaluate_row *row)
-{
-    const imk_evaluation *r = &c->result;
-    if (r->runs < 2)
-        return 0;
-    row[0] =
-        row_of("zero_repeatability", "bias repeatability",
-               "Standard deviation, from run to run, of the reading at zero; what noise within "
-               "the runs explains is taken off.",
-               of_repeatability(&r->run_zero), of_difference(c->reading_unit));
-    row[1] = row_of("sensitivity_repeatability", "scale factor repeatability",
-                    "The same of the sensitivity.", of_repeatability(&r->run_sensitivity),
-                    imk_unit_of("ppm"));
-    return 2;
-}
-
-size_t evaluate_figures(const evaluation *v, const evaluate_channel *channel,
-                        evaluate_row row[EVALUATE_ROWS])
-{
-    (void)v;
-    size_t count = slope_rows(channel, row);
-    count += error_rows(channel, row + count);
-    count += line_rows(channel, row + count);
-    count += step_rows(channel, row + count);
-    count += run_rows(channel, row + count);
-    return count;
-}
-
-size_t evaluate_rest_figures(const evaluate_rest *rest, evaluate_row row[EVALUATE_ROWS])
+void evaluate_rest_figures(evaluate_rest *rest)
 {
     const double none = (double)NAN;
-    if (!rest->identified)
-        return 0;
     const imk_estimate *b = &rest->result.term[IMK_NOISE_BIAS_INSTABILITY];
-    const imk_evaluation_figure fitted = {b->value, b->lower, b->upper};
-    const imk_evaluation_figure floor = {rest->result.minimum_floor, none, none};
-    row[0] = row_of("bias_instability", "bias instability B, fitted",
-                    "Flicker coefficient of the noise at rest, told apart from white noise and "
-                    "random walk by maximum likelihood.",
-                    fitted, rest->unit);
-    row[1] = row_of("allan_minimum", "Allan minimum / 0.664",
-                    "Smallest Allan deviation over 0.664. White noise N and random walk K raise it "
-                    "above B: minimum^2 = 0.4413 B^2 + 2 N K/sqrt(3) for the three together.",
-                    floor, rest->unit);
-    return 2;
+    const imk_evaluation_figure figure[2] = {{b->value, b->lower, b->upper},
+                                             {rest->result.minimum_floor, none, none}};
+    rest->sheet.count = 0;
+    for (size_t k = 0; rest->identified && k < 2; k++)
+        (void)add_row(&rest->sheet, &definitions[DEFINITIONS - 2 + k], figure[k], rest->unit);
 }

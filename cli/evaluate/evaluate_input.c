@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables of references and readings, and which file is one. */
+/* What is read: tables of references and readings; logs with a reference, as the mean reading of
+ * every stretch in which it is constant; and the log at rest (--static), identified. */
 #include "evaluate_parts.h"
 
+#include "log/channel_units.h"
+
+#include "imukit/reference_alignment.h"
 #include "imukit/samples.h"
 
 #include <math.h>
@@ -10,8 +14,9 @@
 
 /* ---- channels -------------------------------------------------------------------------------- */
 
-evaluate_channel *evaluate_channel_of(evaluation *v, const char *name, imk_unit reference,
-                                      imk_unit reading)
+/* The channel of this name, made when there is none; NULL after a message. */
+static evaluate_channel *channel_of(evaluation *v, const char *name, imk_unit reference,
+                                    imk_unit reading)
 {
     for (size_t k = 0; k < v->channel_count; k++) {
         evaluate_channel *c = &v->channel[k];
@@ -35,25 +40,16 @@ evaluate_channel *evaluate_channel_of(evaluation *v, const char *name, imk_unit 
     return c;
 }
 
-static bool grow(void **array, size_t capacity, size_t size)
-{
-    void *grown = realloc(*array, capacity * size);
-    if (grown)
-        *array = grown;
-    return grown != NULL;
-}
-
-bool evaluate_add(evaluate_channel *c, double reference, double reading, double sigma,
-                  int direction, int run)
+static void add_reading(evaluate_channel *c, double reference, double reading, double sigma,
+                        int direction, int run)
 {
     if (c->count == c->capacity) {
         const size_t capacity = c->capacity > 0 ? 2 * c->capacity : 64;
-        if (!grow((void **)&c->reference, capacity, sizeof *c->reference) ||
-            !grow((void **)&c->reading, capacity, sizeof *c->reading) ||
-            !grow((void **)&c->sigma, capacity, sizeof *c->sigma) ||
-            !grow((void **)&c->direction, capacity, sizeof *c->direction) ||
-            !grow((void **)&c->run, capacity, sizeof *c->run))
-            return false;
+        c->reference = command_memory(c->reference, capacity * sizeof *c->reference);
+        c->reading = command_memory(c->reading, capacity * sizeof *c->reading);
+        c->sigma = command_memory(c->sigma, capacity * sizeof *c->sigma);
+        c->direction = command_memory(c->direction, capacity * sizeof *c->direction);
+        c->run = command_memory(c->run, capacity * sizeof *c->run);
         c->capacity = capacity;
     }
     c->reference[c->count] = reference;
@@ -61,7 +57,6 @@ bool evaluate_add(evaluate_channel *c, double reference, double reading, double 
     c->sigma[c->count] = sigma;
     c->direction[c->count] = (signed char)direction;
     c->run[c->count++] = run;
-    return true;
 }
 
 /* ---- columns --------------------------------------------------------------------------------- */
@@ -147,8 +142,7 @@ static int take_row(evaluate_channel *c, const char *path, const imk_log *log, c
                               path, row + 1, referred ? log->column[reading].name : "reference");
     if (at->sigma >= 0 && !(sigma > 0))
         return command_failed("%s: row %zu: sigma should be above 0", path, row + 1);
-    if (!evaluate_add(c, reference, value, sigma, direction, run))
-        return command_failed("memory is exhausted");
+    add_reading(c, reference, value, sigma, direction, run);
     return -1;
 }
 
@@ -165,14 +159,191 @@ static int take_table(evaluation *v, const char *path, const imk_log *log)
         const char *name = column->name[7] == '_' ? column->name + 8 : column->name;
         code = check_unit(path, column);
         evaluate_channel *c =
-            code < 0 ? evaluate_channel_of(v, name, log->column[at.reference].unit, column->unit)
-                     : NULL;
+            code < 0 ? channel_of(v, name, log->column[at.reference].unit, column->unit) : NULL;
         if (code < 0 && !c)
             return EXIT_FAILED;
         for (size_t row = 0; code < 0 && row < log->rows; row++)
             code = take_row(c, path, log, &at, (int)k, row, &runs);
     }
     v->run_count += runs.count;
+    return code;
+}
+
+/* ---- logs ------------------------------------------------------------------------------------ */
+
+/* Rates about other axes up to this part of the own ones, or this [rad/s], do not matter: the
+ * Earth's is 7.3e-5. */
+static const double across_part = 0.01, across_least = 2e-4;
+
+/* The stretches in which the reference of one axis is constant: what the others do meanwhile, such
+ * as the Earth's rate that turns round in them, does not matter. */
+static int find_stretches(const calibrate_options *o, const bench_log *log,
+                          const imk_test_record *record, imk_reference_stretch **stretch,
+                          size_t *count)
+{
+    imk_error error;
+    imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_RATE_TABLE);
+    settings.trim = isfinite(o->trim) ? o->trim : settings.trim;
+    settings.settle = isfinite(o->settle) ? o->settle : settings.settle;
+    settings.minimum = isfinite(o->minimum) ? o->minimum : settings.minimum;
+    const size_t size = imk_reference_stretches_workspace_size(record);
+    const size_t most = record->count; /* they hold a sample each at least */
+    void *workspace = command_memory(NULL, size);
+    imk_status status = IMK_OK;
+    *count = 256;
+    for (size_t capacity = 0; status == IMK_OK && *count > capacity && capacity <= most;) {
+        capacity = *count;
+        *stretch = command_memory(*stretch, capacity * sizeof **stretch);
+        status = imk_reference_stretches(record, &settings, workspace, size, *stretch, capacity,
+                                         count, &error);
+    }
+    free(workspace);
+    if (status != IMK_OK)
+        return command_error(&error, log->path);
+    return *count > 0
+               ? -1
+               : command_failed("%s: the reference never stays constant for %.3g s: figures need "
+                                "steps; imukit calibrate --procedure rate-table takes sines too",
+                                log->path, settings.minimum);
+}
+
+/* The record with the reference of one axis alone; `zero` is a column of zeros. */
+static imk_test_record record_of_axis(const imk_test_record *record, int sensor, int axis,
+                                      const double *zero)
+{
+    imk_test_record own = *record;
+    for (int k = 0; k < 3; k++) {
+        own.reference_rate[k] = sensor != 0 ? NULL : k == axis ? record->reference_rate[k] : zero;
+        own.reference_force[k] = sensor != 1 ? NULL : k == axis ? record->reference_force[k] : zero;
+        own.reference_acceleration[k] = NULL;
+    }
+    return own;
+}
+
+static double input_of(const imk_reference_stretch *stretch, int sensor, int axis)
+{
+    return sensor == 0 ? stretch->rate[axis] : stretch->force[axis];
+}
+
+/* Largest |reference| of a column; NaN when it hardly changes. */
+static double span(const imk_test_record *record, int sensor, int axis)
+{
+    const double *x = sensor == 0 ? record->reference_rate[axis] : record->reference_force[axis];
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (size_t k = 0; k < record->count; k++) {
+        low = x[k] < low ? x[k] : low;
+        high = x[k] > high ? x[k] : high;
+    }
+    const double least = sensor == 0 ? 10 * across_least : 0.1;
+    return high - low > least ? fmax(fabs(low), fabs(high)) : (double)NAN;
+}
+
+/* A table that turns about another axis shows misalignment, not the figures of this one. A
+ * component of gravity is always across an accelerometer. */
+static bool about_axis(const imk_test_record *record, const imk_reference_stretch *stretch,
+                       int sensor, int axis, double most)
+{
+    const double limit = fmax(across_part * most, across_least);
+    for (int k = 0; sensor == 0 && k < 3; k++)
+        for (size_t row = stretch->begin; k != axis && row < stretch->end; row++)
+            if (!(fabs(record->reference_rate[k][row]) <= limit))
+                return false;
+    return true;
+}
+
+static int add_stretches(evaluation *v, const bench_log *log, evaluate_channel *c, int sensor,
+                         int axis, double most, size_t count, const imk_reference_stretch *stretch)
+{
+    const bool sections = v->options->bench.section != NULL;
+    for (size_t k = 0; k < count; k++) {
+        const imk_static_interval *r = &stretch[k].reading;
+        const double mean = r->mean[sensor][axis], sigma = r->sigma[sensor][axis];
+        const double input = input_of(&stretch[k], sensor, axis);
+        const bool usable = about_axis(&log->record, &stretch[k], sensor, axis, most) &&
+                            isfinite(mean) && isfinite(input);
+        const int run = (int)v->run_count + (sections && r->section >= 0 ? r->section : 0);
+        c->left_out += !usable;
+        if (run >= IMK_EVALUATION_RUNS_MAX)
+            return command_failed("%s: more than %d runs", log->path, IMK_EVALUATION_RUNS_MAX);
+        if (usable)
+            add_reading(c, input, mean, sigma > 0 ? sigma : (double)NAN, 0, run);
+    }
+    return -1;
+}
+
+static int take_axis(evaluation *v, const bench_log *log, const double *zero, int sensor, int axis)
+{
+    static const char *const names[2] = {"gyro", "accel"};
+    char name[EVALUATE_NAME];
+    const double most = span(&log->record, sensor, axis);
+    if (!isfinite(most))
+        return -1;
+    size_t count;
+    imk_reference_stretch *stretch = NULL;
+    snprintf(name, sizeof name, "%s_%c", names[sensor], "xyz"[axis]);
+    const imk_unit input = imk_unit_of(sensor == 0 ? "deg/s" : "g");
+    const imk_test_record own = record_of_axis(&log->record, sensor, axis, zero);
+    int code = find_stretches(&v->options->bench, log, &own, &stretch, &count);
+    evaluate_channel *c =
+        code < 0
+            ? channel_of(v, name, input, log->record.counts[sensor] ? imk_unit_of("count") : input)
+            : NULL;
+    if (code < 0)
+        code = c ? add_stretches(v, log, c, sensor, axis, most, count, stretch) : EXIT_FAILED;
+    free(stretch);
+    if (c)
+        c->of_log = true;
+    return code;
+}
+
+static int take_record(evaluation *v, const bench_log *log)
+{
+    const size_t channels = v->channel_count;
+    if (!log->record.reference_rate[0] && !log->record.reference_force[0])
+        return command_failed("%s says nothing about what the unit was exposed to: add --motion "
+                              "PROGRAMME, or columns reference_rate_z [deg/s] … or table_rate "
+                              "[deg/s] with --table-axis; of a unit at rest: --static %s",
+                              log->path, log->path);
+    double *zero = command_zeroed(log->record.count * sizeof *zero);
+    int code = -1;
+    for (int sensor = 0; code < 0 && sensor < 2; sensor++) {
+        const bool known = sensor == 0 ? log->record.reference_rate[0] != NULL
+                                       : log->record.reference_force[0] != NULL;
+        for (int axis = 0; code < 0 && known && axis < 3 && axis < log->record.axis_count[sensor];
+             axis++)
+            code = take_axis(v, log, zero, sensor, axis);
+    }
+    free(zero);
+    v->run_count +=
+        v->options->bench.section && log->record.section_count > 0 ? log->record.section_count : 1;
+    if (code < 0 && channels == 0 && v->channel_count == 0)
+        code = command_failed("%s: the reference of no axis changes from stretch to stretch: there "
+                              "is nothing to compare",
+                              log->path);
+    return code;
+}
+
+static int load_log(evaluation *v, const char *path)
+{
+    imk_error error;
+    bench *b = command_zeroed(sizeof *b); /* holds models: 157 kB */
+    bench_log log = {.path = path};
+    int code = -1;
+    v->has_log = true;
+    b->options = &v->options->bench;
+    b->motion = v->motion;
+    if (b->options->motion && !b->motion &&
+        imk_motion_read(b->options->motion, NULL, NULL, 1, &b->motion, &error) != IMK_OK)
+        code = command_error(&error, b->options->motion);
+    if (code < 0)
+        code = bench_load(b, &log);
+    if (code < 0)
+        code = bench_reference(b, &log);
+    if (code < 0)
+        code = take_record(v, &log);
+    bench_log_free(&log);
+    v->motion = b->motion;
+    free(b);
     return code;
 }
 
@@ -228,7 +399,48 @@ int evaluate_load(evaluation *v)
 {
     int code = -1;
     for (size_t k = 0; code < 0 && k < v->path_count; k++)
-        code =
-            is_table(v, v->path[k]) ? load_table(v, v->path[k]) : evaluate_load_log(v, v->path[k]);
+        code = is_table(v, v->path[k]) ? load_table(v, v->path[k]) : load_log(v, v->path[k]);
     return code;
+}
+
+/* ---- at rest --------------------------------------------------------------------------------- */
+
+static void identify(const log_channels *channels, size_t c, double confidence, void *workspace,
+                     size_t size, evaluate_rest *rest)
+{
+    imk_error error;
+    const imk_log_column *column = log_channel_column(channels, c);
+    imk_identify_settings settings = imk_identify_default();
+    settings.dt = channels->dt;
+    settings.confidence = confidence;
+    snprintf(rest->name, sizeof rest->name, "%s", column->name);
+    const imk_status status =
+        imk_identify_channel(&settings, channels->rows, log_channel_data(channels, c),
+                             &rest->result, workspace, size, &error);
+    rest->identified = status == IMK_OK;
+    if (!rest->identified) {
+        command_warn("static", "column %s of the log at rest: %s", column->name,
+                     imk_status_text(status));
+        return;
+    }
+    rest->unit = channel_readable_unit(column, rest->result.minimum_floor);
+    evaluate_rest_figures(rest);
+}
+
+int evaluate_load_rest(evaluation *v)
+{
+    const evaluate_options *o = v->options;
+    log_channels channels;
+    if (!o->rest)
+        return -1;
+    const int code = log_input_load(&o->bench.log, o->rest, &channels);
+    if (code >= 0)
+        return code;
+    const size_t size = imk_identify_workspace_size(channels.rows);
+    void *workspace = command_memory(NULL, size);
+    for (size_t c = 0; c < channels.count && v->rest_count < EVALUATE_CHANNELS; c++)
+        identify(&channels, c, o->confidence, workspace, size, &v->rest[v->rest_count++]);
+    free(workspace);
+    log_channels_free(&channels);
+    return -1;
 }

@@ -7,23 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const keys[] = {"scale_factor_error",
-                                   "zero",
-                                   "accuracy",
-                                   "coverage",
-                                   "precision",
-                                   "linearity",
-                                   "linearity_best",
-                                   "hysteresis",
-                                   "asymmetry",
-                                   "resolution",
-                                   "threshold",
-                                   "zero_repeatability",
-                                   "sensitivity_repeatability",
-                                   "bias_instability",
-                                   "allan_minimum"};
-enum { KEYS = sizeof keys / sizeof *keys };
-
 static int read_limit(evaluation *v, const char *item, size_t length)
 {
     while (length > 0 && isspace((unsigned char)*item))
@@ -44,12 +27,14 @@ static int read_limit(evaluation *v, const char *item, size_t length)
     while (word < length && isspace((unsigned char)item[word]))
         word++;
     memcpy(limit->text, item + word, length - word);
-    for (size_t k = 0; k < KEYS; k++)
+    const char *keys[EVALUATE_ROWS];
+    const size_t key_count = evaluate_limit_keys(keys);
+    for (size_t k = 0; k < key_count; k++)
         if (strcmp(keys[k], limit->key) == 0) {
             v->limit_count++;
             return -1;
         }
-    const char *nearest = command_nearest(limit->key, KEYS, keys);
+    const char *nearest = command_nearest(limit->key, key_count, keys);
     return command_misused("--limit: there is no figure \"%s\"%s%s%s", limit->key,
                            nearest ? "; did you mean \"" : "", nearest ? nearest : "",
                            nearest ? "\"?" : "");
@@ -89,21 +74,23 @@ static const evaluate_limit *limit_of(const evaluation *v, const evaluate_row *r
     return NULL;
 }
 
-evaluate_verdict evaluate_judge(const evaluation *v, const evaluate_row *row, const char **text)
+/* How a figure stands to its limit. */
+static void judge(const evaluation *v, evaluate_row *row)
 {
     double most;
     const evaluate_limit *limit = limit_of(v, row, &most);
     const imk_evaluation_figure *f = &row->figure;
-    *text = limit ? limit->text : "";
     if (!limit)
-        return VERDICT_NONE;
+        return;
+    row->limit = limit->text;
     if (!isfinite(f->value))
-        return VERDICT_UNKNOWN;
-    if (fabs(f->value) > most)
-        return VERDICT_NOT_MET;
-    /* Not a number is not within. */
-    return fabs(f->upper) <= most && (!row->is_signed || fabs(f->lower) <= most) ? VERDICT_MET
-                                                                                 : VERDICT_DOUBTFUL;
+        row->verdict = VERDICT_UNKNOWN;
+    else if (fabs(f->value) > most)
+        row->verdict = VERDICT_NOT_MET;
+    else /* not a number is not within */
+        row->verdict = fabs(f->upper) <= most && (!row->is_signed || fabs(f->lower) <= most)
+                           ? VERDICT_MET
+                           : VERDICT_DOUBTFUL;
 }
 
 const char *evaluate_verdict_text(evaluate_verdict verdict)
@@ -113,9 +100,8 @@ const char *evaluate_verdict_text(evaluate_verdict verdict)
 }
 
 /* Remember which limits apply; warn of those that are not met. */
-static void check_row(evaluation *v, const char *name, const evaluate_row *row)
+static void check_row(evaluation *v, const char *name, evaluate_row *row)
 {
-    const char *text;
     double value;
     for (size_t k = 0; k < v->limit_count; k++) {
         evaluate_limit *limit = &v->limit[k];
@@ -129,12 +115,12 @@ static void check_row(evaluation *v, const char *name, const evaluate_row *row)
             imk_error_text(&error, NULL, limit->problem + used, sizeof limit->problem - used);
         }
     }
-    const evaluate_verdict verdict = evaluate_judge(v, row, &text);
-    if (verdict == VERDICT_NOT_MET || verdict == VERDICT_UNKNOWN) {
+    judge(v, row);
+    if (row->verdict == VERDICT_NOT_MET || row->verdict == VERDICT_UNKNOWN) {
         v->missed = true;
         command_warn("limit", "%s: %s %s (limit %s)", name, row->title,
-                     verdict == VERDICT_NOT_MET ? "is beyond its limit" : "is not determined",
-                     text);
+                     row->verdict == VERDICT_NOT_MET ? "is beyond its limit" : "is not determined",
+                     row->limit);
     }
 }
 
@@ -154,17 +140,12 @@ static int refuse_limit(const evaluate_limit *limit)
 
 int evaluate_check_limits(evaluation *v)
 {
-    evaluate_row row[EVALUATE_ROWS];
-    for (size_t k = 0; k < v->channel_count; k++) {
-        const size_t count = evaluate_figures(v, &v->channel[k], row);
-        for (size_t i = 0; i < count; i++)
-            check_row(v, v->channel[k].name, &row[i]);
-    }
-    for (size_t k = 0; k < v->rest_count; k++) {
-        const size_t count = evaluate_rest_figures(&v->rest[k], row);
-        for (size_t i = 0; i < count; i++)
-            check_row(v, v->rest[k].name, &row[i]);
-    }
+    for (size_t k = 0; k < v->channel_count; k++)
+        for (size_t i = 0; i < v->channel[k].sheet.count; i++)
+            check_row(v, v->channel[k].name, &v->channel[k].sheet.row[i]);
+    for (size_t k = 0; k < v->rest_count; k++)
+        for (size_t i = 0; i < v->rest[k].sheet.count; i++)
+            check_row(v, v->rest[k].name, &v->rest[k].sheet.row[i]);
     for (size_t k = 0; k < v->limit_count; k++)
         if (!v->limit[k].used)
             return refuse_limit(&v->limit[k]);

@@ -235,14 +235,15 @@ static int evaluate_channel_table(const evaluate_options *o, evaluate_channel *c
                                         .direction = any_direction(c) ? c->direction : NULL,
                                         .run = c->run};
     const size_t size = imk_evaluation_workspace_size(&table);
-    void *workspace = malloc(size);
-    c->level = malloc((c->count > 0 ? c->count : 1) * sizeof *c->level);
-    imk_status status = imk_error_set(&error, IMK_ERROR_MEMORY, "", "", "");
-    if (workspace && c->level)
-        status = imk_evaluate(&table, &c->settings, workspace, size, c->level, c->count, &c->result,
-                              &error);
+    void *workspace = command_memory(NULL, size);
+    c->level = command_memory(NULL, c->count * sizeof *c->level);
+    const imk_status status =
+        imk_evaluate(&table, &c->settings, workspace, size, c->level, c->count, &c->result, &error);
     free(workspace);
-    return status == IMK_OK ? -1 : command_error(&error, c->name);
+    if (status != IMK_OK)
+        return command_error(&error, c->name);
+    evaluate_channel_figures(c);
+    return -1;
 }
 
 static int show(const evaluation *v)
@@ -250,15 +251,14 @@ static int show(const evaluation *v)
     const evaluate_options *o = v->options;
     const int end =
         o->strict && (v->missed || command_warning_count() > 0) ? EXIT_FAILED : EXIT_DONE;
-    int code = o->report ? evaluate_report(v, o->report) : -1;
-    if (code >= 0)
-        return code;
-    if (o->json)
-        code = evaluate_json(v, end);
-    else if (!options_stdout_taken())
-        evaluate_print(v);
-    const int drawn = o->plot ? evaluate_draw(v, o->plot) : -1;
-    return drawn >= 0 ? drawn : code >= 0 ? code : end;
+    imk_result *result = show_begin("evaluate");
+    evaluate_show(v, result);
+    const show_options options = {
+        .report = o->report,
+        .plot = o->plot,
+        .json = o->json,
+        .lacking = v->channel_count == 0 ? "a table or a log with a reference" : NULL};
+    return show_end(result, &options, end);
 }
 
 static int evaluate(evaluation *v)
@@ -298,9 +298,7 @@ static int run(int count, char **words)
     evaluate_options o = {
         .confidence = 0.95,
         .bench = {.minimum = none, .trim = none, .settle = none, .table_axis = -1}};
-    evaluation *v = calloc(1, sizeof *v);
-    if (!v)
-        return command_failed("memory is exhausted");
+    evaluation *v = command_zeroed(sizeof *v);
     v->options = &o;
     int code = options_parse(&evaluate_verb, count, words, &o, v->path);
     if (code < 0)

@@ -89,7 +89,7 @@ static int fit_channel(identification *i, size_t channel, const imk_allan_fit_se
                        imk_allan_table *table, const size_t *row, identify_curve_fits *fits)
 {
     double variances[IMK_ALLAN_FIT_FACTORS_MAX];
-    const double *data = log_channel_data(&i->channels, channel);
+    const double *data = log_channel_data(&i->found->record, channel);
     for (size_t k = 0; k < table->count; k++) {
         fits->deviation[channel][k] = data[row[k]];
         variances[k] = data[row[k]] * data[row[k]];
@@ -105,9 +105,9 @@ static int fit_channel(identification *i, size_t channel, const imk_allan_fit_se
     free(workspace);
     if (status != IMK_OK)
         return command_failed("%s: column %s: %s", i->path,
-                              log_channel_column(&i->channels, channel)->name,
+                              log_channel_column(&i->found->record, channel)->name,
                               imk_status_text(status));
-    store(&i->result[channel], &fits->fit[channel], fits->deviation[channel], fits);
+    store(&i->found->result[channel], &fits->fit[channel], fits->deviation[channel], fits);
     return -1;
 }
 
@@ -117,7 +117,7 @@ static bool keep_curve(identification *i, size_t channel, const identify_curve_f
 {
     const imk_allan_fit *fit = &fits->fit[channel];
     const size_t count = fits->count;
-    allan_curve *curve = &i->curve[channel];
+    imk_allan_curve *curve = &i->found->curve[channel];
     curve->point = calloc(count, sizeof *curve->point);
     curve->tau = malloc(4 * count * sizeof *curve->tau);
     if (!curve->point || !curve->tau)
@@ -146,7 +146,7 @@ static bool keep_curve(identification *i, size_t channel, const identify_curve_f
 static void judge_curve(identification *i, size_t channel, const identify_curve_fits *fits)
 {
     const imk_allan_fit *fit = &fits->fit[channel];
-    const char *name = log_channel_column(&i->channels, channel)->name;
+    const char *name = log_channel_column(&i->found->record, channel)->name;
     char left_out[120] = "";
     if (fit->first > 0)
         snprintf(left_out, sizeof left_out,
@@ -172,27 +172,28 @@ static int fit_curves(identification *i, const identify_curve_input *input,
     imk_error error;
     reading.any_columns = true;
     reading.rate = input->rate;
-    if (imk_log_load(i->path, &reading, NULL, NULL, &i->channels.log, &error) != IMK_OK)
+    if (imk_log_load(i->path, &reading, NULL, NULL, &i->found->record.log, &error) != IMK_OK)
         return command_log_error(&error, i->path);
-    log_choose_channels(&i->channels);
-    const int tau = find_tau(&i->channels.log);
-    if (find_column(&i->channels.log, "edf") >= 0)
+    log_choose_channels(&i->found->record);
+    const int tau = find_tau(&i->found->record.log);
+    if (find_column(&i->found->record.log, "edf") >= 0)
         return command_failed("%s looks like the long table of imukit allan; a curve has a column "
                               "for each channel, such as tau [s],gyro_x [deg/s]. From the log "
                               "itself, --method allan does the same, and needs no table",
                               i->path);
     size_t kept = 0;
-    for (size_t c = 0; c < i->channels.count; c++)
-        if (i->channels.column[c] != tau)
-            i->channels.column[kept++] = i->channels.column[c];
-    i->channels.count = kept;
+    for (size_t c = 0; c < i->found->record.count; c++)
+        if (i->found->record.column[c] != tau)
+            i->found->record.column[kept++] = i->found->record.column[c];
+    i->found->record.count = kept;
     if (tau < 0 || kept == 0)
         return command_failed("%s: a table of Allan deviations has a column tau [s] and columns "
                               "such as gyro_x [deg/s]",
                               i->path);
     size_t row[IMK_ALLAN_FIT_FACTORS_MAX], factor[IMK_ALLAN_FIT_FACTORS_MAX];
     memset(fits, 0, sizeof *fits);
-    fits->count = take_rows(i->channels.log.data[tau], i->channels.log.rows, input, row, factor);
+    fits->count =
+        take_rows(i->found->record.log.data[tau], i->found->record.log.rows, input, row, factor);
     if (fits->count < 4)
         return command_failed("%s: %zu tau are multiples of 1/%g s and at most half of %g s; a fit "
                               "needs 4",
@@ -211,12 +212,12 @@ static int fit_curves(identification *i, const identify_curve_input *input,
     settings.significance = i->options->significance;
     settings.tolerance = input->tolerance;
     settings.gauss_markov_max = (int)input->gauss_markov;
-    i->channels.dt = table.dt;
-    i->channels.rows = length;
+    i->found->record.dt = table.dt;
+    i->found->record.rows = length;
     int code = -1;
-    for (size_t c = 0; c < i->channels.count && code < 0; c++)
+    for (size_t c = 0; c < i->found->record.count && code < 0; c++)
         code = fit_channel(i, c, &settings, &table, row, fits);
-    for (size_t c = 0; c < i->channels.count && code < 0; c++) {
+    for (size_t c = 0; c < i->found->record.count && code < 0; c++) {
         if (!keep_curve(i, c, fits, factor))
             code = command_failed("memory is exhausted");
         else
@@ -227,6 +228,12 @@ static int fit_curves(identification *i, const identify_curve_input *input,
 
 int identify_curve(identification *i, const identify_curve_input *input)
 {
+    i->found = command_memory(NULL, sizeof *i->found);
+    memset(i->found, 0, sizeof *i->found);
+    i->found->settings = imk_identify_log_default();
+    i->found->settings.confidence = i->options->confidence;
+    i->found->settings.from_allan = true;
+    i->found->duration = input->duration;
     identify_curve_fits *fits = calloc(1, sizeof *fits);
     const int code = fits ? fit_curves(i, input, fits) : command_failed("memory is exhausted");
     free(fits);

@@ -27,7 +27,8 @@ static void compare(several_logs *s, size_t channel, int term)
     double square[IMK_JOINT_RECORDS_MAX], sigma[IMK_JOINT_RECORDS_MAX];
     bool any = false, all = true;
     for (size_t r = 0; r < s->count; r++) {
-        t->device[r] = strength_of(&s->log[r]->result[channel].term[term], s->options->confidence);
+        t->device[r] =
+            strength_of(&s->log[r]->found->result[channel].term[term], s->options->confidence);
         square[r] = t->device[r].square;
         sigma[r] = t->device[r].square_sigma;
         any = any || t->device[r].present;
@@ -89,7 +90,7 @@ static void judge_models(several_logs *s, size_t channel)
     for (unsigned bit = 0; bit < 2; bit++) {
         size_t have = 0, one = 0;
         for (size_t r = 0; r < s->count; r++)
-            if (kind_of_model(&s->log[r]->result[channel]) >> bit & 1) {
+            if (kind_of_model(&s->log[r]->found->result[channel]) >> bit & 1) {
                 have++;
                 one = r;
             }
@@ -99,7 +100,7 @@ static void judge_models(several_logs *s, size_t channel)
             s->joint, VERDICT_NOTE, "models_differ",
             "%s: %zu of %zu logs show %s (%s%s); the other terms are what is left "
             "beside it, so compare them with care.",
-            log_channel_column(&s->joint->channels, channel)->name, have, s->count, what[bit],
+            log_channel_column(&s->joint->found->record, channel)->name, have, s->count, what[bit],
             s->label[one], have > 1 ? " and others" : "");
     }
 }
@@ -107,7 +108,7 @@ static void judge_models(several_logs *s, size_t channel)
 static void tell_difference(several_logs *s, size_t channel, int term)
 {
     const device_term *t = &s->term[channel][term];
-    const imk_log_column *column = log_channel_column(&s->joint->channels, channel);
+    const imk_log_column *column = log_channel_column(&s->joint->found->record, channel);
     const term_display display = identify_term(column, (imk_noise_term)term);
     size_t low = 0, high = 0;
     char less[100], more[100], chance[40];
@@ -127,17 +128,17 @@ static void judge(several_logs *s)
 {
     identification *j = s->joint;
     size_t compared = 0, differ = 0;
-    for (size_t c = 0; c < j->channels.count; c++)
+    for (size_t c = 0; c < j->found->record.count; c++)
         for (int term = 0; term < IMK_NOISE_RAMP; term++)
             compared += s->term[c][term].compared;
     const double alarm = (1 - s->options->confidence) / fmax(1, (double)compared);
-    for (size_t c = 0; c < j->channels.count; c++)
+    for (size_t c = 0; c < j->found->record.count; c++)
         for (int term = 0; term < IMK_NOISE_RAMP; term++)
             if (s->term[c][term].compared && s->term[c][term].squares.probability < alarm) {
                 tell_difference(s, c, term);
                 differ++;
             }
-    for (size_t c = 0; c < j->channels.count; c++)
+    for (size_t c = 0; c < j->found->record.count; c++)
         judge_models(s, c);
     if (differ == 0)
         identify_add_sentence(j, VERDICT_GOOD, "devices_agree",
@@ -157,7 +158,7 @@ static void judge(several_logs *s)
 
 int several_compare_devices(several_logs *s)
 {
-    for (size_t c = 0; c < s->joint->channels.count; c++)
+    for (size_t c = 0; c < s->joint->found->record.count; c++)
         for (int term = 0; term < IMK_NOISE_RAMP; term++)
             compare(s, c, term);
     judge(s);

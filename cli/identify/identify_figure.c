@@ -53,11 +53,12 @@ static double misfit_of(double ratio, double edf)
 /* Under the model the measured variance is the model's times chi^2/edf. */
 static void fill_octaves(panel_data *d, const identification *i, size_t channel, double scale)
 {
-    const allan_curve *measured = &i->curve[channel], *twin = &i->twin[channel];
+    const imk_allan_curve *measured = &i->found->curve[channel], *twin = &i->twin[channel];
     double tail = (1 - i->options->confidence) / 2;
     for (size_t k = 0; k < d->octave_count; k++) {
         const imk_allan_point *p = &measured->point[k];
-        double middle = deviation_of(&i->result[channel], i->channels.dt, p->m, -1, scale);
+        double middle =
+            deviation_of(&i->found->result[channel], i->found->record.dt, p->m, -1, scale);
         d->octave_tau[k] = measured->tau[k];
         d->deviation[k] = p->deviation / scale;
         d->lower[k] = p->lower / scale;
@@ -77,11 +78,13 @@ static void fill_octaves(panel_data *d, const identification *i, size_t channel,
 static void fill(panel_data *d, const identification *i, size_t channel, double scale,
                  double **memory)
 {
-    const imk_identification *r = &i->result[channel];
-    double dt = i->channels.dt;
-    size_t *factors = allan_factors_of_grid(IMK_ALLAN_DECADE, i->channels.rows, &d->smooth_count);
-    (void)command_unless_memory(factors ? IMK_OK : IMK_ERROR_MEMORY);
-    d->octave_count = i->curve[channel].count;
+    const imk_identification *r = &i->found->result[channel];
+    double dt = i->found->record.dt;
+    const size_t rows = i->found->record.rows;
+    d->smooth_count = imk_allan_factors_for(IMK_ALLAN_OVERLAPPING, IMK_ALLAN_DECADE, rows, NULL);
+    size_t *factors = command_memory(NULL, (d->smooth_count + 1) * sizeof *factors);
+    imk_allan_factors_for(IMK_ALLAN_OVERLAPPING, IMK_ALLAN_DECADE, rows, factors);
+    d->octave_count = i->found->curve[channel].count;
     *memory = command_memory(
         NULL, ((2 + IMK_NOISE_TERMS) * d->smooth_count + 12 * d->octave_count) * sizeof **memory);
     double *rest = *memory;
@@ -112,12 +115,12 @@ static size_t make_curves(imk_curve *curve, const panel_data *d, const identific
         {"quantization", "angle random walk", "bias instability", "rate random walk", "rate ramp"},
         {"quantization", "velocity random walk", "bias instability", "acceleration random walk",
          "acceleration ramp"}};
-    bool accel = channel_kind_of(log_channel_column(&i->channels, channel)) == CHANNEL_ACCEL;
+    bool accel = channel_kind_of(log_channel_column(&i->found->record, channel)) == CHANNEL_ACCEL;
     size_t count = 0;
     curve[count++] = (imk_curve){"expected spread", IMK_CURVE_BAND, BAND_COLOR,    d->octave_count,
                                  d->octave_tau,     d->band_middle, d->band_lower, d->band_upper};
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
-        if (i->result[channel].term[term].present)
+        if (i->found->result[channel].term[term].present)
             curve[count++] = (imk_curve){names[accel][term],
                                          IMK_CURVE_DASHES,
                                          term_colors[term],
@@ -156,8 +159,8 @@ static size_t columns_for(size_t channels)
 static void make_panels(const identification *i, identify_figure *figure, size_t channel,
                         imk_panel *deviation, imk_panel *misfit)
 {
-    const imk_log_column *column = log_channel_column(&i->channels, channel);
-    const allan_curve *measured = &i->curve[channel];
+    const imk_log_column *column = log_channel_column(&i->found->record, channel);
+    const imk_allan_curve *measured = &i->found->curve[channel];
     const imk_unit unit = channel_readable_unit(column, measured->deviation[measured->count / 2]);
     panel_data data;
     fill(&data, i, channel, unit.scale, &figure->memory[channel]);
@@ -185,7 +188,7 @@ static void make_panels(const identification *i, identify_figure *figure, size_t
 
 void identify_figure_make(const identification *i, bool misfit, identify_figure *figure)
 {
-    const size_t count = i->channels.count;
+    const size_t count = i->found->record.count;
     const size_t columns = misfit ? columns_for(count) : count < 3 ? count : 3;
     figure->channels = count;
     for (size_t c = 0; c < count; c++) {

@@ -55,16 +55,16 @@ static void put_next_steps(imk_page *page, const identification *i)
              "imukit grade %s\n"
              "imukit simulate %s --rate %gHz --duration 1h --seed 2 -o another.csv\n"
              "imukit identify %s --into MODEL -o MODEL   # only the noise of an existing model",
-             model, model, 1 / i->channels.dt, i->path);
+             model, model, 1 / i->found->record.dt, i->path);
     imk_page_code(page, text);
 }
 
 int identify_report(const identification *i, const char *path)
 {
     char subtitle[300], length[60];
-    format_duration(identify_duration(i), length, sizeof length);
+    format_duration(i->found->duration, length, sizeof length);
     snprintf(subtitle, sizeof subtitle, "%.120s: %zu samples of %zu channels, %g Hz, %s", i->path,
-             i->channels.rows, i->channels.count, 1 / i->channels.dt, length);
+             i->found->record.rows, i->found->record.count, 1 / i->found->record.dt, length);
     imk_page *page = imk_page_create("Noise of an inertial sensor", subtitle);
     imk_page_heading(page, "Verdict");
     for (size_t k = 0; k < i->verdict_count; k++)
@@ -131,8 +131,8 @@ static json_t *extras_json(const imk_identification *r, const imk_unit *plain)
 
 json_t *identify_channel_json(const identification *i, size_t channel)
 {
-    const imk_log_column *column = log_channel_column(&i->channels, channel);
-    const imk_identification *r = &i->result[channel];
+    const imk_log_column *column = log_channel_column(&i->found->record, channel);
+    const imk_identification *r = &i->found->result[channel];
     imk_unit plain = channel_plain_unit(column);
     json_t *terms = json_object();
     for (int term = 0; term < IMK_NOISE_TERMS; term++) {
@@ -167,12 +167,12 @@ json_t *identify_verdict_json(const identification *i)
 int identify_json(const identification *i, int code)
 {
     json_t *channels = json_array();
-    for (size_t c = 0; c < i->channels.count; c++)
+    for (size_t c = 0; c < i->found->record.count; c++)
         json_array_append_new(channels, identify_channel_json(i, c));
     json_t *inputs = json_pack(
         "{s:o, s:I, s:I, s:o, s:f}", "log", json_text(i->path), "rows",
-        (json_int_t)i->channels.rows, "bridged", (json_int_t)i->channels.bridged, "interval",
-        json_quantity(i->channels.dt, "s"), "confidence", i->options->confidence);
+        (json_int_t)i->found->record.rows, "bridged", (json_int_t)i->found->record.bridged,
+        "interval", json_quantity(i->found->record.dt, "s"), "confidence", i->options->confidence);
     return json_print(
         "identify", inputs,
         json_pack("{s:o, s:o}", "channels", channels, "verdict", identify_verdict_json(i)), code);

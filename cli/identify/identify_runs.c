@@ -17,33 +17,33 @@ static int join_channel(several_logs *s, size_t channel, void *workspace,
 {
     const imk_spectral_summary *summaries[IMK_JOINT_RECORDS_MAX];
     for (size_t r = 0; r < s->count; r++) {
-        summaries[r] = s->log[r]->summary[channel];
-        single[r] = s->log[r]->result[channel];
+        summaries[r] = s->log[r]->found->summary[channel];
+        single[r] = s->log[r]->found->result[channel];
     }
     imk_identify_settings settings = imk_identify_default();
-    settings.dt = s->joint->channels.dt;
+    settings.dt = s->joint->found->record.dt;
     settings.confidence = s->options->confidence;
     settings.significance = s->options->significance;
     imk_error error;
     const imk_status status = imk_identify_joint(
-        &settings, s->count, summaries, single, &s->joint->result[channel], &s->agreement[channel],
-        workspace, imk_identify_joint_workspace_size(), &error);
+        &settings, s->count, summaries, single, &s->joint->found->result[channel],
+        &s->agreement[channel], workspace, imk_identify_joint_workspace_size(), &error);
     if (status == IMK_OK)
         return -1;
     if (!error.field[0])
         snprintf(error.field, sizeof error.field, "%s",
-                 log_channel_column(&s->joint->channels, channel)->name);
+                 log_channel_column(&s->joint->found->record, channel)->name);
     return command_error(&error, s->path);
 }
 
 /* Variances of all runs at each factor, weighted by their degrees of freedom. */
 static bool pool_curves(several_logs *s, size_t channel)
 {
-    const allan_curve *longest = &s->log[0]->curve[channel];
+    const imk_allan_curve *longest = &s->log[0]->found->curve[channel];
     for (size_t r = 1; r < s->count; r++)
-        if (s->log[r]->curve[channel].count > longest->count)
-            longest = &s->log[r]->curve[channel];
-    allan_curve *pool = &s->joint->curve[channel];
+        if (s->log[r]->found->curve[channel].count > longest->count)
+            longest = &s->log[r]->found->curve[channel];
+    imk_allan_curve *pool = &s->joint->found->curve[channel];
     const size_t count = longest->count;
     pool->point = malloc(count * sizeof *pool->point);
     pool->tau = malloc(4 * count * sizeof *pool->tau);
@@ -60,7 +60,7 @@ static bool pool_curves(several_logs *s, size_t channel)
         *p = longest->point[k];
         p->count = 0;
         for (size_t r = 0; r < s->count; r++) {
-            const allan_curve *c = &s->log[r]->curve[channel];
+            const imk_allan_curve *c = &s->log[r]->found->curve[channel];
             if (k >= c->count || c->point[k].m != p->m || !(c->point[k].edf > 0))
                 continue;
             edf += c->point[k].edf;
@@ -85,10 +85,10 @@ static int compare_means(several_logs *s, size_t channel)
 {
     double mean[IMK_JOINT_RECORDS_MAX], sigma[IMK_JOINT_RECORDS_MAX];
     for (size_t r = 0; r < s->count; r++) {
-        const log_channels *channels = &s->log[r]->channels;
-        mean[r] = s->log[r]->result[channel].mean;
-        sigma[r] = sqrt(imk_identification_allan_variance(&s->joint->result[channel], channels->dt,
-                                                          channels->rows, -1));
+        const log_channels *channels = &s->log[r]->found->record;
+        mean[r] = s->log[r]->found->result[channel].mean;
+        sigma[r] = sqrt(imk_identification_allan_variance(&s->joint->found->result[channel],
+                                                          channels->dt, channels->rows, -1));
     }
     imk_error error;
     if (imk_repeatability_estimate(s->count, mean, sigma, NULL, s->options->confidence,
@@ -100,7 +100,7 @@ static int compare_means(several_logs *s, size_t channel)
 static void judge_channel(several_logs *s, size_t channel)
 {
     const imk_joint_agreement *a = &s->agreement[channel];
-    const imk_log_column *column = log_channel_column(&s->joint->channels, channel);
+    const imk_log_column *column = log_channel_column(&s->joint->found->record, channel);
     char chance[40];
     several_chance(a->probability, chance, sizeof chance);
     if (a->record < 0 || a->term < 0) {
@@ -119,7 +119,7 @@ static void judge_channel(several_logs *s, size_t channel)
         "temperature, mounting, settings, vibration.",
         column->name, chance, display.name, a->value[a->record][a->term] / scale,
         a->sigma[a->record][a->term] / scale, display.unit.text, s->label[a->record],
-        s->joint->result[channel].term[a->term].value / scale, a->sigmas);
+        s->joint->found->result[channel].term[a->term].value / scale, a->sigmas);
 }
 
 /* Neither of the slow terms is seen, all logs together. */
@@ -127,12 +127,12 @@ static void judge_length(several_logs *s)
 {
     char list[300] = "";
     size_t used = 0;
-    for (size_t c = 0; c < s->joint->channels.count && used < sizeof list; c++) {
-        const imk_identification *r = &s->joint->result[c];
+    for (size_t c = 0; c < s->joint->found->record.count && used < sizeof list; c++) {
+        const imk_identification *r = &s->joint->found->result[c];
         if (!r->term[IMK_NOISE_BIAS_INSTABILITY].present &&
             !r->term[IMK_NOISE_RANDOM_WALK].present && r->gauss_markov_count == 0)
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "",
-                                     log_channel_column(&s->joint->channels, c)->name);
+                                     log_channel_column(&s->joint->found->record, c)->name);
     }
     if (used > 0)
         identify_add_sentence(s->joint, VERDICT_WARNING, "short",
@@ -146,20 +146,20 @@ static void judge(several_logs *s)
     identification *j = s->joint;
     char length[60];
     size_t differ = 0;
-    for (size_t c = 0; c < j->channels.count; c++)
-        if (s->agreement[c].probability < alarm / (double)j->channels.count) {
+    for (size_t c = 0; c < j->found->record.count; c++)
+        if (s->agreement[c].probability < alarm / (double)j->found->record.count) {
             judge_channel(s, c);
             differ++;
         }
-    format_duration(identify_duration(j), length, sizeof length);
+    format_duration(j->found->duration, length, sizeof length);
     judge_length(s);
     if (differ == 0)
         identify_add_sentence(j, VERDICT_GOOD, "runs_agree",
                               "The %zu logs agree: one model explains them, %s together.", s->count,
                               length);
-    for (size_t c = 0; c < j->channels.count; c++) {
+    for (size_t c = 0; c < j->found->record.count; c++) {
         const imk_repeatability *b = &s->bias[c];
-        const imk_log_column *column = log_channel_column(&j->channels, c);
+        const imk_log_column *column = log_channel_column(&j->found->record, c);
         if (!(b->lower > 0))
             continue;
         const imk_unit unit = channel_readable_unit(column, b->value);
@@ -178,7 +178,7 @@ int several_join_runs(several_logs *s)
     void *workspace = malloc(imk_identify_joint_workspace_size());
     imk_identification *single = calloc(s->count, sizeof *single);
     int code = workspace && single ? -1 : command_failed("memory is exhausted");
-    for (size_t c = 0; c < s->joint->channels.count && code < 0; c++) {
+    for (size_t c = 0; c < s->joint->found->record.count && code < 0; c++) {
         code = join_channel(s, c, workspace, single);
         if (code < 0 && !pool_curves(s, c))
             code = command_failed("memory is exhausted");

@@ -8,51 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct {
-    const char *name;
-    unsigned bit;
-} parts[] = {{"outliers", IMK_SCREEN_OUTLIERS},       {"stuck", IMK_SCREEN_STUCK},
-             {"saturated", IMK_SCREEN_SATURATED},     {"warm-up", IMK_SCREEN_WARM_UP},
-             {"temperature", IMK_SCREEN_TEMPERATURE}, {"all", IMK_SCREEN_ALL}};
-enum { PARTS = sizeof parts / sizeof parts[0] };
-
-int identify_parse_keep(const char *text, unsigned *take_out)
-{
-    *take_out = IMK_SCREEN_ALL;
-    while (text && *text) {
-        const size_t length = strcspn(text, ",");
-        size_t k = 0;
-        while (k < PARTS &&
-               (strlen(parts[k].name) != length || strncmp(parts[k].name, text, length) != 0))
-            k++;
-        if (k == PARTS)
-            return command_misused("--keep: \"%.*s\" is none of outliers, stuck, saturated, "
-                                   "warm-up, temperature, all",
-                                   (int)length, text);
-        *take_out &= ~parts[k].bit;
-        text += length + (text[length] == ',');
-    }
-    return -1;
-}
-
-imk_status identify_screen_channel(identification *i, size_t channel, imk_error *error)
-{
-    const size_t n = i->channels.rows, size = imk_screen_workspace_size(n);
-    imk_screen_settings settings = imk_screen_default();
-    settings.dt = i->channels.dt;
-    settings.temperature = i->channels.temperature;
-    double *samples = log_channel_data(&i->channels, channel);
-    void *workspace = malloc(size);
-    if (!workspace)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    const imk_status status =
-        imk_screen_channel(&settings, n, samples, &i->screen[channel], workspace, size, error);
-    free(workspace);
-    if (status == IMK_OK)
-        imk_screen_apply(&settings, &i->screen[channel], i->take_out, n, samples);
-    return status;
-}
-
 /* Names of the channels for which something holds, with what was found on each in parentheses. */
 typedef bool (*finding)(const identification *i, size_t channel, char *text, size_t size);
 
@@ -60,23 +15,23 @@ static bool list_of(const identification *i, finding find, char *list, size_t si
 {
     size_t used = 0;
     list[0] = '\0';
-    for (size_t c = 0; c < i->channels.count && used < size; c++) {
+    for (size_t c = 0; c < i->found->record.count && used < size; c++) {
         char text[160];
         if (find(i, c, text, sizeof text))
             used += (size_t)snprintf(list + used, size - used, "%s%s (%s)", used ? ", " : "",
-                                     log_channel_column(&i->channels, c)->name, text);
+                                     log_channel_column(&i->found->record, c)->name, text);
     }
     return used > 0;
 }
 
 static imk_unit unit_for(const identification *i, size_t channel, double value)
 {
-    return channel_readable_unit(log_channel_column(&i->channels, channel), value);
+    return channel_readable_unit(log_channel_column(&i->found->record, channel), value);
 }
 
 static bool find_outliers(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_screen *s = &i->screen[channel];
+    const imk_screen *s = &i->found->screen[channel];
     const imk_unit unit = unit_for(i, channel, s->largest_outlier);
     snprintf(text, size, "%zu, the largest %.3g %s or %.3g standard deviations off",
              s->outliers.count, s->largest_outlier / unit.scale, unit.text,
@@ -86,7 +41,7 @@ static bool find_outliers(const identification *i, size_t channel, char *text, s
 
 static bool find_stuck(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_screen *s = &i->screen[channel];
+    const imk_screen *s = &i->found->screen[channel];
     snprintf(text, size, "%zu samples in %zu %s, the longest of %zu", s->stuck.count, s->stuck.runs,
              s->stuck.runs == 1 ? "run" : "runs", s->longest_stuck);
     return s->stuck.count > 0;
@@ -94,14 +49,14 @@ static bool find_stuck(const identification *i, size_t channel, char *text, size
 
 static bool find_saturated(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_screen *s = &i->screen[channel];
+    const imk_screen *s = &i->found->screen[channel];
     snprintf(text, size, "%zu samples", s->saturated.count);
     return s->saturated.count > 0;
 }
 
 static bool find_warm_up(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_screen *s = &i->screen[channel];
+    const imk_screen *s = &i->found->screen[channel];
     const imk_unit unit = unit_for(i, channel, s->warm_up_amplitude);
     const double width = s->warm_up_amplitude_sigma / unit.scale;
     char amplitude[40], sigma[40], time[40], time_sigma[40];
@@ -116,7 +71,7 @@ static bool find_warm_up(const identification *i, size_t channel, char *text, si
 
 static bool find_temperature(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_screen *s = &i->screen[channel];
+    const imk_screen *s = &i->found->screen[channel];
     const imk_unit unit = unit_for(i, channel, s->temperature_slope);
     const double width = s->temperature_slope_sigma / unit.scale;
     char slope[40], sigma[40];
@@ -129,22 +84,23 @@ static bool find_temperature(const identification *i, size_t channel, char *text
 
 static bool find_steps(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_screen *s = &i->screen[channel];
+    const imk_screen *s = &i->found->screen[channel];
     const imk_unit unit = unit_for(i, channel, s->largest_step);
     snprintf(text, size, "%zu, the largest %.3g %s at %.5g s", s->steps.count,
-             s->largest_step / unit.scale, unit.text, (double)s->steps.first * i->channels.dt);
+             s->largest_step / unit.scale, unit.text, (double)s->steps.first * i->found->record.dt);
     return s->steps.count > 0;
 }
 
 static bool find_missing(const identification *i, size_t channel, char *text, size_t size)
 {
     /* Not what was taken out: other sentences tell of it. */
-    const imk_screen *s = &i->screen[channel];
-    const imk_identification *r = &i->result[channel];
-    const size_t missing = i->screened ? s->missing.count : r->missing;
-    const double gap = i->screened ? (double)s->longest_hole * i->channels.dt : r->largest_gap;
+    const imk_screen *s = &i->found->screen[channel];
+    const imk_identification *r = &i->found->result[channel];
+    const size_t missing = i->found->screened ? s->missing.count : r->missing;
+    const double gap =
+        i->found->screened ? (double)s->longest_hole * i->found->record.dt : r->largest_gap;
     snprintf(text, size, "%.3g %%, longest gap %.3g s",
-             100 * (double)missing / (double)i->channels.rows, gap);
+             100 * (double)missing / (double)i->found->record.rows, gap);
     return missing > 0;
 }
 
@@ -177,17 +133,17 @@ static const struct {
 
 void identify_judge_samples(identification *i)
 {
-    if (!i->screened && !i->joint)
+    if (!i->found->screened && !i->joint)
         identify_add_sentence(i, VERDICT_NOTE, "not_screened",
                               "the log is longer than what is held in memory: outliers, steps, the "
                               "warm-up and the temperature were not looked for.");
     for (size_t k = 0; k < sizeof findings / sizeof findings[0]; k++) {
         char list[600];
-        if (!i->screened && findings[k].find != find_missing)
+        if (!i->found->screened && findings[k].find != find_missing)
             continue;
         if (!list_of(i, findings[k].find, list, sizeof list))
             continue;
-        const bool kept = findings[k].bit && !(i->take_out & findings[k].bit);
+        const bool kept = findings[k].bit && !(i->found->settings.take_out & findings[k].bit);
         identify_add_sentence(i, findings[k].level, findings[k].code, "%s: %s.", list,
                               kept ? findings[k].kept : findings[k].done);
     }
@@ -201,9 +157,9 @@ static json_t *count_json(const imk_screen_count *c)
 
 json_t *identify_screen_json(const identification *i, size_t channel)
 {
-    const imk_screen *s = &i->screen[channel];
-    const imk_unit plain = channel_plain_unit(log_channel_column(&i->channels, channel));
-    if (!i->screened)
+    const imk_screen *s = &i->found->screen[channel];
+    const imk_unit plain = channel_plain_unit(log_channel_column(&i->found->record, channel));
+    if (!i->found->screened)
         return json_null();
     json_t *warm_up = json_null(), *temperature = json_null();
     if (s->warm_up)

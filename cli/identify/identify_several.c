@@ -8,30 +8,12 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The samples are the bulk of the memory, and are not looked at again. */
-static void let_samples_go(log_channels *channels)
+static int identify_one_log(identification *i, const imk_identify_log_settings *settings,
+                            const imk_executor *executor)
 {
-    for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++) {
-        free(channels->log.data[c]);
-        channels->log.data[c] = NULL;
-    }
-    free(channels->log.label);
-    channels->log.label = NULL;
-    channels->temperature = NULL;
-}
-
-static int identify_one_log(identification *i, const imk_executor *executor)
-{
-    bool taken;
-    int code = identify_stream(i, executor, &taken);
-    if (code < 0 && !taken)
-        code = log_input_load(&i->options->log, i->path, &i->channels);
-    if (code < 0 && !taken)
-        code = identify_channels(i, executor);
-    if (code < 0 && i->options->method == METHOD_ALLAN)
-        code = identify_by_allan(i);
+    const int code = identify_run(i, settings, executor);
     if (code < 0) {
-        let_samples_go(&i->channels);
+        imk_identify_log_let_samples_go(i->found);
         identify_judge(i);
         identify_warn(i);
     }
@@ -56,7 +38,7 @@ static void label_logs(several_logs *s, const char *const *paths)
 
 static int check_channels(const several_logs *s, size_t record)
 {
-    const log_channels *first = &s->log[0]->channels, *other = &s->log[record]->channels;
+    const log_channels *first = &s->log[0]->found->record, *other = &s->log[record]->found->record;
     bool same = first->count == other->count;
     for (size_t c = 0; c < first->count && same; c++)
         same = strcmp(log_channel_column(first, c)->name, log_channel_column(other, c)->name) == 0;
@@ -73,8 +55,8 @@ static int check_channels(const several_logs *s, size_t record)
     return -1;
 }
 
-static int load_logs(several_logs *s, const char *const *paths, unsigned take_out,
-                     const imk_executor *executor)
+static int load_logs(several_logs *s, const char *const *paths,
+                     const imk_identify_log_settings *settings, const imk_executor *executor)
 {
     for (size_t r = 0; r < s->count; r++) /* before the others have taken their time */
         if (strcmp(paths[r], "-") != 0 && access(paths[r], R_OK) != 0)
@@ -86,9 +68,7 @@ static int load_logs(several_logs *s, const char *const *paths, unsigned take_ou
         i->options = s->options;
         i->path = paths[r];
         i->label = s->label[r];
-        i->take_out = take_out;
-        i->summarised = s->options->runs;
-        int code = identify_one_log(i, executor);
+        int code = identify_one_log(i, settings, executor);
         if (code < 0)
             code = check_channels(s, r);
         if (code >= 0)
@@ -103,19 +83,23 @@ static int start_joint(several_logs *s, const imk_model *truth)
     identification *j = s->joint = calloc(1, sizeof *j);
     s->agreement = calloc(IMK_LOG_COLUMNS_MAX, sizeof *s->agreement);
     s->term = calloc(IMK_LOG_COLUMNS_MAX, sizeof *s->term);
-    if (!j || !s->agreement || !s->term)
+    if (j)
+        j->found = calloc(1, sizeof *j->found);
+    if (!j || !j->found || !s->agreement || !s->term)
         return command_failed("memory is exhausted");
+    j->found->settings = s->log[0]->found->settings;
+    j->found->settings.summarise = false;
     j->options = s->options;
     j->path = s->path;
     j->joint = true;
     j->truth = *truth;
     for (size_t r = 0; r < s->count; r++) {
-        const log_channels *channels = &s->log[r]->channels;
-        const size_t longest = j->channels.rows;
+        const log_channels *channels = &s->log[r]->found->record;
+        const size_t longest = j->found->record.rows;
         if (r == 0)
-            j->channels = *channels;
-        j->channels.rows = channels->rows > longest ? channels->rows : longest;
-        j->duration += channels->dt * (double)channels->rows;
+            j->found->record = *channels;
+        j->found->record.rows = channels->rows > longest ? channels->rows : longest;
+        j->found->duration += channels->dt * (double)channels->rows;
     }
     return -1;
 }
@@ -169,7 +153,8 @@ static int check_request(const identify_options *o)
 }
 
 int identify_several(const identify_options *options, size_t count, const char *const *paths,
-                     unsigned take_out, const imk_model *truth, const imk_executor *executor)
+                     const imk_identify_log_settings *settings, const imk_model *truth,
+                     const imk_executor *executor)
 {
     int code = check_request(options);
     if (code >= 0)
@@ -180,7 +165,7 @@ int identify_several(const identify_options *options, size_t count, const char *
     s->options = options;
     s->count = count;
     label_logs(s, paths);
-    code = load_logs(s, paths, take_out, executor);
+    code = load_logs(s, paths, settings, executor);
     if (code < 0)
         code = start_joint(s, truth);
     if (code < 0)

@@ -39,7 +39,8 @@ typedef struct several_logs {
 
 /* identify_several.c: load, identify, compare and show. @return the exit code */
 int identify_several(const identify_options *options, size_t count, const char *const *paths,
-                     unsigned take_out, const imk_model *truth, const imk_executor *executor);
+                     const imk_identify_log_settings *settings, const imk_model *truth,
+                     const imk_executor *executor);
 
 /* identify_runs.c. @return -1 or the exit code */
 int several_join_runs(several_logs *s);

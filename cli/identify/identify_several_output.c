@@ -26,11 +26,11 @@ typedef struct shown_terms {
 
 static shown_terms find_terms(const several_logs *s, size_t channel)
 {
-    const imk_log_column *column = log_channel_column(&s->joint->channels, channel);
+    const imk_log_column *column = log_channel_column(&s->joint->found->record, channel);
     shown_terms shown = {0};
     for (int term = 0; term < IMK_NOISE_RAMP; term++) {
         const bool runs = s->options->runs;
-        if (!(runs ? s->joint->result[channel].term[term].present || term == IMK_NOISE_WHITE
+        if (!(runs ? s->joint->found->result[channel].term[term].present || term == IMK_NOISE_WHITE
                    : s->term[channel][term].compared))
             continue;
         shown.term[shown.count] = term;
@@ -84,7 +84,7 @@ static void put_runs(text_table *table, const several_logs *s, size_t channel,
     text_table_row(table);
     text_table_set(table, 0, "together");
     for (size_t k = 0; k < shown->count; k++) {
-        const imk_estimate *e = &s->joint->result[channel].term[shown->term[k]];
+        const imk_estimate *e = &s->joint->found->result[channel].term[shown->term[k]];
         put_value(table, 1 + k, e->present, e->value, e->sigma, e->upper, shown->scale[k]);
     }
     text_table_row(table);
@@ -162,7 +162,7 @@ static void put_devices(text_table *table, const several_logs *s, size_t channel
 
 text_table several_table(const several_logs *s, size_t channel)
 {
-    const imk_log_column *column = log_channel_column(&s->joint->channels, channel);
+    const imk_log_column *column = log_channel_column(&s->joint->found->record, channel);
     const shown_terms shown = find_terms(s, channel);
     text_table table = text_table_make(1 + shown.count);
     text_table_row(&table);
@@ -188,8 +188,8 @@ text_table several_bias_table(const several_logs *s)
     text_table_set(&table, 3, "1 sigma");
     text_table_set(&table, 4, "%g %%", 100 * s->options->confidence);
     text_table_set(&table, 5, "noise within a run");
-    for (size_t c = 0; c < s->joint->channels.count; c++) {
-        const imk_log_column *column = log_channel_column(&s->joint->channels, c);
+    for (size_t c = 0; c < s->joint->found->record.count; c++) {
+        const imk_log_column *column = log_channel_column(&s->joint->found->record, c);
         const imk_repeatability *b = &s->bias[c];
         const imk_unit unit = channel_readable_unit(column, fmax(b->value, b->within));
         text_table_row(&table);
@@ -230,7 +230,7 @@ void several_print(const several_logs *s)
     const identify_options *o = s->options;
     for (channel_kind kind = CHANNEL_GYRO; o->runs && kind < CHANNEL_KINDS; kind++)
         print_table(identify_table(s->joint, kind));
-    for (size_t c = 0; c < s->joint->channels.count; c++)
+    for (size_t c = 0; c < s->joint->found->record.count; c++)
         print_table(several_table(s, c));
     if (o->runs)
         print_table(several_bias_table(s));
@@ -283,9 +283,9 @@ static void put_joint(imk_page *page, const several_logs *s)
 int several_report(const several_logs *s, const char *path)
 {
     char subtitle[300], length[60];
-    format_duration(identify_duration(s->joint), length, sizeof length);
+    format_duration(s->joint->found->duration, length, sizeof length);
     snprintf(subtitle, sizeof subtitle, "%.150s: %zu logs of %zu channels, %s together", s->path,
-             s->count, s->joint->channels.count, length);
+             s->count, s->joint->found->record.count, length);
     imk_page *page =
         imk_page_create(s->options->runs ? "Noise of an inertial sensor over several runs"
                                          : "Noise of several inertial sensors",
@@ -295,7 +295,7 @@ int several_report(const several_logs *s, const char *path)
     if (s->options->runs)
         put_joint(page, s);
     imk_page_heading(page, s->options->runs ? "Run by run" : "Sensor by sensor");
-    for (size_t c = 0; c < s->joint->channels.count; c++)
+    for (size_t c = 0; c < s->joint->found->record.count; c++)
         put_table(page, several_table(s, c));
     if (s->options->runs) {
         put_table(page, several_bias_table(s));
@@ -316,7 +316,7 @@ static json_t *joint_channel_json(const several_logs *s, size_t channel)
     static const char *const of_samples[] = {
         "valid_from",  "five_terms_from", "valid_to",   "missing",
         "largest_gap", "screening",       "resolution", "allan_minimum_over_0.664"};
-    const imk_log_column *column = log_channel_column(&s->joint->channels, channel);
+    const imk_log_column *column = log_channel_column(&s->joint->found->record, channel);
     const imk_unit plain = channel_plain_unit(column);
     const imk_joint_agreement *a = &s->agreement[channel];
     const imk_repeatability *b = &s->bias[channel];
@@ -357,7 +357,7 @@ static json_t *device_term_json(const device_term *t, const char *unit, double s
 
 static json_t *population_json(const several_logs *s, size_t channel)
 {
-    const imk_log_column *column = log_channel_column(&s->joint->channels, channel);
+    const imk_log_column *column = log_channel_column(&s->joint->found->record, channel);
     const double scale =
         channel_kind_of(column) == CHANNEL_OTHER ? channel_plain_unit(column).scale : 1;
     json_t *terms = json_object();
@@ -372,17 +372,18 @@ static json_t *population_json(const several_logs *s, size_t channel)
 static json_t *log_json(const identification *i)
 {
     json_t *channels = json_array();
-    for (size_t c = 0; c < i->channels.count; c++)
+    for (size_t c = 0; c < i->found->record.count; c++)
         json_array_append_new(channels, identify_channel_json(i, c));
     return json_pack("{s:o, s:I, s:o, s:o, s:o}", "log", json_text(i->path), "rows",
-                     (json_int_t)i->channels.rows, "interval", json_quantity(i->channels.dt, "s"),
-                     "channels", channels, "verdict", identify_verdict_json(i));
+                     (json_int_t)i->found->record.rows, "interval",
+                     json_quantity(i->found->record.dt, "s"), "channels", channels, "verdict",
+                     identify_verdict_json(i));
 }
 
 int several_json(const several_logs *s, int code)
 {
     json_t *channels = json_array(), *logs = json_array(), *paths = json_array();
-    for (size_t c = 0; c < s->joint->channels.count; c++)
+    for (size_t c = 0; c < s->joint->found->record.count; c++)
         json_array_append_new(channels,
                               s->options->runs ? joint_channel_json(s, c) : population_json(s, c));
     for (size_t r = 0; r < s->count; r++) {

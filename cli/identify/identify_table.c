@@ -5,56 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-/* Key in the model file, name, unit a person reads, SI unit. */
-static const struct term_text {
-    const char *key, *name, *unit, *si;
-} term_texts[2][IMK_NOISE_TERMS] = {
-    {{"quantization", "quantization", "arcsec", "rad"},
-     {"angle_random_walk", "angle random walk", "deg/sqrt(h)", "rad/sqrt(s)"},
-     {"bias_instability", "bias instability", "deg/h", "rad/s"},
-     {"rate_random_walk", "rate random walk", "deg/h/sqrt(h)", "rad/s/sqrt(s)"},
-     {"rate_ramp", "rate ramp", "deg/h/h", "rad/s^2"}},
-    {{"quantization", "quantization", "m/s", "m/s"},
-     {"velocity_random_walk", "velocity random walk", "m/s/sqrt(h)", "m/s/sqrt(s)"},
-     {"bias_instability", "bias instability", "ug", "m/s^2"},
-     {"acceleration_random_walk", "acceleration random walk", "ug/sqrt(h)", "m/s^2/sqrt(s)"},
-     {"acceleration_ramp", "acceleration ramp", "ug/h", "m/s^3"}}};
-
-/* Other channels: the column's unit with what time adds to it. */
-static const struct term_text other_texts[IMK_NOISE_TERMS] = {
-    {"quantization", "quantization", " s", NULL},
-    {"white_noise", "white noise", "/sqrt(Hz)", NULL},
-    {"bias_instability", "bias instability", "", NULL},
-    {"random_walk", "random walk", "/sqrt(s)", NULL},
-    {"ramp", "ramp", "/s", NULL}};
-
-term_display identify_term(const imk_log_column *column, imk_noise_term term)
-{
-    channel_kind kind = channel_kind_of(column);
-    const struct term_text *text =
-        kind == CHANNEL_OTHER ? &other_texts[term] : &term_texts[kind][term];
-    term_display display;
-    memset(&display, 0, sizeof display);
-    snprintf(display.key, sizeof display.key, "%s", text->key);
-    snprintf(display.name, sizeof display.name, "%s", text->name);
-    if (kind == CHANNEL_OTHER) {
-        display.unit = channel_plain_unit(column);
-        char unit[48];
-        snprintf(unit, sizeof unit, "%.30s%s", display.unit.text, text->unit);
-        snprintf(display.unit.text, sizeof display.unit.text, "%s", unit);
-        snprintf(display.si, sizeof display.si, "%.39s", unit);
-    } else {
-        display.unit = imk_unit_of(text->unit);
-        snprintf(display.si, sizeof display.si, "%s", text->si);
-    }
-    return display;
-}
-
 static size_t members_of(const identification *i, channel_kind kind, size_t *member)
 {
     size_t count = 0;
-    for (size_t c = 0; c < i->channels.count; c++)
-        if (channel_kind_of(log_channel_column(&i->channels, c)) == kind)
+    for (size_t c = 0; c < i->found->record.count; c++)
+        if (channel_kind_of(log_channel_column(&i->found->record, c)) == kind)
             member[count++] = c;
     return count;
 }
@@ -100,7 +55,7 @@ static void estimate_rows(text_table *table, const char *name, const imk_unit *u
 static void term_rows(text_table *table, const identification *i, const size_t *member,
                       size_t members)
 {
-    const imk_log_column *column = log_channel_column(&i->channels, member[0]);
+    const imk_log_column *column = log_channel_column(&i->found->record, member[0]);
     const imk_estimate *estimates[IMK_LOG_COLUMNS_MAX];
     double confidence = i->options->confidence;
     for (int term = 0; term < IMK_NOISE_TERMS; term++) {
@@ -108,7 +63,7 @@ static void term_rows(text_table *table, const identification *i, const size_t *
             continue; /* each log has its own */
         term_display display = identify_term(column, (imk_noise_term)term);
         for (size_t k = 0; k < members; k++)
-            estimates[k] = &i->result[member[k]].term[term];
+            estimates[k] = &i->found->result[member[k]].term[term];
         estimate_rows(table, display.name, &display.unit, estimates, members, confidence);
     }
     imk_unit unit = identify_term(column, IMK_NOISE_BIAS_INSTABILITY).unit;
@@ -117,7 +72,7 @@ static void term_rows(text_table *table, const identification *i, const size_t *
         const imk_estimate *times[IMK_LOG_COLUMNS_MAX];
         bool any = false;
         for (size_t k = 0; k < members; k++) {
-            const imk_identification *r = &i->result[member[k]];
+            const imk_identification *r = &i->found->result[member[k]];
             bool has = n < r->gauss_markov_count;
             estimates[k] = has ? &r->gauss_markov[n].sigma : NULL;
             times[k] = has ? &r->gauss_markov[n].correlation_time : NULL;
@@ -134,28 +89,29 @@ static void term_rows(text_table *table, const identification *i, const size_t *
 static void record_rows(text_table *table, const identification *i, const size_t *member,
                         size_t members)
 {
-    const imk_log_column *column = log_channel_column(&i->channels, member[0]);
+    const imk_log_column *column = log_channel_column(&i->found->record, member[0]);
     imk_unit floor_unit = identify_term(column, IMK_NOISE_BIAS_INSTABILITY).unit;
     double mean_size = 0;
     for (size_t k = 0; k < members; k++)
-        mean_size = fmax(mean_size, fabs(i->result[member[k]].mean));
+        mean_size = fmax(mean_size, fabs(i->found->result[member[k]].mean));
     imk_unit mean_unit = channel_readable_unit(column, mean_size);
     text_table_row(table);
     text_table_set(table, 0, "Allan minimum / 0.664");
     text_table_set(table, 1, "%s", floor_unit.text);
     for (size_t k = 0; k < members; k++)
-        text_table_set(table, 2 + k, "%.4g", i->result[member[k]].minimum_floor / floor_unit.scale);
+        text_table_set(table, 2 + k, "%.4g",
+                       i->found->result[member[k]].minimum_floor / floor_unit.scale);
     text_table_row(table);
     text_table_set(table, 0, "mean of the record");
     text_table_set(table, 1, "%s", mean_unit.text);
     for (size_t k = 0; k < members; k++)
-        text_table_set(table, 2 + k, "%.5g", i->result[member[k]].mean / mean_unit.scale);
+        text_table_set(table, 2 + k, "%.5g", i->found->result[member[k]].mean / mean_unit.scale);
     for (int five = 0; five < 2; five++) {
         text_table_row(table);
         text_table_set(table, 0, five ? "the five terms alone from" : "model holds from tau =");
         text_table_set(table, 1, "s");
         for (size_t k = 0; k < members; k++) {
-            const imk_identification *r = &i->result[member[k]];
+            const imk_identification *r = &i->found->result[member[k]];
             double from = five ? r->five_terms_from : r->valid_from;
             if (isfinite(from))
                 text_table_set(table, 2 + k, "%.3g", from);
@@ -176,7 +132,7 @@ text_table identify_table(const identification *i, channel_kind kind)
     text_table_set(&table, 1, "unit");
     for (size_t k = 0; k < members; k++)
         text_table_set(&table, 2 + k, "%s",
-                       channel_axis_name(log_channel_column(&i->channels, member[k])));
+                       channel_axis_name(log_channel_column(&i->found->record, member[k])));
     term_rows(&table, i, member, members);
     if (!i->joint && !i->options->curve)
         record_rows(&table, i, member, members);
@@ -199,8 +155,8 @@ static double true_value(const imk_model *truth, const imk_log_column *column, i
 static void truth_row(text_table *table, const identification *i, size_t channel,
                       imk_noise_term term, size_t *covered, size_t *stated)
 {
-    const imk_log_column *column = log_channel_column(&i->channels, channel);
-    const imk_estimate *e = &i->result[channel].term[term];
+    const imk_log_column *column = log_channel_column(&i->found->record, channel);
+    const imk_estimate *e = &i->found->result[channel].term[term];
     double truth = true_value(&i->truth, column, term);
     if (isnan(truth) || (truth == 0 && !e->present) || (i->joint && term == IMK_NOISE_RAMP))
         return;
@@ -235,8 +191,8 @@ text_table identify_truth_table(const identification *i, size_t *covered, size_t
     text_table_row(&table);
     for (size_t c = 0; c < 7; c++)
         text_table_set(&table, c, "%s", headers[c]);
-    for (size_t c = 0; c < i->channels.count; c++)
-        if (channel_kind_of(log_channel_column(&i->channels, c)) != CHANNEL_OTHER)
+    for (size_t c = 0; c < i->found->record.count; c++)
+        if (channel_kind_of(log_channel_column(&i->found->record, c)) != CHANNEL_OTHER)
             for (int term = 0; term < IMK_NOISE_TERMS; term++)
                 truth_row(&table, i, c, (imk_noise_term)term, covered, stated);
     return table;

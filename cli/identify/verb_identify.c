@@ -191,18 +191,10 @@ static int present(identification *i, const imk_executor *executor)
     return drawn < 0 ? code : drawn;
 }
 
-static int identify_log(identification *i, const char *path, const imk_executor *executor)
+static int identify_log(identification *i, const imk_identify_log_settings *settings,
+                        const imk_executor *executor)
 {
-    bool taken;
-    int code = identify_stream(i, executor, &taken);
-    if (code < 0 && !taken) {
-        code = log_input_load(&i->options->log, path, &i->channels);
-        if (code >= 0)
-            return code;
-        code = identify_channels(i, executor);
-    }
-    if (code < 0 && i->options->method == METHOD_ALLAN)
-        code = identify_by_allan(i);
+    int code = identify_run(i, settings, executor);
     if (code < 0)
         code = present(i, executor);
     identify_free(i);
@@ -285,22 +277,21 @@ static int check_request(const identify_options *o, size_t logs)
 
 static int identify_operands(const identify_options *o, size_t logs, const char *const *operands)
 {
-    unsigned take_out = 0;
+    imk_identify_log_settings settings;
     identification *i = calloc(1, sizeof *i);
     if (!i)
         return command_failed("memory is exhausted");
     i->options = o;
     i->path = operands[0];
-    int code = identify_parse_keep(o->keep, &take_out);
-    i->take_out = take_out;
+    int code = identify_settings(o, &settings);
     if (code < 0)
         code = o->truth ? command_model(o->truth, &i->truth, NULL) : -1;
     if (code < 0) {
         imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
         imk_executor executor = imk_thread_pool_executor(pool);
-        code = logs > 1   ? identify_several(o, logs, operands, take_out, &i->truth, &executor)
+        code = logs > 1   ? identify_several(o, logs, operands, &settings, &i->truth, &executor)
                : o->curve ? identify_table_of_deviations(i, &executor)
-                          : identify_log(i, operands[0], &executor);
+                          : identify_log(i, &settings, &executor);
         imk_thread_pool_destroy(pool);
     }
     free(i);

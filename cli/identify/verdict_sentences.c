@@ -37,7 +37,7 @@ static void no_detail(const identification *i, size_t channel, char *text, size_
 
 static void filter_detail(const identification *i, size_t channel, char *text, size_t size)
 {
-    imk_low_pass filter = i->result[channel].filter;
+    imk_low_pass filter = i->found->result[channel].filter;
     if (filter.damping > 0)
         snprintf(text, size, " (%.3g Hz, second order, damping %.2g)", filter.bandwidth,
                  filter.damping);
@@ -47,11 +47,11 @@ static void filter_detail(const identification *i, size_t channel, char *text, s
 
 static void line_detail(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_identification *r = &i->result[channel];
+    const imk_identification *r = &i->found->result[channel];
     size_t used = 0;
     text[0] = '\0';
     for (int k = 0; k < r->sinusoid_count && k < 3; k++) {
-        imk_unit unit = channel_readable_unit(log_channel_column(&i->channels, channel),
+        imk_unit unit = channel_readable_unit(log_channel_column(&i->found->record, channel),
                                               r->sinusoid[k].amplitude);
         used += (size_t)snprintf(text + used, size - used, "%s%.4g Hz of %.3g %s", k ? ", " : " (",
                                  r->sinusoid[k].frequency, r->sinusoid[k].amplitude / unit.scale,
@@ -65,7 +65,7 @@ static void line_detail(const identification *i, size_t channel, char *text, siz
 
 static void resonance_detail(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_identification *r = &i->result[channel];
+    const imk_identification *r = &i->found->result[channel];
     text[0] = '\0';
     if (r->resonance_count > 0)
         snprintf(text, size, " (%.3g Hz, Q %.3g%s)", r->resonance[0].frequency, r->resonance[0].q,
@@ -74,8 +74,8 @@ static void resonance_detail(const identification *i, size_t channel, char *text
 
 static void resolution_detail(const identification *i, size_t channel, char *text, size_t size)
 {
-    double step = i->result[channel].resolution;
-    imk_unit unit = channel_readable_unit(log_channel_column(&i->channels, channel), step);
+    double step = i->found->result[channel].resolution;
+    imk_unit unit = channel_readable_unit(log_channel_column(&i->found->record, channel), step);
     text[0] = '\0';
     if (step > 0)
         snprintf(text, size, " (step %.3g %s)", step / unit.scale, unit.text);
@@ -83,7 +83,7 @@ static void resolution_detail(const identification *i, size_t channel, char *tex
 
 static void valid_detail(const identification *i, size_t channel, char *text, size_t size)
 {
-    const imk_identification *r = &i->result[channel];
+    const imk_identification *r = &i->found->result[channel];
     if (isfinite(r->valid_from))
         snprintf(text, size, " (from %.3g s to %.3g s)", r->valid_from, r->valid_to);
     else
@@ -133,15 +133,15 @@ static void judge_bits(identification *i)
         const struct bit_sentence *b = &bit_sentences[k];
         char list[260] = "";
         size_t used = 0;
-        for (size_t c = 0; c < i->channels.count && used < sizeof list; c++) {
+        for (size_t c = 0; c < i->found->record.count && used < sizeof list; c++) {
             char detail[120];
-            if (!(i->result[c].verdict & b->bit))
+            if (!(i->found->result[c].verdict & b->bit))
                 continue;
-            if (b->bit == IMK_VERDICT_SHORT && i->summarised)
+            if (b->bit == IMK_VERDICT_SHORT && i->found->settings.summarise)
                 continue; /* the joint estimate is not of this log alone */
             b->detail(i, c, detail, sizeof detail);
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s%s", used ? ", " : "",
-                                     log_channel_column(&i->channels, c)->name, detail);
+                                     log_channel_column(&i->found->record, c)->name, detail);
         }
         if (used > 0)
             identify_add_sentence(i, b->level, b->code, "%s: %s.", list, b->text);
@@ -166,11 +166,11 @@ static void judge_gravity(identification *i)
 {
     double square = 0, scale = 0;
     int axes = 0;
-    for (size_t c = 0; c < i->channels.count; c++) {
-        const imk_log_column *column = log_channel_column(&i->channels, c);
+    for (size_t c = 0; c < i->found->record.count; c++) {
+        const imk_log_column *column = log_channel_column(&i->found->record, c);
         if (channel_kind_of(column) != CHANNEL_ACCEL || column->axis > 2)
             continue;
-        square += i->result[c].mean * i->result[c].mean;
+        square += i->found->result[c].mean * i->found->result[c].mean;
         scale = column->unit.scale;
         axes++;
     }
@@ -198,9 +198,9 @@ static void judge_five_terms(identification *i)
 {
     char list[600] = "";
     size_t used = 0;
-    for (size_t c = 0; c < i->channels.count && used < sizeof list; c++) {
-        const imk_identification *r = &i->result[c];
-        if (r->five_terms_from <= 1.5 * i->channels.dt)
+    for (size_t c = 0; c < i->found->record.count && used < sizeof list; c++) {
+        const imk_identification *r = &i->found->result[c];
+        if (r->five_terms_from <= 1.5 * i->found->record.dt)
             continue;
         const struct {
             bool is;
@@ -215,7 +215,7 @@ static void judge_five_terms(identification *i)
                 snprintf(why + strlen(why), sizeof why - strlen(why), "%s%s", why[0] ? ", " : "",
                          causes[k].name);
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%s from %.3g s (%s)",
-                                 used ? "; " : "", log_channel_column(&i->channels, c)->name,
+                                 used ? "; " : "", log_channel_column(&i->found->record, c)->name,
                                  r->five_terms_from, why[0] ? why : "cause not known");
     }
     if (used > 0)
@@ -232,13 +232,13 @@ void identify_judge(identification *i)
 {
     char length[60];
     double from = 0, to = (double)INFINITY;
-    for (size_t c = 0; c < i->channels.count; c++) {
-        if (!isfinite(i->result[c].valid_from))
+    for (size_t c = 0; c < i->found->record.count; c++) {
+        if (!isfinite(i->found->result[c].valid_from))
             continue;
-        from = fmax(from, i->result[c].valid_from);
-        to = fmin(to, i->result[c].valid_to);
+        from = fmax(from, i->found->result[c].valid_from);
+        to = fmin(to, i->found->result[c].valid_to);
     }
-    format_duration(i->channels.dt * (double)i->channels.rows, length, sizeof length);
+    format_duration(i->found->record.dt * (double)i->found->record.rows, length, sizeof length);
     judge_gravity(i);
     identify_judge_samples(i);
     judge_bits(i);
@@ -248,14 +248,14 @@ void identify_judge(identification *i)
         identify_add_sentence(
             i, bad ? VERDICT_NOTE : VERDICT_GOOD, "length",
             "%s at %.6g Hz: the model speaks for averaging times from %.3g s to %.3g s.", length,
-            1 / i->channels.dt, from, to);
+            1 / i->found->record.dt, from, to);
     else
         identify_add_sentence(i, VERDICT_NOTE, "length", "%s at %.6g Hz.", length,
-                              1 / i->channels.dt);
-    if (i->channels.bridged > 0)
+                              1 / i->found->record.dt);
+    if (i->found->record.bridged > 0)
         identify_add_sentence(i, VERDICT_NOTE, "bridged",
                               "%zu of %zu samples were bridged by straight lines.",
-                              i->channels.bridged, i->channels.rows);
+                              i->found->record.bridged, i->found->record.rows);
     if (!bad)
         identify_add_sentence(i, VERDICT_GOOD, "good", "Nothing speaks against this record.");
 }

@@ -1,30 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a channel is called and in which units its figures are shown. */
-#ifndef IMUKIT_CHANNEL_UNITS_H
-#define IMUKIT_CHANNEL_UNITS_H
+/* The library's names of channels under the names that verbs use. */
+#ifndef IMUKIT_COMMAND_CHANNEL_UNITS_H
+#define IMUKIT_COMMAND_CHANNEL_UNITS_H
 
-#include "shell/command.h"
+#include "imukit/channel_units.h"
 
-#include "imukit/log.h"
-
-/* What kind of sensor a column is of. */
-typedef enum channel_kind {
-    CHANNEL_GYRO = 0,
-    CHANNEL_ACCEL,
-    CHANNEL_OTHER,
-    CHANNEL_KINDS
-} channel_kind;
-
-channel_kind channel_kind_of(const imk_log_column *column);
-/* "gyro", "accel", "channel" */
-const char *channel_kind_name(channel_kind kind);
-/* "x" … for the axes of a triad, the column's name otherwise. */
-const char *channel_axis_name(const imk_log_column *column);
-
-/* Unit in which machine-readable figures of a column are written: SI for gyros and accelerometers,
- * the column's own otherwise ("1" when it has none). */
-imk_unit channel_plain_unit(const imk_log_column *column);
-/* Unit a person reads figures of this size in [SI]. */
-imk_unit channel_readable_unit(const imk_log_column *column, double magnitude);
+typedef imk_channel_kind channel_kind;
+#define CHANNEL_GYRO IMK_CHANNEL_GYRO
+#define CHANNEL_ACCEL IMK_CHANNEL_ACCEL
+#define CHANNEL_OTHER IMK_CHANNEL_OTHER
+#define CHANNEL_KINDS IMK_CHANNEL_KINDS
+#define channel_kind_of imk_channel_kind_of
+#define channel_kind_name imk_channel_kind_name
+#define channel_axis_name imk_channel_axis_name
+#define channel_plain_unit imk_channel_plain_unit
+#define channel_readable_unit imk_channel_readable_unit
 
 #endif

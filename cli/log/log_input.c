@@ -2,11 +2,8 @@
 /* The common options of verbs that read logs, and loading one. */
 #include "log_input.h"
 
-#include "shell/progress.h"
+#include "shell/job_progress.h"
 
-#include "imukit/samples.h"
-
-#include <math.h>
 #include <string.h>
 
 const option log_input_options[LOG_INPUT_OPTIONS] = {
@@ -50,89 +47,64 @@ imk_log_settings log_input_settings(const log_input *input)
     return settings;
 }
 
-/* Gyros in the order of their axes, then accelerometers; every other column when there are none. */
-void log_choose_channels(log_channels *channels)
+int log_input_check(const log_input *input)
 {
-    const imk_log *log = &channels->log;
-    static const imk_quantity kinds[] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
-    channels->count = 0;
-    for (size_t k = 0; k < 2; k++) {
-        for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
-            int column = imk_log_find(log, kinds[k], axis);
-            if (column >= 0)
-                channels->column[channels->count++] = column;
-        }
-    }
-    if (channels->count > 0)
-        return;
-    for (size_t c = 0; c < log->column_count; c++)
-        if (log->column[c].quantity == IMK_QUANTITY_OTHER && !log->column[c].label)
-            channels->column[channels->count++] = (int)c;
+    if (input->gaps == GAPS_KEEP && !input->missing_allowed)
+        return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
+                               "bridge or --gaps longest");
+    return -1;
 }
 
-void log_forget_faults(imk_log *log)
+int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader)
 {
-    for (size_t c = 0; c < log->column_count; c++) {
-        if (log->column[c].quantity == IMK_QUANTITY_TIME || log->column[c].label)
+    imk_error error;
+    imk_log_settings settings = log_input_settings(input);
+    settings.reopened = again;
+    if (imk_log_open(path, &settings, reader, &error) != IMK_OK)
+        return command_log_error(&error, path);
+    return -1;
+}
+
+int log_input_tell(const char *path, const imk_findings *findings, imk_status status,
+                   const imk_error *error)
+{
+    char text[900];
+    const imk_finding *failure = status != IMK_OK ? imk_findings_failure(findings) : NULL;
+    for (size_t i = 0; i < findings->count; i++) {
+        const imk_finding *f = &findings->item[i];
+        if (f->level != IMK_FINDING_WARNING)
             continue;
-        for (size_t row = 0; row < log->rows; row++)
-            if (!(fabs(log->data[c][row]) <= IMK_READING_MAX))
-                log->data[c][row] = (double)NAN;
+        imk_finding_text(f, text, sizeof text);
+        command_warn(f->code, "%s", text);
     }
+    if (status == IMK_OK)
+        return -1;
+    if (!failure)
+        return command_log_error(error, path);
+    imk_finding_text(failure, text, sizeof text);
+    return command_failed("%s: %s", path, text);
 }
 
 int log_input_load(const log_input *input, const char *path, log_channels *channels)
 {
     imk_error error;
+    imk_log_reader *reader;
+    imk_findings findings = {.count = 0};
     memset(channels, 0, sizeof *channels);
-    if (input->gaps == GAPS_KEEP && !input->missing_allowed)
-        return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
-                               "bridge or --gaps longest");
-    imk_log_settings settings = log_input_settings(input);
-    char label[120];
-    snprintf(label, sizeof label, "reading %.100s", path);
-    progress p = progress_begin(label, "B", 1);
-    imk_status status = imk_log_load(path, &settings, progress_update, &p, &channels->log, &error);
-    progress_end(&p);
-    if (status != IMK_OK)
-        return command_log_error(&error, path);
-    log_choose_channels(channels);
-    log_forget_faults(&channels->log);
-    int code = -1;
-    if (channels->log.rows == 0)
-        code = command_failed("%s: there is a header but no data row", path);
-    else if (channels->count == 0)
-        code = command_failed("%s: there is no column to analyse; name one with --columns, such "
-                              "as gyro_x or accel_z",
-                              path);
-    else
-        code = log_space_evenly(input, path, channels);
+    int code = log_input_check(input);
+    if (code < 0)
+        code = log_input_open(input, path, false, &reader);
     if (code >= 0)
-        log_channels_free(channels);
+        return code;
+    job_progress shown = job_progress_begin(path);
+    const imk_job job = job_progress_job(&shown, NULL);
+    const imk_record_source source = imk_log_source(reader);
+    const imk_status status = imk_even_record_load(&source, (imk_gap_policy)input->gaps, &job,
+                                                   channels, &findings, &error);
+    job_progress_end(&shown);
+    imk_log_close(reader);
+    code = log_input_tell(path, &findings, status, &error);
+    if (code >= 0)
+        imk_even_record_free(channels);
     return code;
-}
-
-void log_channels_free(log_channels *channels)
-{
-    imk_log_free(&channels->log);
-    channels->count = 0;
-}
-
-const imk_log_column *log_channel_column(const log_channels *channels, size_t channel)
-{
-    return &channels->log.column[channels->column[channel]];
-}
-
-double *log_channel_data(const log_channels *channels, size_t channel)
-{
-    return channels->log.data[channels->column[channel]];
-}
-
-size_t log_channel_finite(const log_channels *channels, size_t channel)
-{
-    const double *data = log_channel_data(channels, channel);
-    size_t count = 0;
-    for (size_t row = 0; row < channels->rows; row++)
-        count += isfinite(data[row]) != 0;
-    return count;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures: the outputs of a run against time, the views of an instrument, and what a laboratory
- * found. */
+/* Pictures: the outputs of a run against time, the views of an instrument, still and in motion, and
+ * what a laboratory found. */
 #include "physics_parts.h"
+#include "shell/growing_list.h"
 
 #include "imukit/figure_file.h"
 
@@ -13,88 +14,60 @@
 /* More points than this are not seen. */
 enum { VIEW_POINTS = 5000 };
 
-void physics_figure_free(physics_figure *figure)
-{
-    for (size_t i = 0; i < PHYSICS_PANELS_MAX; i++) {
-        free(figure->memory[i]);
-        figure->memory[i] = NULL;
-    }
-}
-
-static void finish(physics_figure *f, const char *title, size_t panels)
-{
-    f->figure = (imk_figure){title, panels, panels < 2 ? 1 : 2, f->panel};
-    if (panels == 1) /* drawn over two or more */
-        f->figure.title = "";
-}
-
 /* "beat frequency [kHz]"; pure numbers have no unit. */
-static void label(char *text, size_t size, const char *name, const char *unit)
+static const char *label(char text[PHYSICS_LABEL], const char *name, const char *unit)
 {
     if (strcmp(unit, "1") == 0)
-        snprintf(text, size, "%.48s", name);
+        snprintf(text, PHYSICS_LABEL, "%.48s", name);
     else
-        snprintf(text, size, "%.48s [%.40s]", name, unit);
+        snprintf(text, PHYSICS_LABEL, "%.48s [%.40s]", name, unit);
     for (char *c = text; *c && *c != '['; c++)
         if (*c == '_')
             *c = ' ';
+    return text;
 }
 
 /* ---- a run ----------------------------------------------------------------------------------- */
 
-/* Output 0 against the input: a curve of response, with its dead band, when the sine is slow, an
- * ellipse when the instrument lags behind. */
-static void response_of_run(const physics_run *run, const char *unit, physics_figure *f, size_t at)
+static void add_curves(const physics_run *run, const double *x, const double *output,
+                       imk_curve_style style, bool with_input, imk_figure_builder *figure)
 {
-    const double *values = f->curve[0][0].y, *input = f->curve[0][1].y;
-    f->curve[at][0] =
-        (imk_curve){"output", IMK_CURVE_POINTS, 0, run->points, input, values, NULL, NULL};
-    f->curve[at][1] =
-        (imk_curve){"input", IMK_CURVE_DASHES, 1, run->points, input, input, NULL, NULL};
-    label(f->label[at][0], sizeof f->label[at][0], "input", unit);
-    label(f->label[at][1], sizeof f->label[at][1], "output", unit);
-    f->panel[at] = (imk_panel){"Output against input",
-                               f->label[at][0],
-                               f->label[at][1],
-                               false,
-                               false,
-                               2,
-                               f->curve[at],
-                               0,
-                               NULL,
-                               IMK_KEY_UPPER};
+    imk_curve curve = {with_input ? "output" : "", style, 0, run->points, x, output, NULL, NULL};
+    imk_figure_curve(figure, &curve, 1);
+    if (with_input) {
+        curve = (imk_curve){"input", IMK_CURVE_DASHES, 1, run->points, x, run->input, NULL, NULL};
+        imk_figure_curve(figure, &curve, 1);
+    }
 }
 
-void physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *f)
+/* Against the input, output 0 is a curve of response, with its dead band, when the sine is slow, an
+ * ellipse when the instrument lags behind. */
+void physics_show_run_figure(const physics *p, const physics_run *run, imk_result *result)
 {
     const imk_instrument *instrument = p->file.instrument;
-    const size_t outputs = instrument->output_count;
-    memset(f, 0, sizeof *f);
-    for (size_t i = 0; i < outputs; i++) {
+    char x[PHYSICS_LABEL], y[PHYSICS_LABEL], title[PHYSICS_LABEL + 200];
+    imk_figure_builder *figure = imk_result_figure(
+        result, physics_name(p), 2,
+        run->stride > 1 ? "Each point is the mean of several samples."
+                        : "Each point is a sample: the mean since the one before.");
+    for (size_t i = 0; i < instrument->output_count; i++) {
         const imk_signal *signal = &instrument->outputs[i];
-        const imk_unit unit = physics_output_unit(p, run, i);
-        double *values = command_memory(NULL, 2 * (run->points + 1) * sizeof *values);
-        double *input = values + run->points;
-        f->memory[i] = values;
-        for (size_t k = 0; k < run->points; k++) {
-            values[k] = (run->curve[i][k] - unit.offset) / unit.scale;
-            input[k] = run->input[k] / unit.scale;
-        }
-        f->curve[i][0] = (imk_curve){
-            i == 0 ? "output" : "", IMK_CURVE_LINE, 0, run->points, run->time, values, NULL, NULL};
-        f->curve[i][1] =
-            (imk_curve){"input", IMK_CURVE_DASHES, 1, run->points, run->time, input, NULL, NULL};
-        label(f->label[i][0], sizeof f->label[i][0], signal->name, "1");
-        snprintf(f->label[i][0] + strlen(f->label[i][0]),
-                 sizeof f->label[i][0] - strlen(f->label[i][0]), ": %s", signal->help);
-        label(f->label[i][1], sizeof f->label[i][1], signal->name, unit.text);
-        f->panel[i] = (imk_panel){f->label[i][0], "time [s]",     f->label[i][1], false,
-                                  false,          i == 0 ? 2 : 1, f->curve[i],    0,
-                                  NULL,           IMK_KEY_UPPER};
+        snprintf(title, sizeof title, "%s: %.190s", label(x, signal->name, "1"), signal->help);
+        const imk_panel panel = {.title = title,
+                                 .x_label = "time [s]",
+                                 .y_label =
+                                     label(y, signal->name, physics_output_unit(p, run, i).text)};
+        imk_figure_panel(figure, &panel);
+        add_curves(run, run->time, run->curve[i], IMK_CURVE_LINE, i == 0, figure);
     }
-    if (p->input.is_sine)
-        response_of_run(run, physics_output_unit(p, run, 0).text, f, outputs);
-    finish(f, p->file.name[0] ? p->file.name : instrument->title, outputs + p->input.is_sine);
+    if (p->input.is_sine) {
+        const char *unit = physics_output_unit(p, run, 0).text;
+        const imk_panel panel = {.title = "Output against input",
+                                 .x_label = label(x, "input", unit),
+                                 .y_label = label(y, "output", unit)};
+        imk_figure_panel(figure, &panel);
+        add_curves(run, run->input, run->curve[0], IMK_CURVE_POINTS, true, figure);
+    }
 }
 
 /* ---- views ----------------------------------------------------------------------------------- */
@@ -108,16 +81,6 @@ static physics_input input_of(const physics *p, const imk_view *view)
         (gyro ? input.exposure.angular_rate : input.exposure.specific_force)[0] = view->input;
     }
     return input;
-}
-
-imk_view physics_view_as_asked(const physics *p, size_t index)
-{
-    imk_view view = p->file.instrument->views[index];
-    if (!isnan(p->options->view_duration))
-        view.duration = p->options->view_duration;
-    if (p->options->view && !isnan(p->options->view_rate))
-        view.rate = p->options->view_rate;
-    return view;
 }
 
 /* Run the instrument as the view says; rows of x, y … in display units into `data`. */
@@ -156,7 +119,7 @@ static int record(const physics *p, const imk_view *view, size_t points, uint64_
     return -1;
 }
 
-/* The time axis of a short view is in ms or us. */
+/* The time axis of a short view is in ms or us. @return its unit */
 static const char *scale_time(const imk_view *view, size_t points, double *time)
 {
     const imk_unit unit = imk_unit_readable(imk_unit_of("s").dimension, view->duration);
@@ -167,62 +130,46 @@ static const char *scale_time(const imk_view *view, size_t points, double *time)
     return unit.scale == 1 ? "s" : unit.scale > 1e-4 ? "ms" : "us";
 }
 
-/* "tilt x, tilt y", as far as there is room. */
-static void join_names(const imk_instrument *instrument, const imk_view *view, char *text,
-                       size_t size)
+/* "tilt x, tilt y", as far as there is room: else the key says it. */
+static void label_view(const imk_instrument *instrument, const char *x_unit, physics_view *v)
 {
-    size_t length = 0;
-    for (int c = 0; c < view->curve_count && length < size; c++)
-        length += (size_t)snprintf(text + length, size - length, "%s%s", c > 0 ? ", " : "",
-                                   instrument->signals[view->y[c]].name);
-    if (length > 48)
-        text[0] = '\0'; /* the key says it */
+    const imk_view *view = &v->view;
+    const imk_unit unit = imk_unit_readable(imk_unit_of("s").dimension, view->duration);
+    growing_list names = {0};
+    for (int c = 0; c < view->curve_count; c++)
+        list_add_item(&names, "%s", instrument->signals[view->y[c]].name);
+    label(v->x_label, view->x < 0 ? "time" : instrument->signals[view->x].name, x_unit);
+    label(v->y_label, names.size > 48 ? "" : names.text, instrument->signals[view->y[0]].unit);
+    snprintf(v->clock, sizeof v->clock, "a round: %.4g %s", view->duration / unit.scale, unit.text);
+    list_free(&names);
 }
 
-static void label_panel(const imk_instrument *instrument, const imk_view *view, const char *x_unit,
-                        physics_figure *f, size_t at)
-{
-    char names[200];
-    join_names(instrument, view, names, sizeof names);
-    label(f->label[at][0], sizeof f->label[at][0],
-          view->x < 0 ? "time" : instrument->signals[view->x].name, x_unit);
-    label(f->label[at][1], sizeof f->label[at][1], names, instrument->signals[view->y[0]].unit);
-    for (int c = 0; view->curve_count > 1 && c < view->curve_count; c++) {
-        label(f->name[at][c], sizeof f->name[at][c], instrument->signals[view->y[c]].name, "1");
-        f->curve[at][c].label = f->name[at][c];
-    }
-}
-
-static int make_panel(const physics *p, const imk_view *view, physics_figure *f, size_t at)
+/* With the duration and rate that were asked for. @return -1 or the exit code; free the data */
+static int make_view(const physics *p, size_t index, physics_view *v)
 {
     const imk_instrument *instrument = p->file.instrument;
-    const uint64_t samples = (uint64_t)floor(view->duration * view->rate + 0.5);
-    const uint64_t stride = samples / VIEW_POINTS + 1;
-    const size_t points = (size_t)(samples / stride);
-    const size_t columns = (size_t)view->curve_count + 1;
-    double *data = command_memory(NULL, (columns * points + 1) * sizeof *data);
-    f->memory[at] = data;
-    int code = record(p, view, points, stride, data);
-    if (code >= 0)
+    imk_view *view = &v->view;
+    *v = (physics_view){.view = instrument->views[index]};
+    if (!isnan(p->options->view_duration))
+        view->duration = p->options->view_duration;
+    if (p->options->view && !isnan(p->options->view_rate))
+        view->rate = p->options->view_rate;
+    const double samples = view->duration * view->rate;
+    if (!(samples >= 2 && samples <= 1e9))
+        return command_misused("--duration: %g s at %g points per second are %s", view->duration,
+                               view->rate, samples >= 2 ? "too many" : "no picture");
+    const uint64_t stride = (uint64_t)floor(samples + 0.5) / VIEW_POINTS + 1;
+    v->points = (size_t)((uint64_t)floor(samples + 0.5) / stride);
+    v->data =
+        command_memory(NULL, ((size_t)(view->curve_count + 1) * v->points + 1) * sizeof *v->data);
+    const int code = record(p, view, v->points, stride, v->data);
+    if (code >= 0) {
+        free(v->data);
         return code;
-    for (int c = 0; c < view->curve_count; c++)
-        f->curve[at][c] = (imk_curve){"",   view->points ? IMK_CURVE_POINTS : IMK_CURVE_LINE,
-                                      c,    points,
-                                      data, data + (size_t)(c + 1) * points,
-                                      NULL, NULL};
-    const char *x_unit =
-        view->x < 0 ? scale_time(view, points, data) : instrument->signals[view->x].unit;
-    label_panel(instrument, view, x_unit, f, at);
-    f->panel[at] = (imk_panel){view->title,
-                               f->label[at][0],
-                               f->label[at][1],
-                               false,
-                               false,
-                               (size_t)view->curve_count,
-                               f->curve[at],
-                               0,
-                               NULL,
-                               IMK_KEY_UPPER};
+    }
+    label_view(
+        instrument,
+        view->x < 0 ? scale_time(view, v->points, v->data) : instrument->signals[view->x].unit, v);
     return -1;
 }
 
@@ -236,51 +183,54 @@ static bool is_constant(size_t count, const double *values)
 
 /* What the view shows is not in this design, such as the bits of an open loop: the first curve is
  * 0, or no curve moves, or a curve against a signal has no width. */
-bool physics_view_is_empty(const imk_view *view, const imk_panel *panel)
+static bool is_empty(const physics_view *v)
 {
-    const imk_curve *first = &panel->curves[0];
-    if (view->x >= 0 && is_constant(first->count, first->x))
+    const double *y = v->data + v->points;
+    if (v->view.x >= 0 && is_constant(v->points, v->data))
         return true;
-    if (first->y[0] == 0 && is_constant(first->count, first->y))
+    if (y[0] == 0 && is_constant(v->points, y))
         return true;
-    for (size_t c = 0; c < panel->curve_count; c++)
-        if (!is_constant(panel->curves[c].count, panel->curves[c].y))
+    for (int c = 0; c < v->view.curve_count; c++)
+        if (!is_constant(v->points, y + (size_t)c * v->points))
             return false;
     return true;
 }
 
-int physics_figure_of_view(const physics *p, size_t index, physics_figure *f)
+static void add_panel(const physics *p, const physics_view *v, imk_figure_builder *figure)
 {
-    const imk_instrument *instrument = p->file.instrument;
-    const size_t first = index == SIZE_MAX ? 0 : index;
-    const size_t all =
-        instrument->view_count < PHYSICS_PANELS_MAX ? instrument->view_count : PHYSICS_PANELS_MAX;
-    const size_t count = index == SIZE_MAX ? all : 1;
-    size_t kept = 0;
-    int code = -1;
-    memset(f, 0, sizeof *f);
-    for (size_t i = 0; i < count && code < 0; i++) {
-        const imk_view view = physics_view_as_asked(p, first + i);
-        if (!(view.duration * view.rate >= 2 && view.duration * view.rate <= 1e9))
-            code = command_misused("--duration: %g s at %g points per second are %s", view.duration,
-                                   view.rate,
-                                   view.duration * view.rate >= 2 ? "too many" : "no picture");
-        else
-            code = make_panel(p, &view, f, kept);
-        if (code >= 0 || count == 1 || !physics_view_is_empty(&view, &f->panel[kept])) {
-            kept++;
-        } else {
-            free(f->memory[kept]);
-            f->memory[kept] = NULL;
-        }
+    const imk_view *view = &v->view;
+    char name[PHYSICS_LABEL];
+    const imk_panel panel = {.title = view->title, .x_label = v->x_label, .y_label = v->y_label};
+    imk_figure_panel(figure, &panel);
+    for (int c = 0; c < view->curve_count; c++) {
+        const char *signal = p->file.instrument->signals[view->y[c]].name;
+        const imk_curve curve = {.label = view->curve_count > 1 ? label(name, signal, "1") : "",
+                                 .style = view->points ? IMK_CURVE_POINTS : IMK_CURVE_LINE,
+                                 .color = c,
+                                 .count = v->points,
+                                 .x = v->data,
+                                 .y = v->data + (size_t)(c + 1) * v->points};
+        imk_figure_curve(figure, &curve, 1);
     }
-    if (code < 0 && kept == 0)
-        code = command_failed("nothing moves in the views of this design; add --%s",
-                              instrument->sensor == IMK_GYRO ? "rate" : "acceleration");
-    if (code >= 0)
-        physics_figure_free(f);
-    finish(f, instrument->title, kept);
-    return code;
+}
+
+/* Views whose axes are both signals can move. */
+static bool can_move(const imk_view *view)
+{
+    return view->x >= 0 && view->curve_count == 1;
+}
+
+static imk_animation animation_of(const physics_view *v)
+{
+    return (imk_animation){.title = v->view.title,
+                           .x_label = v->x_label,
+                           .y_label = v->y_label,
+                           .count = v->points,
+                           .x = v->data,
+                           .y = v->data + v->points,
+                           .points = v->view.points,
+                           .duration = 12, /* slow enough to follow with the eye [s] */
+                           .clock = v->clock};
 }
 
 /* Titles and --view are compared by their letters and digits. */
@@ -298,7 +248,8 @@ static bool begins_alike(const char *title, const char *text)
     }
 }
 
-int physics_find_view(const physics *p, size_t *index)
+/* The view that --view names. @return -1 or the exit code */
+static int find_view(const physics *p, size_t *index)
 {
     const imk_instrument *instrument = p->file.instrument;
     const char *text = p->options->view;
@@ -320,76 +271,160 @@ int physics_find_view(const physics *p, size_t *index)
                            text, instrument->view_count, instrument->name);
 }
 
+/* A view that cannot be drawn (the reason is on standard error) is left out, and so is one of what
+ * this design has not. */
+void physics_show_views(const physics *p, imk_result *result)
+{
+    const imk_instrument *instrument = p->file.instrument;
+    if (instrument->view_count > 0)
+        imk_result_heading(result, "Inside the instrument");
+    for (size_t i = 0; i < instrument->view_count; i++) {
+        const imk_view *view = &instrument->views[i];
+        physics_view v;
+        if (make_view(p, i, &v) >= 0) {
+            command_warn("view", "the view \"%s\" is left out", view->title);
+            continue;
+        }
+        if (!is_empty(&v) && can_move(view)) {
+            const imk_animation animation = animation_of(&v);
+            imk_result_animation(result, &animation, view->caption);
+        } else if (!is_empty(&v)) {
+            add_panel(p, &v, imk_result_figure(result, "", 1, view->caption));
+        }
+        free(v.data);
+    }
+}
+
+int physics_show_view_figure(const physics *p, imk_result *result)
+{
+    const imk_instrument *instrument = p->file.instrument;
+    const bool one = p->options->view != NULL;
+    size_t first = 0, kept = 0;
+    if (instrument->view_count == 0)
+        return command_failed("the %s has no views: add --duration TIME to draw its outputs",
+                              instrument->title);
+    int code = one ? find_view(p, &first) : -1;
+    imk_figure_builder *figure = imk_result_figure(result, instrument->title, 2, "");
+    const size_t end = one ? first + 1 : instrument->view_count;
+    for (size_t i = first; i < end && code < 0; i++) {
+        physics_view v;
+        code = make_view(p, i, &v);
+        if (code >= 0)
+            break;
+        if (one || !is_empty(&v)) {
+            add_panel(p, &v, figure);
+            kept++;
+        }
+        free(v.data);
+    }
+    if (code < 0 && kept == 0)
+        code = command_failed("nothing moves in the views of this design; add --%s",
+                              instrument->sensor == IMK_GYRO ? "rate" : "acceleration");
+    return code;
+}
+
+/* Of the view asked for, else of the first that can move. */
+static int choose_moving(const physics *p, size_t *index)
+{
+    const imk_instrument *instrument = p->file.instrument;
+    const imk_view *views = instrument->views;
+    *index = 0;
+    const int code = p->options->view ? find_view(p, index) : -1;
+    while (!p->options->view && *index < instrument->view_count && !can_move(&views[*index]))
+        ++*index;
+    if (code >= 0)
+        return code;
+    if (*index >= instrument->view_count)
+        return command_misused("--animate: no view of the %s shows one signal against another",
+                               instrument->title);
+    if (!can_move(&views[*index]))
+        return command_misused("--animate: the view \"%s\" is drawn against time; a view of one "
+                               "signal against another can move",
+                               views[*index].title);
+    return -1;
+}
+
+int physics_animate(const physics *p, const char *path)
+{
+    size_t index;
+    physics_view v;
+    imk_error error;
+    int code = choose_moving(p, &index);
+    if (code < 0)
+        code = make_view(p, index, &v);
+    if (code >= 0)
+        return code;
+    const imk_animation animation = animation_of(&v);
+    const imk_status status = imk_animation_write(&animation, path, &error);
+    free(v.data);
+    return status == IMK_OK ? -1 : command_error(&error, NULL);
+}
+
 /* ---- laboratory ------------------------------------------------------------------------------ */
 
 /* Distance from the straight line through zero of the computed scale, in parts of full scale. */
-static void table_panel(const physics_laboratory *l, bool gyro, physics_figure *f)
+static void add_table(const imk_laboratory_result *r, bool gyro, imk_figure_builder *figure)
 {
+    enum { MOST = IMK_LABORATORY_POINTS_MAX };
     const char *unit = gyro ? "deg/s" : "m/s^2";
-    const imk_laboratory_result *r = &l->result;
-    const size_t count = (size_t)r->point_count;
     const double scale = imk_unit_of(unit).scale;
-    double *data = command_memory(NULL, 4 * (count + 1) * sizeof *data);
-    f->memory[0] = data;
-    for (size_t i = 0; i < count; i++) {
-        const double error = (r->point[i].output - r->point[i].input) / scale;
+    double input[MOST], error[MOST], lower[MOST], upper[MOST];
+    char x[PHYSICS_LABEL], y[PHYSICS_LABEL];
+    for (int i = 0; i < r->point_count; i++) {
         const double spread = 2 * r->point[i].sigma / scale;
-        data[i] = r->point[i].input / scale;
-        data[count + i] = error;
-        data[2 * count + i] = error - spread;
-        data[3 * count + i] = error + spread;
+        input[i] = r->point[i].input / scale;
+        error[i] = (r->point[i].output - r->point[i].input) / scale;
+        lower[i] = error[i] - spread;
+        upper[i] = error[i] + spread;
     }
-    f->curve[0][0] = (imk_curve){
-        "", IMK_CURVE_POINTS, 0, count, data, data + count, data + 2 * count, data + 3 * count};
-    snprintf(f->label[0][0], sizeof f->label[0][0], "input [%s]", unit);
-    snprintf(f->label[0][1], sizeof f->label[0][1], "output - input [%s]", unit);
-    f->panel[0] = (imk_panel){gyro ? "Rate table" : "Static response",
-                              f->label[0][0],
-                              f->label[0][1],
-                              false,
-                              false,
-                              1,
-                              f->curve[0],
-                              0,
-                              NULL,
-                              IMK_KEY_UPPER};
+    const imk_panel panel = {.title = gyro ? "Rate table" : "Static response",
+                             .x_label = label(x, "input", unit),
+                             .y_label = label(y, "output - input", unit)};
+    const imk_curve curve = {.label = "",
+                             .style = IMK_CURVE_POINTS,
+                             .count = (size_t)r->point_count,
+                             .x = input,
+                             .y = error,
+                             .lower = lower,
+                             .upper = upper};
+    imk_figure_panel(figure, &panel);
+    imk_figure_curve(figure, &curve, 1);
 }
 
-static void response_panel(const physics_laboratory *l, physics_figure *f, size_t at)
+static void add_response(const imk_laboratory_result *r, imk_figure_builder *figure)
+{
+    double frequency[IMK_LABORATORY_FREQUENCIES_MAX], gain[IMK_LABORATORY_FREQUENCIES_MAX];
+    for (int i = 0; i < r->response_count; i++) {
+        frequency[i] = r->response[i].frequency;
+        gain[i] = r->response[i].gain;
+    }
+    const imk_panel panel = {.title = "Frequency response",
+                             .x_label = "frequency [Hz]",
+                             .y_label = "gain",
+                             .x_logarithmic = true,
+                             .y_logarithmic = true};
+    const imk_curve curve = {.label = "",
+                             .style = IMK_CURVE_POINTS,
+                             .count = (size_t)r->response_count,
+                             .x = frequency,
+                             .y = gain};
+    imk_figure_panel(figure, &panel);
+    imk_figure_curve(figure, &curve, 1);
+}
+
+bool physics_show_laboratory_figure(const physics *p, const physics_laboratory *l,
+                                    imk_result *result)
 {
     const imk_laboratory_result *r = &l->result;
-    const size_t count = (size_t)r->response_count;
-    double *data = command_memory(NULL, 2 * (count + 1) * sizeof *data);
-    f->memory[at] = data;
-    for (size_t i = 0; i < count; i++) {
-        data[i] = r->response[i].frequency;
-        data[count + i] = r->response[i].gain;
-    }
-    f->curve[at][0] = (imk_curve){"", IMK_CURVE_POINTS, 0, count, data, data + count, NULL, NULL};
-    f->panel[at] = (imk_panel){
-        "Frequency response", "frequency [Hz]", "gain", true, true, 1, f->curve[at], 0, NULL,
-        IMK_KEY_UPPER};
-}
-
-bool physics_figure_of_laboratory(const physics *p, const physics_laboratory *l, physics_figure *f)
-{
-    const bool gyro = p->file.instrument->sensor == IMK_GYRO;
-    size_t panels = 0;
-    memset(f, 0, sizeof *f);
-    if (l->result.point_count > 0) {
-        table_panel(l, gyro, f);
-        panels++;
-    }
-    if (l->result.response_count > 0)
-        response_panel(l, f, panels++);
-    finish(f, p->file.instrument->title, panels);
-    return panels > 0;
-}
-
-int physics_draw(const imk_figure *figure, const char *path)
-{
-    imk_error error;
-    if (imk_figure_write(figure, path, &error) == IMK_OK)
-        return -1;
-    return command_error(&error, NULL);
+    if (r->point_count == 0 && r->response_count == 0)
+        return false;
+    imk_figure_builder *figure = imk_result_figure(
+        result, p->file.instrument->title, 2,
+        "The rate table shows output less input, bars of two standard deviations; the response is "
+        "the gain for a sine.");
+    if (r->point_count > 0)
+        add_table(r, p->file.instrument->sensor == IMK_GYRO, figure);
+    if (r->response_count > 0)
+        add_response(r, figure);
+    return true;
 }

@@ -3,13 +3,10 @@
 #ifndef IMUKIT_PHYSICS_PARTS_H
 #define IMUKIT_PHYSICS_PARTS_H
 
-#include "shell/command.h"
-#include "shell/json_output.h"
-#include "shell/text_table.h"
+#include "shell/show.h"
 
 #include "imukit/distort.h"
 #include "imukit/laboratory.h"
-#include "imukit/report.h"
 
 typedef struct physics_options {
     bool list, show, reduce, sweep, single_axis, no_noise, json;
@@ -61,8 +58,9 @@ typedef struct physics_run {
     double deviation[IMK_INSTRUMENT_OUTPUTS_MAX]; /* NaN: of one sample */
     double last[IMK_INSTRUMENT_OUTPUTS_MAX]; /* at the end: mean of the last 1 % of the samples */
     size_t points;
-    double *time, *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /* [s], SI; PHYSICS_CURVE_POINTS + 1 each */
-    double *input;                                    /* of output 0's kind */
+    double *time, *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /* [s], display units;
+                                                         PHYSICS_CURVE_POINTS + 1 each */
+    double *input;                                    /* in the unit of output 0 */
 } physics_run;
 
 /* Run for --duration, write the log and the signals. */
@@ -76,64 +74,59 @@ uint64_t physics_samples(const physics_options *o, double rate);
 void physics_warn_of_run(const physics *p, const physics_run *run);
 
 /* physics_design.c: the list of instruments, one design. */
-int physics_list(const physics_options *o);
-int physics_show(const physics *p);
-text_table physics_design_table(const physics *p);
-json_t *physics_design_json(const physics *p);
-json_t *physics_instrument_json(const imk_instrument *instrument);
-int physics_overview(const physics *p);
+void physics_show_list(imk_result *result);
+void physics_show_overview(const physics *p, imk_result *result);
+void physics_show_design(const physics *p, imk_result *result);
+void physics_design_data(const physics *p, imk_result *result);
+void physics_instrument_data(const imk_instrument *instrument, const char *key, imk_result *result);
 
-/* physics_reduce.c: the error model and what experiments say of it. */
+/* physics_model.c: the error model and what experiments say of it. */
 typedef struct physics_laboratory {
     imk_laboratory_result result;
     size_t count;
     imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
 } physics_laboratory;
 
-/* Parameters of a model of one axis that are stated; extras such as repeatability included. */
-text_table physics_model_table(const imk_model *model, int sensor);
-json_t *physics_model_json(const imk_model *model, int sensor);
 int physics_write_model(const physics *p, const imk_model *model, const char *path);
-/* physics_sweep.c */
+/* Parameters of a model of one axis that are stated; extras such as repeatability included. */
+void physics_show_model(const imk_model *model, int sensor, imk_result *result);
+void physics_model_data(const imk_model *model, int sensor, imk_result *result);
 int physics_laboratory_make(const physics *p, physics_laboratory *laboratory);
-text_table physics_sweep_table(const physics *p, const physics_laboratory *laboratory);
-json_t *physics_sweep_json(const physics *p, const physics_laboratory *laboratory);
+void physics_show_laboratory(const physics_laboratory *l, imk_result *result);
+void physics_laboratory_data(const physics *p, const physics_laboratory *l, imk_result *result);
+/* "" of pure numbers. */
+const char *physics_unit_text(const char *unit);
 
 /* physics_figure.c: pictures. */
-enum { PHYSICS_PANELS_MAX = 16 };
-typedef struct physics_figure {
-    imk_figure figure;
-    imk_panel panel[PHYSICS_PANELS_MAX];
-    imk_curve curve[PHYSICS_PANELS_MAX][IMK_VIEW_CURVES_MAX];
-    char label[PHYSICS_PANELS_MAX][2][128];
-    char name[PHYSICS_PANELS_MAX][IMK_VIEW_CURVES_MAX][56];
-    double *memory[PHYSICS_PANELS_MAX];
-} physics_figure;
+enum { PHYSICS_LABEL = 128 };
+
+/* A view of the instrument, run as it was asked for. */
+typedef struct physics_view {
+    imk_view view;
+    size_t points;
+    double *data; /* x, then each curve, in the units of their labels */
+    char x_label[PHYSICS_LABEL], y_label[PHYSICS_LABEL], clock[80];
+} physics_view;
 
 /* The outputs of a run against time, and against the input when that is a sine. */
-void physics_figure_of_run(const physics *p, const physics_run *run, physics_figure *figure);
-/* A view, with the duration and rate that were asked for. */
-imk_view physics_view_as_asked(const physics *p, size_t index);
-/* One view of the instrument, or all of them (index SIZE_MAX). @return -1 or the exit code */
-int physics_figure_of_view(const physics *p, size_t index, physics_figure *figure);
-bool physics_figure_of_laboratory(const physics *p, const physics_laboratory *laboratory,
-                                  physics_figure *figure);
-/* True when there is nothing of the view to see in this design. */
-bool physics_view_is_empty(const imk_view *view, const imk_panel *panel);
-void physics_figure_free(physics_figure *figure);
-int physics_draw(const imk_figure *figure, const char *path);
-/* The view that --view names. @return -1 or the exit code */
-int physics_find_view(const physics *p, size_t *index);
-
-/* physics_animation.c: views whose axes are both signals, in motion. */
-bool physics_view_can_move(const imk_view *view);
-/* The animation of a figure of one such view; clock is room for a text. */
-imk_animation physics_animation_of_view(const imk_view *view, const physics_figure *figure,
-                                        char *clock, size_t size);
+void physics_show_run_figure(const physics *p, const physics_run *run, imk_result *result);
+/* Each view that shows something, for a page. */
+void physics_show_views(const physics *p, imk_result *result);
+/* The view that --view names, or all of them in one figure. @return -1 or the exit code */
+int physics_show_view_figure(const physics *p, imk_result *result);
+/* @return whether there is something to draw */
+bool physics_show_laboratory_figure(const physics *p, const physics_laboratory *l,
+                                    imk_result *result);
+/* Write a view of one signal against another, in motion. @return -1 or the exit code */
 int physics_animate(const physics *p, const char *path);
 
-/* physics_report.c */
-int physics_report(const physics *p, const physics_run *run, const physics_laboratory *laboratory,
-                   const char *path);
+/* physics_show.c */
+
+/* The name of the design, or what the instrument is. */
+const char *physics_name(const physics *p);
+/* All there is to show of a run, of the error models (laboratory NULL: not measured), or of the
+ * design. @return -1 or the exit code, the message printed */
+int physics_show(const physics *p, const physics_run *r, const physics_laboratory *l,
+                 imk_result *result);
 
 #endif

@@ -32,8 +32,7 @@ int physics_start(const physics *p, const imk_physics_settings *settings, void *
 {
     imk_error error = {.status = IMK_OK};
     const imk_instrument *instrument = p->file.instrument;
-    *state = aligned_alloc(64, (instrument->state_size + 63) / 64 * 64);
-    (void)command_unless_memory(*state ? IMK_OK : IMK_ERROR_MEMORY);
+    *state = command_aligned(instrument->state_size);
     if (instrument->init(p->file.design, settings, *state, &error) == IMK_OK)
         return -1;
     free(*state);
@@ -96,9 +95,7 @@ static void describe_signals(const physics *p, sheet *s)
 static int open_sheet(sheet *s, const char *path, uint64_t rows)
 {
     imk_error error;
-    double *block = malloc(s->columns * BLOCK_ROWS * sizeof *block);
-    if (!block)
-        return command_failed("memory is exhausted");
+    double *block = command_memory(NULL, s->columns * BLOCK_ROWS * sizeof *block);
     for (size_t c = 0; c < s->columns; c++)
         s->data[c] = block + c * BLOCK_ROWS;
     if (imk_log_create(path, s->columns, s->column, IMK_LOG_SHORTEST, NULL, rows, &s->writer,
@@ -178,15 +175,13 @@ static void add_to_picture(physics_run *run, point *at, double time, const doubl
     *at = (point){.count = 0};
 }
 
-static bool allocate(physics_run *run, size_t outputs)
+static void allocate(physics_run *run, size_t outputs)
 {
     const size_t size = PHYSICS_CURVE_POINTS + 1;
-    double *memory = malloc((outputs + 2) * size * sizeof *memory);
-    run->time = memory;
-    for (size_t i = 0; memory && i < outputs; i++)
-        run->curve[i] = memory + (1 + i) * size;
-    run->input = memory ? memory + (1 + outputs) * size : NULL;
-    return memory != NULL;
+    run->time = command_memory(NULL, (outputs + 2) * size * sizeof *run->time);
+    for (size_t i = 0; i < outputs; i++)
+        run->curve[i] = run->time + (1 + i) * size;
+    run->input = run->time + (1 + outputs) * size;
 }
 
 void physics_run_free(physics_run *run)
@@ -215,11 +210,19 @@ static void add_to_statistics(physics_run *run, uint64_t index, const double *ou
     }
 }
 
-static void finish_statistics(physics_run *run, size_t count)
+/* Statistics, and the picture in the units that fit them. */
+static void finish(const physics *p, physics_run *run)
 {
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < p->file.instrument->output_count; i++) {
         run->deviation[i] =
             run->samples > 1 ? sqrt(run->deviation[i] / (double)(run->samples - 1)) : (double)NAN;
+        const imk_unit unit = physics_output_unit(p, run, i);
+        for (size_t k = 0; k < run->points; k++) {
+            run->curve[i][k] = (run->curve[i][k] - unit.offset) / unit.scale;
+            if (i == 0)
+                run->input[k] /= unit.scale;
+        }
+    }
 }
 
 /* Step through the samples at settings->rate; `outputs` and `signals` may be NULL. */
@@ -288,8 +291,7 @@ static int prepare(const physics *p, sheet *log, sheet *signals, physics_run *ru
     if (o->signals && p->file.instrument->signal_count == 0)
         return command_misused("--signals: the %s has no internal signals to write",
                                p->file.instrument->title);
-    if (!allocate(run, p->file.instrument->output_count))
-        return command_failed("memory is exhausted");
+    allocate(run, p->file.instrument->output_count);
     describe_outputs(p, log);
     if (o->output || to_output)
         code = open_sheet(log, o->output ? o->output : "-", run->samples);
@@ -312,7 +314,7 @@ int physics_run_make(const physics *p, physics_run *run)
         drop_sheet(&signals);
         return code;
     }
-    finish_statistics(run, p->file.instrument->output_count);
+    finish(p, run);
     code = close_sheet(&log, IMK_OK);
     const int second = close_sheet(&signals, IMK_OK);
     return code >= 0 ? code : second;

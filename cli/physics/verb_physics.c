@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit physics: instruments from first principles, run, looked into, reduced to error models. */
 #include "physics_parts.h"
-#include "shell/progress.h"
+
+#include "imukit/names.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -182,123 +183,28 @@ static int check_numbers(const physics_options *o)
         return command_misused("--signal-rate: expected a rate above 0");
     if (!isnan(o->duration) && o->duration * fmax(o->output_rate, o->signal_rate) > 9e15)
         return command_misused("--duration %g s: too many samples", o->duration);
-    const size_t length = o->animate ? strlen(o->animate) : 0;
-    if (o->animate && (length < 5 || strcmp(o->animate + length - 4, ".svg") != 0))
+    if (o->animate && !imk_has_ending(o->animate, ".svg"))
         return command_misused("--animate %s: expected a name ending in .svg", o->animate);
     return command_check_plot(o->plot);
 }
 
 /* ---- the tasks ------------------------------------------------------------------------------- */
 
-static const char *level_name(const physics *p)
-{
-    return p->settings.level == IMK_LEVEL_FULL ? "full dynamics" : "slow map";
-}
-
-static double internal_step(const physics *p)
-{
-    return p->settings.step > 0 ? fmin(p->settings.step, 1 / p->settings.rate)
-                                : p->file.instrument->step_length(p->file.design, &p->settings);
-}
-
-static void print_run(const physics *p, const physics_run *r)
-{
-    static const char *const headers[] = {"output", "mean", "standard deviation", "at the end",
-                                          "unit"};
-    const imk_instrument *instrument = p->file.instrument;
-    char length[60];
-    format_duration(p->options->duration, length, sizeof length);
-    printf("%s: %llu samples at %g Hz, %s, %s, internal step %.4g s\n\n",
-           p->file.name[0] ? p->file.name : instrument->title, (unsigned long long)r->samples,
-           p->settings.rate, length, level_name(p), internal_step(p));
-    text_table table = text_table_make(5);
-    table.right = 0xeu;
-    text_table_row(&table);
-    for (size_t c = 0; c < 5; c++)
-        text_table_set(&table, c, "%s", headers[c]);
-    for (size_t i = 0; i < instrument->output_count; i++) {
-        const imk_unit unit = physics_output_unit(p, r, i);
-        text_table_row(&table);
-        text_table_set(&table, 0, "%s", instrument->outputs[i].name);
-        text_table_set(&table, 1, "%.8g", (r->mean[i] - unit.offset) / unit.scale);
-        if (r->samples > 1)
-            text_table_set(&table, 2, "%.5g", r->deviation[i] / unit.scale);
-        else
-            text_table_set(&table, 2, "-");
-        text_table_set(&table, 3, "%.8g", (r->last[i] - unit.offset) / unit.scale);
-        text_table_set(&table, 4, "%s", strcmp(unit.text, "1") == 0 ? "" : unit.text);
-    }
-    text_table_print(&table, stdout);
-    text_table_free(&table);
-}
-
-static json_t *inputs_json(const physics *p)
-{
-    const imk_exposure *e = &p->input.exposure;
-    json_t *inputs =
-        json_pack("{s:o, s:s, s:o, s:s, s:b, s:I}", "design", json_text(p->source), "instrument",
-                  p->file.instrument->name, "output_rate", json_quantity(p->settings.rate, "Hz"),
-                  "level", p->settings.level == IMK_LEVEL_FULL ? "full" : "slow", "noise",
-                  p->settings.noise, "seed", (json_int_t)p->settings.seed);
-    json_t *rate = json_array(), *force = json_array();
-    for (int k = 0; k < 3; k++) {
-        json_array_append_new(rate, json_quantity(e->angular_rate[k], "rad/s"));
-        json_array_append_new(force, json_quantity(e->specific_force[k], "m/s^2"));
-    }
-    json_object_set_new(inputs, "rate", rate);
-    json_object_set_new(inputs, "acceleration", force);
-    json_object_set_new(inputs, "sine",
-                        p->input.is_sine ? json_quantity(p->input.frequency, "Hz") : json_null());
-    json_object_set_new(inputs, "temperature", json_quantity(e->temperature, "K"));
-    return inputs;
-}
-
-static json_t *run_json(const physics *p, const physics_run *r)
-{
-    const imk_instrument *instrument = p->file.instrument;
-    json_t *outputs = json_array();
-    for (size_t i = 0; i < instrument->output_count; i++) {
-        const imk_signal *signal = &instrument->outputs[i];
-        json_array_append_new(outputs,
-                              json_pack("{s:s, s:o, s:o, s:o}", "name", signal->name, "mean",
-                                        json_quantity(r->mean[i], signal->si), "standard_deviation",
-                                        json_quantity(r->deviation[i], signal->si), "at_the_end",
-                                        json_quantity(r->last[i], signal->si)));
-    }
-    return json_pack("{s:I, s:o, s:o}", "samples", (json_int_t)r->samples, "internal_step",
-                     json_quantity(internal_step(p), "s"), "outputs", outputs);
-}
-
-/* Report, JSON, table, picture of what was done. @return the exit code */
-static int show(const physics *p, const physics_run *r, const physics_laboratory *l)
+/* Picture, page, JSON, tables of what was done: without the picture, for want of gnuplot, still the
+ * page. @return the exit code */
+static int show(const physics *p, const physics_run *r, const physics_laboratory *l, bool quiet)
 {
     const physics_options *o = p->options;
-    int code = o->report ? physics_report(p, r, l, o->report) : -1;
-    if (code < 0 && o->plot) {
-        physics_figure *figure = command_memory(NULL, sizeof *figure);
-        memset(figure, 0, sizeof *figure);
-        size_t view = SIZE_MAX;
-        bool drawn = r != NULL;
-        if (r)
-            physics_figure_of_run(p, r, figure);
-        else if (l)
-            drawn = physics_figure_of_laboratory(p, l, figure);
-        else if (p->file.instrument->view_count == 0)
-            code = command_failed("the %s has no views: add --duration TIME to draw its outputs",
-                                  p->file.instrument->title);
-        else
-            code = o->view ? physics_find_view(p, &view) : -1;
-        if (code < 0 && !r && !l) {
-            code = physics_figure_of_view(p, view, figure);
-            drawn = code < 0;
-        }
-        if (code < 0)
-            code = drawn ? physics_draw(&figure->figure, o->plot)
-                         : command_failed("nothing was measured that can be drawn");
-        physics_figure_free(figure);
-        free(figure);
+    imk_result *result = show_begin("physics");
+    const int code = physics_show(p, r, l, result);
+    if (code >= 0) {
+        imk_result_free(result);
+        return code;
     }
-    return code;
+    const int failed = o->plot ? show_plot(result, o->plot) : -1;
+    const show_options options = {
+        .report = o->report, .json = o->json && failed < 0, .quiet = quiet || failed >= 0};
+    return show_end(result, &options, failed < 0 ? EXIT_DONE : failed);
 }
 
 static int do_run(const physics *p)
@@ -306,74 +212,48 @@ static int do_run(const physics *p)
     const physics_options *o = p->options;
     physics_run r;
     int code = physics_run_make(p, &r);
-    if (code < 0)
+    if (code < 0) {
         physics_warn_of_run(p, &r);
-    if (code < 0)
-        code = show(p, &r, NULL);
-    if (code < 0 && o->json)
-        code = json_print("physics", inputs_json(p), run_json(p, &r), EXIT_DONE);
-    else if (code < 0 && !options_stdout_taken() &&
-             (o->output || o->plot || o->report || o->signals))
-        print_run(p, &r);
+        code = show(p, &r, NULL, !o->output && !o->plot && !o->report && !o->signals);
+    }
     physics_run_free(&r);
-    return code < 0 ? EXIT_DONE : code;
-}
-
-static void print_table(const char *title, text_table table)
-{
-    printf("%s\n", title);
-    text_table_print(&table, stdout);
-    text_table_free(&table);
+    return code;
 }
 
 static int do_model(const physics *p)
 {
     const physics_options *o = p->options;
-    const int sensor = p->file.instrument->sensor;
-    physics_laboratory *l = o->sweep ? calloc(1, sizeof *l) : NULL;
-    int code = o->sweep && !l ? command_failed("memory is exhausted") : -1;
-    if (code < 0 && l)
-        code = physics_laboratory_make(p, l);
+    physics_laboratory *l = o->sweep ? command_zeroed(sizeof *l) : NULL;
+    int code = l ? physics_laboratory_make(p, l) : -1;
     if (code < 0 && o->output)
         code = physics_write_model(p, o->reduce ? p->model : &l->result.model, o->output);
     if (code < 0)
-        code = show(p, NULL, l);
-    if (code < 0 && o->json) {
-        json_t *result = json_pack("{s:o}", "reduced", physics_model_json(p->model, sensor));
-        if (l)
-            json_object_set_new(result, "experiment", physics_sweep_json(p, l));
-        code = json_print("physics", inputs_json(p), result, EXIT_DONE);
-    } else if (code < 0 && !options_stdout_taken()) {
-        if (o->reduce)
-            print_table("Error model by closed forms, one axis",
-                        physics_model_table(p->model, sensor));
-        if (l)
-            print_table(o->reduce ? "\nClosed forms against experiments"
-                                  : "Closed forms against experiments",
-                        physics_sweep_table(p, l));
-    }
+        code = show(p, NULL, l, false);
     free(l);
-    return code < 0 ? EXIT_DONE : code;
+    return code;
 }
 
 static int do_task(const physics *p)
 {
     const physics_options *o = p->options;
+    imk_error error;
     if (o->show)
-        return physics_show(p);
+        return imk_design_write(o->output ? o->output : "-", &p->file, &error) == IMK_OK
+                   ? EXIT_DONE
+                   : command_error(&error, NULL);
     if (o->reduce || o->sweep)
         return do_model(p);
     if (!isnan(o->duration))
         return do_run(p);
-    if (o->plot || o->report || o->animate) {
-        int code = show(p, NULL, NULL);
-        if (code < 0 && o->animate)
-            code = physics_animate(p, o->animate);
-        if (code < 0 && o->json)
-            code = physics_overview(p);
-        return code < 0 ? EXIT_DONE : code;
-    }
-    return physics_overview(p);
+    const int code = o->animate ? physics_animate(p, o->animate) : -1;
+    return code < 0 ? show(p, NULL, NULL, o->plot || o->report || o->animate) : code;
+}
+
+static int list(const physics_options *o)
+{
+    imk_result *result = show_begin("physics");
+    physics_show_list(result);
+    return show_end(result, &(show_options){.json = o->json}, EXIT_DONE);
 }
 
 /* ---- the verb -------------------------------------------------------------------------------- */
@@ -414,10 +294,8 @@ static int start(const physics_options *o, const char *operand)
     int code = open_design(&p);
     if (code < 0)
         code = physics_input_make(o, &p.input);
-    p.model = code < 0 ? malloc(sizeof *p.model) : NULL;
-    if (code < 0 && !p.model)
-        code = command_failed("memory is exhausted");
     if (code < 0) {
+        p.model = command_memory(NULL, sizeof *p.model);
         p.file.instrument->reduce(p.file.design, p.model);
         code = do_task(&p);
     }
@@ -454,5 +332,5 @@ static int run(int count, char **words)
         code = check_numbers(&o);
     if (code >= 0)
         return code;
-    return operands[0] ? start(&o, operands[0]) : physics_list(&o);
+    return operands[0] ? start(&o, operands[0]) : list(&o);
 }

@@ -156,6 +156,20 @@ void *command_memory(void *at, size_t size)
     return memory;
 }
 
+void *command_zeroed(size_t size)
+{
+    void *memory = calloc(1, size);
+    (void)command_unless_memory(memory ? IMK_OK : IMK_ERROR_MEMORY);
+    return memory;
+}
+
+void *command_aligned(size_t size)
+{
+    void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
+    (void)command_unless_memory(memory ? IMK_OK : IMK_ERROR_MEMORY);
+    return memory;
+}
+
 /* The remedy of the log reader is "add --option value … (why)": the options are what stands
  * between.
  * "--columns with 7 names" asks for what only the user knows. */
@@ -200,14 +214,9 @@ int command_model(const char *name, imk_model *model, imk_document **document)
 
 int command_check_plot(const char *plot)
 {
-    static const char *const endings[] = {".svg", ".png", ".pdf"};
-    const size_t length = plot ? strlen(plot) : 0;
-    if (!plot || strcmp(plot, "term") == 0)
+    if (!plot || strcmp(plot, "term") == 0 || imk_has_ending(plot, ".svg") ||
+        imk_has_ending(plot, ".png") || imk_has_ending(plot, ".pdf"))
         return -1;
-    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
-        if (length > strlen(endings[i]) &&
-            strcmp(plot + length - strlen(endings[i]), endings[i]) == 0)
-            return -1;
     return command_misused("--plot %s: expected a name ending in .svg, .png or .pdf, or the word "
                            "term",
                            plot);

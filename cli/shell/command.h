@@ -36,6 +36,10 @@ _Noreturn void command_end(int code);
 /* Memory for what is printed and drawn: realloc() that ends the command when it fails, so that no
  * result is short of what did not fit. */
 void *command_memory(void *at, size_t size);
+/* The same, zeroed. */
+void *command_zeroed(size_t size);
+/* New memory where a cache line begins, as states want it. */
+void *command_aligned(size_t size);
 /* The same of what the library reports: the status, unless it is that memory failed. */
 imk_status command_unless_memory(imk_status status);
 /* The name of a model that is made: the one given, or the file's without its endings. */

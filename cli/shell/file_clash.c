@@ -7,6 +7,8 @@
 
 #include "command.h"
 
+#include "imukit/names.h"
+
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,12 +107,6 @@ typedef struct run_files {
     bool exhausted;
 } run_files;
 
-static bool ends_with(const char *text, const char *end)
-{
-    const size_t length = strlen(text), end_length = strlen(end);
-    return length > end_length && strcmp(text + length - end_length, end) == 0;
-}
-
 static void add_name(run_files *files, const char *taker, const char *given, const char *ending,
                      option_kind kind)
 {
@@ -140,7 +136,7 @@ static void add(run_files *files, const char *taker, const char *given, option_k
     if (!given || !*given || strcmp(given, "-") == 0 || strcmp(given, "term") == 0)
         return;
     add_name(files, taker, given, "", kind);
-    if (ends_with(given, ".npy"))
+    if (imk_has_ending(given, ".npy"))
         add_name(files, taker, given, ".columns", kind);
 }
 

@@ -1,9 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit spectrum: power spectral density of a log, its lines, and the noise it shows. */
-#include "spectrum_output.h"
+#include "log/log_input.h"
+#include "shell/job_progress.h"
+#include "shell/show.h"
 
-#include <math.h>
-#include <stdlib.h>
+#include "imukit/channel_units.h"
+#include "imukit/show.h"
+
+#include <string.h>
+
+typedef struct spectrum_options {
+    log_input log;
+    int method, window, density;
+    double resolution, from, to, confidence, false_alarm;
+    const char *output, *plot, *report;
+    bool trend, json;
+    option_integer threads;
+} spectrum_options;
 
 static const option spectrum_option_table[] = {
     {"method", 0, OPTION_CHOICE, "CHOICE", NULL, "welch|multitaper",
@@ -74,193 +87,97 @@ const verb spectrum_verb = {
                 offsetof(spectrum_options, log)}},
     .run = run};
 
-static imk_spectrum_settings settings_of(const spectrum_result *r)
+static void write_rows(const imk_spectrum_log *s, size_t channel, imk_output_file *file)
 {
-    const spectrum_options *o = r->options;
-    imk_spectrum_settings settings = imk_spectrum_default();
-    settings.method = (imk_spectrum_method)o->method;
-    settings.window = (imk_window)o->window;
-    settings.overlap = o->window == 0 ? 0.5 : 0.66; /* narrower windows use less of a segment */
-    settings.dt = r->channels.dt;
-    settings.resolution = o->resolution;
-    settings.trend = o->trend;
-    return settings;
-}
-
-/* An estimate with its arrays in `*memory`, from malloc(). */
-static imk_status estimate(const imk_spectrum_settings *settings, size_t n, const double *samples,
-                           imk_spectrum *spectrum, double **memory, imk_error *error)
-{
-    const size_t count = imk_spectrum_count(settings, n);
-    const size_t size = imk_spectrum_workspace_size(settings, n);
-    *memory = malloc((3 * count + 1) * sizeof **memory);
-    void *workspace = malloc(size + 1);
-    imk_status status = IMK_ERROR_MEMORY;
-    if (*memory && workspace)
-        status = imk_spectrum_estimate(settings, n, samples, spectrum, *memory, *memory + count,
-                                       *memory + 2 * count, workspace, size, error);
-    else
-        imk_error_set(error, status, "", "", "");
-    free(workspace);
-    return status;
-}
-
-static imk_status find_lines(const spectrum_result *r, channel_spectrum *f, const double *samples)
-{
-    const size_t size = imk_spectrum_lines_workspace_size(&f->spectrum, r->channels.rows);
-    void *workspace = malloc(size);
-    imk_status status = IMK_ERROR_MEMORY;
-    if (workspace)
-        status =
-            imk_spectrum_lines(&f->spectrum, r->channels.rows, samples, r->options->false_alarm,
-                               SPECTRUM_LINES_MAX, f->line, &f->line_count, workspace, size);
-    free(workspace);
-    return status;
-}
-
-static imk_status make_bands(const spectrum_result *r, channel_spectrum *f)
-{
-    enum { DECADES = 12 };
-    const size_t plotted = SPECTRUM_PLOTTED_PER_DECADE * DECADES;
-    const size_t table = SPECTRUM_TABLE_PER_DECADE * DECADES;
-    f->plotted = malloc((plotted + table) * sizeof *f->plotted);
-    if (!f->plotted)
-        return IMK_ERROR_MEMORY;
-    f->table = f->plotted + plotted;
-    f->plotted_count = imk_spectrum_bands(&f->spectrum, SPECTRUM_PLOTTED_PER_DECADE,
-                                          r->options->confidence, 0, NULL, plotted, f->plotted);
-    f->table_count =
-        imk_spectrum_bands(&f->spectrum, SPECTRUM_TABLE_PER_DECADE, r->options->confidence,
-                           f->line_count, f->line, table, f->table);
-    return IMK_OK;
-}
-
-/* The parameters need the slow end more than the lines need averages: seven Hann segments, of at
- * most 2^22 samples. Lines keep their frequencies and get the bins of that spectrum. */
-static void fit_parameters(const spectrum_result *r, channel_spectrum *f, const double *samples)
-{
-    enum { SEGMENT_MAX = 1 << 22, PARTS = 4 };
-    const size_t n = r->channels.rows;
-    const double length = fmin((double)n / PARTS, SEGMENT_MAX);
-    imk_spectrum_settings settings = imk_spectrum_default();
-    imk_spectrum fine;
-    imk_spectrum_line line[SPECTRUM_LINES_MAX];
-    double *memory = NULL;
-    settings.dt = r->channels.dt;
-    settings.trend = r->options->trend;
-    settings.resolution = 1.5 / (length * settings.dt);
-    f->fit_status = estimate(&settings, n, samples, &fine, &memory, NULL);
-    for (size_t i = 0; f->fit_status == IMK_OK && i < f->line_count; i++) {
-        const double ratio = f->spectrum.step / fine.step;
-        line[i] = f->line[i];
-        line[i].first = (size_t)fmax(1, floor((double)line[i].first * ratio));
-        line[i].last = (size_t)ceil((double)line[i].last * ratio);
+    const imk_log_column *column = imk_even_record_column(&s->record, channel);
+    const imk_channel_spectrum *f = &s->channel[channel];
+    const imk_unit unit = imk_channel_plain_unit(column);
+    const double scale = (s->settings.one_sided ? 2 : 1) / unit.scale / unit.scale;
+    for (size_t i = 0; i < f->fine_count; i++) {
+        const imk_spectrum_band *b = &f->fine[i];
+        const double values[] = {b->frequency, b->density * scale, b->lower * scale,
+                                 b->upper * scale};
+        char text[IMK_DECIMAL_SIZE];
+        imk_output_file_print(file, "%s", column->name);
+        for (int k = 0; k < 4; k++) {
+            text[imk_decimal_shortest(values[k], text)] = '\0';
+            imk_output_file_print(file, ",%s", text);
+        }
+        text[imk_decimal_significant(b->degrees, 6, text)] = '\0';
+        imk_output_file_print(file, ",%s,%s,%s\n", text,
+                              s->settings.one_sided ? "one-sided" : "two-sided", unit.text);
     }
-    if (f->fit_status == IMK_OK)
-        f->fit_status = imk_spectrum_fit(&fine, f->line_count, line, r->options->from,
-                                         r->options->to, r->options->confidence, 0.01, &f->fit);
-    free(memory);
 }
 
-static void analyse(void *context, size_t channel)
+/* @return -1 or the exit code */
+static int write_csv(const imk_spectrum_log *s, const char *output)
 {
-    spectrum_result *r = context;
-    channel_spectrum *f = &r->found[channel];
-    const double *samples = log_channel_data(&r->channels, channel);
-    const imk_spectrum_settings settings = settings_of(r);
-    f->status = estimate(&settings, r->channels.rows, samples, &f->spectrum, &f->memory, &f->error);
-    if (f->status == IMK_OK)
-        f->status = find_lines(r, f, samples);
-    if (f->status == IMK_OK)
-        f->status = make_bands(r, f);
-    if (f->status == IMK_OK)
-        fit_parameters(r, f, samples);
-    if (f->fit_status == IMK_ERROR_MEMORY) /* says nothing about the log */
-        f->status = f->fit_status;
-}
-
-/* What a channel could not be analysed for, as a sentence. */
-static int explain(const spectrum_result *r, size_t channel)
-{
-    const channel_spectrum *f = &r->found[channel];
-    const char *name = log_channel_column(&r->channels, channel)->name;
-    const double span = (double)r->channels.rows * r->channels.dt;
-    if (f->status == IMK_ERROR_CONSTANT)
-        return command_failed("%s: column %s is constant in all %zu rows: there is no noise to "
-                              "analyse; leave it out with --columns, or check the log",
-                              r->path, name, r->channels.rows);
-    if (f->status == IMK_ERROR_TOO_SHORT)
-        return command_failed("%s: %zu rows are too few for a spectrum; 64 are needed, and some "
-                              "thousands useful",
-                              r->path, r->channels.rows);
-    if (f->status == IMK_ERROR_RANGE && r->options->resolution > 0)
-        return command_misused("--resolution %g Hz: %s; this record of %g s at %g Hz allows "
-                               "about %.2g Hz to %.2g Hz",
-                               r->options->resolution, f->error.found, span, 1 / r->channels.dt,
-                               (r->options->method ? 8 : 1.5) / span,
-                               (r->options->method ? 0.5 : 0.09) / r->channels.dt);
-    if (f->status == IMK_ERROR_GAP)
-        return command_failed("%s: column %s: every segment has missing samples; ask for a coarser "
-                              "--resolution, or use --gaps longest",
-                              r->path, name);
-    return command_failed("%s: column %s: %s", r->path, name, imk_status_text(f->status));
-}
-
-static void warn_about(const spectrum_result *r, size_t channel)
-{
-    const channel_spectrum *f = &r->found[channel];
-    const char *name = log_channel_column(&r->channels, channel)->name;
-    if (f->spectrum.left_out > 0)
-        command_warn("gaps", "%s: %zu of %zu segments have missing samples and were left out", name,
-                     f->spectrum.left_out, f->spectrum.left_out + f->spectrum.segments);
-    if (f->line_count == SPECTRUM_LINES_MAX)
-        command_warn("lines", "%s: more than %d lines; the strongest are listed", name,
-                     SPECTRUM_LINES_MAX);
-    if (f->fit_status != IMK_OK)
-        command_warn("fit", "%s: the noise parameters could not be fitted: %s", name,
-                     imk_status_text(f->fit_status));
-    else if (f->fit.misfit > 2)
-        command_warn("misfit",
-                     "%s: the four noise terms do not explain the spectrum (misfit %.1f, worst at "
-                     "%.3g Hz: %.2f of the fit); an output filter, a resonance or a correlated "
-                     "noise is there: see imukit identify, or fit a part with --from and --to",
-                     name, f->fit.misfit, f->fit.worst_frequency, f->fit.worst_ratio);
-}
-
-static int compute(spectrum_result *r, const imk_executor *executor)
-{
-    const spectrum_options *o = r->options;
-    if (o->to > 0 && !(o->from < o->to))
-        return command_misused("--from %g Hz is not below --to %g Hz", o->from, o->to);
-    const double half_rate = 0.5 / r->channels.dt;
-    if (!(o->from < half_rate))
-        return command_misused("--from %g Hz: the spectrum of %s ends at half its sample rate, "
-                               "%.6g Hz",
-                               o->from, r->path, half_rate);
-    imk_execute(executor, r->channels.count, analyse, r);
-    for (size_t c = 0; c < r->channels.count; c++)
-        if (r->found[c].status != IMK_OK)
-            return explain(r, c);
-    for (size_t c = 0; c < r->channels.count; c++)
-        warn_about(r, c);
+    imk_output_file *file;
+    imk_error error;
+    if (imk_output_file_open(output, &file, &error) != IMK_OK)
+        return command_error(&error, NULL);
+    imk_output_file_print(file, "channel,frequency [Hz],density [unit^2/Hz],lower,upper,degrees,"
+                                "sides,unit\n");
+    for (size_t c = 0; c < s->record.count; c++)
+        write_rows(s, c, file);
+    if (imk_output_file_commit(file, &error) != IMK_OK)
+        return command_error(&error, NULL);
     return -1;
 }
 
-static int show(const spectrum_result *r)
+static int show(const imk_spectrum_log *s, const spectrum_options *o, const char *path)
 {
-    const spectrum_options *o = r->options;
-    int code = -1;
-    if (o->output)
-        code = spectrum_write_csv(r, o->output);
-    if (code < 0 && o->report)
-        code = spectrum_write_report(r, o->report);
-    if (code < 0 && o->json)
-        code = spectrum_print_json(r);
-    if (code < 0 && !o->json && !o->output && !options_stdout_taken())
-        spectrum_print_tables(r);
-    if (code < 0 && o->plot)
-        code = spectrum_draw(r, o->plot);
-    return code < 0 ? EXIT_DONE : code;
+    const int code = o->output ? write_csv(s, o->output) : -1;
+    if (code >= 0)
+        return code;
+    imk_result *result = show_begin("spectrum");
+    imk_show_spectrum_log(s, path, result);
+    imk_result_for(result, IMK_FOR_PAGE);
+    show_origin(result);
+    const show_options options = {
+        .report = o->report, .plot = o->plot, .json = o->json, .quiet = o->output != NULL};
+    return show_end(result, &options, EXIT_DONE);
+}
+
+/* A wrong option is none of the log's faults. */
+static int tell(const spectrum_options *o, const char *path, const imk_spectrum_log *s,
+                imk_status status, const imk_error *error)
+{
+    const imk_findings none = {.count = 0}, *findings = s ? &s->findings : &none;
+    const imk_finding *failure = status == IMK_ERROR_RANGE ? imk_findings_failure(findings) : NULL;
+    char text[400];
+    if (!failure)
+        return log_input_tell(path, findings, status, error);
+    imk_finding_text(failure, text, sizeof text);
+    if (strcmp(error->field, "from") == 0)
+        return command_misused("--from %g Hz: the spectrum of %s ends at half its sample rate, %s",
+                               o->from, path, text);
+    return command_misused("%s", text);
+}
+
+static int analyse(const spectrum_options *o, const char *path,
+                   const imk_spectrum_log_settings *settings)
+{
+    imk_log_reader *reader;
+    int code = log_input_open(&o->log, path, false, &reader);
+    if (code >= 0)
+        return code;
+    imk_spectrum_log *s;
+    imk_error error;
+    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
+    const imk_executor executor = imk_thread_pool_executor(pool);
+    job_progress shown = job_progress_begin(path);
+    const imk_job job = job_progress_job(&shown, &executor);
+    const imk_record_source source = imk_log_source(reader);
+    const imk_status status = imk_spectrum_log_run(&source, settings, &job, &s, &error);
+    job_progress_end(&shown);
+    imk_thread_pool_destroy(pool);
+    imk_log_close(reader);
+    code = tell(o, path, s, status, &error);
+    if (code < 0)
+        code = show(s, o, path);
+    imk_spectrum_log_free(s);
+    return code;
 }
 
 static int run(int count, char **words)
@@ -270,27 +187,22 @@ static int run(int count, char **words)
     int code = options_parse(&spectrum_verb, count, words, &o, operands);
     if (code < 0)
         code = command_check_plot(o.plot);
+    if (code < 0)
+        code = log_input_check(&o.log);
+    if (code < 0 && o.to > 0 && !(o.from < o.to))
+        code = command_misused("--from %g Hz is not below --to %g Hz", o.from, o.to);
     if (code >= 0)
         return code;
-    spectrum_result *r = calloc(1, sizeof *r);
-    if (!r)
-        return command_failed("memory is exhausted");
-    r->options = &o;
-    r->path = operands[0];
-    code = log_input_load(&o.log, r->path, &r->channels);
-    if (code < 0) {
-        imk_thread_pool *pool = imk_thread_pool_create(o.threads.value);
-        imk_executor executor = imk_thread_pool_executor(pool);
-        code = compute(r, &executor);
-        imk_thread_pool_destroy(pool);
-        if (code < 0)
-            code = show(r);
-        for (size_t c = 0; c < r->channels.count; c++) {
-            free(r->found[c].memory);
-            free(r->found[c].plotted);
-        }
-        log_channels_free(&r->channels);
-    }
-    free(r);
-    return code;
+    imk_spectrum_log_settings settings = imk_spectrum_log_default();
+    settings.gaps = (imk_gap_policy)o.log.gaps;
+    settings.method = (imk_spectrum_method)o.method;
+    settings.window = (imk_window)o.window;
+    settings.resolution = o.resolution;
+    settings.trend = o.trend;
+    settings.from = o.from;
+    settings.to = o.to;
+    settings.confidence = o.confidence;
+    settings.false_alarm = o.false_alarm;
+    settings.one_sided = o.density == 1;
+    return analyse(&o, operands[0], &settings);
 }

@@ -11,6 +11,7 @@
 
 #include "imukit/executor.h"
 #include "imukit/output_file.h"
+#include "imukit/record.h"
 #include "imukit/status.h"
 #include "imukit/units.h"
 
@@ -19,27 +20,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-enum { IMK_LOG_COLUMNS_MAX = 64 };
-
-typedef enum imk_quantity {
-    IMK_QUANTITY_OTHER = 0,
-    IMK_QUANTITY_TIME,
-    IMK_QUANTITY_ANGULAR_RATE,
-    IMK_QUANTITY_SPECIFIC_FORCE,
-    IMK_QUANTITY_TEMPERATURE
-} imk_quantity;
-
-/** One column of a log. */
-typedef struct imk_log_column {
-    char name[48]; /**< "gyro_x" */
-    imk_quantity quantity;
-    int axis;       /**< 0 … 7; -1 for time, temperature, other */
-    imk_unit unit;  /**< as in the file */
-    bool increment; /**< the file holds increments of the integral */
-    bool label; /**< the file holds texts (section names, …): the value is the index of the text
-                     in the reader's list, see imk_log_label() */
-} imk_log_column;
 
 /** How to read a file. Start from imk_log_settings_default(). Texts may be NULL: taken from the
  *  header. */
@@ -60,26 +40,6 @@ typedef struct imk_log_settings {
 
 /** Everything from the header of the file. */
 IMK_API imk_log_settings imk_log_settings_default(void);
-
-/** What was found in the rows read so far. Rows count from 1, the first data row.
- *
- *  The interval is the median of the first 4096 positive time steps (of all, when there are fewer),
- *  afterwards the median of the medians of groups of 4096, or 1/rate where the settings say a rate.
- *  Gaps and jitter are judged by the interval known when the group of the step was complete. Jitter
- *  leaves gaps, repeats and reversals out. No step is formed with a time that is not finite. */
-typedef struct imk_log_findings {
-    size_t rows;
-    size_t not_finite, first_not_finite; /**< rows with a NaN, an infinity or an empty cell */
-    size_t reversals, first_reversal;    /**< time steps < 0 */
-    size_t repeats, first_repeat;        /**< time steps = 0 */
-    size_t gaps, first_gap, missing;     /**< imk_step_is_gap(); samples missing in them */
-    double interval;                     /**< median time step, or 1/rate [s] */
-    double jitter;                       /**< rms deviation of the steps from it [s] */
-    double first_time, last_time;        /**< [s] */
-    double
-        time_origin; /**< [s] subtracted from the times: the first one if beyond 1e6 s (clocks that
-                        count from an epoch), so that microseconds keep their resolution; else 0 */
-} imk_log_findings;
 
 typedef struct imk_log_reader imk_log_reader;
 
@@ -134,15 +94,11 @@ IMK_API imk_log_findings imk_log_findings_get(const imk_log_reader *reader);
 /** Close and free; NULL is allowed. */
 IMK_API void imk_log_close(imk_log_reader *reader);
 
-/** A whole log in memory. */
-typedef struct imk_log {
-    size_t rows, column_count;
-    imk_log_column column[IMK_LOG_COLUMNS_MAX];
-    double *data[IMK_LOG_COLUMNS_MAX]; /**< rows values each (room for rows + 1), SI */
-    imk_log_findings findings;
-    size_t label_count;
-    char (*label)[48]; /**< texts the values of label columns index */
-} imk_log;
+/** A log as a source of records, from the place where the reader is; it belongs to the reader and
+ *  ends with it. Rewound it is opened again, by the name and settings it was opened with, which
+ *  must still be there; what may be rewound is opened with settings.reopened, or a pipe is empty
+ *  then. */
+IMK_API imk_record_source imk_log_source(imk_log_reader *reader);
 
 /** Called now and then on long work; `done` of `total` (0: not known) in any measure. */
 typedef void (*imk_progress)(void *context, uint64_t done, uint64_t total);
@@ -153,11 +109,6 @@ typedef void (*imk_progress)(void *context, uint64_t done, uint64_t total);
 IMK_API imk_status imk_log_load(const char *path, const imk_log_settings *settings,
                                 imk_progress progress, void *progress_context, imk_log *log,
                                 imk_error *error);
-/** Free the columns of a loaded log. */
-IMK_API void imk_log_free(imk_log *log);
-/** Index of the column of a quantity and axis, or -1. */
-IMK_API int imk_log_find(const imk_log *log, imk_quantity quantity, int axis);
-
 /** How numbers are written. */
 typedef enum imk_log_precision {
     /** In SI units (scale 1) the shortest decimal that reads back to the same double. In other
@@ -219,6 +170,21 @@ IMK_API imk_status imk_log_write(imk_log_writer *writer, size_t rows, const doub
  *          IMK_ERROR_CONFLICT (another row count than announced, where it matters),
  *          IMK_ERROR_NOT_FINITE (error.field: column and row), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_commit(imk_log_writer *writer, imk_error *error);
+/** A log that is written as a sink of records. */
+typedef struct imk_log_sink {
+    const char *path; /**< "-": standard output */
+    bool fixed;       /**< IMK_LOG_FIXED, with these decimals where the job knows no better ones */
+    int decimals;
+    imk_log_writer *writer; /**< its own */
+    imk_record_source labels;
+} imk_log_sink;
+
+/** `log` with its path and precision set. */
+IMK_API imk_record_sink imk_log_sink_of(imk_log_sink *log);
+/** Finish the log, or leave none. @param status  of the job that wrote it, with its error
+ *  @return that, or why the log could not be finished */
+IMK_API imk_status imk_log_sink_end(imk_log_sink *log, imk_status status, imk_error *error);
+
 /** Give up: nothing appears. Frees the writer; NULL is allowed. */
 IMK_API void imk_log_abandon(imk_log_writer *writer);
 

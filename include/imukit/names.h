@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file names.h
- *  "Did you mean …?": the nearest of a list of names. */
+ *  "Did you mean …?": the nearest of a list of names. What a file is by the ending of its name. */
 #ifndef IMUKIT_NAMES_H
 #define IMUKIT_NAMES_H
 
 #include "imukit/status.h"
+
+#include <stdbool.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -17,6 +19,9 @@ extern "C" {
  *  @return SIZE_MAX when nothing is near: more than a third of the letters differ. Names longer
  *          than 63 bytes are near to nothing. Cost: product of the lengths for each candidate. */
 IMK_API size_t imk_nearest_name(const char *name, size_t count, const char *const *candidates);
+
+/** Does the name end in `ending`, such as ".csv"? Case counts. @param name  NULL has no ending */
+IMK_API bool imk_has_ending(const char *name, const char *ending);
 
 #ifdef __cplusplus
 }

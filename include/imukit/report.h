@@ -121,6 +121,9 @@ IMK_API void imk_page_animation(imk_page *page, const imk_animation *animation,
 IMK_API void imk_page_break(imk_page *page);
 /** Preformatted text, such as a model file. */
 IMK_API void imk_page_code(imk_page *page, const char *text);
+/** The page as text obtained from malloc(); frees the page.
+ *  @return as imk_page_write(), but for files */
+IMK_API imk_status imk_page_take(imk_page *page, char **text, size_t *size, imk_error *error);
 /** Write the page and free it; NULL path only frees.
  *  @return IMK_ERROR_MEMORY, IMK_ERROR_OPEN, IMK_ERROR_WRITE, and why a figure was not drawn, as of
  *          imk_figure_svg(): then nothing is written */

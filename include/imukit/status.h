@@ -59,7 +59,8 @@ extern "C" {
     X(IMK_ERROR_COLUMN, -28, "a column is missing, unknown or doubled")                            \
     X(IMK_ERROR_RATE_MISSING, -29, "the sample rate is not known")                                 \
     X(IMK_ERROR_UNSUPPORTED, -30, "this is not supported")                                         \
-    X(IMK_ERROR_NAME_UNKNOWN, -31, "the name is not known")
+    X(IMK_ERROR_NAME_UNKNOWN, -31, "the name is not known")                                        \
+    X(IMK_ERROR_CANCELLED, -32, "the work was given up")
 
 typedef enum imk_status {
 #define IMK_STATUS_ENUM(name, value, text) name = value,

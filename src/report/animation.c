@@ -6,6 +6,7 @@
  * of the same path, whose offset is w - s(t). Where the path jumps, dots hop instead. */
 #include "markup_internal.h"
 
+#include "imukit/names.h"
 #include "imukit/report.h"
 
 #include <math.h>

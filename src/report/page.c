@@ -182,28 +182,41 @@ void imk_page_animation(imk_page *page, const imk_animation *animation, const ch
     free(svg);
 }
 
-imk_status imk_page_write(imk_page *page, const char *path, imk_error *error)
+imk_status imk_page_take(imk_page *page, char **text, size_t *size, imk_error *error)
 {
     if (!page)
-        return path ? imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL) : IMK_OK;
+        return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
     imki_text_put(&page->text,
                   "<footer>Made by imukit " IMK_VERSION ".</footer>\n</main>\n</body>\n</html>\n");
-    imk_status status = IMK_OK;
-    if (path && page->text.failed) {
+    imk_status status = page->failure.status;
+    if (page->text.failed)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
-    } else if (path && page->failure.status != IMK_OK) {
-        status = page->failure.status;
-        if (error)
-            *error = page->failure;
-    } else if (path) {
-        imk_output_file *file;
-        status = imk_output_file_open(path, &file, error);
-        if (status == IMK_OK) {
-            imk_output_file_write(file, page->text.bytes, page->text.size);
-            status = imk_output_file_commit(file, error);
-        }
+    else if (status != IMK_OK && error)
+        *error = page->failure;
+    if (status == IMK_OK) {
+        *text = page->text.bytes;
+        *size = page->text.size;
+    } else {
+        free(page->text.bytes);
     }
-    free(page->text.bytes);
     free(page);
+    return status;
+}
+
+imk_status imk_page_write(imk_page *page, const char *path, imk_error *error)
+{
+    char *text = NULL;
+    size_t size = 0;
+    imk_status status = imk_page_take(page, &text, &size, error);
+    imk_output_file *file;
+    if (!path)
+        status = IMK_OK;
+    else if (status == IMK_OK)
+        status = imk_output_file_open(path, &file, error);
+    if (path && status == IMK_OK) {
+        imk_output_file_write(file, text, size);
+        status = imk_output_file_commit(file, error);
+    }
+    free(text);
     return status;
 }

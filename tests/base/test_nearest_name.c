@@ -35,6 +35,19 @@ static void leaves_far_names_alone(void **state)
     assert_true(imk_nearest_name(name, COUNT, keys) == SIZE_MAX);
 }
 
+static void knows_endings(void **state)
+{
+    (void)state;
+    assert_true(imk_has_ending("a/log.csv", ".csv"));
+    assert_true(imk_has_ending("log.npy.gz", ".npy.gz"));
+    assert_true(imk_has_ending(".csv", ".csv"));
+    assert_false(imk_has_ending("log.CSV", ".csv"));
+    assert_false(imk_has_ending("log.csv.gz", ".csv"));
+    assert_false(imk_has_ending("csv", ".csv"));
+    assert_false(imk_has_ending("", ".csv"));
+    assert_false(imk_has_ending(NULL, ".csv"));
+}
+
 static void takes_the_first_of_equals(void **state)
 {
     (void)state;
@@ -48,6 +61,7 @@ int main(void)
         cmocka_unit_test(finds_one_slip),
         cmocka_unit_test(leaves_far_names_alone),
         cmocka_unit_test(takes_the_first_of_equals),
+        cmocka_unit_test(knows_endings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "campaign_internal.h"
 #include "imukit/decimal.h"
+#include "imukit/names.h"
 #include "io/file/output_file_internal.h"
 
 #include <stdlib.h>
@@ -12,15 +13,9 @@
 
 enum { BLOCK = 1 << 20 }; /* bytes of values at a time, at least one run */
 
-static bool ends_with(const char *text, const char *ending)
-{
-    const size_t length = strlen(text), end = strlen(ending);
-    return length > end && strcmp(text + length - end, ending) == 0;
-}
-
 bool imki_store_is_hdf5(const char *path)
 {
-    return ends_with(path, ".h5");
+    return imk_has_ending(path, ".h5");
 }
 
 static imk_status refuse_stream(const char *path, imk_error *error)
@@ -34,8 +29,8 @@ imk_status imki_store_check(const char *path, imk_error *error)
     struct stat about;
     if (imki_store_is_hdf5(path) && stat(path, &about) == 0 && !S_ISREG(about.st_mode))
         return refuse_stream(path, error);
-    if (imki_store_is_hdf5(path) || ends_with(path, ".csv") || ends_with(path, ".csv.gz") ||
-        ends_with(path, ".csv.zst"))
+    if (imki_store_is_hdf5(path) || imk_has_ending(path, ".csv") ||
+        imk_has_ending(path, ".csv.gz") || imk_has_ending(path, ".csv.zst"))
         return IMK_OK;
     return imk_error_set(error, IMK_ERROR_FORMAT, path, "",
                          "a name ending in .h5, .csv, .csv.gz or .csv.zst");

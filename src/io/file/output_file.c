@@ -10,6 +10,8 @@
 #include "output_target_internal.h"
 #include "system_error_internal.h"
 
+#include "imukit/names.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
@@ -41,12 +43,6 @@ struct imk_output_file {
     int system_error; /* errno of the first failure */
     bool prepared;
 };
-
-static bool ends_with(const char *text, const char *ending)
-{
-    const size_t length = strlen(text), ending_length = strlen(ending);
-    return length >= ending_length && strcmp(text + length - ending_length, ending) == 0;
-}
 
 static imk_status fail(imk_output_file *file, int system_error)
 {
@@ -134,14 +130,14 @@ static imk_status write_zstd(imk_output_file *file, const unsigned char *bytes, 
 
 static bool start_compression(imk_output_file *file, const char *path)
 {
-    if (ends_with(path, ".gz")) {
+    if (imk_has_ending(path, ".gz")) {
         /* 15: largest window, + 16: gzip; 8: zlib's usual memory */
         if (deflateInit2(&file->gzip, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
             return false;
         file->gzip_header.os = 255; /* "unknown": the same bytes on every system */
         deflateSetHeader(&file->gzip, &file->gzip_header);
         file->encoding = ENCODING_GZIP;
-    } else if (ends_with(path, ".zst")) {
+    } else if (imk_has_ending(path, ".zst")) {
         file->zstd = ZSTD_createCStream();
         if (!file->zstd)
             return false;

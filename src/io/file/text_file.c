@@ -5,6 +5,8 @@
 #include "input_stream_internal.h"
 #include "io/campaign/campaign_internal.h"
 
+#include "imukit/names.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,26 +45,10 @@ imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, siz
     return IMK_OK;
 }
 
-bool imki_is_text(const char *bytes, size_t size)
-{
-    for (size_t i = 0; i < size; i++) {
-        const unsigned char c = (unsigned char)bytes[i];
-        if (c < 9 || (c > 13 && c < 32) || c == 127)
-            return false;
-    }
-    return true;
-}
-
 bool imki_is_script_name(const char *path)
 {
-    static const char *const endings[] = {".yaml", ".yml", ".json"};
-    const size_t length = strlen(path);
-    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
-        const size_t ending = strlen(endings[i]);
-        if (length >= ending && strcmp(path + length - ending, endings[i]) == 0)
-            return true;
-    }
-    return false;
+    return imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml") ||
+           imk_has_ending(path, ".json");
 }
 
 /* Does a line of the text begin with the key? JSON has a brace and a quote before it. */

@@ -9,6 +9,7 @@
 #include "io/file/input_stream_internal.h"
 #include "parameter_internal.h"
 
+#include "imukit/names.h"
 #include "imukit/output_file.h"
 
 #include <stdio.h>
@@ -355,14 +356,6 @@ static imk_status check_model(const imk_parameter_settings *settings, const imk_
     return IMK_OK;
 }
 
-static bool ends_with(const char *path, const char *ending)
-{
-    if (!path)
-        return false;
-    size_t length = strlen(path), ending_length = strlen(ending);
-    return length >= ending_length && strcmp(path + length - ending_length, ending) == 0;
-}
-
 imk_status imk_parameters_print(const char *path, const imk_parameter_settings *settings,
                                 const imk_model *model, char **text, size_t *size,
                                 imk_parameter_notes *notes, imk_error *error)
@@ -375,7 +368,7 @@ imk_status imk_parameters_print(const char *path, const imk_parameter_settings *
                          .notes = &found,
                          .error = error,
                          .source = model,
-                         .is_json = ends_with(path, ".json")};
+                         .is_json = imk_has_ending(path, ".json")};
     status = formats[settings->format].write(&p);
     if (status == IMK_OK && p.out.failed)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");

@@ -48,7 +48,7 @@ static imk_status open_reader(imk_log_reader *reader, imki_input *input, const c
     if (status != IMK_OK)
         return status;
     reader->last_time = (double)NAN;
-    imki_log_times_start(&reader->times, reader->rate > 0.0 ? 1.0 / reader->rate : 0.0);
+    imki_record_times_start(&reader->times, reader->rate > 0.0 ? 1.0 / reader->rate : 0.0);
     if (reader->layout.time_column >= 0)
         reader->times.findings.time_origin =
             reader->time_origin * reader->layout.factor[reader->layout.time_column];
@@ -83,7 +83,13 @@ imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_
     if (status == IMK_OK)
         status = settings->reopened ? imki_input_open_kept(path, &input, error)
                                     : imki_input_open(path, &input, error);
-    return status == IMK_OK ? make_reader(input, path, settings, reader, error) : status;
+    if (status == IMK_OK)
+        status = make_reader(input, path, settings, reader, error);
+    if (status == IMK_OK) {
+        (*reader)->path = path;
+        (*reader)->settings = *settings;
+    }
+    return status;
 }
 
 imk_status imk_log_open_memory(const char *text, size_t size, const imk_log_settings *settings,
@@ -95,7 +101,32 @@ imk_status imk_log_open_memory(const char *text, size_t size, const imk_log_sett
     imk_status status = check_settings(settings, error);
     if (status == IMK_OK && imki_input_open_memory(text, size, &input) != IMK_OK)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
-    return status == IMK_OK ? make_reader(input, NULL, settings, reader, error) : status;
+    if (status == IMK_OK)
+        status = make_reader(input, NULL, settings, reader, error);
+    if (status == IMK_OK) {
+        (*reader)->memory = text;
+        (*reader)->memory_size = size;
+        (*reader)->settings = *settings;
+    }
+    return status;
+}
+
+imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error)
+{
+    imk_log_reader *again;
+    imk_log_settings settings = reader->settings;
+    settings.reopened = false;
+    const imk_status status =
+        reader->memory
+            ? imk_log_open_memory(reader->memory, reader->memory_size, &settings, &again, error)
+            : imk_log_open(reader->path, &settings, &again, error);
+    if (status != IMK_OK)
+        return status;
+    const imk_log_reader before = *reader;
+    *reader = *again;
+    *again = before;
+    imk_log_close(again);
+    return IMK_OK;
 }
 
 void imk_log_close(imk_log_reader *reader)
@@ -228,7 +259,7 @@ static void finish_block(imk_log_reader *reader, size_t rows, double *time, doub
         const double origin = reader->time_origin, scale = layout->factor[layout->time_column];
         for (size_t i = 0; i < rows; i++)
             time[i] = (time[i] - origin) * scale;
-        imki_log_times_add(&reader->times, reader->rows + 1, rows, time);
+        imki_record_times_add(&reader->times, reader->rows + 1, rows, time);
         if (layout->has_increments && reader->rate == 0.0)
             find_intervals(reader, rows, time);
     }
@@ -296,7 +327,7 @@ imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *
 
 imk_log_findings imk_log_findings_get(const imk_log_reader *reader)
 {
-    imk_log_findings found = imki_log_times_findings(&reader->times);
+    imk_log_findings found = imki_record_times_findings(&reader->times);
     found.rows = reader->rows;
     found.not_finite = reader->not_finite;
     found.first_not_finite = reader->first_not_finite;

@@ -4,8 +4,8 @@
 #define IMUKIT_LOG_READER_INTERNAL_H
 
 #include "imukit/log.h"
+#include "jobs/record/record_times_internal.h"
 #include "log_cells_internal.h"
-#include "log_findings_internal.h"
 #include "log_text_internal.h"
 #include "npy_internal.h"
 
@@ -82,13 +82,20 @@ struct imk_log_reader {
     size_t slow_left, slow_run; /* rows to read in their general form before trying the fast way */
     imki_log_label *labels;
     size_t label_count;
+    const char *path; /* what it was opened with, for another time; NULL: a text in memory */
+    const char *memory;
+    size_t memory_size;
+    imk_log_settings settings;
     bool failed; /* an error met behind rows that were delivered; comes with the next call */
     imk_error failure;
-    imki_log_times times;
+    imki_record_times times;
     double spare[IMKI_LOG_BLOCK];    /* for columns nobody wants */
     double time[IMKI_LOG_BLOCK];     /* for the times, if nobody wants them */
     double interval[IMKI_LOG_BLOCK]; /* [s] of increments */
 };
+
+/* Back to the first row: the log is opened again. */
+imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error);
 
 /* Read the header of a CSV text and look at its first rows. The columns and labels are then known.
  */

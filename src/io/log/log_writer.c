@@ -6,6 +6,7 @@
  * and compression run beside the formatting, and the bytes do not depend on the executor. */
 #include "imukit/log.h"
 
+#include "imukit/names.h"
 #include "io/file/output_file_internal.h"
 #include "log_format_internal.h"
 #include "npy_internal.h"
@@ -45,22 +46,11 @@ struct imk_log_writer {
     uint64_t beyond_row;
 };
 
-static bool ends_with(const char *text, size_t length, const char *ending)
-{
-    const size_t ending_length = strlen(ending);
-    return length >= ending_length &&
-           memcmp(text + length - ending_length, ending, ending_length) == 0;
-}
-
 /* FILE.npy, also compressed. */
 static bool is_npy(const char *path)
 {
-    size_t length = path ? strlen(path) : 0;
-    if (ends_with(path, length, ".gz"))
-        length -= 3;
-    else if (ends_with(path, length, ".zst"))
-        length -= 4;
-    return ends_with(path, length, ".npy");
+    return imk_has_ending(path, ".npy") || imk_has_ending(path, ".npy.gz") ||
+           imk_has_ending(path, ".npy.zst");
 }
 
 /* Names and units become cells of the header, so they must not contain what divides it. */

@@ -19,39 +19,6 @@
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-/* Give a validation error the place of the value it speaks of. */
-static void place_error(const imk_document *document, imk_error *error)
-{
-    if (!error || error->field[0] == '\0')
-        return;
-    int node = imki_document_find(document, 0, error->field, NULL);
-    error->line = document->node[node].line;
-    error->column = document->node[node].column;
-    if (error->found[0] == '\0' && document->node[node].kind == IMKI_NODE_SCALAR)
-        snprintf(error->found, sizeof error->found, "%.80s", document->node[node].text);
-}
-
-imk_status imki_document_open(const char *text, size_t size, bool validate, imk_document **document,
-                              imk_error *error)
-{
-    imk_document *made = NULL;
-    imk_status status = imki_document_parse(text, size, &made, error);
-    if (status != IMK_OK)
-        return status;
-    status = imki_document_read_model(made, &made->model, error);
-    if (status == IMK_OK && validate) {
-        status = imk_model_validate(&made->model, error);
-        if (status != IMK_OK)
-            place_error(made, error);
-    }
-    if (status != IMK_OK) {
-        imk_document_free(made);
-        return status;
-    }
-    *document = made;
-    return IMK_OK;
-}
-
 imk_status imk_model_parse(const char *text, size_t size, imk_model *model, imk_document **document,
                            imk_error *error)
 {
@@ -164,19 +131,11 @@ imk_status imk_model_print_json(const imk_model *model, const imk_document *docu
     return print(model, document, true, document && document->is_json, text, size, error);
 }
 
-static bool ends_with(const char *path, const char *ending)
-{
-    if (!path)
-        return false;
-    size_t length = strlen(path), ending_length = strlen(ending);
-    return length >= ending_length && strcmp(path + length - ending_length, ending) == 0;
-}
-
 imk_status imk_model_write(const char *path, const imk_model *model, const imk_document *document,
                            imk_error *error)
 {
-    bool is_json = ends_with(path, ".json");
-    bool is_yaml = ends_with(path, ".yaml") || ends_with(path, ".yml");
+    bool is_json = imk_has_ending(path, ".json");
+    bool is_yaml = imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml");
     bool was_json = document && document->is_json;
     char *text = NULL;
     size_t size = 0;
@@ -228,8 +187,7 @@ imk_status imk_model_open(const char *name, imk_model *model, imk_document **doc
     struct stat unused;
     bool is_file = strcmp(name, "-") == 0 || stat(name, &unused) == 0;
     const imk_device *device = is_file ? NULL : imk_device_find(name);
-    bool looks_like_file = strchr(name, '/') || ends_with(name, ".yaml") ||
-                           ends_with(name, ".yml") || ends_with(name, ".json");
+    bool looks_like_file = strchr(name, '/') || imki_is_script_name(name);
     if (is_file || (!device && looks_like_file))
         return imk_model_read(name, model, document, error);
     if (!device)

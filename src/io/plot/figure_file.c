@@ -7,6 +7,7 @@
 #include "report/figure_internal.h"
 
 #include "imukit/figure_file.h"
+#include "imukit/names.h"
 #include "imukit/output_file.h"
 
 #include <stdlib.h>
@@ -39,12 +40,6 @@ static imk_status write_file(const char *path, const char *text, size_t size, im
     return imk_output_file_commit(file, error);
 }
 
-static bool ends_with(const char *text, const char *end)
-{
-    size_t length = strlen(text), end_length = strlen(end);
-    return length > end_length && strcmp(text + length - end_length, end) == 0;
-}
-
 static imk_status draw_with_gnuplot(const imk_figure *figure, const char *path,
                                     imki_terminal terminal, char **image, size_t *size,
                                     imk_error *error)
@@ -75,11 +70,11 @@ imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_erro
         return status;
     if (in_letters)
         status = draw_with_gnuplot(figure, path, IMKI_TERMINAL_TEXT, &image, &size, error);
-    else if (ends_with(path, ".svg"))
+    else if (imk_has_ending(path, ".svg"))
         status = imk_figure_svg(figure, &image, &size, error);
-    else if (ends_with(path, ".png"))
+    else if (imk_has_ending(path, ".png"))
         status = draw_with_gnuplot(figure, path, IMKI_TERMINAL_PNG, &image, &size, error);
-    else if (ends_with(path, ".pdf"))
+    else if (imk_has_ending(path, ".pdf"))
         status = draw_with_gnuplot(figure, path, IMKI_TERMINAL_PDF, &image, &size, error);
     else
         return imk_error_set(error, IMK_ERROR_FORMAT, "plot", path,
@@ -94,7 +89,7 @@ imk_status imk_animation_write(const imk_animation *animation, const char *path,
 {
     char *svg;
     size_t size;
-    if (!ends_with(path, ".svg"))
+    if (!imk_has_ending(path, ".svg"))
         return imk_error_set(error, IMK_ERROR_FORMAT, "animation", path, "a name ending in .svg");
     imk_status status = imk_animation_svg(animation, &svg, &size, error);
     if (status == IMK_OK) {

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The error model of an instrument by closed forms, and beside it what the experiments of a
+ * laboratory say: as tables, as data, as a model file. */
+#include "physics_parts.h"
+
+#include "imukit/model_file.h"
+#include "imukit/thread_pool.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIGURES_MAX = IMK_LABORATORY_FIGURES_MAX + 12 + 7 * IMK_TERMS_MAX };
+
+static size_t add(imk_laboratory_figure *figures, size_t count, const char *key, const char *si,
+                  const char *unit, const imk_axes *axes)
+{
+    figures[count] = (imk_laboratory_figure){key, si, unit, axes->value[0], axes->sigma[0]};
+    return count + 1;
+}
+
+/* Several terms of a kind have the same keys, in the order of the model file. */
+static size_t add_terms(imk_laboratory_figure *figures, size_t n, const imk_noise *noise,
+                        const char *si, const char *unit)
+{
+    for (int i = 0; i < noise->gauss_markov_count; i++) {
+        n = add(figures, n, "noise.gauss_markov.sigma", si, unit, &noise->gauss_markov[i].sigma);
+        n = add(figures, n, "noise.gauss_markov.correlation_time", "s", "s",
+                &noise->gauss_markov[i].correlation_time);
+    }
+    for (int i = 0; i < noise->sinusoid_count; i++) {
+        n = add(figures, n, "noise.sinusoid.amplitude", si, unit, &noise->sinusoid[i].amplitude);
+        n = add(figures, n, "noise.sinusoid.frequency", "Hz", "Hz", &noise->sinusoid[i].frequency);
+    }
+    for (int i = 0; i < noise->resonance_count; i++) {
+        n = add(figures, n, "noise.resonance.sigma", si, unit, &noise->resonance[i].sigma);
+        n = add(figures, n, "noise.resonance.frequency", "Hz", "Hz",
+                &noise->resonance[i].frequency);
+        n = add(figures, n, "noise.resonance.q", "1", "1", &noise->resonance[i].q);
+    }
+    return n;
+}
+
+/* The figures of a laboratory and those that its experiments do not find. */
+static size_t all_figures(const imk_model *model, int sensor, imk_laboratory_figure *figures)
+{
+    const bool gyro = sensor == IMK_GYRO;
+    const imk_triad *t = gyro ? &model->gyro : &model->accel;
+    const char *si = gyro ? "rad/s" : "m/s^2", *small = gyro ? "deg/h" : "ug";
+    size_t n = imk_laboratory_figures(model, sensor, figures);
+    n = add(figures, n, "bias.repeatability", si, small, &t->bias.repeatability);
+    n = add(figures, n, "bias.warm_up_amplitude", si, small, &t->bias.warm_up_amplitude);
+    n = add(figures, n, "bias.hysteresis", si, small, &t->bias.hysteresis);
+    n = add(figures, n, "scale_factor.repeatability", "1", "ppm", &t->scale_factor.repeatability);
+    figures[n++] = (imk_laboratory_figure){
+        "misalignment.y", "rad", "mrad", t->misalignment.value[0][1], t->misalignment.sigma[0][1]};
+    figures[n++] = (imk_laboratory_figure){
+        "misalignment.z", "rad", "mrad", t->misalignment.value[0][2], t->misalignment.sigma[0][2]};
+    n = add(figures, n, "damping", "1", "1", &t->damping);
+    n = add(figures, n, "resolution", si, small, &t->resolution);
+    n = add(figures, n, "range", si, gyro ? "deg/s" : "m/s^2", &t->range);
+    return add_terms(figures, n, &t->noise, si, small);
+}
+
+const char *physics_unit_text(const char *unit)
+{
+    return strcmp(unit, "1") == 0 ? "" : unit;
+}
+
+void physics_show_model(const imk_model *model, int sensor, imk_result *result)
+{
+    imk_laboratory_figure figures[FIGURES_MAX];
+    const size_t count = all_figures(model, sensor, figures);
+    imk_table *table = imk_result_table(result, 2u);
+    imk_table_row(table, "parameter\tvalue\tunit");
+    for (const imk_laboratory_figure *f = figures; f < figures + count; f++)
+        if (f->value != 0 && !isnan(f->value))
+            imk_table_row(table, "%s\t%.5g\t%s", f->key, f->value / imk_unit_of(f->unit).scale,
+                          physics_unit_text(f->unit));
+}
+
+/* Of several terms of a kind: sigma, sigma[1], … */
+void physics_model_data(const imk_model *model, int sensor, imk_result *result)
+{
+    imk_laboratory_figure figures[FIGURES_MAX];
+    const size_t count = all_figures(model, sensor, figures);
+    imk_result_object(result, "reduced");
+    for (size_t i = 0; i < count; i++) {
+        int before = 0;
+        for (size_t j = 0; j < i; j++)
+            before += strcmp(figures[j].key, figures[i].key) == 0;
+        imk_result_quantity(result,
+                            before == 0 ? figures[i].key
+                                        : imk_result_key(result, "%s[%d]", figures[i].key, before),
+                            figures[i].value, figures[i].si);
+    }
+    imk_result_end(result);
+}
+
+int physics_write_model(const physics *p, const imk_model *model, const char *path)
+{
+    imk_error error;
+    imk_model *copy = command_memory(NULL, sizeof *copy);
+    *copy = *model;
+    if (p->file.name[0])
+        snprintf(copy->name, sizeof copy->name, "%s", p->file.name);
+    if (!p->options->single_axis)
+        imk_model_three_axes(copy);
+    const imk_status status = imk_model_write(path, copy, NULL, &error);
+    free(copy);
+    return status == IMK_OK ? -1 : command_error(&error, NULL);
+}
+
+/* ---- experiments ----------------------------------------------------------------------------- */
+
+/* A figure agrees when the difference is within this many 1-sigma values, or within the part of
+ * the figure that the closed forms leave out: small terms of higher order. */
+static const double sigmas_allowed = 4, part_allowed = 0.1;
+
+int physics_laboratory_make(const physics *p, physics_laboratory *laboratory)
+{
+    imk_error error = {.status = IMK_OK};
+    imk_laboratory settings = imk_laboratory_default();
+    settings.instrument = p->file.instrument;
+    settings.design = p->file.design;
+    settings.physics = p->settings;
+    settings.surroundings.temperature = p->input.exposure.temperature;
+    if (!p->settings.noise)
+        settings.record = 0;
+    const size_t size = imk_laboratory_workspace_size(&settings);
+    void *workspace = command_aligned(size);
+    imk_thread_pool *pool = imk_thread_pool_create(p->options->threads.value);
+    const imk_executor executor = imk_thread_pool_executor(pool);
+    const imk_status status =
+        imk_laboratory_run(&settings, workspace, size, &executor, &laboratory->result, &error);
+    imk_thread_pool_destroy(pool);
+    free(workspace);
+    if (status != IMK_OK)
+        return physics_refused(p, &error);
+    const int sensor = p->file.instrument->sensor;
+    laboratory->count = imk_laboratory_figures(p->model, sensor, laboratory->computed);
+    (void)imk_laboratory_figures(&laboratory->result.model, sensor, laboratory->found);
+    return -1;
+}
+
+/* Worth a line: one of the two says something. */
+static bool says_something(const imk_laboratory_figure *computed,
+                           const imk_laboratory_figure *found)
+{
+    return computed->value != 0 || fabs(found->value) > sigmas_allowed * found->sigma;
+}
+
+static const char *judge(const imk_laboratory_figure *computed, const imk_laboratory_figure *found)
+{
+    const double difference = fabs(found->value - computed->value);
+    const double sigma = hypot(found->sigma, computed->sigma);
+    if (isnan(found->value) || (found->value == 0 && found->sigma == 0))
+        return "not measured";
+    if (difference <= sigmas_allowed * sigma)
+        return "agrees";
+    if (difference <= part_allowed * fabs(computed->value))
+        return "close";
+    return "differs";
+}
+
+void physics_show_laboratory(const physics_laboratory *l, imk_result *result)
+{
+    imk_table *table = imk_result_table(result, 0xeu);
+    imk_table_row(table, "parameter\tclosed form\texperiment\t1 sigma\tunit\t");
+    for (size_t i = 0; i < l->count; i++) {
+        const imk_laboratory_figure *computed = &l->computed[i], *found = &l->found[i];
+        const double scale = imk_unit_of(found->unit).scale;
+        if (says_something(computed, found))
+            imk_table_row(table, "%s\t%.5g\t%.5g\t%.2g\t%s\t%s", found->key,
+                          computed->value / scale, found->value / scale, found->sigma / scale,
+                          physics_unit_text(found->unit), judge(computed, found));
+    }
+}
+
+static void show_points(const imk_laboratory_result *r, const char *si, imk_result *result)
+{
+    imk_result_array(result, "points");
+    for (int i = 0; i < r->point_count; i++) {
+        imk_result_object(result, NULL);
+        imk_result_quantity(result, "input", r->point[i].input, si);
+        imk_result_quantity(result, "output", r->point[i].output, si);
+        imk_result_quantity(result, "sigma", r->point[i].sigma, si);
+        imk_result_end(result);
+    }
+    imk_result_end(result);
+    imk_result_array(result, "responses");
+    for (int i = 0; i < r->response_count; i++) {
+        imk_result_object(result, NULL);
+        imk_result_quantity(result, "frequency", r->response[i].frequency, "Hz");
+        imk_result_quantity(result, "gain", r->response[i].gain, "1");
+        imk_result_quantity(result, "phase", r->response[i].phase, "rad");
+        imk_result_end(result);
+    }
+    imk_result_end(result);
+}
+
+void physics_laboratory_data(const physics *p, const physics_laboratory *l, imk_result *result)
+{
+    const char *si = p->file.instrument->sensor == IMK_GYRO ? "rad/s" : "m/s^2";
+    const imk_laboratory_result *r = &l->result;
+    imk_result_object(result, "experiment");
+    imk_result_object(result, "figures");
+    for (size_t i = 0; i < l->count; i++) {
+        const imk_laboratory_figure *computed = &l->computed[i], *found = &l->found[i];
+        imk_result_object(result, found->key);
+        imk_result_quantity(result, "closed_form", computed->value, found->si);
+        imk_result_quantity(result, "experiment", found->value, found->si);
+        imk_result_quantity(result, "sigma", found->sigma, found->si);
+        imk_result_text(result, "verdict", judge(computed, found));
+        imk_result_end(result);
+    }
+    imk_result_end(result);
+    imk_result_quantity(result, "full_scale", r->full_scale, si);
+    imk_result_quantity(result, "line_deviation", r->line_deviation, "1");
+    imk_result_quantity(result, "threshold", r->threshold, si);
+    imk_result_quantity(result, "bandwidth", r->bandwidth, "Hz");
+    show_points(r, si, result);
+    imk_result_end(result);
+}

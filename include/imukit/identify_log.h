@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file identify_log.h
+ *  The job of `imukit identify`: the noise of every channel of a record at rest, with intervals.
+ *
+ *  A record is loaded and its samples are screened (record_screen.h) and identified (identify.h);
+ *  one of more than IMK_IDENTIFY_RECORD_ADVISED rows, from a source that can be rewound, is
+ *  identified in one pass without being held (identify_record.h), unless it is not even. */
+#ifndef IMUKIT_IDENTIFY_LOG_H
+#define IMUKIT_IDENTIFY_LOG_H
+
+#include "imukit/allan_log.h"
+#include "imukit/even_record.h"
+#include "imukit/identify.h"
+#include "imukit/identify_joint.h"
+#include "imukit/model.h"
+#include "imukit/record_screen.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What is asked. Start from imk_identify_log_default(). */
+typedef struct imk_identify_log_settings {
+    uint32_t cookie;
+    imk_gap_policy gaps;  /**< IMK_GAPS_KEEP */
+    double confidence;    /**< of intervals and bounds; 0.95 */
+    double significance;  /**< chance that a term which is not there is called present; 0.01 */
+    unsigned take_out;    /**< IMK_SCREEN_… bits; IMK_SCREEN_ALL */
+    bool from_allan;      /**< terms by generalised least squares on the Allan deviations; false */
+    double tolerance;     /**< as of imk_allan_fit_settings; 0 */
+    int gauss_markov_max; /**< the same; 0 */
+    bool summarise;       /**< keep what a joint estimate needs; false */
+} imk_identify_log_settings;
+
+IMK_API imk_identify_log_settings imk_identify_log_default(void);
+
+/** What was found. */
+typedef struct imk_identify_log {
+    imk_identify_log_settings settings;
+    imk_even_record record; /**< without samples where the record was never held */
+    double duration;        /**< [s] recorded */
+    bool screened;          /**< a record that was never held is not */
+    imk_identification result[IMK_LOG_COLUMNS_MAX];
+    imk_screen screen[IMK_LOG_COLUMNS_MAX];
+    imk_spectral_summary *summary[IMK_LOG_COLUMNS_MAX]; /**< with `summarise` */
+    imk_allan_curve curve[IMK_LOG_COLUMNS_MAX];         /**< over octaves */
+    imk_findings findings;
+} imk_identify_log;
+
+/** Identify every channel of a source.
+ *  @param job     NULL: as if all zeros
+ *  @param result  imk_identify_log_free() it, also on failure, where it holds the findings; NULL
+ *                 when even its memory failed
+ *  @return as imk_even_record_load(), imk_identify_channel() (error.field: the channel), and with a
+ *          finding IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP (from_allan needs every sample) */
+IMK_API imk_status imk_identify_log_run(const imk_record_source *source,
+                                        const imk_identify_log_settings *settings,
+                                        const imk_job *job, imk_identify_log **result,
+                                        imk_error *error);
+IMK_API void imk_identify_log_free(imk_identify_log *result);
+
+/** Noise model of what was identified: nothing but noise, output filter and evidence, rounded
+ *  to the digits the values have in the units of a model file.
+ *  @param source  what the evidence says it is from, such as the name of the file */
+IMK_API void imk_identify_log_model(const imk_identify_log *log, const char *source,
+                                    imk_model *model);
+/** Replace noise, output filter and evidence of a model by those of another, and nothing else.
+ *  @return IMK_ERROR_CONFLICT: another number of axes (error.field "gyro" or "accel", error.value
+ *          those of the model, error.limit those of the noise); the model stays as it is */
+IMK_API imk_status imk_model_take_noise(imk_model *model, const imk_model *noise, imk_error *error);
+
+/** Simulate a noise model over the length of the record and take the Allan deviations of it: what
+ *  the deviations of the record would be if the model were the whole truth.
+ *  @param curves  one per channel of the record; imk_allan_curve_free() them */
+IMK_API imk_status imk_identify_log_twin(const imk_identify_log *log, const imk_model *noise,
+                                         uint64_t seed, const imk_job *job, imk_allan_curve *curves,
+                                         imk_error *error);
+
+/** How a noise term of a channel is called, and the units of its strength. */
+typedef struct imk_term_display {
+    char key[40];  /**< as in the model file */
+    char name[40]; /**< as people say it */
+    imk_unit unit; /**< readable */
+    char si[40];   /**< unit of the SI value */
+} imk_term_display;
+IMK_API imk_term_display imk_channel_term(const imk_log_column *column, imk_noise_term term);
+
+/** Let the samples go, which are the bulk of the memory. */
+IMK_API void imk_identify_log_let_samples_go(imk_identify_log *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file spectrum_log.h
+ *  The job of `imukit spectrum`: power spectral densities of every channel of a record, its lines,
+ *  and the noise it shows. */
+#ifndef IMUKIT_SPECTRUM_LOG_H
+#define IMUKIT_SPECTRUM_LOG_H
+
+#include "imukit/even_record.h"
+#include "imukit/spectrum.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    IMK_SPECTRUM_LINES_MAX = 64,
+    IMK_SPECTRUM_FINE = 100, /**< bands per decade, lines in them */
+    IMK_SPECTRUM_COARSE = 4  /**< the same, lines left out */
+};
+
+/** What is asked. Start from imk_spectrum_log_default(). */
+typedef struct imk_spectrum_log_settings {
+    uint32_t cookie;
+    imk_gap_policy gaps; /**< IMK_GAPS_REFUSE */
+    imk_spectrum_method method;
+    imk_window window;
+    double resolution;  /**< [Hz]; 0: as imk_spectrum_settings */
+    bool trend;         /**< a straight line is removed from each segment; false */
+    double from, to;    /**< [Hz] of the fit of noise parameters; 0: the lowest, the highest */
+    double confidence;  /**< of the two-sided intervals; 0.95 */
+    double false_alarm; /**< chance that a channel without lines shows any; 0.001 */
+    bool one_sided;     /**< how densities are shown; those of the result are two-sided; false */
+} imk_spectrum_log_settings;
+
+IMK_API imk_spectrum_log_settings imk_spectrum_log_default(void);
+
+/** What was found on one channel. */
+typedef struct imk_channel_spectrum {
+    imk_spectrum spectrum;
+    size_t line_count;
+    imk_spectrum_line line[IMK_SPECTRUM_LINES_MAX];
+    size_t fine_count, coarse_count;
+    imk_spectrum_band *fine, *coarse;
+    imk_status fit_status; /**< IMK_OK: `fit` is there */
+    imk_spectrum_parameters fit;
+    double *memory; /**< the arrays of the spectrum */
+} imk_channel_spectrum;
+
+/** What was found. */
+typedef struct imk_spectrum_log {
+    imk_spectrum_log_settings settings;
+    imk_even_record record;
+    imk_channel_spectrum channel[IMK_LOG_COLUMNS_MAX];
+    imk_findings findings;
+} imk_spectrum_log;
+
+/** Spectra of every channel of a source.
+ *  @param job     NULL: as if all zeros
+ *  @param result  imk_spectrum_log_free() it, also on failure, where it holds the findings; NULL
+ *                 when even its memory failed
+ *  @return as imk_even_record_load(); IMK_ERROR_RANGE (error.field "from" or "resolution"), and,
+ *          with a finding, IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP */
+IMK_API imk_status imk_spectrum_log_run(const imk_record_source *source,
+                                        const imk_spectrum_log_settings *settings,
+                                        const imk_job *job, imk_spectrum_log **result,
+                                        imk_error *error);
+IMK_API void imk_spectrum_log_free(imk_spectrum_log *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Identifies a record: whole, or in one pass when it is long. */
+#include "identify_log_internal.h"
+
+#include "jobs/allan/allan_curve_internal.h"
+#include "jobs/arena_internal.h"
+#include "jobs/job_internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const uint32_t settings_cookie = 0x49444531; /* "IDE1" */
+
+imk_identify_log_settings imk_identify_log_default(void)
+{
+    return (imk_identify_log_settings){.cookie = settings_cookie,
+                                       .gaps = IMK_GAPS_KEEP,
+                                       .confidence = 0.95,
+                                       .significance = 0.01,
+                                       .take_out = IMK_SCREEN_ALL};
+}
+
+void imk_identify_log_free(imk_identify_log *result)
+{
+    if (!result)
+        return;
+    const imk_allocator allocator = result->record.log.allocator;
+    for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++) {
+        imk_allan_curve_free(&result->curve[c], &allocator);
+        imki_resize(&allocator, result->summary[c], 0);
+    }
+    imk_even_record_free(&result->record);
+    imki_resize(&allocator, result, 0);
+}
+
+void imk_identify_log_let_samples_go(imk_identify_log *result)
+{
+    imk_log *log = &result->record.log;
+    for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++)
+        log->data[c] = imki_resize(&log->allocator, log->data[c], 0);
+    log->label = imki_resize(&log->allocator, log->label, 0);
+    log->label_count = 0;
+    result->record.temperature = NULL;
+}
+
+bool imki_identify_settings(imk_identify_log *log, size_t channel, const imk_allocator *allocator,
+                            imk_identify_settings *settings)
+{
+    *settings = imk_identify_default();
+    settings->dt = log->record.dt;
+    settings->confidence = log->settings.confidence;
+    settings->significance = log->settings.significance;
+    if (!log->settings.summarise)
+        return true;
+    const size_t size = imk_spectral_summary_size();
+    settings->summary = log->summary[channel] = imki_resize(allocator, NULL, size);
+    if (settings->summary)
+        memset(settings->summary, 0, size);
+    return settings->summary != NULL;
+}
+
+imk_status imki_identify_explain(imk_identify_log *log, size_t channel, imk_status status,
+                                 const imk_error *why, imk_error *error)
+{
+    const imk_even_record *record = &log->record;
+    const char *name = imk_even_record_column(record, channel)->name;
+    const double rows = (double)record->rows;
+    if (status == IMK_ERROR_CONSTANT)
+        return imki_fail(&log->findings, error, status, "constant_identify", name,
+                         IMKI_NUMBERS(rows));
+    /* A record taken block by block keeps no samples, and is long. */
+    const bool kept = imk_even_record_data(record, channel) != NULL;
+    const double finite = kept ? (double)imk_even_record_finite(record, channel) : rows;
+    if (status == IMK_ERROR_TOO_SHORT)
+        return imki_fail(&log->findings, error, status,
+                         finite < rows ? "too_few_values" : "too_few_to_identify", name,
+                         IMKI_NUMBERS(finite, rows));
+    imk_error named = *why;
+    if (!named.field[0])
+        snprintf(named.field, sizeof named.field, "%s", name);
+    if (error)
+        *error = named;
+    return status;
+}
+
+static imk_status identify(imk_identify_log *log, const imk_record_source *source,
+                           const imk_job *job, imk_error *error)
+{
+    bool taken = false;
+    imk_status status = IMK_OK;
+    if (source->rewind && source->progress)
+        status = imki_identify_long(log, source, job, &taken, error);
+    if (status == IMK_OK && !taken)
+        status = imk_even_record_load(source, log->settings.gaps, job, &log->record, &log->findings,
+                                      error);
+    if (status == IMK_OK && !taken)
+        status = imki_identify_channels(log, job, error);
+    if (status == IMK_OK && log->settings.from_allan)
+        status = imki_identify_by_allan(log, job, error);
+    return status;
+}
+
+imk_status imk_identify_log_run(const imk_record_source *source,
+                                const imk_identify_log_settings *settings, const imk_job *job,
+                                imk_identify_log **result, imk_error *error)
+{
+    const imk_job alone = {.memory = 0};
+    job = job ? job : &alone;
+    *result = NULL;
+    if (settings->cookie != settings_cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
+                             "imk_identify_log_default()");
+    imk_identify_log *made = imki_resize(&job->allocator, NULL, sizeof *made);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    memset(made, 0, sizeof *made);
+    made->settings = *settings;
+    *result = made;
+    const imk_status status = identify(made, source, job, error);
+    made->record.log.allocator = job->allocator;
+    made->duration = made->record.dt * (double)made->record.rows;
+    return status;
+}

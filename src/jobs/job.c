@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What all jobs do: tell what they find, and how far they are. */
+#include "job_internal.h"
+
+#include <stdio.h>
+
+void imki_find(imk_findings *findings, imk_finding_level level, const char *code, const char *name,
+               size_t count, const double *numbers)
+{
+    if (findings->count == IMK_FINDINGS_MAX) {
+        if (level != IMK_FINDING_FAILURE)
+            return;
+        findings->count--;
+    }
+    imk_finding *made = &findings->item[findings->count++];
+    *made = (imk_finding){.code = code, .level = level};
+    snprintf(made->name, sizeof made->name, "%s", name ? name : "");
+    for (size_t i = 0; i < count && i < IMK_FINDING_NUMBERS; i++)
+        made->number[i] = numbers[i];
+}
+
+imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status, const char *code,
+                     const char *name, size_t count, const double *numbers)
+{
+    imki_find(findings, IMK_FINDING_FAILURE, code, name, count, numbers);
+    return imk_error_set(error, status, name, NULL, NULL);
+}
+
+const imk_finding *imk_findings_failure(const imk_findings *findings)
+{
+    for (size_t i = findings->count; i-- > 0;)
+        if (findings->item[i].level == IMK_FINDING_FAILURE)
+            return &findings->item[i];
+    return NULL;
+}
+
+imk_status imki_job_progress(const imk_job *job, const char *stage, const char *unit, uint64_t done,
+                             uint64_t total, imk_error *error)
+{
+    if (!job->progress || job->progress(job->progress_context, stage, unit, done, total))
+        return IMK_OK;
+    return imk_error_set(error, IMK_ERROR_CANCELLED, NULL, NULL, NULL);
+}

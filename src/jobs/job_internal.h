@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Findings and progress of a job. */
+#ifndef IMUKI_JOB_INTERNAL_H
+#define IMUKI_JOB_INTERNAL_H
+
+#include "imukit/job.h"
+
+/* Add a finding; beyond IMK_FINDINGS_MAX it is lost, but for a failure. `numbers` has `count`. */
+void imki_find(imk_findings *findings, imk_finding_level level, const char *code, const char *name,
+               size_t count, const double *numbers);
+
+/* A failure: adds it and fills the error. @return status */
+imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status, const char *code,
+                     const char *name, size_t count, const double *numbers);
+
+/* The numbers of a finding: IMKI_NUMBERS(rows, 100 * share) */
+#define IMKI_NUMBERS(...)                                                                          \
+    sizeof((const double[]){__VA_ARGS__}) / sizeof(double), (const double[])                       \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
+
+/* Tell of progress. @return IMK_ERROR_CANCELLED where the caller gives up */
+imk_status imki_job_progress(const imk_job *job, const char *stage, const char *unit, uint64_t done,
+                             uint64_t total, imk_error *error);
+
+#endif

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Rows in memory as a source of records. */
+#include "record_times_internal.h"
+
+#include "jobs/arena_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+int imk_record_find(const imk_record_source *source, imk_quantity quantity, int axis)
+{
+    for (size_t i = 0; i < source->column_count; i++)
+        if (source->columns[i].quantity == quantity && source->columns[i].axis == axis)
+            return (int)i;
+    return -1;
+}
+
+/* x, y, z or 0 … 7 behind a prefix; -1 for anything else. */
+static int axis_behind(const char *name, const char *prefix)
+{
+    static const char letters[] = "xyz";
+    const size_t length = strlen(prefix);
+    if (strncmp(name, prefix, length) != 0 || !name[length] || name[length + 1])
+        return -1;
+    const char *letter = strchr(letters, name[length]);
+    if (letter)
+        return (int)(letter - letters);
+    return name[length] >= '0' && name[length] <= '7' ? name[length] - '0' : -1;
+}
+
+imk_log_column imk_record_column(const char *name)
+{
+    static const struct {
+        const char *prefix, *unit;
+        imk_quantity quantity;
+    } sensors[] = {{"gyro_", "rad/s", IMK_QUANTITY_ANGULAR_RATE},
+                   {"accel_", "m/s^2", IMK_QUANTITY_SPECIFIC_FORCE}};
+    imk_log_column column = {.quantity = IMK_QUANTITY_OTHER, .axis = -1, .unit = imk_unit_of("1")};
+    snprintf(column.name, sizeof column.name, "%s", name);
+    for (size_t k = 0; k < 2; k++)
+        if (axis_behind(name, sensors[k].prefix) >= 0) {
+            column.axis = axis_behind(name, sensors[k].prefix);
+            column.quantity = sensors[k].quantity;
+            column.unit = imk_unit_of(sensors[k].unit);
+        }
+    if (strcmp(name, "time") == 0) {
+        column.quantity = IMK_QUANTITY_TIME;
+        column.unit = imk_unit_of("s");
+    } else if (strcmp(name, "temperature") == 0) {
+        column.quantity = IMK_QUANTITY_TEMPERATURE;
+        column.unit = imk_unit_of("K");
+    }
+    return column;
+}
+
+static imk_status read_rows(void *context, size_t rows_most, double *const *columns, size_t *rows,
+                            imk_error *error)
+{
+    imk_array_source *s = context;
+    const size_t left = s->rows - s->next;
+    (void)error;
+    *rows = left < rows_most ? left : rows_most;
+    for (size_t c = 0; c < s->column_count; c++)
+        if (columns[c] && *rows > 0)
+            memcpy(columns[c], s->data[c] + s->next, *rows * sizeof **columns);
+    s->next += *rows;
+    return IMK_OK;
+}
+
+static imk_status rewind_rows(void *context, imk_error *error)
+{
+    imk_array_source *s = context;
+    (void)error;
+    s->next = 0;
+    return IMK_OK;
+}
+
+static imk_log_findings findings_of(void *context)
+{
+    const imk_array_source *s = context;
+    return s->findings;
+}
+
+static void progress_of(void *context, uint64_t *done, uint64_t *total)
+{
+    const imk_array_source *s = context;
+    *done = s->next * s->column_count * sizeof(double);
+    *total = s->rows * s->column_count * sizeof(double);
+}
+
+/* Rows with a number that is not finite, and the first of them from 1. */
+static void count_not_finite(imk_array_source *s)
+{
+    for (size_t row = 0; row < s->rows; row++) {
+        bool finite = true;
+        for (size_t c = 0; c < s->column_count; c++)
+            finite = finite && isfinite(s->data[c][row]);
+        if (!finite && s->findings.not_finite++ == 0)
+            s->findings.first_not_finite = row + 1;
+    }
+}
+
+static imk_status find_times(const double *time, imk_array_source *s, imk_error *error)
+{
+    imki_arena scratch = {.blocks = NULL};
+    imki_record_times *times = imki_arena_take(&scratch, sizeof *times);
+    if (!times)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "time", NULL, NULL);
+    imki_record_times_start(times, s->rate > 0 ? 1 / s->rate : 0);
+    if (time)
+        imki_record_times_add(times, 1, s->rows, time);
+    s->findings = imki_record_times_findings(times);
+    s->findings.rows = s->rows;
+    if (!time && s->rows > 0)
+        s->findings.last_time = (double)(s->rows - 1) / s->rate;
+    imki_arena_free(&scratch);
+    count_not_finite(s);
+    return IMK_OK;
+}
+
+imk_status imk_array_source_make(size_t column_count, const char *const *names,
+                                 const double *const *data, size_t rows, double rate,
+                                 imk_array_source *memory, imk_record_source *source,
+                                 imk_error *error)
+{
+    const double *time = NULL;
+    if (column_count == 0 || column_count > IMK_LOG_COLUMNS_MAX)
+        return imk_error_set(error, IMK_ERROR_COLUMN, "columns", NULL, "1 to 64 columns");
+    imk_array_source made = {.column_count = column_count, .rows = rows, .rate = rate};
+    for (size_t c = 0; c < column_count; c++) {
+        for (size_t k = 0; k < c; k++)
+            if (strcmp(names[c], names[k]) == 0)
+                return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL, "a name once");
+        made.column[c] = imk_record_column(names[c]);
+        made.data[c] = data[c];
+        if (made.column[c].quantity == IMK_QUANTITY_TIME)
+            time = data[c];
+    }
+    if (!(rate > 0 && isfinite(rate)) && !time)
+        return imk_error_set(error, IMK_ERROR_RATE_MISSING, "rate", NULL,
+                             "a rate in Hz, or a column named time");
+    const imk_status status = find_times(time, &made, error);
+    if (status != IMK_OK)
+        return status;
+    *memory = made;
+    *source = (imk_record_source){.context = memory,
+                                  .column_count = column_count,
+                                  .columns = memory->column,
+                                  .rate = rate,
+                                  .read = read_rows,
+                                  .rewind = rewind_rows,
+                                  .findings = findings_of,
+                                  .progress = progress_of};
+    return IMK_OK;
+}

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Allan deviations to be shown: data, tables, a figure. */
+#include "imukit/channel_units.h"
+#include "imukit/show.h"
+
+#include <stdio.h>
+
+imk_unit imk_allan_log_unit(const imk_allan_log *allan, size_t channel,
+                            imk_allan_statistic statistic)
+{
+    imk_unit unit = imk_channel_plain_unit(imk_even_record_column(&allan->record, channel));
+    const bool phase = allan->settings.phase, time = statistic == IMK_ALLAN_TIME;
+    if (phase != time) {
+        const imk_unit column_unit = unit;
+        snprintf(unit.text, sizeof unit.text, phase ? "%.40s/s" : "%.40s*s", column_unit.text);
+    }
+    return unit;
+}
+
+/* Unit a person reads the deviation in. */
+static imk_unit readable_unit(const imk_allan_log *a, size_t channel, imk_allan_statistic statistic,
+                              double magnitude)
+{
+    if (a->settings.phase)
+        return imk_allan_log_unit(a, channel, statistic);
+    imk_unit unit =
+        imk_channel_readable_unit(imk_even_record_column(&a->record, channel), magnitude);
+    if (statistic == IMK_ALLAN_TIME) {
+        const imk_unit rate = unit;
+        snprintf(unit.text, sizeof unit.text, "%.40s*s", rate.text);
+    }
+    return unit;
+}
+
+const char *imk_power_law_name(imk_power_law type)
+{
+    switch (type) {
+    case IMK_WHITE_PHASE:
+        return "white-phase";
+    case IMK_FLICKER_PHASE:
+        return "flicker-phase";
+    case IMK_WHITE_RATE:
+        return "white-rate";
+    case IMK_FLICKER_RATE:
+        return "flicker-rate";
+    case IMK_RANDOM_WALK_RATE:
+        return "random-walk-rate";
+    case IMK_FLICKER_WALK_RATE:
+        return "flicker-walk-rate";
+    case IMK_RANDOM_RUN_RATE:
+        return "random-run-rate";
+    }
+    return "";
+}
+
+/* Averaging times down, the channels of one kind across; nothing when there are none. */
+static void show_table(const imk_allan_log *a, imk_channel_kind kind, size_t k, imk_result *result)
+{
+    const imk_allan_statistic statistic = a->settings.statistic[k];
+    const imk_allan_curve *curve[IMK_LOG_COLUMNS_MAX];
+    size_t member[IMK_LOG_COLUMNS_MAX], members = 0;
+    bool gaps = false;
+    for (size_t c = 0; c < a->record.count; c++) {
+        if (imk_channel_kind_of(imk_even_record_column(&a->record, c)) != kind ||
+            a->curve[c][k].count == 0)
+            continue;
+        curve[members] = &a->curve[c][k];
+        gaps = gaps || curve[members]->used;
+        member[members++] = c;
+    }
+    if (members == 0)
+        return;
+    const imk_allan_curve *first = curve[0];
+    const imk_unit unit =
+        readable_unit(a, member[0], statistic, first->deviation[first->count / 2]);
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    if (a->settings.statistic_count > 1)
+        imk_result_line(result, "%s (%s)", imk_allan_title(statistic), imk_allan_name(statistic));
+    imk_result_for(result, IMK_FOR_BOTH);
+    imk_table *table = imk_result_table(result, 0);
+    imk_table_row(table, "tau [s]");
+    for (size_t j = 0; j < members; j++)
+        imk_table_add(table, "%s [%s]", imk_even_record_column(&a->record, member[j])->name,
+                      unit.text);
+    for (size_t j = 0; gaps && j < members; j++)
+        imk_table_add(table, "%s used [%%]", imk_even_record_column(&a->record, member[j])->name);
+    for (size_t i = 0; i < first->count; i++) {
+        imk_table_row(table, "%.6g", first->tau[i]);
+        for (size_t j = 0; j < members; j++)
+            imk_table_add(table, "%.4g (%.4g to %.4g)", curve[j]->deviation[i] / unit.scale,
+                          curve[j]->lower[i] / unit.scale, curve[j]->upper[i] / unit.scale);
+        for (size_t j = 0; gaps && j < members; j++)
+            imk_table_add(table, "%.3g", curve[j]->used ? 100 * curve[j]->used[i] : 100);
+    }
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    imk_result_line(result, "%s", "");
+}
+
+static void show_tables(const imk_allan_log *a, imk_result *result)
+{
+    for (size_t k = 0; k < a->settings.statistic_count; k++) {
+        imk_result_for(result, IMK_FOR_PAGE);
+        if (a->settings.statistic_count > 1)
+            imk_result_heading(result, imk_allan_title(a->settings.statistic[k]));
+        /* What a statistic cannot be taken of is said, not left out in silence. */
+        imk_result_for(result, IMK_FOR_TERMINAL);
+        if (a->curve[0][k].count == 0)
+            imk_result_line(result, "%s: the record allows no such averaging time\n",
+                            imk_allan_title(a->settings.statistic[k]));
+        for (imk_channel_kind kind = IMK_CHANNEL_GYRO; kind < IMK_CHANNEL_KINDS; kind++)
+            show_table(a, kind, k, result);
+    }
+    imk_result_line(result, "In brackets: %g %% confidence.", 100 * a->settings.confidence);
+}
+
+static void show_points(const imk_allan_curve *curve, imk_unit unit, imk_result *result)
+{
+    imk_result_array(result, "points");
+    for (size_t i = 0; i < curve->count; i++) {
+        const imk_allan_point *p = &curve->point[i];
+        imk_result_object(result, NULL);
+        imk_result_quantity(result, "tau", curve->tau[i], "s");
+        imk_result_quantity(result, "deviation", p->deviation / unit.scale, unit.text);
+        imk_result_quantity(result, "lower", p->lower / unit.scale, unit.text);
+        imk_result_quantity(result, "upper", p->upper / unit.scale, unit.text);
+        imk_result_number(result, "edf", p->edf);
+        imk_result_count(result, "count", (long long)p->count);
+        imk_result_text(result, "noise", imk_power_law_name(p->type));
+        imk_result_number(result, "used", curve->used ? curve->used[i] : 1);
+        imk_result_end(result);
+    }
+    imk_result_end(result);
+}
+
+/* "oadev,mdev", as they are asked for */
+static void show_statistics(const imk_allan_log_settings *s, imk_result *result)
+{
+    char text[16 * IMK_ALLAN_STATISTICS] = "all";
+    for (size_t k = 0, used = 0;
+         s->statistic_count < IMK_ALLAN_STATISTICS && k < s->statistic_count; k++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", k > 0 ? "," : "",
+                                 imk_allan_name(s->statistic[k]));
+    imk_result_text(result, "statistic", text);
+}
+
+static void show_data(const imk_allan_log *a, const char *name, imk_result *result)
+{
+    static const char *const biases[] = {"removed", "published", "left"};
+    const imk_allan_log_settings *s = &a->settings;
+    imk_result_object(result, "inputs");
+    imk_result_text(result, "log", name);
+    imk_result_count(result, "rows", (long long)a->record.rows);
+    imk_result_quantity(result, "interval", a->record.dt, "s");
+    show_statistics(s, result);
+    imk_result_number(result, "confidence", s->confidence);
+    imk_result_text(result, "edf", s->greenhall_riley ? "greenhall-riley" : "exact");
+    imk_result_text(result, "bias", biases[s->bias]);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    imk_result_array(result, "channels");
+    for (size_t c = 0; c < a->record.count; c++)
+        for (size_t k = 0; k < s->statistic_count; k++) {
+            imk_result_object(result, NULL);
+            imk_result_text(result, "name", imk_even_record_column(&a->record, c)->name);
+            imk_result_text(result, "statistic", imk_allan_name(s->statistic[k]));
+            show_points(&a->curve[c][k], imk_allan_log_unit(a, c, s->statistic[k]), result);
+            imk_result_end(result);
+        }
+    imk_result_end(result);
+    imk_result_end(result);
+}
+
+static void show_curve(const imk_allan_curve *curve, const char *name, int color, double scale,
+                       imk_figure_builder *figure)
+{
+    const imk_curve band = {"",         IMK_CURVE_BAND,   color,        curve->count,
+                            curve->tau, curve->deviation, curve->lower, curve->upper};
+    imk_curve points = {name,       IMK_CURVE_POINTS, color, curve->count,
+                        curve->tau, curve->deviation, NULL,  NULL};
+    imk_figure_curve(figure, &band, scale);
+    imk_figure_curve(figure, &points, scale);
+}
+
+/* One panel per kind of sensor (TDEV has panels of its own), one colour per channel and statistic,
+ * intervals as bands. */
+static void show_panel(const imk_allan_log *a, imk_channel_kind kind, bool time,
+                       imk_figure_builder *figure)
+{
+    static const char *const titles[] = {"Gyros", "Accelerometers", "Channels"};
+    imk_unit unit = {.scale = 0};
+    int color = 0;
+    for (size_t c = 0; c < a->record.count; c++)
+        for (size_t k = 0; k < a->settings.statistic_count; k++) {
+            const imk_log_column *column = imk_even_record_column(&a->record, c);
+            const imk_allan_curve *curve = &a->curve[c][k];
+            const imk_allan_statistic statistic = a->settings.statistic[k];
+            const bool alone = a->settings.statistic_count == 1;
+            char text[120];
+            if (imk_channel_kind_of(column) != kind || (statistic == IMK_ALLAN_TIME) != time ||
+                curve->count == 0)
+                continue;
+            if (color == 0) {
+                unit = readable_unit(a, c, statistic, curve->deviation[curve->count / 2]);
+                const char *what = alone && statistic == IMK_ALLAN_OVERLAPPING ? "Allan deviation"
+                                   : alone || time ? imk_allan_title(statistic)
+                                                   : "deviation";
+                snprintf(text, sizeof text, "%.40s [%s]", what, unit.text);
+                const imk_panel panel = {.title = titles[kind],
+                                         .x_label = "averaging time [s]",
+                                         .y_label = text,
+                                         .x_logarithmic = true,
+                                         .y_logarithmic = true};
+                imk_figure_panel(figure, &panel);
+            }
+            snprintf(text, sizeof text, "%.50s%s%s", column->name, alone ? "" : " ",
+                     alone ? "" : imk_allan_name(statistic));
+            show_curve(curve, text, color++, unit.scale, figure);
+        }
+}
+
+void imk_show_allan_log(const imk_allan_log *a, const char *name, imk_result *result)
+{
+    show_data(a, name, result);
+    imk_result_title(result, "Allan deviation", "%.120s: %zu samples of %zu channels, %g Hz", name,
+                     a->record.rows, a->record.count, 1 / a->record.dt);
+    imk_figure_builder *figure = imk_result_figure(
+        result, name, 2, "Points: the deviations. Bands: their confidence intervals.");
+    for (int time = 0; time < 2; time++)
+        for (imk_channel_kind kind = IMK_CHANNEL_GYRO; kind < IMK_CHANNEL_KINDS; kind++)
+            show_panel(a, kind, time == 1, figure);
+    show_tables(a, result);
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What results of several jobs are shown by. */
+#ifndef IMUKI_SHOW_INTERNAL_H
+#define IMUKI_SHOW_INTERNAL_H
+
+#include "imukit/channel_units.h"
+#include "imukit/even_record.h"
+#include "imukit/identify.h"
+#include "imukit/show.h"
+
+enum { IMKI_WORDS = 120 };
+
+/* "1.2345 ± 0.0012", to the digits that the uncertainty leaves; in a unit of this scale. */
+typedef struct imki_words {
+    char text[IMKI_WORDS];
+} imki_words;
+imki_words imki_plus_minus(double value, double sigma, double scale);
+/* A value alone, by its uncertainty; or to `digits` when that is 0. */
+imki_words imki_value(double value, double uncertainty, int digits);
+
+/* The channels of a kind. @return how many */
+size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t *member);
+
+/* {"present", "value", "sigma", "lower", "upper"} of an estimate. */
+void imki_show_estimate(imk_result *result, const char *key, const imk_estimate *estimate,
+                        double scale, const char *unit);
+
+#endif

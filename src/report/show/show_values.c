@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Values with their uncertainty, in words and as data. */
+#include "show_internal.h"
+
+#include <stdio.h>
+
+imki_words imki_value(double value, double uncertainty, int digits)
+{
+    imki_words words;
+    imk_readable_value(value, uncertainty, digits, words.text, sizeof words.text);
+    return words;
+}
+
+imki_words imki_plus_minus(double value, double sigma, double scale)
+{
+    char number[IMKI_WORDS / 2 - 4], width[IMKI_WORDS / 2 - 4];
+    imki_words words;
+    imk_readable_value(value / scale, sigma / scale, 4, number, sizeof number);
+    imk_readable_value(sigma / scale, sigma / scale, 2, width, sizeof width);
+    snprintf(words.text, sizeof words.text, "%s ± %s", number, width);
+    return words;
+}
+
+size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t *member)
+{
+    size_t count = 0;
+    for (size_t c = 0; c < record->count; c++)
+        if (imk_channel_kind_of(imk_even_record_column(record, c)) == kind)
+            member[count++] = c;
+    return count;
+}
+
+void imki_show_estimate(imk_result *result, const char *key, const imk_estimate *estimate,
+                        double scale, const char *unit)
+{
+    imk_result_object(result, key);
+    imk_result_flag(result, "present", estimate->present);
+    imk_result_quantity(result, "value", estimate->value / scale, unit);
+    imk_result_quantity(result, "sigma", estimate->sigma / scale, unit);
+    imk_result_quantity(result, "lower", estimate->lower / scale, unit);
+    imk_result_quantity(result, "upper", estimate->upper / scale, unit);
+    imk_result_end(result);
+}
