@@ -2,7 +2,6 @@
 /* imukit identify --plan: the bounds of imukit/identify_plan.h for the axes of a model. */
 #include "identify_plan_parts.h"
 
-#include "identify_parts.h"
 #include "shell/command.h"
 
 #include <math.h>
@@ -40,14 +39,15 @@ static void list_rows(identify_plan *p)
             const imk_expected_noise noise = imk_expected_noise_of(triad, axis);
             for (int term = 0; term < IMK_NOISE_TERMS; term++)
                 if (noise.term[term] != 0) {
-                    const term_display display = identify_term(&column, (imk_noise_term)term);
+                    const imk_term_display display =
+                        imk_channel_term(&column, (imk_noise_term)term);
                     plan_row row = {.accel = accel, .term = term, .unit = display.unit};
                     snprintf(row.key, sizeof row.key, "%s", display.key);
                     add_row(p, row, fabs(noise.term[term]));
                 }
             for (int i = 0; i < noise.gauss_markov_count; i++) {
                 plan_row row = {.accel = accel, .term = IMK_NOISE_TERMS + i};
-                row.unit = identify_term(&column, IMK_NOISE_BIAS_INSTABILITY).unit;
+                row.unit = imk_channel_term(&column, IMK_NOISE_BIAS_INSTABILITY).unit;
                 snprintf(row.key, sizeof row.key, "gauss_markov[%d].sigma", i);
                 add_row(p, row, noise.gauss_markov[i].sigma);
                 row.time = true;

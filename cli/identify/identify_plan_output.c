@@ -2,7 +2,7 @@
 /* What a plan of identify says: durations wanted, what each duration tells, and a figure. */
 #include "identify_plan_parts.h"
 
-#include "identify_parts.h"
+#include "shell/command.h"
 #include "shell/json_output.h"
 #include "shell/text_table.h"
 

@@ -4,6 +4,7 @@
 #ifndef IMUKIT_IDENTIFY_PLAN_PARTS_H
 #define IMUKIT_IDENTIFY_PLAN_PARTS_H
 
+#include "imukit/identify_log.h"
 #include "imukit/identify_plan.h"
 #include "imukit/units.h"
 
