@@ -16,7 +16,8 @@ typedef struct identify_options {
     const char *output, *into, *name, *report, *plot, *truth, *keep, *plan, *want;
     double confidence, significance, duration, tolerance;
     option_integer seed, threads, gauss_markov;
-    int method; /* identify_method */
+    int method;        /* identify_method */
+    unsigned take_out; /* IMK_SCREEN_… bits: all but --keep */
     bool twin, json, strict, runs, devices, curve, plain;
 } identify_options;
 
@@ -33,8 +34,6 @@ typedef struct identification {
  * case. @return -1 or the exit code */
 int identify_run(const identify_options *o, const char *path, const imk_executor *executor,
                  imk_identify_log **log);
-/* What --keep leaves of everything that can be taken out. @return -1 or the exit code */
-int identify_take_out(const identify_options *o, unsigned *take_out);
 
 /* identify_model.c */
 /* The last part of a path. */
@@ -46,6 +45,9 @@ int identify_make_model(identification *i, const imk_executor *executor);
 /* identify_several.c: several logs, from reading them to the result. @return the exit code */
 int identify_several(identification *joint, size_t count, const char *const *paths,
                      const imk_executor *executor);
+
+/* identify_plan.c: --plan. @return the exit code */
+int identify_plan(const identify_options *o);
 
 /* verb_identify.c */
 /* The warnings of a verdict to standard error and into the JSON. */

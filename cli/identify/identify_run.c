@@ -8,32 +8,6 @@
 
 #include <string.h>
 
-int identify_take_out(const identify_options *o, unsigned *take_out)
-{
-    static const struct {
-        const char *name;
-        unsigned bit;
-    } parts[] = {{"outliers", IMK_SCREEN_OUTLIERS},       {"stuck", IMK_SCREEN_STUCK},
-                 {"saturated", IMK_SCREEN_SATURATED},     {"warm-up", IMK_SCREEN_WARM_UP},
-                 {"temperature", IMK_SCREEN_TEMPERATURE}, {"all", IMK_SCREEN_ALL}};
-    enum { PARTS = sizeof parts / sizeof parts[0] };
-    *take_out = IMK_SCREEN_ALL;
-    for (const char *text = o->keep; text && *text;) {
-        const size_t length = strcspn(text, ",");
-        size_t k = 0;
-        while (k < PARTS &&
-               (strlen(parts[k].name) != length || strncmp(parts[k].name, text, length) != 0))
-            k++;
-        if (k == PARTS)
-            return command_misused("--keep: \"%.*s\" is none of outliers, stuck, saturated, "
-                                   "warm-up, temperature, all",
-                                   (int)length, text);
-        *take_out &= ~parts[k].bit;
-        text += length + (text[length] == ',');
-    }
-    return -1;
-}
-
 static imk_status run_log(const identify_options *o, const imk_record_source *source,
                           const imk_job *job, imk_identify_log **log, imk_error *error)
 {
@@ -45,7 +19,7 @@ static imk_status run_log(const identify_options *o, const imk_record_source *so
     settings.tolerance = o->tolerance;
     settings.gauss_markov_max = (int)o->gauss_markov.value;
     settings.summarise = o->runs;
-    (void)identify_take_out(o, &settings.take_out);
+    settings.take_out = o->take_out;
     return imk_identify_log_run(source, &settings, job, log, error);
 }
 

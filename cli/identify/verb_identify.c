@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit identify: log at rest -> stochastic model with confidence intervals and a verdict. */
 #include "identify_parts.h"
-#include "identify_plan_parts.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const option identify_option_table[] = {
     {"output", 'o', OPTION_OUTPUT, "MODEL", NULL, NULL, "write the model here (.yaml or .json)",
@@ -196,19 +196,6 @@ static int identify_log(identification *i, const imk_executor *executor)
     return code;
 }
 
-static int plan(const identify_options *o)
-{
-    const identify_plan_request request = {.model = o->plan,
-                                           .want = o->want,
-                                           .significance = o->significance,
-                                           .plot = o->plot,
-                                           .rate = o->log.rate,
-                                           .duration = o->duration,
-                                           .json = o->json,
-                                           .strict = o->strict};
-    return identify_plan_run(&request);
-}
-
 /* Options that go with Allan deviations only. @return -1 or the exit code */
 static int check_allan(const identify_options *o)
 {
@@ -261,14 +248,40 @@ static int check_request(const identify_options *o, size_t logs)
     return check_allan(o);
 }
 
+/* What --keep leaves of everything that can be taken out. @return -1 or the exit code */
+static int parse_keep(identify_options *o)
+{
+    static const struct {
+        const char *name;
+        unsigned bit;
+    } parts[] = {{"outliers", IMK_SCREEN_OUTLIERS},       {"stuck", IMK_SCREEN_STUCK},
+                 {"saturated", IMK_SCREEN_SATURATED},     {"warm-up", IMK_SCREEN_WARM_UP},
+                 {"temperature", IMK_SCREEN_TEMPERATURE}, {"all", IMK_SCREEN_ALL}};
+    enum { PARTS = sizeof parts / sizeof parts[0] };
+    o->take_out = IMK_SCREEN_ALL;
+    for (const char *text = o->keep; text && *text;) {
+        const size_t length = strcspn(text, ",");
+        size_t k = 0;
+        while (k < PARTS &&
+               (strlen(parts[k].name) != length || strncmp(parts[k].name, text, length) != 0))
+            k++;
+        if (k == PARTS)
+            return command_misused("--keep: \"%.*s\" is none of outliers, stuck, saturated, "
+                                   "warm-up, temperature, all",
+                                   (int)length, text);
+        o->take_out &= ~parts[k].bit;
+        text += length + (text[length] == ',');
+    }
+    return -1;
+}
+
 static int identify_operands(const identify_options *o, size_t logs, const char *const *operands)
 {
-    unsigned take_out;
     identification *i = command_zeroed(sizeof *i);
     i->options = o;
     i->shown.name = operands[0];
-    int code = identify_take_out(o, &take_out);
-    if (code < 0 && o->truth) {
+    int code = -1;
+    if (o->truth) {
         code = command_model(o->truth, &i->truth, NULL);
         i->shown.truth = &i->truth;
     }
@@ -300,7 +313,9 @@ static int run(int count, char **words)
         code = check_request(&o, logs);
     if (code < 0)
         code = command_check_plot(o.plot);
+    if (code < 0)
+        code = parse_keep(&o);
     if (code >= 0)
         return code;
-    return o.plan ? plan(&o) : identify_operands(&o, logs, operands);
+    return o.plan ? identify_plan(&o) : identify_operands(&o, logs, operands);
 }

@@ -7,6 +7,7 @@
 
 #include "imukit/allan_log.h"
 #include "imukit/identify_several.h"
+#include "imukit/record_plan.h"
 #include "imukit/result.h"
 #include "imukit/spectrum_log.h"
 
@@ -61,6 +62,10 @@ IMK_API void imk_show_identify_several(const imk_identify_several *several,
                                        const imk_identify_shown *joint,
                                        const imk_identify_shown *records, imk_result *result);
 /** @} */
+
+/** What records of several lengths tell, how long they must be, and, of a curve, a figure. */
+IMK_API void imk_show_record_plan(const imk_record_plan *plan, const char *name,
+                                  imk_result *result);
 
 #ifdef __cplusplus
 }

@@ -17,6 +17,8 @@
 #define CURVE_MISFIT                                                                               \
     "The terms do not explain the curve, or it is not what was said: do its clusters overlap "     \
     "(--plain)? Was it read from a page (--tolerance)? Do not trust the intervals."
+#define PLAN_LENGTH                                                                                \
+    "--plan: a record of {0g} s at {1g} Hz has not the 256 to 1e12 samples that are due; "
 
 static const struct message {
     const char *code, *text;
@@ -88,6 +90,18 @@ static const struct message {
     {"curve_from", CURVE_FIT "; " LEFT_OUT},
     {"curve_misfit", CURVE_FIT ". " CURVE_MISFIT},
     {"curve_misfit_from", CURVE_FIT "; " LEFT_OUT " " CURVE_MISFIT},
+    /* record_plan.c, plan_requirement.c */
+    {"plan_length", PLAN_LENGTH "change --duration or --rate"},
+    {"plan_no_length", PLAN_LENGTH "add another --duration"},
+    {"no_noise", "states no noise, from which to tell how long to record: a catalogue entry near "
+                 "it does (imukit devices), or imukit identify finds it in a first log at rest"},
+    {"requirement", "--want \"{name}\": expected a term and its 1 sigma in per cent of it, such as "
+                    "\"bias_instability 5%\", or \"rate_random_walk detected 95%\""},
+    {"requirement_chance",
+     "--want \"{name}\": behind \"detected\" a chance below 100% is due, such "
+     "as 95%"},
+    {"requirements", "--want: these are more than {0} wishes"},
+    {"no_such_noise", "--want \"{name}\": there is no such noise"},
     /* spectrum_log.c */
     {"too_few_for_spectrum", "{0} rows are too few for a spectrum; 64 are needed, and some "
                              "thousands useful"},
