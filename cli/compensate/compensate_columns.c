@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which column of a log is which axis of a model, and what the corrected log looks like. */
 #include "compensate_parts.h"
-#include "log/log_columns.h"
+#include "log/log_units.h"
+
+#include "imukit/simulate_log.h"
 
 #include <string.h>
 
@@ -48,11 +50,11 @@ static int match_sensor(const compensate_options *o, const imk_log_reader *reade
                         compensate_columns *columns)
 {
     int axis[IMK_AXES_MAX], code = -1;
-    char label[16];
-    log_axes(triad, axis);
+    char label[48];
+    imk_triad_axes(triad, axis);
     for (int i = 0; i < triad->axis_count && code < 0; i++) {
         int column = imk_log_column_find(reader, quantities[sensor], axis[i]);
-        log_axis_name(sensors[sensor], axis[i], label, sizeof label);
+        imk_axis_name(sensors[sensor], axis[i], label);
         columns->axis[sensor][i] = column;
         if (column < 0)
             code = command_failed("%s has no column %s: %s describes %d %s axes, which are all "
@@ -149,7 +151,7 @@ static int add_corrected(const compensate_options *o, const imk_compensator *c, 
         return -1;
     imk_log_column *column = &columns->column[columns->count];
     *column = *source;
-    log_axis_name(sensors[sensor], source->axis, column->name, sizeof column->name);
+    imk_axis_name(sensors[sensor], source->axis, column->name);
     columns->content[columns->count].source = -1;
     columns->content[columns->count].sensor = sensor;
     columns->content[columns->count].component = solved ? source->axis : axis;
@@ -167,7 +169,7 @@ static int add_copied(const compensate_options *o, const imk_log_column *source,
     columns->content[columns->count++].source = index;
     if (!source->increment)
         return -1;
-    log_axis_name(sensors[sensor], source->axis, column->name, sizeof column->name);
+    imk_axis_name(sensors[sensor], source->axis, column->name);
     return choose_unit(o, sensor, column);
 }
 

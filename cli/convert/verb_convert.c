@@ -2,7 +2,7 @@
 /* imukit convert: logs, model files and parameter files of other programs between formats. */
 #include "convert_motion.h"
 #include "convert_parameters.h"
-#include "log/log_columns.h"
+#include "log/log_units.h"
 #include "log/log_input.h"
 #include "shell/command.h"
 #include "shell/progress.h"
@@ -147,7 +147,7 @@ static void make_rate(imk_log_column *column)
     column->increment = false;
     column->unit = imk_unit_of(gyro ? "deg/s" : "m/s^2");
     if (column->axis >= 0 && column->axis < 3)
-        log_axis_name(gyro ? "gyro" : "accel", column->axis, column->name, sizeof column->name);
+        imk_axis_name(gyro ? "gyro" : "accel", column->axis, column->name);
 }
 
 static int set_units(const convert_options *o, conversion *c)

@@ -18,7 +18,15 @@ drift_validity drift_validity_of(const imk_drift_figures *f)
     return f->tilt <= largest_angle && f->heading <= largest_angle ? DRIFT_LINEAR : DRIFT_ROUGH;
 }
 
-size_t drift_budget_time(const drift_result *r, const drift_case *one)
+void *drift_memory(size_t size)
+{
+    void *memory = NULL;
+    return posix_memalign(&memory, 64, size) == 0 ? memory : NULL;
+}
+
+/* ---- the budget ---- */
+
+static size_t budget_time(const drift_result *r, const drift_case *one)
 {
     const drift_scene *scene = r->scene;
     size_t chosen = scene->row[0];
@@ -31,78 +39,6 @@ size_t drift_budget_time(const drift_result *r, const drift_case *one)
     }
     return chosen;
 }
-
-void *drift_memory(size_t size)
-{
-    void *memory = NULL;
-    return posix_memalign(&memory, 64, size) == 0 ? memory : NULL;
-}
-
-/* A sentence about the model names it; one about the settings does not. */
-static int refuse(const drift_case *one, const imk_error *error)
-{
-    const bool of_model = strncmp(error->field, "gyro", 4) == 0 ||
-                          strncmp(error->field, "accel", 5) == 0 ||
-                          strncmp(error->field, "timing", 6) == 0;
-    return command_error(error, of_model ? one->name : NULL);
-}
-
-static int analyse(drift_case *one, const imk_executor *executor)
-{
-    imk_error error;
-    if (imk_drift_validate(one->model, &one->settings, &error) != IMK_OK)
-        return refuse(one, &error);
-    const size_t size = imk_drift_covariance_size(one->model, &one->settings);
-    one->memory = drift_memory(size);
-    one->figures = malloc(one->settings.time_count * sizeof *one->figures);
-    if (!one->memory || !one->figures)
-        return command_failed("memory is exhausted");
-    if (imk_drift_covariance(one->model, &one->settings, one->memory, size, executor,
-                             &one->analysis, &error) != IMK_OK)
-        return refuse(one, &error);
-    for (size_t t = 0; t < one->analysis->time_count; t++)
-        one->figures[t] = imk_drift_figures_of(&one->analysis->total[t]);
-    return -1;
-}
-
-static void add_case(drift_result *r, size_t model, bool compensated, const char *label)
-{
-    drift_case *one = &r->cases[r->case_count++];
-    one->name = r->name[model];
-    one->model = r->model[model];
-    one->settings = r->scene->settings;
-    one->settings.compensated = compensated;
-    snprintf(one->label, sizeof one->label, "%.90s%s", r->name[model], label);
-}
-
-int drift_analyse(drift_result *r, const imk_executor *executor)
-{
-    const bool compensated = r->options->compensated;
-    if (compensated && r->model_count == 1)
-        add_case(r, 0, false, "");
-    for (size_t m = 0; m < r->model_count; m++)
-        add_case(r, m, compensated, compensated ? ", compensated" : "");
-    int code = -1;
-    for (size_t c = 0; c < r->case_count && code < 0; c++)
-        code = analyse(&r->cases[c], executor);
-    return code;
-}
-
-void drift_result_free(drift_result *r)
-{
-    for (size_t c = 0; c < r->case_count; c++) {
-        free(r->cases[c].memory);
-        free(r->cases[c].figures);
-    }
-    for (size_t m = 0; m < r->model_count; m++)
-        free(r->model[m]);
-    free(r->found);
-    free(r->low);
-    free(r->high);
-    free(r->used);
-}
-
-/* ---- the budget ---- */
 
 /* States whose squares make a figure. */
 static void states_of(imk_drift_wish wish, int *first, int *last)
@@ -142,13 +78,15 @@ static int by_share(const void *a, const void *b)
     return (x->source > y->source) - (x->source < y->source);
 }
 
-size_t drift_budget(const drift_case *one, size_t time, imk_drift_wish wish, drift_share *share)
+static void find_budget(const drift_result *r, drift_case *one)
 {
+    const imk_drift_wish wish = drift_looked_at(r);
     const imk_drift_analysis *a = one->analysis;
-    const double total = variance_of(&a->total[time], wish);
-    size_t count = 0;
+    one->time = budget_time(r, one);
+    one->share = command_memory(NULL, (a->source_count + 1) * sizeof *one->share);
+    const double total = variance_of(&a->total[one->time], wish);
     for (size_t k = 0; k < a->source_count; k++) {
-        imk_drift_moments m = a->contribution[k * a->time_count + time];
+        imk_drift_moments m = a->contribution[k * a->time_count + one->time];
         drift_share s = {.source = k, .shift = shift_of(&m, wish)};
         s.share = total > 0 ? variance_of(&m, wish) / total : 0;
         if (!(s.share > 0) && !(s.shift > 0))
@@ -157,8 +95,73 @@ size_t drift_budget(const drift_case *one, size_t time, imk_drift_wish wish, dri
         for (int i = 0; i < IMK_DRIFT_STATES; i++)
             m.mean[i] = 0;
         s.random = imk_drift_figures_of(&m);
-        share[count++] = s;
+        one->share[one->share_count++] = s;
     }
-    qsort(share, count, sizeof *share, by_share);
-    return count;
+    qsort(one->share, one->share_count, sizeof *one->share, by_share);
+}
+
+/* ---- all ---- */
+
+/* A sentence about the model names it; one about the settings does not. */
+static int refuse(const drift_case *one, const imk_error *error)
+{
+    const bool of_model = strncmp(error->field, "gyro", 4) == 0 ||
+                          strncmp(error->field, "accel", 5) == 0 ||
+                          strncmp(error->field, "timing", 6) == 0;
+    return command_error(error, of_model ? one->name : NULL);
+}
+
+static int analyse(const drift_result *r, drift_case *one, const imk_executor *executor)
+{
+    imk_error error;
+    if (imk_drift_validate(one->model, &one->settings, &error) != IMK_OK)
+        return refuse(one, &error);
+    const size_t size = imk_drift_covariance_size(one->model, &one->settings);
+    one->memory = command_aligned(size);
+    one->figures = command_memory(NULL, one->settings.time_count * sizeof *one->figures);
+    if (imk_drift_covariance(one->model, &one->settings, one->memory, size, executor,
+                             &one->analysis, &error) != IMK_OK)
+        return refuse(one, &error);
+    for (size_t t = 0; t < one->analysis->time_count; t++)
+        one->figures[t] = imk_drift_figures_of(&one->analysis->total[t]);
+    find_budget(r, one);
+    return -1;
+}
+
+static void add_case(drift_result *r, size_t model, bool compensated, const char *label)
+{
+    drift_case *one = &r->cases[r->case_count++];
+    one->name = r->name[model];
+    one->model = r->model[model];
+    one->settings = r->scene->settings;
+    one->settings.compensated = compensated;
+    snprintf(one->label, sizeof one->label, "%.90s%s", r->name[model], label);
+}
+
+int drift_analyse(drift_result *r, const imk_executor *executor)
+{
+    const bool compensated = r->options->compensated;
+    if (compensated && r->model_count == 1)
+        add_case(r, 0, false, "");
+    for (size_t m = 0; m < r->model_count; m++)
+        add_case(r, m, compensated, compensated ? ", compensated" : "");
+    int code = -1;
+    for (size_t c = 0; c < r->case_count && code < 0; c++)
+        code = analyse(r, &r->cases[c], executor);
+    return code;
+}
+
+void drift_result_free(drift_result *r)
+{
+    for (size_t c = 0; c < r->case_count; c++) {
+        free(r->cases[c].memory);
+        free(r->cases[c].figures);
+        free(r->cases[c].share);
+    }
+    for (size_t m = 0; m < r->model_count; m++)
+        free(r->model[m]);
+    free(r->found);
+    free(r->low);
+    free(r->high);
+    free(r->used);
 }

@@ -62,21 +62,19 @@ static double *row_times(const drift_scene *scene)
     return time;
 }
 
-static int keep_statistics(drift_result *r, size_t rows, uint64_t runs, const double *values)
+static void keep_statistics(drift_result *r, size_t rows, uint64_t runs, const double *values)
 {
-    double *workspace = malloc((runs + 1) * sizeof *workspace);
+    double *workspace = command_memory(NULL, (runs + 1) * sizeof *workspace);
     r->run_count = runs;
-    r->found = calloc(rows, sizeof *r->found);
-    r->low = calloc(rows, sizeof *r->low);
-    r->high = calloc(rows, sizeof *r->high);
-    r->used = calloc(rows, sizeof *r->used);
-    const bool good = workspace && r->found && r->low && r->high && r->used;
-    for (size_t k = 0; good && k < rows; k++)
+    r->found = command_zeroed(rows * sizeof *r->found);
+    r->low = command_zeroed(rows * sizeof *r->low);
+    r->high = command_zeroed(rows * sizeof *r->high);
+    r->used = command_zeroed(rows * sizeof *r->used);
+    for (size_t k = 0; k < rows; k++)
         r->found[k] =
             imk_drift_figures_of_runs(runs, rows * IMK_DRIFT_STATES, values + k * IMK_DRIFT_STATES,
                                       workspace, &r->low[k], &r->high[k], &r->used[k]);
     free(workspace);
-    return good ? -1 : command_failed("memory is exhausted");
 }
 
 static int run_campaign(drift_result *r, crew *c, imk_campaign *campaign)
@@ -93,13 +91,11 @@ static int run_campaign(drift_result *r, crew *c, imk_campaign *campaign)
                                "runs than shards",
                                o->shard, (unsigned long long)campaign->run_count);
     c->threads = campaign_threads(o->threads.value);
-    c->memory = calloc(c->threads, sizeof *c->memory);
-    if (!c->memory)
-        return command_failed("memory is exhausted");
+    c->memory = command_zeroed(c->threads * sizeof *c->memory);
     const campaign_work work = {IMK_DRIFT_LANES, compute, c, c->threads};
     code = campaign_run(campaign, first, runs, &work, o->output, &values);
     if (code < 0)
-        code = keep_statistics(r, campaign->time_count, runs, values);
+        keep_statistics(r, campaign->time_count, runs, values);
     free(values);
     for (size_t t = 0; t < c->threads; t++)
         free(c->memory[t]);
@@ -110,26 +106,23 @@ static int run_campaign(drift_result *r, crew *c, imk_campaign *campaign)
 int drift_runs(drift_result *r)
 {
     const drift_scene *scene = r->scene;
-    crew c = {.one = &r->cases[r->case_count - 1], .seed = r->options->seed.value};
+    crew c = {.one = drift_last_case(r), .seed = r->options->seed.value};
     double *time = row_times(scene);
     char *parameters = drift_parameters(scene, &c.one->settings, c.one->model);
-    int code = parameters ? -1 : EXIT_FAILED;
-    if (code < 0) {
-        c.settings = c.one->settings;
-        c.settings.time = time;
-        c.settings.time_count = scene->row_count;
-        c.size = imk_drift_runs_size(c.one->model, &c.settings);
-        imk_campaign campaign = {.version = IMK_VERSION,
-                                 .parameters = parameters,
-                                 .seed = c.seed,
-                                 .run_count = r->options->monte_carlo.value,
-                                 .time_count = scene->row_count,
-                                 .time = time,
-                                 .state_count = IMK_DRIFT_STATES,
-                                 .state = state_names,
-                                 .unit = state_units};
-        code = run_campaign(r, &c, &campaign);
-    }
+    c.settings = c.one->settings;
+    c.settings.time = time;
+    c.settings.time_count = scene->row_count;
+    c.size = imk_drift_runs_size(c.one->model, &c.settings);
+    imk_campaign campaign = {.version = IMK_VERSION,
+                             .parameters = parameters,
+                             .seed = c.seed,
+                             .run_count = r->options->monte_carlo.value,
+                             .time_count = scene->row_count,
+                             .time = time,
+                             .state_count = IMK_DRIFT_STATES,
+                             .state = state_names,
+                             .unit = state_units};
+    const int code = run_campaign(r, &c, &campaign);
     free(time);
     free(parameters);
     return code;
@@ -148,91 +141,52 @@ static int check_results(const imk_campaign_results *results, const char *path)
                                  path);
 }
 
-static int print_results_json(const drift_result *r, const imk_campaign_results *results)
-{
-    const imk_campaign *c = &results->campaign;
-    json_t *parameters = json_loads(c->parameters, 0, NULL);
-    json_t *inputs =
-        json_pack("{s:o, s:s, s:I, s:I, s:I, s:I, s:o}", "results", json_text(r->name[0]),
-                  "version", c->version, "seed", (json_int_t)c->seed, "runs",
-                  (json_int_t)c->run_count, "first", (json_int_t)results->run[0], "count",
-                  (json_int_t)results->runs, "parameters", parameters ? parameters : json_null());
-    return json_print("drift", inputs, json_pack("{s:o}", "monte_carlo", drift_runs_json(r)),
-                      EXIT_DONE);
-}
-
-static void print_results(const drift_result *r, const imk_campaign_results *results)
-{
-    const imk_campaign *c = &results->campaign;
-    text_table table = drift_runs_table(r);
-    printf("%s: ", r->name[0]);
-    if (results->runs == c->run_count)
-        printf("%llu runs", (unsigned long long)c->run_count);
-    else
-        printf("%llu of %llu runs, from run %llu on", (unsigned long long)results->runs,
-               (unsigned long long)c->run_count, (unsigned long long)results->run[0]);
-    printf(", seed %llu, imukit %s. In brackets 95 %% intervals.\n\n", (unsigned long long)c->seed,
-           c->version);
-    text_table_print(&table, stdout);
-    text_table_free(&table);
-    if (results->runs < c->run_count)
-        printf("\nA part of the campaign; the whole: imukit merge PART.h5... -o WHOLE.h5\n");
-}
-
 /* A scene of the times of the file alone, so that tables and figures of runs can be made. */
-static bool scene_of_results(const imk_campaign *c, drift_scene *scene)
+static drift_scene scene_of_results(const imk_campaign *c)
 {
-    *scene = (drift_scene){.time_count = c->time_count, .row_count = c->time_count};
-    scene->time = malloc(c->time_count * sizeof *scene->time);
-    scene->row = malloc(c->time_count * sizeof *scene->row);
-    for (size_t k = 0; scene->time && scene->row && k < c->time_count; k++) {
-        scene->time[k] = c->time[k];
-        scene->row[k] = k;
+    const size_t count = c->time_count;
+    drift_scene scene = {.time_count = count,
+                         .row_count = count,
+                         .time = command_memory(NULL, count * sizeof *scene.time),
+                         .row = command_memory(NULL, count * sizeof *scene.row)};
+    for (size_t k = 0; k < count; k++) {
+        scene.time[k] = c->time[k];
+        scene.row[k] = k;
     }
-    return scene->time && scene->row;
+    return scene;
 }
 
-static int show_results(drift_result *r, const imk_campaign_results *results)
+static int show(drift_result *r, const imk_campaign_results *results)
 {
     const drift_options *o = r->options;
-    int code = keep_statistics(r, r->scene->row_count, results->runs, results->values);
-    if (code < 0 && o->output)
-        code = drift_write_csv(r, o->output);
-    if (code < 0 && o->report)
-        code = drift_report(r, NULL, o->report);
-    if (code < 0 && o->json)
-        code = print_results_json(r, results);
-    else if (code < 0)
-        print_results(r, results);
-    if (code < 0 && o->plot)
-        code = drift_draw(r, o->plot);
-    return code;
+    keep_statistics(r, r->scene->row_count, results->runs, results->values);
+    const int code = o->output ? drift_write_csv(r, o->output) : -1;
+    if (code >= 0)
+        return code;
+    imk_result *result = show_begin("drift");
+    drift_show_results(r, results, result);
+    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
+                    EXIT_DONE);
 }
 
-int drift_show_results(const drift_options *o, const char *path)
+int drift_results(const drift_options *o, const char *path)
 {
     imk_campaign_results *results;
     imk_error error;
-    drift_scene scene = {.time = NULL};
-    drift_result *r = calloc(1, sizeof *r);
-    if (!r)
-        return command_failed("memory is exhausted");
-    r->options = o;
-    r->scene = &scene;
-    r->name[0] = path;
-    int code;
-    if (imk_campaign_load(path, &results, &error) != IMK_OK) {
-        code = command_error(&error, path);
-    } else {
-        code = check_results(results, path);
-        if (code < 0 && !scene_of_results(&results->campaign, &scene))
-            code = command_failed("memory is exhausted");
-        if (code < 0)
-            code = show_results(r, results);
-        imk_campaign_free(results);
+    if (imk_campaign_load(path, &results, &error) != IMK_OK)
+        return command_error(&error, path);
+    int code = check_results(results, path);
+    if (code < 0) {
+        drift_result *r = command_zeroed(sizeof *r);
+        drift_scene scene = scene_of_results(&results->campaign);
+        r->options = o;
+        r->scene = &scene;
+        r->name[0] = path;
+        code = show(r, results);
+        drift_scene_free(&scene);
+        drift_result_free(r);
+        free(r);
     }
-    drift_scene_free(&scene);
-    drift_result_free(r);
-    free(r);
-    return code < 0 ? EXIT_DONE : code;
+    imk_campaign_free(results);
+    return code;
 }

@@ -41,13 +41,15 @@ static void add_numbers(digest *d, const double *number, size_t count)
     }
 }
 
-static json_t *json_of_motion(const drift_scene *scene)
+static void put_motion(const drift_scene *scene, imk_result *result)
 {
     const imk_trajectory *t = scene->settings.motion;
     digest d = {0xcbf29ce484222325u, 0xcbf29ce484222325u};
     char text[40];
-    if (!t)
-        return json_null();
+    if (!t) {
+        imk_result_null(result, "motion");
+        return;
+    }
     add_numbers(&d, t->origin, 3);
     for (size_t i = 0; i < t->piece_count; i++) {
         const imk_trajectory_piece *p = &t->piece[i];
@@ -62,12 +64,14 @@ static json_t *json_of_motion(const drift_scene *scene)
         add_numbers(&d, number, 4);
     }
     snprintf(text, sizeof text, "%016llx%016llx", (unsigned long long)d.a, (unsigned long long)d.b);
-    json_t *motion = json_pack("{s:I, s:I, s:s}", "pieces", (json_int_t)t->piece_count, "lines",
-                               (json_int_t)t->line_count, "digest", text);
+    imk_result_object(result, "motion");
+    imk_result_count(result, "pieces", (long long)t->piece_count);
+    imk_result_count(result, "lines", (long long)t->line_count);
+    imk_result_text(result, "digest", text);
     const char *script = imk_motion_file_text(scene->motion);
     if (script) /* for whoever repeats it */
-        json_object_set_new(motion, "script", json_string(script));
-    return motion;
+        imk_result_text(result, "script", script);
+    imk_result_end(result);
 }
 
 /* ---- model ---- */
@@ -77,12 +81,10 @@ static void forget(imk_evidence *evidence)
     memset(evidence, 0, sizeof *evidence);
 }
 
-/* NULL when it cannot be printed. */
-static json_t *json_of_physics(const imk_model *model)
+static void put_physics(const imk_model *model, imk_result *result)
 {
     char *text = NULL;
     size_t size;
-    json_t *tree = NULL;
     imk_model *bare = command_memory(NULL, sizeof *bare);
     *bare = *model;
     bare->name[0] = bare->description[0] = bare->residual_of[0] = '\0';
@@ -90,58 +92,55 @@ static json_t *json_of_physics(const imk_model *model)
     forget(&bare->accel_evidence);
     bare->gyro.noise.density = bare->accel.noise.density = IMK_DENSITY_TWO_SIDED;
     if (command_unless_memory(imk_model_print_json(bare, NULL, &text, &size, NULL)) == IMK_OK)
-        tree = json_loadb(text, size, 0, NULL);
+        (void)imk_result_json(result, "model", text);
     free(text);
     free(bare);
-    return tree;
 }
 
 /* ---- settings ---- */
 
-/* As text, for jansson writes 17 digits where fewer say the same. */
-static json_t *number(double value)
+/* As text: the shortest that says it. */
+static void put_number(const char *key, double value, imk_result *result)
 {
     char text[IMK_DECIMAL_SIZE];
     text[imk_decimal_shortest(value, text)] = '\0';
-    return json_string(text);
+    imk_result_text(result, key, text);
 }
 
-static json_t *json_of_settings(const imk_drift_settings *s)
+static void put_settings(const imk_drift_settings *s, imk_result *result)
 {
-    json_t *initial = json_array();
-    for (int i = 0; i < IMK_DRIFT_STATES; i++)
-        json_array_append_new(initial, number(s->initial_sigma[i]));
-    json_t *settings = json_object();
+    imk_result_object(result, "settings");
     if (!s->motion) {
-        json_object_set_new(settings, "latitude [rad]", number(s->latitude));
-        json_object_set_new(settings, "height [m]", number(s->height));
-        json_object_set_new(settings, "roll [rad]", number(s->roll));
-        json_object_set_new(settings, "pitch [rad]", number(s->pitch));
-        json_object_set_new(settings, "yaw [rad]", number(s->yaw));
+        put_number("latitude [rad]", s->latitude, result);
+        put_number("height [m]", s->height, result);
+        put_number("roll [rad]", s->roll, result);
+        put_number("pitch [rad]", s->pitch, result);
+        put_number("yaw [rad]", s->yaw, result);
     }
-    json_object_set_new(settings, "rate [Hz]", number(s->rate));
-    json_object_set_new(settings, "vertical",
-                        json_string(s->vertical == IMK_VERTICAL_FREE ? "free" : "slaved"));
-    json_object_set_new(settings, "aligned",
-                        json_string(s->alignment == IMK_ALIGNED_SELF ? "self" : "given"));
+    put_number("rate [Hz]", s->rate, result);
+    imk_result_text(result, "vertical", s->vertical == IMK_VERTICAL_FREE ? "free" : "slaved");
+    imk_result_text(result, "aligned", s->alignment == IMK_ALIGNED_SELF ? "self" : "given");
     if (s->alignment == IMK_ALIGNED_SELF)
-        json_object_set_new(settings, "alignment time [s]", number(s->alignment_time));
-    json_object_set_new(settings, "compensated", json_boolean(s->compensated));
-    json_object_set_new(settings, "initial sigma [m, m/s, rad]", initial);
-    return settings;
+        put_number("alignment time [s]", s->alignment_time, result);
+    imk_result_flag(result, "compensated", s->compensated);
+    imk_result_array(result, "initial sigma [m, m/s, rad]");
+    for (int i = 0; i < IMK_DRIFT_STATES; i++)
+        put_number(NULL, s->initial_sigma[i], result);
+    imk_result_end(result);
+    imk_result_end(result);
 }
 
 char *drift_parameters(const drift_scene *scene, const imk_drift_settings *settings,
                        const imk_model *model)
 {
-    json_t *physics = json_of_physics(model);
-    json_t *tree =
-        physics ? json_pack("{s:s, s:o, s:o, s:o}", "campaign", "drift", "model", physics, "motion",
-                            json_of_motion(scene), "settings", json_of_settings(settings))
-                : NULL;
-    char *text = tree ? json_dumps(tree, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
-    json_decref(tree);
-    if (!text)
-        command_failed("the parameters of the campaign are no valid JSON: a text is no UTF-8");
+    char *text = NULL;
+    size_t size;
+    imk_result *result = imk_result_create(NULL);
+    imk_result_text(result, "campaign", "drift");
+    put_physics(model, result);
+    put_motion(scene, result);
+    put_settings(settings, result);
+    (void)command_unless_memory(imk_result_to_key(result, &text, &size));
+    imk_result_free(result);
     return text;
 }

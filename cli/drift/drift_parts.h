@@ -4,10 +4,9 @@
 #ifndef IMUKIT_DRIFT_PARTS_H
 #define IMUKIT_DRIFT_PARTS_H
 
-#include "shell/command.h"
-#include "shell/json_output.h"
+#include "shell/growing_list.h"
+#include "shell/show.h"
 #include "shell/term_selection.h"
-#include "shell/text_table.h"
 
 #include "imukit/campaign.h"
 #include "imukit/drift.h"
@@ -23,7 +22,7 @@ typedef struct drift_options {
     term_selection terms;
 } drift_options;
 
-/* ---- drift_units.c: numbers as a person reads them ---- */
+/* ---- drift_wish.c: numbers as a person reads them, and --want ---- */
 
 enum { DRIFT_TEXT = 40 };
 /* Three digits. Each function returns `text`. */
@@ -62,17 +61,22 @@ typedef struct drift_scene {
     size_t *row;      /* their positions among all */
 } drift_scene;
 
+int drift_want_parse(const char *text, drift_wished *want);
 /* @return -1 or the exit code, the message printed; drift_scene_free() either way */
 int drift_scene_open(const drift_options *o, drift_scene *scene);
 void drift_scene_free(drift_scene *scene);
 
-/* ---- drift_wish.c ---- */
-
-int drift_want_parse(const char *text, drift_wished *want);
-
 /* ---- drift_analysis.c ---- */
 
 enum { DRIFT_MODELS_MAX = 8 };
+
+/* One line of a budget: a source at one time. */
+typedef struct drift_share {
+    size_t source;
+    double share;                    /* of the variance of what is looked at, 0 … 1 */
+    double shift;                    /* size of the mean [SI] */
+    imk_drift_figures random, whole; /* of this source alone: without and with its mean */
+} drift_share;
 
 /* A model and what its errors grow to; with --compensated one model is two of these. */
 typedef struct drift_case {
@@ -83,6 +87,11 @@ typedef struct drift_case {
     void *memory; /* of the analysis */
     imk_drift_analysis *analysis;
     imk_drift_figures *figures; /* at all times */
+    /* Position among all times of what the budget is made of: the time that --want asks about, else
+     * the last row that is a position still (the first when none is). */
+    size_t time;
+    size_t share_count; /* sources that have a share or a shift then, the largest share first */
+    drift_share *share;
 } drift_case;
 
 typedef struct drift_result {
@@ -99,6 +108,17 @@ typedef struct drift_result {
     size_t *used;
 } drift_result;
 
+/* What budgets are of: the figure that is wanted, or CEP. */
+static inline imk_drift_wish drift_looked_at(const drift_result *r)
+{
+    return r->scene->want.asked ? r->scene->want.figure : IMK_WISH_CEP;
+}
+
+static inline const drift_case *drift_last_case(const drift_result *r)
+{
+    return &r->cases[r->case_count - 1];
+}
+
 /* Memory for an analysis, aligned; NULL when there is none. Free with free(). */
 void *drift_memory(size_t size);
 int drift_analyse(drift_result *result, const imk_executor *executor);
@@ -107,47 +127,13 @@ void drift_result_free(drift_result *result);
 /* What a linear answer is worth at one time. */
 typedef enum drift_validity { DRIFT_LINEAR, DRIFT_ROUGH, DRIFT_LOST } drift_validity;
 drift_validity drift_validity_of(const imk_drift_figures *figures);
-/* Position among all times of what a budget is made of: the time that --want asks about, else the
- * last row that is a position still (the first when none is). */
-size_t drift_budget_time(const drift_result *result, const drift_case *one);
 
-/* One line of a budget: a source at one time. */
-typedef struct drift_share {
-    size_t source;
-    double share;                    /* of the variance of what is looked at, 0 … 1 */
-    double shift;                    /* size of the mean [SI] */
-    imk_drift_figures random, whole; /* of this source alone: without and with its mean */
-} drift_share;
-/* Sources at one time, the largest share first. @param share  room for IMK_DRIFT_SOURCES_MAX
- * @return how many have a share or a shift */
-size_t drift_budget(const drift_case *one, size_t time, imk_drift_wish wish, drift_share *share);
+/* ---- drift_warn.c ---- */
 
-/* ---- drift_tables.c ---- */
-
-text_table drift_growth_table(const drift_result *result, const drift_case *one);
-text_table drift_before_after_table(const drift_result *result);
-text_table drift_comparison_table(const drift_result *result);
-text_table drift_budget_table(const drift_case *one, size_t time, imk_drift_wish wish);
-text_table drift_shift_table(const drift_case *one, size_t time);
-/* "at rest at 45 deg north; attitude true at the start, height held by other means." */
-enum { DRIFT_CONDITIONS = 4400 };
-void drift_conditions(const drift_result *result, char *text, size_t size);
-void drift_print(const drift_result *result);
-/* Sentences about omitted terms, about errors beyond the linear range, about disagreement. */
+/* Of omitted terms, of errors beyond the linear range, of disagreement with the runs. */
 void drift_warn(const drift_result *result);
-/* The first cell of a row: its time, with ~ where the figures are rough. */
-void drift_set_time(text_table *table, double time, drift_validity validity);
-void drift_time_text(double time, char *text, size_t size);
-/* Print, behind an empty line, and free. */
-void drift_print_table(text_table table);
 
-/* ---- drift_runs_table.c ---- */
-
-text_table drift_runs_table(const drift_result *result);
-void drift_print_runs(const drift_result *result);
-void drift_warn_of_runs(const drift_result *result);
-
-/* ---- drift_requirement_table.c ---- */
+/* ---- drift_answer.c ---- */
 
 typedef struct drift_candidate {
     const imk_device *device;
@@ -157,9 +143,15 @@ typedef struct drift_candidate {
     bool no_memory;
 } drift_candidate;
 
+/* Factors from here to 1 are no improvement. */
+#define DRIFT_SAME 0.9995
+
+/* What --want asks for. */
 typedef struct drift_answer {
     imk_drift_requirement requirement;
-    size_t time;
+    size_t order_count;                  /* of the terms that must become better */
+    size_t order[IMK_DRIFT_SOURCES_MAX]; /* the one that needs most first */
+    bool alone;                          /* one of them would do alone */
     size_t candidate_count;
     drift_candidate *candidate; /* sorted, the best first */
 } drift_answer;
@@ -167,34 +159,63 @@ typedef struct drift_answer {
 int drift_answer_find(const drift_result *result, const imk_executor *executor,
                       drift_answer *answer);
 void drift_answer_free(drift_answer *answer);
-text_table drift_answer_table(const drift_result *result, const drift_answer *answer);
-text_table drift_device_table(const drift_result *result, const drift_answer *answer, bool presets);
-void drift_answer_print(const drift_result *result, const drift_answer *answer);
-/* "gyro.bias.repeatability" -> "1 deg/h" as the model says it, times a factor; "" when it cannot be
- * told in one quantity. */
-void drift_term_value(const json_t *model, const char *source, bool compensated, double factor,
-                      char *text, size_t size);
+/* Does it meet the wish, and is it a grade preset, or none? */
+bool drift_would_do(const drift_result *result, const drift_candidate *candidate, bool preset);
+
+/* ---- drift_term_value.c ---- */
+
+/* "gyro.bias.repeatability" -> "1 deg/h" as the model says it, times a factor; nothing when it
+ * cannot be told in one quantity. @param model  its JSON as data called "model" */
+void drift_term_value(const imk_result *model, const char *source, bool compensated, double factor,
+                      growing_list *text);
 
 /* ---- drift_campaign.c ---- */
 
 /* @return -1 or the exit code; fills the Monte Carlo part of the result */
 int drift_runs(drift_result *result);
 /* Statistics of a results file. @return the exit code */
-int drift_show_results(const drift_options *o, const char *path);
+int drift_results(const drift_options *o, const char *path);
 
 /* ---- drift_parameters.c ---- */
 
-/* Everything the numbers of a campaign depend on, as JSON text from malloc(); NULL on failure, the
- * message printed. */
+/* Everything the numbers of a campaign depend on, as JSON text from malloc(). */
 char *drift_parameters(const drift_scene *scene, const imk_drift_settings *settings,
                        const imk_model *model);
 
-/* ---- drift_output.c, drift_figure.c, drift_report.c ---- */
+/* ---- drift_csv.c ---- */
 
 int drift_write_csv(const drift_result *result, const char *path);
-json_t *drift_runs_json(const drift_result *result);
-int drift_print_json(const drift_result *result, const drift_answer *answer);
-int drift_draw(const drift_result *result, const char *path);
-int drift_report(const drift_result *result, const drift_answer *answer, const char *path);
+
+/* ---- drift_show.c ---- */
+
+enum { DRIFT_FIGURES = 10 };
+/* In the order of CSV and JSON. */
+double drift_figure(const imk_drift_figures *figures, int index);
+
+/* @param answer  NULL: nothing is wanted */
+void drift_show(const drift_result *r, const drift_answer *answer, imk_result *result);
+/* Of a file of runs, which has no cases. */
+void drift_show_results(const drift_result *r, const imk_campaign_results *file,
+                        imk_result *result);
+
+/* ---- drift_tables.c: each behind an empty line ---- */
+
+enum { DRIFT_TIME_TEXT = 80 };
+/* "10 min ~", where figures are rough. */
+const char *drift_time(double time, drift_validity validity, char text[DRIFT_TIME_TEXT]);
+
+/* Growth of one case, two of one model, or several models. */
+void drift_show_growth(const drift_result *r, imk_result *result);
+void drift_show_budget(const drift_result *r, const drift_case *one, imk_result *result);
+void drift_show_runs(const drift_result *r, imk_result *result);
+/* How the runs compare with the covariance. */
+void drift_show_ratios(const drift_result *r, imk_result *result);
+
+/* ---- drift_figure.c, drift_show_answer.c ---- */
+
+/* @param shares  with the shares of the terms beside it */
+void drift_show_figure(const drift_result *r, bool shares, imk_result *result);
+void drift_show_answer(const drift_result *r, const drift_answer *answer, imk_result *result);
+void drift_show_answer_data(const drift_result *r, const drift_answer *answer, imk_result *result);
 
 #endif

@@ -228,10 +228,8 @@ static int fill_times(const drift_options *o, const times *rows, drift_scene *s)
     const size_t swings = last > period ? (size_t)(8 * last / period) : 0;
     const size_t linear = swings > 1000 ? 1000 : swings;
     const size_t room = rows->count + CURVE_POINTS + linear;
-    s->time = malloc(room * sizeof *s->time);
-    s->row = malloc((rows->count + 1) * sizeof *s->row);
-    if (!s->time || !s->row)
-        return command_failed("memory is exhausted");
+    s->time = command_memory(NULL, room * sizeof *s->time);
+    s->row = command_memory(NULL, (rows->count + 1) * sizeof *s->row);
     memcpy(s->time, rows->at, rows->count * sizeof *s->time);
     s->time_count = rows->count;
     for (size_t i = 0; curves && last > first && i < CURVE_POINTS; i++)

@@ -40,38 +40,6 @@ static bool read_numbers(const char *text, numbers *n)
     return n->count > 0;
 }
 
-/* One step of a path: "gauss_markov[1]". */
-static const json_t *step(const json_t *node, const char *name, size_t length)
-{
-    char key[64];
-    size_t index = 0;
-    const char *bracket = memchr(name, '[', length);
-    const size_t word = bracket ? (size_t)(bracket - name) : length;
-    snprintf(key, sizeof key, "%.*s", (int)(word < 60 ? word : 60), name);
-    node = json_object_get(node, key);
-    if (!bracket)
-        return node;
-    for (const char *c = bracket + 1; *c >= '0' && *c <= '9'; c++)
-        index = 10 * index + (size_t)(*c - '0');
-    return json_array_get(node, index);
-}
-
-static const json_t *find(const json_t *model, const char *path)
-{
-    const json_t *node = model;
-    while (node && *path) {
-        const size_t length = strcspn(path, ".");
-        node = step(node, path, length);
-        path += length;
-        path += *path == '.';
-    }
-    if (json_is_object(node)) { /* of a process: what sizes it */
-        const json_t *size = json_object_get(node, "sigma");
-        node = size ? size : json_object_get(node, "amplitude");
-    }
-    return node;
-}
-
 /* Terms whose value is known count with their uncertainty once they are compensated. */
 static bool is_known(const char *source)
 {
@@ -81,40 +49,47 @@ static bool is_known(const char *source)
            !strstr(source, "jitter");
 }
 
-static void put(const numbers *n, bool sigma, double factor, char *text, size_t size)
+static void put(const numbers *n, bool sigma, double factor, growing_list *text)
 {
     const size_t count = sigma ? n->sigma_count : n->count;
     const double *value = sigma ? n->sigma : n->value;
     bool equal = true;
     for (size_t i = 1; i < count; i++)
         equal = equal && value[i] == value[0];
-    size_t used = (size_t)snprintf(text, size, "%s", sigma ? "±" : "");
-    for (size_t i = 0; i < (equal ? 1 : count) && used < size; i++) {
+    list_add(text, "%s", sigma ? "±" : "");
+    for (size_t i = 0; i < (equal ? 1 : count); i++) {
         const double scaled = value[i] * factor;
         char number[40];
-        if (scaled != 0 && fabs(scaled) < 1e-3)
+        if (factor == 1)
+            snprintf(number, sizeof number, "%.6g", scaled);
+        else if (scaled != 0 && fabs(scaled) < 1e-3)
             snprintf(number, sizeof number, "%.3g", scaled);
         else
-            format_value(scaled, 0, 3, number, sizeof number);
-        used += (size_t)snprintf(
-            text + used, size - used, "%s%s", i ? " " : "",
-            factor == 1 ? (snprintf(number, sizeof number, "%.6g", scaled), number) : number);
+            imk_readable_value(scaled, 0, 3, number, sizeof number);
+        list_add(text, "%s%s", i ? " " : "", number);
     }
-    if (used < size)
-        snprintf(text + used, size - used, " %s", n->unit);
+    list_add(text, " %s", n->unit);
+}
+
+static const char *text_at(const imk_result *model, const char *source, const char *member)
+{
+    char path[120];
+    snprintf(path, sizeof path, "model.%s%s", source, member);
+    return imk_result_find(model, path);
 }
 
 /* Of rows the largest number. */
-static bool largest_of_rows(const json_t *rows, bool sigma, numbers *largest)
+static bool largest_of_rows(const imk_result *model, const char *source, bool sigma,
+                            numbers *largest)
 {
-    const json_t *row;
-    size_t index;
     bool any = false;
-    json_array_foreach(rows, index, row)
-    {
+    for (int row = 0;; row++) {
         numbers n;
-        if (!json_is_string(row) || !read_numbers(json_string_value(row), &n))
-            return false;
+        char element[20];
+        snprintf(element, sizeof element, "[%d]", row);
+        const char *text = text_at(model, source, element);
+        if (!text || !read_numbers(text, &n))
+            return any && !text;
         const double *value = sigma ? n.sigma : n.value;
         for (size_t i = 0; i < (sigma ? n.sigma_count : n.count); i++) {
             if (any && fabs(value[i]) <= largest->value[0])
@@ -124,27 +99,24 @@ static bool largest_of_rows(const json_t *rows, bool sigma, numbers *largest)
             any = true;
         }
     }
-    return any;
 }
 
-void drift_term_value(const json_t *model, const char *source, bool compensated, double factor,
-                      char *text, size_t size)
+void drift_term_value(const imk_result *model, const char *source, bool compensated, double factor,
+                      growing_list *text)
 {
-    numbers n;
-    const json_t *node = find(model, source);
+    static const char *const members[] = {"", ".sigma", ".amplitude"}; /* what sizes a process */
     const bool sigma = compensated && is_known(source);
+    const char *found = NULL, *last = strrchr(source, '.');
+    numbers n;
     /* A shorter delay is a wider band, and a finer step more counts. */
-    const char *last = strrchr(source, '.');
     if (last && (strcmp(last, ".bandwidth") == 0 || strcmp(last, ".sensitivity") == 0))
         factor = 1 / factor;
-    text[0] = '\0';
-    if (json_is_array(node)) {
-        if (largest_of_rows(node, sigma, &n) && size > 8) {
-            snprintf(text, size, "<= ");
-            put(&n, sigma, factor, text + 3, size - 3);
-        }
-    } else if (json_is_string(node) && read_numbers(json_string_value(node), &n) &&
-               (!sigma || n.sigma_count > 0)) {
-        put(&n, sigma, factor, text, size);
+    for (size_t i = 0; i < sizeof members / sizeof members[0] && !found; i++)
+        found = text_at(model, source, members[i]);
+    if (found && read_numbers(found, &n) && (!sigma || n.sigma_count > 0)) {
+        put(&n, sigma, factor, text);
+    } else if (!found && largest_of_rows(model, source, sigma, &n)) {
+        list_add(text, "<= ");
+        put(&n, sigma, factor, text);
     }
 }

@@ -80,7 +80,7 @@ static const option output_option_table[] = {
      "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started again, it "
      "goes on. Else figures and terms against time (.csv)",
      offsetof(drift_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the growth and the shares of the terms", offsetof(drift_options, plot)},
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
      offsetof(drift_options, report)},
@@ -170,10 +170,8 @@ static int open_models(const drift_options *o, const char **operands, drift_resu
     int code = -1;
     for (size_t m = 0; m < DRIFT_MODELS_MAX && operands[m] && code < 0; m++) {
         r->name[m] = operands[m];
-        r->model[m] = malloc(sizeof *r->model[m]);
+        r->model[m] = command_memory(NULL, sizeof *r->model[m]);
         r->model_count = m + 1;
-        if (!r->model[m])
-            return command_failed("memory is exhausted");
         code = command_model(operands[m], r->model[m], NULL);
         if (code < 0)
             code = term_selection_apply(&o->terms, r->model[m]);
@@ -181,26 +179,17 @@ static int open_models(const drift_options *o, const char **operands, drift_resu
     return code;
 }
 
-/* Standard output has the tables, or JSON, or the CSV of -o -. */
 static int show(const drift_result *r, const drift_answer *answer)
 {
     const drift_options *o = r->options;
-    int code = -1;
     drift_warn(r);
-    if (o->output && !r->found)
-        code = drift_write_csv(r, o->output);
-    if (code < 0 && o->report)
-        code = drift_report(r, answer, o->report);
-    if (code < 0 && o->json)
-        code = drift_print_json(r, answer);
-    else if (code < 0 && !options_stdout_taken()) {
-        drift_print(r);
-        if (answer)
-            drift_answer_print(r, answer);
-    }
-    if (code < 0 && o->plot)
-        code = drift_draw(r, o->plot);
-    return code;
+    const int code = o->output && !r->found ? drift_write_csv(r, o->output) : -1;
+    if (code >= 0)
+        return code;
+    imk_result *result = show_begin("drift");
+    drift_show(r, answer, result);
+    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
+                    EXIT_DONE);
 }
 
 /* A part of a campaign has no figures worth showing: what to do with it is said. */
@@ -258,10 +247,8 @@ static int run(int count, char **words)
         return runs ? command_misused("%s holds runs that were made already: leave --monte-carlo "
                                       "out",
                                       operands[0])
-                    : drift_show_results(&o, operands[0]);
-    drift_result *r = calloc(1, sizeof *r);
-    if (!r)
-        return command_failed("memory is exhausted");
+                    : drift_results(&o, operands[0]);
+    drift_result *r = command_zeroed(sizeof *r);
     r->options = &o;
     r->scene = &scene;
     code = open_models(&o, operands, r);

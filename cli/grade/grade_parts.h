@@ -5,17 +5,10 @@
 #define IMUKIT_GRADE_PARTS_H
 
 #include "drift/drift_parts.h"
-#include "shell/command.h"
-
-#include "imukit/report.h"
+#include "shell/growing_list.h"
+#include "shell/show.h"
 
 enum { GRADE_MODELS_MAX = 8 };
-
-typedef struct grade_options {
-    bool json;
-    const char *plot, *report;
-    int map; /* in the order of the choices */
-} grade_options;
 
 /* ---- grade_position.c ---- */
 
@@ -62,11 +55,10 @@ typedef struct grade_case {
     size_t need_count;
     grade_share need[GRADE_SHARES]; /* or these alone, each so many times better, the most first */
     size_t need_more;               /* and so many others */
-    char omitted[300];              /* what the linear figures leave out */
+    growing_list omitted;           /* what the linear figures leave out */
 } grade_case;
 
 typedef struct grade_result {
-    const grade_options *options;
     size_t count;
     grade_case cases[GRADE_MODELS_MAX];
 } grade_result;
@@ -78,52 +70,20 @@ int grade_analyse(grade_case *one);
 /* Nautical miles, as claims are, from a tenth of one; else metres. */
 const char *grade_length(double metres, char text[DRIFT_TEXT]);
 
-/* ---- grade_tables.c ---- */
+/* ---- grade_maps.c ---- */
 
-text_table grade_class_table(const grade_case *one);
-text_table grade_position_table(const grade_case *one);
-text_table grade_comparison_table(const grade_result *result);
-/* Sentences, each of at most `size` bytes; "" where there is nothing to say. */
-void grade_bias_sentence(const grade_case *one, bool gyro, char *text, size_t size);
-void grade_position_sentence(const grade_case *one, char *text, size_t size);
-void grade_share_sentence(const grade_case *one, char *text, size_t size);
-void grade_need_sentence(const grade_case *one, char *text, size_t size);
-void grade_flattery_sentence(const grade_case *one, char *text, size_t size);
-extern const char grade_assumption[];
-void grade_print(const grade_result *result);
+enum { GRADE_MAP_GYRO, GRADE_MAP_ACCEL, GRADE_MAP_COST, GRADE_MAPS /* all of them */ };
 
-/* ---- grade_regions.c: what is published about classes and applications ---- */
+/* Does a model stand on a map, or on any of GRADE_MAPS? */
+bool grade_stands(const grade_result *result, int map);
+/* One map, or GRADE_MAPS beside one another. */
+void grade_show_plot(const grade_result *r, int map, imk_result *result);
+/* Each with its sources, on the page. */
+void grade_show_maps(const grade_result *r, imk_result *result);
 
-typedef struct grade_region {
-    imk_region region;  /* in the units of its map */
-    const char *source; /* key of docs/references.md and the place in it */
-} grade_region;
+/* ---- grade_show.c ---- */
 
-enum { GRADE_MAP_GYRO, GRADE_MAP_ACCEL, GRADE_MAP_COST, GRADE_MAPS };
-
-const grade_region *grade_regions(int map, size_t *count);
-
-/* ---- grade_map.c ---- */
-
-enum { GRADE_REGIONS_MAX = 12 };
-
-typedef struct grade_map {
-    imk_panel panel;
-    imk_region region[GRADE_REGIONS_MAX];
-    imk_curve curve[GRADE_MODELS_MAX + 1];
-    double x[GRADE_MODELS_MAX][2], y[GRADE_MODELS_MAX][2];
-    char label[GRADE_MODELS_MAX][120];
-    double preset_x[5], preset_y[5];
-} grade_map;
-
-/* Not to be moved: the panel points into it. @return false: no model stands on it */
-bool grade_map_make(const grade_result *result, int map, grade_map *made);
-/* @return -1 or the exit code */
-int grade_draw(const grade_result *result, const char *path);
-
-/* ---- grade_output.c ---- */
-
-int grade_print_json(const grade_result *result);
-int grade_report(const grade_result *result, const char *path);
+/* @param map  for the plot */
+void grade_show(const grade_result *r, int map, imk_result *result);
 
 #endif

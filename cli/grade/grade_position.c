@@ -108,16 +108,6 @@ static void find_needs(grade_case *one, const imk_drift_analysis *a)
     free(need);
 }
 
-static void list_omitted(grade_case *one, const imk_drift_analysis *a)
-{
-    size_t used = 0;
-    for (size_t i = 0; i < a->omitted_count && used + 1 < sizeof one->omitted; i++) {
-        const int more = snprintf(one->omitted + used, sizeof one->omitted - used, "%s%s",
-                                  i > 0 ? ", " : "", a->omitted[i]);
-        used += more > 0 ? (size_t)more : 0;
-    }
-}
-
 /* ---- all ---- */
 
 static int analyse_way(grade_case *one, int way)
@@ -133,23 +123,21 @@ static int analyse_way(grade_case *one, int way)
     if (imk_drift_validate(one->model, &settings, &error) != IMK_OK)
         return command_error(&error, one->operand);
     const size_t size = imk_drift_covariance_size(one->model, &settings);
-    void *memory = drift_memory(size);
-    int code = -1;
-    if (!memory)
-        code = command_failed("memory is exhausted");
-    else if (imk_drift_covariance(one->model, &settings, memory, size, NULL, &analysis, &error) !=
-             IMK_OK)
-        code = command_error(&error, one->operand);
-    else {
-        keep_figures(analysis, &one->way[way]);
-        if (way == GRADE_GIVEN) {
-            find_shares(one, analysis);
-            find_needs(one, analysis);
-            list_omitted(one, analysis);
-        }
+    void *memory = command_aligned(size);
+    if (imk_drift_covariance(one->model, &settings, memory, size, NULL, &analysis, &error) !=
+        IMK_OK) {
+        free(memory);
+        return command_error(&error, one->operand);
+    }
+    keep_figures(analysis, &one->way[way]);
+    if (way == GRADE_GIVEN) {
+        find_shares(one, analysis);
+        find_needs(one, analysis);
+        for (size_t i = 0; i < analysis->omitted_count; i++)
+            list_add_item(&one->omitted, "%s", analysis->omitted[i]);
     }
     free(memory);
-    return code;
+    return -1;
 }
 
 /* A position needs three of each along body x, y, z: imk_drift_validate() knows. */

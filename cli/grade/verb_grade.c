@@ -6,8 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct grade_options {
+    bool json;
+    const char *plot, *report;
+    int map; /* in the order of the choices */
+} grade_options;
+
 static const option grade_option_table[] = {
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the maps: stability of bias against that of scale factor, of gyros and of "
      "accelerometers, and cost against performance",
      offsetof(grade_options, plot)},
@@ -46,10 +52,8 @@ static int open_models(const char **operands, grade_result *r)
     for (size_t m = 0; m < GRADE_MODELS_MAX && operands[m] && code < 0; m++) {
         grade_case *one = &r->cases[m];
         one->operand = operands[m];
-        one->model = malloc(sizeof *one->model);
+        one->model = command_memory(NULL, sizeof *one->model);
         r->count = m + 1;
-        if (!one->model)
-            return command_failed("memory is exhausted");
         code = command_model(operands[m], one->model, NULL);
         if (code < 0)
             code = grade_analyse(one);
@@ -61,21 +65,21 @@ static int open_models(const char **operands, grade_result *r)
     return code;
 }
 
-/* A terminal has room for one map. */
-static int show(const grade_result *r, grade_options *o)
+static int show(const grade_result *r, const grade_options *o)
 {
-    int code = -1;
-    if (o->report)
-        code = grade_report(r, o->report);
-    if (code < 0 && o->json)
-        code = grade_print_json(r);
-    else if (code < 0 && !options_stdout_taken())
-        grade_print(r);
-    if (o->plot && o->map == 0 && strcmp(o->plot, "term") == 0)
-        o->map = 1 + GRADE_MAP_GYRO;
-    if (code < 0 && o->plot)
-        code = grade_draw(r, o->plot);
-    return code;
+    /* A terminal has room for one map. */
+    const int all = o->plot && strcmp(o->plot, "term") == 0 ? GRADE_MAP_GYRO : GRADE_MAPS;
+    const int map = o->map > 0 ? o->map - 1 : all;
+    const bool stands = grade_stands(r, map);
+    imk_result *result = show_begin("grade");
+    grade_show(r, map, result);
+    const int code = show_end(
+        result,
+        &(show_options){.report = o->report, .plot = stands ? o->plot : NULL, .json = o->json},
+        EXIT_DONE);
+    return code == EXIT_DONE && o->plot && !stands
+               ? command_failed("--map: nothing of the model stands on this map")
+               : code;
 }
 
 static int run(int count, char **words)
@@ -89,15 +93,14 @@ static int run(int count, char **words)
         code = command_misused("--map is of a drawing: add --plot FILE.svg");
     if (code >= 0)
         return code;
-    grade_result *r = calloc(1, sizeof *r);
-    if (!r)
-        return command_failed("memory is exhausted");
-    r->options = &o;
+    grade_result *r = command_zeroed(sizeof *r);
     code = open_models(operands, r);
     if (code < 0)
         code = show(r, &o);
-    for (size_t m = 0; m < r->count; m++)
+    for (size_t m = 0; m < r->count; m++) {
+        list_free(&r->cases[m].omitted);
         free(r->cases[m].model);
+    }
     free(r);
-    return code < 0 ? EXIT_DONE : code;
+    return code;
 }

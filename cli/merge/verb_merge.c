@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit merge: the shards of a Monte Carlo campaign become one results file. */
 #define _POSIX_C_SOURCE 200809L
-#include "shell/json_output.h"
+#include "shell/growing_list.h"
+#include "shell/show.h"
 
 #include "imukit/campaign.h"
 
@@ -68,45 +69,47 @@ static bool has_unreadable(const imk_campaign_merge_report *r)
 }
 
 /* What to do about the runs that are not there. */
-static void describe_missing(const imk_campaign_merge_report *r, char *text, size_t size)
+static void describe_missing(const imk_campaign_merge_report *r, growing_list *text)
 {
+    list_add(text, "runs %s of %llu are missing", r->missing, (unsigned long long)r->run_count);
     if (has_unreadable(r))
-        snprintf(
-            text, size,
-            "runs %s of %llu are missing, which may be in a file that could not be read: merge "
-            "again with files that can",
-            r->missing, (unsigned long long)r->run_count);
+        list_add(text, ", which may be in a file that could not be read: merge again with files "
+                       "that can");
     else if (r->shard_count > 0 && r->shards[0])
-        snprintf(
-            text, size,
-            "runs %s of %llu are missing; compute again with --shard i/%llu for i = %s (Slurm: "
-            "sbatch --array=%s), then merge again",
-            r->missing, (unsigned long long)r->run_count, (unsigned long long)r->shard_count,
-            r->shards, r->shards);
-    else
-        snprintf(text, size, "runs %s of %llu are missing", r->missing,
-                 (unsigned long long)r->run_count);
+        list_add(text,
+                 "; compute again with --shard i/%llu for i = %s (Slurm: sbatch --array=%s), then "
+                 "merge again",
+                 (unsigned long long)r->shard_count, r->shards, r->shards);
 }
 
-static int print_json(const merge_options *o, size_t count, const char *const *paths,
-                      const imk_campaign_merge_report *r, int code)
+/* @param output  NULL: nothing was written */
+static void show_data(const char *output, size_t count, const char *const *paths,
+                      const imk_campaign_merge_report *r, imk_result *result)
 {
-    json_t *inputs = json_array(), *left_out = json_array();
+    imk_result_object(result, "inputs");
+    imk_result_array(result, "shards");
     for (size_t i = 0; i < count; i++)
-        json_array_append_new(inputs, json_text(paths[i]));
+        imk_result_text(result, NULL, paths[i]);
+    imk_result_end(result);
+    imk_result_end(result);
+    imk_result_object(result, "result");
+    imk_result_text(result, "output", output);
+    imk_result_count(result, "run_count", (long long)r->run_count);
+    imk_result_count(result, "runs", (long long)r->present);
+    imk_result_text(result, "missing_runs", r->missing);
+    imk_result_count(result, "shard_count", (long long)r->shard_count);
+    imk_result_text(result, "missing_shards", r->shards);
+    imk_result_array(result, "left_out");
     for (size_t i = 0; i < r->complaint_count; i++) {
         char text[900];
         imk_error_text(&r->complaint[i].error, NULL, text, sizeof text);
-        json_array_append_new(left_out, json_pack("{s:o, s:s}", "file",
-                                                  json_text(r->complaint[i].path), "reason", text));
+        imk_result_object(result, NULL);
+        imk_result_text(result, "file", r->complaint[i].path);
+        imk_result_text(result, "reason", text);
+        imk_result_end(result);
     }
-    json_t *result =
-        json_pack("{s:o, s:I, s:I, s:s, s:I, s:s, s:o}", "output",
-                  code == EXIT_DONE ? json_text(o->output) : json_null(), "run_count",
-                  (json_int_t)r->run_count, "runs", (json_int_t)r->present, "missing_runs",
-                  r->missing, "shard_count", (json_int_t)r->shard_count, "missing_shards",
-                  r->shards, "left_out", left_out);
-    return json_print("merge", json_pack("{s:o}", "shards", inputs), result, code);
+    imk_result_end(result);
+    imk_result_end(result);
 }
 
 static int merge(const merge_options *o, size_t count, const char *const *paths,
@@ -114,33 +117,32 @@ static int merge(const merge_options *o, size_t count, const char *const *paths,
 {
     imk_campaign_merge_report report = {.complaint = complaints};
     imk_error error;
-    char missing[3400];
+    growing_list missing = {0};
     int code = EXIT_DONE;
     const imk_status status =
         imk_campaign_merge(count, paths, o->output, o->partial, &report, &error);
     warn_complaints(&report);
-    describe_missing(&report, missing, sizeof missing);
+    describe_missing(&report, &missing);
     if (status == IMK_ERROR_CONFLICT && report.missing[0])
-        code = command_failed("%s (--partial merges what there is)", missing);
+        code = command_failed("%s (--partial merges what there is)", missing.text);
     else if (status != IMK_OK)
         code = command_error(&error, NULL);
     else if (report.missing[0])
-        command_warn("runs_missing", "%s", missing);
-    if (o->json)
-        return print_json(o, count, paths, &report, code);
+        command_warn("runs_missing", "%s", missing.text);
+    list_free(&missing);
+    imk_result *result = show_begin("merge");
+    show_data(code == EXIT_DONE ? o->output : NULL, count, paths, &report, result);
     if (code == EXIT_DONE)
-        printf("%s: %llu of %llu runs from %zu of %zu files\n", o->output,
-               (unsigned long long)report.present, (unsigned long long)report.run_count,
-               count - report.complaint_count, count);
-    return code;
+        imk_result_line(result, "%s: %llu of %llu runs from %zu of %zu files", o->output,
+                        (unsigned long long)report.present, (unsigned long long)report.run_count,
+                        count - report.complaint_count, count);
+    return show_end(result, &(show_options){.json = o->json}, code);
 }
 
 static int run(int count, char **words)
 {
     merge_options o = {0};
-    const char **paths = calloc(FILES_MAX, sizeof *paths);
-    if (!paths)
-        return command_failed("memory is exhausted");
+    const char **paths = command_zeroed(FILES_MAX * sizeof *paths);
     int code = options_parse(&merge_verb, count, words, &o, paths);
     if (code < 0 && !o.output)
         code = command_misused("-o FILE is missing: the results file to write");
@@ -148,9 +150,8 @@ static int run(int count, char **words)
     while (files < FILES_MAX && paths[files])
         files++;
     if (code < 0) {
-        imk_campaign_complaint *complaints = calloc(files + 1, sizeof *complaints);
-        code = complaints ? merge(&o, files, paths, complaints)
-                          : command_failed("memory is exhausted");
+        imk_campaign_complaint *complaints = command_zeroed((files + 1) * sizeof *complaints);
+        code = merge(&o, files, paths, complaints);
         free(complaints);
     }
     free(paths);

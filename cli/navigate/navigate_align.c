@@ -206,9 +206,7 @@ static int self_align(navigation *n)
     settings.duration = n->dt * (double)n->first;
     settings.model = n->has_model ? n->model : NULL;
     const size_t size = imk_alignment_size(&settings);
-    void *memory = malloc(size);
-    if (!memory)
-        return command_failed("memory is exhausted");
+    void *memory = command_memory(NULL, size);
     imk_status status = imk_alignment_start(memory, size, &settings, &alignment, &error);
     for (size_t row = 0; row < n->first && status == IMK_OK; row++)
         imk_alignment_add(alignment, n->dt, navigate_increment(n, 0, row),

@@ -4,11 +4,10 @@
 #define IMUKIT_NAVIGATE_PARTS_H
 
 #include "log/log_input.h"
-#include "shell/text_table.h"
+#include "shell/show.h"
 
 #include "imukit/alignment.h"
 #include "imukit/model_file.h"
-#include "imukit/report.h"
 #include "imukit/zero_velocity.h"
 
 typedef struct navigate_options {
@@ -89,13 +88,8 @@ int navigate_check(const navigation *n); /* is this gravity, is that the Earth's
 int navigate_run(navigation *n);
 
 int navigate_write_track(const navigation *n, const char *path);
-void navigate_print(const navigation *n);
-text_table navigate_table(const navigation *n);
-/* A sentence on the distance from the start. */
-void navigate_drift_sentence(const navigation *n, char *text, size_t size);
-int navigate_json(const navigation *n, int code);
-int navigate_draw(const navigation *n, const char *path);
-int navigate_report(const navigation *n, const char *path);
+/* @param warned  there are warnings */
+void navigate_show(const navigation *n, bool warned, imk_result *result);
 void navigate_free(navigation *n);
 
 #endif

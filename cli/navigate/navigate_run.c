@@ -63,15 +63,12 @@ static int describe_errors(navigation *n)
 /* ---- track -------------------------------------------------------------------------------------
  */
 
-static int make_track(navigation *n, size_t every)
+static void make_track(navigation *n, size_t every)
 {
     const size_t rows = (n->rows - n->first) / every + 2;
-    double *memory = malloc(rows * TRACK_COLUMNS * sizeof *memory);
-    if (!memory)
-        return command_failed("memory is exhausted");
+    double *memory = command_memory(NULL, rows * TRACK_COLUMNS * sizeof *memory);
     for (int k = 0; k < TRACK_COLUMNS; k++)
         n->track[k] = memory + (size_t)k * rows;
-    return -1;
 }
 
 /* Relative to the Earth, Earth-fixed axes, mean over a sample: C f + g - 2 w x v. */
@@ -340,14 +337,11 @@ int navigate_run(navigation *n)
     int code = describe_errors(n);
     if (code < 0 && n->aligned)
         code = learn_rest(n, &s);
-    if (code < 0)
-        code = make_track(n, every);
     if (code >= 0)
         return code;
+    make_track(n, every);
     const size_t size = imk_zero_velocity_size(&n->settings);
-    void *memory = malloc(size);
-    if (!memory)
-        return command_failed("memory is exhausted");
+    void *memory = command_memory(NULL, size);
     if (imk_zero_velocity_start(memory, size, &n->settings, &n->start, &filter, &error) != IMK_OK)
         code = command_error(&error, n->path);
     if (code < 0)

@@ -61,7 +61,7 @@ static const option navigate_option_table[] = {
     {"output", 'o', OPTION_OUTPUT, "TRACK", NULL, NULL,
      "write the track: .csv (also .gz, .zst) or .npy; - is standard output",
      offsetof(navigate_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the track, and the way from the start against time", offsetof(navigate_options, plot)},
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
      offsetof(navigate_options, report)},
@@ -126,21 +126,14 @@ static void warn_of_model(const navigation *n)
 static int show(const navigation *n)
 {
     const navigate_options *o = n->options;
-    const int end = o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE;
-    int code = -1;
-    if (o->output)
-        code = navigate_write_track(n, o->output);
-    if (code < 0 && o->report)
-        code = navigate_report(n, o->report);
-    if (code < 0 && o->json)
-        code = navigate_json(n, end);
-    else if (code < 0 && !options_stdout_taken())
-        navigate_print(n);
-    if ((code < 0 || code == end) && o->plot) {
-        const int drawn = navigate_draw(n, o->plot);
-        code = drawn < 0 ? code : drawn;
-    }
-    return code < 0 ? end : code;
+    const bool warned = command_warning_count() > 0;
+    const int code = o->output ? navigate_write_track(n, o->output) : -1;
+    if (code >= 0)
+        return code;
+    imk_result *result = show_begin("navigate");
+    navigate_show(n, warned, result);
+    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
+                    o->strict && warned ? EXIT_FAILED : EXIT_DONE);
 }
 
 static int navigate(navigation *n)
@@ -179,16 +172,12 @@ static int run(int count, char **words)
         code = command_check_plot(o.plot);
     if (code >= 0)
         return code;
-    navigation *n = calloc(1, sizeof *n);
-    imk_model *model = malloc(sizeof *model);
-    if (n && model) {
-        n->options = &o;
-        n->path = operands[0];
-        n->model = model;
-        code = navigate(n);
-    } else {
-        code = command_failed("memory is exhausted");
-    }
+    imk_model *model = command_memory(NULL, sizeof *model);
+    navigation *n = command_zeroed(sizeof *n);
+    n->options = &o;
+    n->path = operands[0];
+    n->model = model;
+    code = navigate(n);
     free(model);
     free(n);
     return code;

@@ -19,6 +19,8 @@ typedef struct show_options {
 imk_result *show_begin(const char *name);
 /* The command line, as pages tell it. */
 void show_origin(imk_result *result);
+/* The warnings up to now, as findings. */
+void show_warnings(imk_result *result);
 /* Write the page, print JSON or text, draw, and free the result.
  * @return the exit code: `code`, or another one when something could not be written */
 int show_end(imk_result *result, const show_options *options, int code);

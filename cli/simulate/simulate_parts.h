@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What `imukit simulate` is made of: its options, the scene (motion and temperature), the columns
- * of the log, and the writing of runs and truth. */
+/* What `imukit simulate` is made of: its options, the scene (motion and temperature), and the
+ * writing of runs and truth. */
 #ifndef IMUKIT_SIMULATE_PARTS_H
 #define IMUKIT_SIMULATE_PARTS_H
 
 #include "shell/term_selection.h"
 
 #include "imukit/motion_file.h"
-#include "imukit/simulate.h"
+#include "imukit/simulate_log.h"
 
 typedef struct simulate_options {
     double rate, duration, latitude, height, roll, pitch, yaw;
@@ -24,31 +24,18 @@ typedef struct simulate_options {
 typedef struct scene {
     imk_motion_file *motion;
     imk_temperature_file *temperature;
-    imk_simulation simulation;
-    double start; /* stamp of row 0 [s] */
-    uint64_t rows;
+    imk_simulate_log_settings settings;
 } scene;
 
 /* @return -1 or the exit code, the message printed; scene_free() either way */
 int scene_open(const simulate_options *o, const imk_model *model, scene *s);
 void scene_free(scene *s);
 
-/* ---- simulate_log.c ---- */
+/* ---- simulate_run.c ---- */
 
-enum { SIMULATE_COLUMNS_MAX = 2 + 2 * IMK_AXES_MAX }; /* time, channels, temperature */
-
-/* The columns of a log, in order: time, gyros, accelerometers, temperature. */
-typedef struct log_layout {
-    size_t count, channels;
-    bool temperature;
-    imk_log_column column[SIMULATE_COLUMNS_MAX];
-    double factor[SIMULATE_COLUMNS_MAX]; /* from samples to what is written: dt of increments */
-    int decimals[SIMULATE_COLUMNS_MAX];
-} log_layout;
-
-/* @return -1 or the exit code */
-int log_layout_make(const simulate_options *o, const imk_model *model, const scene *s,
-                    log_layout *layout);
+/* Units of the columns. @return -1 or the exit code */
+int simulate_units(const simulate_options *o, const imk_model *model,
+                   imk_simulate_log_settings *settings);
 
 typedef struct log_target {
     const char *path, *label; /* what the progress says: "run 3 (4 of 20)" */
@@ -56,10 +43,9 @@ typedef struct log_target {
 
 /* One run of the scene into one file. @return the exit code, the message printed */
 int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
-                 const log_layout *layout, const imk_executor *executor, const log_target *target);
-/* simulate_truth.c: what perfect sensors would have read, and where the unit was. @return -1 or the
- * exit code, the message printed */
+                 const imk_executor *executor, const log_target *target);
+/* What perfect sensors would have read, and where the unit was. @return -1 or the exit code */
 int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
-                   const imk_executor *executor, const char *path);
+                   const imk_executor *executor);
 
 #endif

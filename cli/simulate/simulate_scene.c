@@ -52,7 +52,7 @@ static int open_motion(const simulate_options *o, scene *s)
     }
     if (status != IMK_OK)
         return table_error(&error, o->motion);
-    s->simulation.motion = *imk_motion_file_motion(s->motion);
+    s->settings.simulation.motion = *imk_motion_file_motion(s->motion);
     const char *note = imk_motion_file_note(s->motion);
     if (*note)
         command_warn("motion", "%s: %s", o->motion, note);
@@ -62,7 +62,7 @@ static int open_motion(const simulate_options *o, scene *s)
 static int check_clock(const simulate_options *o, const imk_model *model, const scene *s)
 {
     const imk_timing *timing = &model->timing;
-    if (s->simulation.motion.recorded &&
+    if (s->settings.simulation.motion.recorded &&
         (timing->rate_error.value != 0 || timing->jitter.value != 0 || timing->skew.value != 0))
         return command_misused("%s is known at its samples only, and the model has errors of the "
                                "clock: add --without rate_error,jitter,skew",
@@ -92,31 +92,32 @@ static int open_temperature(const simulate_options *o, const imk_model *model, s
     }
     if (imk_temperature_read(o->temperature, &s->temperature, &error) != IMK_OK)
         return table_error(&error, o->temperature);
-    s->simulation.temperature = imk_temperature_file_profile(s->temperature);
+    s->settings.simulation.temperature = imk_temperature_file_profile(s->temperature);
     return -1;
 }
 
 static int choose_rate(const simulate_options *o, scene *s)
 {
-    const imk_recorded_motion *recorded = s->simulation.motion.recorded;
-    s->simulation.rate = isnan(o->rate) && recorded ? recorded->rate : o->rate;
-    if (isnan(s->simulation.rate))
+    const imk_recorded_motion *recorded = s->settings.simulation.motion.recorded;
+    s->settings.simulation.rate = isnan(o->rate) && recorded ? recorded->rate : o->rate;
+    if (isnan(s->settings.simulation.rate))
         return command_misused("the sample rate is missing: add --rate 100Hz");
-    if (!(s->simulation.rate > 0))
+    if (!(s->settings.simulation.rate > 0))
         return command_misused("--rate must be positive");
-    if (!(s->simulation.rate >= 1e-9 && s->simulation.rate <= 1e12))
-        return command_misused("--rate %g Hz: expected 1e-9 Hz to 1e12 Hz", s->simulation.rate);
-    if (recorded && fabs(s->simulation.rate - recorded->rate) > 1e-9 * recorded->rate)
+    if (!(s->settings.simulation.rate >= 1e-9 && s->settings.simulation.rate <= 1e12))
+        return command_misused("--rate %g Hz: expected 1e-9 Hz to 1e12 Hz",
+                               s->settings.simulation.rate);
+    if (recorded && fabs(s->settings.simulation.rate - recorded->rate) > 1e-9 * recorded->rate)
         return command_misused("--rate %g Hz: the recorded motion has %g Hz; leave the option out",
-                               s->simulation.rate, recorded->rate);
+                               s->settings.simulation.rate, recorded->rate);
     return -1;
 }
 
 /* Vibration that the parts of a sample cannot follow is neither averaged nor rectified rightly. */
 static void warn_of_vibration(const simulate_options *o, const scene *s)
 {
-    const imk_trajectory *trajectory = s->simulation.motion.trajectory;
-    const double rate = s->simulation.rate;
+    const imk_trajectory *trajectory = s->settings.simulation.motion.trajectory;
+    const double rate = s->settings.simulation.rate;
     if (!trajectory || o->substeps.given)
         return;
     size_t parts = imk_trajectory_substeps(trajectory, 1 / rate);
@@ -130,17 +131,17 @@ static void warn_of_vibration(const simulate_options *o, const scene *s)
 /* A motion given without a length is simulated to its end, the last row included. */
 static int choose_length(const simulate_options *o, scene *s)
 {
-    const double rate = s->simulation.rate;
+    const double rate = s->settings.simulation.rate;
     const double length = s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;
     if (isnan(o->duration) && isinf(length))
         return command_misused("the length is missing: add --duration 1h");
     if (isnan(o->duration)) {
-        const imk_recorded_motion *recorded = s->simulation.motion.recorded;
+        const imk_recorded_motion *recorded = s->settings.simulation.motion.recorded;
         if (!recorded && !(length * rate < 1e15))
             return command_misused("the motion's %g s at %g Hz are %.3g rows: expected up to 1e15; "
                                    "add --duration, or a lower rate",
                                    length, rate, length * rate);
-        s->rows = recorded ? recorded->count : (uint64_t)floor(length * rate + 1e-6) + 1;
+        s->settings.rows = recorded ? recorded->count : (uint64_t)floor(length * rate + 1e-6) + 1;
         return -1;
     }
     if (!(o->duration > 0))
@@ -155,7 +156,7 @@ static int choose_length(const simulate_options *o, scene *s)
                                imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT
                                    ? ", or let the motion end with `then: hold`"
                                    : "");
-    s->rows = (uint64_t)llround(o->duration * rate);
+    s->settings.rows = (uint64_t)llround(o->duration * rate);
     return -1;
 }
 
@@ -163,16 +164,16 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
 {
     imk_geodetic place = place_of(o);
     memset(s, 0, sizeof *s);
-    s->simulation = imk_simulation_default();
-    s->simulation.seed = o->seed.value;
-    s->simulation.run = (uint32_t)o->run.value;
-    s->simulation.earth = !o->no_earth;
-    s->simulation.latitude = place.latitude;
-    s->simulation.height = place.height;
-    s->simulation.roll = o->roll;
-    s->simulation.pitch = o->pitch;
-    s->simulation.yaw = o->yaw;
-    s->simulation.substeps = o->substeps.value;
+    s->settings = imk_simulate_log_default();
+    s->settings.simulation.seed = o->seed.value;
+    s->settings.simulation.run = (uint32_t)o->run.value;
+    s->settings.simulation.earth = !o->no_earth;
+    s->settings.simulation.latitude = place.latitude;
+    s->settings.simulation.height = place.height;
+    s->settings.simulation.roll = o->roll;
+    s->settings.simulation.pitch = o->pitch;
+    s->settings.simulation.yaw = o->yaw;
+    s->settings.simulation.substeps = o->substeps.value;
     int code = o->motion ? open_motion(o, s) : -1;
     if (code < 0)
         code = check_clock(o, model, s);
@@ -184,9 +185,9 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
         code = choose_length(o, s);
     if (code < 0)
         warn_of_vibration(o, s);
-    if (s->simulation.motion.trajectory) {
+    if (s->settings.simulation.motion.trajectory) {
         double last;
-        imk_trajectory_span(s->simulation.motion.trajectory, &s->start, &last);
+        imk_trajectory_span(s->settings.simulation.motion.trajectory, &s->settings.start, &last);
     }
     return code;
 }

@@ -120,7 +120,7 @@ static bool is_directory(const char *path)
 
 /* One log per run, DIR/run_000.csv and so on. */
 static int simulate_runs(const simulate_options *o, const imk_model *model, scene *s,
-                         const log_layout *layout, const imk_executor *executor)
+                         const imk_executor *executor)
 {
     const size_t length = strlen(o->output);
     for (uint64_t i = 0; i < o->runs.value; i++) {
@@ -133,8 +133,8 @@ static int simulate_runs(const simulate_options *o, const imk_model *model, scen
             return command_failed("%s: the name is too long", o->output);
         snprintf(label, sizeof label, "run %llu (%llu of %llu)", (unsigned long long)number,
                  (unsigned long long)i + 1, (unsigned long long)o->runs.value);
-        s->simulation.run = (uint32_t)number;
-        int code = simulate_log(o, model, s, layout, executor, &(log_target){path, label});
+        s->settings.simulation.run = (uint32_t)number;
+        int code = simulate_log(o, model, s, executor, &(log_target){path, label});
         if (code != EXIT_DONE)
             return code;
     }
@@ -142,32 +142,31 @@ static int simulate_runs(const simulate_options *o, const imk_model *model, scen
 }
 
 static int write_logs(const simulate_options *o, const imk_model *model, scene *s,
-                      const log_layout *layout, const imk_executor *executor)
+                      const imk_executor *executor)
 {
     /* A truth that cannot be written is known before the logs are made. */
-    int code = o->truth ? simulate_truth(o, model, s, executor, o->truth) : -1;
+    int code = o->truth ? simulate_truth(o, model, s, executor) : -1;
     if (code >= 0)
         return code;
     if (o->runs.given)
-        return simulate_runs(o, model, s, layout, executor);
-    return simulate_log(o, model, s, layout, executor,
+        return simulate_runs(o, model, s, executor);
+    return simulate_log(o, model, s, executor,
                         &(log_target){o->output ? o->output : "-", "simulating"});
 }
 
 static int simulate(const simulate_options *o, const imk_model *model)
 {
     scene s;
-    log_layout layout;
     int code = scene_open(o, model, &s);
     if (code < 0)
-        code = log_layout_make(o, model, &s, &layout);
+        code = simulate_units(o, model, &s.settings);
     const bool made = code < 0 && o->runs.given && mkdir(o->output, 0777) == 0;
     if (code < 0 && o->runs.given && !made && errno != EEXIST)
         code = command_failed("%s: %s", o->output, strerror(errno));
     if (code < 0) {
         imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
         imk_executor executor = imk_thread_pool_executor(pool);
-        code = write_logs(o, model, &s, &layout, &executor);
+        code = write_logs(o, model, &s, &executor);
         imk_thread_pool_destroy(pool);
     }
     if (made && code != EXIT_DONE)

@@ -170,6 +170,21 @@ IMK_API imk_status imk_log_write(imk_log_writer *writer, size_t rows, const doub
  *          IMK_ERROR_CONFLICT (another row count than announced, where it matters),
  *          IMK_ERROR_NOT_FINITE (error.field: column and row), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_commit(imk_log_writer *writer, imk_error *error);
+/** A log that is written as a sink of records. */
+typedef struct imk_log_sink {
+    const char *path; /**< "-": standard output */
+    bool fixed;       /**< IMK_LOG_FIXED, with these decimals where the job knows no better ones */
+    int decimals;
+    imk_log_writer *writer; /**< its own */
+    imk_record_source labels;
+} imk_log_sink;
+
+/** `log` with its path and precision set. */
+IMK_API imk_record_sink imk_log_sink_of(imk_log_sink *log);
+/** Finish the log, or leave none. @param status  of the job that wrote it, with its error
+ *  @return that, or why the log could not be finished */
+IMK_API imk_status imk_log_sink_end(imk_log_sink *log, imk_status status, imk_error *error);
+
 /** Give up: nothing appears. Frees the writer; NULL is allowed. */
 IMK_API void imk_log_abandon(imk_log_writer *writer);
 

@@ -2,12 +2,13 @@
 /** @file record.h
  *  Records of sensors: what their columns are, where their rows come from, and one in memory.
  *
- *  Jobs (job.h) take a record source: a file is one kind (imk_log_source(), log.h), arrays in
- * memory are another (imk_array_source()). */
+ *  Jobs (job.h) take a record source: a file is one kind (imk_log_source(), log.h), arrays
+ *  in memory are another (imk_array_source_make()); they give to a record sink. */
 #ifndef IMUKIT_RECORD_H
 #define IMUKIT_RECORD_H
 
 #include "imukit/allocator.h"
+#include "imukit/executor.h"
 #include "imukit/status.h"
 #include "imukit/units.h"
 
@@ -96,7 +97,7 @@ typedef struct imk_array_source {
 
 /** A source of `rows` rows in one array per column.
  *  @param names  gyro_x [rad/s], accel_x [m/s^2], time [s], temperature [K] and so on, without
- * units
+ *                units
  *  @param rate   [Hz]; 0: from a column named time
  *  @param memory what the source is about, until it is not used any more
  *  @return IMK_ERROR_COLUMN (too many, or a name twice), IMK_ERROR_RATE_MISSING, IMK_ERROR_MEMORY
@@ -105,6 +106,36 @@ IMK_API imk_status imk_array_source_make(size_t column_count, const char *const 
                                          const double *const *data, size_t rows, double rate,
                                          imk_array_source *memory, imk_record_source *source,
                                          imk_error *error);
+
+/** Where the rows of a record go. */
+typedef struct imk_record_sink {
+    void *context;
+    /** Before the first row: the columns.
+     *  @param decimals  per column, those that hold every value to come; -1: not known
+     *  @param rows      how many are to come; 0: not known */
+    imk_status (*begin)(void *context, size_t column_count, const imk_log_column *columns,
+                        const int *decimals, uint64_t rows, imk_error *error);
+    /** Rows from one array per column, SI; increments as increments. */
+    imk_status (*write)(void *context, size_t rows, const double *const *columns,
+                        const imk_executor *executor, imk_error *error);
+    /** Where the texts of columns of labels are; NULL: they are not wanted. */
+    void (*labels)(void *context, const imk_record_source *source);
+} imk_record_sink;
+
+/** Rows into arrays of the caller. */
+typedef struct imk_array_sink {
+    size_t column_count, capacity, rows; /**< capacity: of each array */
+    double *const *data;                 /**< as many as there will be columns */
+    imk_log_column column[IMK_LOG_COLUMNS_MAX];
+} imk_array_sink;
+
+/** A sink into arrays: `memory` with its counts, capacity and data set.
+ *  Writing beyond the capacity, or more columns, is IMK_ERROR_WORKSPACE. */
+IMK_API imk_record_sink imk_array_sink_of(imk_array_sink *memory);
+
+/** "gyro_x", "accel_3": the column of a sensor by its number, 0 to 2 along the axes of the body.
+ *  @param text  48 bytes */
+IMK_API void imk_axis_name(const char *sensor, int axis, char *text);
 
 /** A whole log in memory. */
 typedef struct imk_log {

@@ -37,8 +37,6 @@ IMK_API void imk_result_free(imk_result *result);
  *  @{ */
 IMK_API void imk_result_object(imk_result *result, const char *key);
 IMK_API void imk_result_array(imk_result *result, const char *key);
-/** A copy of a key that lives as long as the result. */
-IMK_API const char *imk_result_keep(imk_result *result, const char *key);
 /** End the object or array that was begun last. */
 IMK_API void imk_result_end(imk_result *result);
 /** A key that is made at run time, which lives as long as the result. */
@@ -57,6 +55,12 @@ IMK_API void imk_result_quantity(imk_result *result, const char *key, double val
 /** An array of numbers. */
 IMK_API void imk_result_numbers(imk_result *result, const char *key, size_t count,
                                 const double *values);
+/** A value that is JSON already, an object: it is shown like the rest. Its keys are copied.
+ *  @return false: it is none; null is added */
+IMK_API bool imk_result_json(imk_result *result, const char *key, const char *text);
+/** The text at a path of the data, "model.gyro.noise.gauss_markov[1].sigma"; NULL: none is there.
+ */
+IMK_API const char *imk_result_find(const imk_result *result, const char *path);
 /** @} */
 
 /** For whom what is added to the display from here on is meant; at first for both. */
@@ -138,15 +142,17 @@ IMK_API const imk_figure *imk_result_figure_get(const imk_result *result, imk_au
  *  @{ */
 /** The data. Numbers are the shortest decimals that read back to the same double. */
 IMK_API imk_status imk_result_to_json(const imk_result *result, char **text, size_t *size);
+/** The data on one line, members in the order of their keys and numbers to 17 digits: equal data
+ *  give equal text. */
+IMK_API imk_status imk_result_to_key(const imk_result *result, char **text, size_t *size);
 /** What is meant for the terminal. @param bold,plain  escape sequences around the heads of tables;
  *  NULL: none */
 IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold, const char *plain,
                                       char **text, size_t *size);
-/** What is meant for the page, self-contained.
- *  @param complete  false: figures are left out because gnuplot is not installed
- *  @param error     also says why a figure could not be drawn */
+/** What is meant for the page, self-contained. @param error  also says why a figure could not be
+ *  drawn */
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
-                                      bool *complete, imk_error *error);
+                                      imk_error *error);
 /** @} */
 
 #ifdef __cplusplus

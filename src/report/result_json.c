@@ -6,6 +6,9 @@
 
 #include "imukit/decimal.h"
 
+#include <stdio.h>
+#include <string.h>
+
 enum { FLAT_MOST = 6, INDENT = 2 };
 
 static void put_text(imki_text *out, const char *text)
@@ -95,16 +98,77 @@ static void put(imki_text *out, const imki_data *data, int depth)
     imki_text_put_char(out, object ? '}' : ']');
 }
 
-imk_status imk_result_to_json(const imk_result *result, char **text, size_t *size)
+/* 0.25, 1e-7, 2.0: a number keeps what tells it from a count. */
+static void put_digits(imki_text *out, double value)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.17g", value);
+    char *exponent = strchr(text, 'e');
+    const char *digits = exponent ? exponent + 1 + strspn(exponent + 1, "+-0") : "";
+    if (!exponent)
+        imki_text_add(out, "%s%s", text, strchr(text, '.') ? "" : ".0");
+    else
+        imki_text_add(out, "%.*se%s%s", (int)(exponent - text), text, exponent[1] == '-' ? "-" : "",
+                      digits);
+}
+
+/* The member whose key comes next behind that of another, or first. */
+static const imki_data *next_by_key(const imki_data *data, const imki_data *last)
+{
+    const imki_data *next = NULL;
+    for (const imki_data *member = data->first; member; member = member->next)
+        if ((!last || strcmp(member->key, last->key) > 0) &&
+            (!next || strcmp(member->key, next->key) < 0))
+            next = member;
+    return next;
+}
+
+static void put_in_order(imki_text *out, const imki_data *data)
+{
+    const bool object = data->kind == IMKI_DATA_OBJECT;
+    if (data->kind == IMKI_DATA_NUMBER)
+        put_digits(out, data->value.number);
+    else if (!is_container(data))
+        put_scalar(out, data);
+    if (!is_container(data))
+        return;
+    imki_text_put_char(out, object ? '{' : '[');
+    const imki_data *first = object ? next_by_key(data, NULL) : data->first;
+    for (const imki_data *member = first; member;
+         member = object ? next_by_key(data, member) : member->next) {
+        imki_text_put(out, member == first ? "" : ",");
+        if (object) {
+            put_text(out, member->key);
+            imki_text_put_char(out, ':');
+        }
+        put_in_order(out, member);
+    }
+    imki_text_put_char(out, object ? '}' : ']');
+}
+
+static imk_status write(const imk_result *result, bool in_order, char **text, size_t *size)
 {
     imki_text out = {.bytes = NULL};
     if (!result || result->arena.failed)
         return IMK_ERROR_MEMORY;
-    put(&out, &result->root, 0);
-    imki_text_put_char(&out, '\n');
+    if (in_order)
+        put_in_order(&out, &result->root);
+    else
+        put(&out, &result->root, 0);
+    imki_text_put(&out, in_order ? "" : "\n");
     char *made = imki_text_take(&out, size);
     if (!made)
         return IMK_ERROR_MEMORY;
     *text = made;
     return IMK_OK;
+}
+
+imk_status imk_result_to_json(const imk_result *result, char **text, size_t *size)
+{
+    return write(result, false, text, size);
+}
+
+imk_status imk_result_to_key(const imk_result *result, char **text, size_t *size)
+{
+    return write(result, true, text, size);
 }

@@ -76,7 +76,7 @@ static void put_display(imk_result *r)
     imk_table *table = imk_result_table(r, 2);
     imk_table_row(table, "tau\t%s", "value");
     imk_table_row(table, "\xC2\xB5s");
-    imk_table_add(table, "%d\t%s", 7, "more\x1b[0m");
+    imk_table_add(table, "%d\t%s", 7, "more\x1b\t[0m");
     imk_table_row(table, "\t\tend");
     (void)imk_result_table(r, 0); /* without rows: nothing */
     imk_figure_builder *figure = imk_result_figure(r, "figure", 1, "Caption");
@@ -93,7 +93,7 @@ static void put_display(imk_result *r)
 
 static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n\n"
                                     "tau  value\n"
-                                    "\xC2\xB5s       7  more?[0m\n"
+                                    "\xC2\xB5s       7  more??[0m\n"
                                     "            end\n";
 
 static void test_json(void **state)
@@ -105,6 +105,33 @@ static void test_json(void **state)
     put_data(r);
     assert_int_equal(imk_result_to_json(r, &text, &size), IMK_OK);
     assert_string_equal(text, expected_json);
+    assert_int_equal(size, strlen(text));
+    free(text);
+    imk_result_free(r);
+}
+
+/* Data that was JSON is data like other, can be looked up, and is told from other data. */
+static void test_read(void **state)
+{
+    (void)state;
+    char *text;
+    size_t size;
+    imk_result *r = imk_result_create(NULL);
+    assert_true(imk_result_json(
+        r, "z",
+        "{\"b\": [{\"c\": \"\\u00B5 \\\"1\\\"\"}, 8, -1.5e-7, 1e20], \"a\": {\"n\": null, "
+        "\"t\": true, \"r\": 0.1}, \"e\": []}"));
+    assert_false(imk_result_json(r, "y", "{\"b\": "));
+    imk_result_number(r, "x", 2);
+    assert_string_equal(imk_result_find(r, "z.b[0].c"), "\xC2\xB5 \"1\"");
+    assert_null(imk_result_find(r, "z.b[1]"));
+    assert_null(imk_result_find(r, "z.b[9]"));
+    assert_null(imk_result_find(r, "z.b[0].c.d"));
+    assert_null(imk_result_find(r, "z.aa.n"));
+    assert_int_equal(imk_result_to_key(r, &text, &size), IMK_OK);
+    assert_string_equal(text, "{\"x\":2.0,\"y\":null,\"z\":{\"a\":{\"n\":null,\"r\":"
+                              "0.10000000000000001,\"t\":true},\"b\":[{\"c\":\"\xC2\xB5 "
+                              "\\\"1\\\"\"},8,-1.4999999999999999e-7,1e20],\"e\":[]}}");
     assert_int_equal(size, strlen(text));
     free(text);
     imk_result_free(r);
@@ -134,11 +161,14 @@ static void test_line(void **state)
     size_t size;
     imk_result *r = imk_result_create(NULL);
     imk_result_line(r, "%s: " IMK_BOLD "good" IMK_PLAIN ", \xC2\xB5\n", "a\x1b[2J\xff");
+    imk_result_gap(r);
+    imk_result_for(r, IMK_FOR_PAGE);
+    imk_result_gap(r);
     assert_int_equal(imk_result_to_text(r, NULL, NULL, &text, &size), IMK_OK);
-    assert_string_equal(text, "a?[2J?: good, \xC2\xB5\n\n");
+    assert_string_equal(text, "a?[2J?: good, \xC2\xB5\n\n\n");
     free(text);
     assert_int_equal(imk_result_to_text(r, "<", ">", &text, &size), IMK_OK);
-    assert_string_equal(text, "a?[2J?: <good>, \xC2\xB5\n\n");
+    assert_string_equal(text, "a?[2J?: <good>, \xC2\xB5\n\n\n");
     free(text);
     imk_result_free(r);
 }
@@ -190,7 +220,6 @@ static void test_page(void **state)
     (void)state;
     char *text;
     size_t size;
-    bool complete;
     imk_error error;
     imk_result *r = imk_result_create(NULL);
     imk_result_title(r, "Title <1>", "%d channels", 3);
@@ -198,12 +227,11 @@ static void test_page(void **state)
     imk_result_gap(r);
     imk_result_for(r, IMK_FOR_TERMINAL);
     imk_result_line(r, "two");
-    assert_int_equal(imk_result_to_page(r, &text, &size, &complete, &error), IMK_OK);
+    assert_int_equal(imk_result_to_page(r, &text, &size, &error), IMK_OK);
     assert_non_null(strstr(text, "<h1>Title &lt;1&gt;</h1>"));
-    assert_non_null(strstr(text, "<p>one</p>"));
+    assert_non_null(strstr(text, "<p>one</p>\n<footer"));
     assert_null(strstr(text, "two"));
     assert_null(strstr(text, "<p></p>"));
-    assert_true(complete);
     free(text);
     imk_result_free(r);
 }
@@ -251,9 +279,11 @@ static void test_readable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_json),   cmocka_unit_test(test_text),     cmocka_unit_test(test_line),
-        cmocka_unit_test(test_figure), cmocka_unit_test(test_key),      cmocka_unit_test(test_page),
-        cmocka_unit_test(test_memory), cmocka_unit_test(test_readable),
+        cmocka_unit_test(test_json),     cmocka_unit_test(test_text),
+        cmocka_unit_test(test_line),     cmocka_unit_test(test_figure),
+        cmocka_unit_test(test_key),      cmocka_unit_test(test_page),
+        cmocka_unit_test(test_read),     cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_readable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

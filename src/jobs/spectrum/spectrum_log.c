@@ -230,8 +230,8 @@ imk_status imk_spectrum_log_run(const imk_record_source *source,
     memset(made, 0, sizeof *made);
     made->settings = *settings;
     *result = made;
-    imk_status status = imk_even_record_load(source, settings->gaps, job, &made->record,
-                                             &made->findings, error);
+    imk_status status =
+        imk_even_record_load(source, settings->gaps, job, &made->record, &made->findings, error);
     made->record.log.allocator = job->allocator;
     return status == IMK_OK ? compute(made, job, error) : status;
 }

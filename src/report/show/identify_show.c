@@ -28,7 +28,7 @@ static void terms_data(const imk_identify_log *log, size_t channel, imk_result *
     imk_result_object(result, "terms");
     for (int term = 0; term < terms; term++) {
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
-        estimate_data(result, imk_result_keep(result, display.key),
+        estimate_data(result, imk_result_key(result, "%s", display.key),
                       &log->result[channel].term[term], other ? display.unit.scale : 1, display.si);
     }
     imk_result_end(result);

@@ -206,7 +206,7 @@ static void population_data(const imk_identify_several *s, size_t channel, imk_r
     for (int term = 0; term < IMK_NOISE_RAMP; term++) {
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
         const imk_device_term *t = &s->term[channel][term];
-        const char *key = imk_result_keep(result, display.key);
+        const char *key = imk_result_key(result, "%s", display.key);
         if (!t->compared) {
             imk_result_null(result, key);
             continue;

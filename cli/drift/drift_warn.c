@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What makes figures of drift doubtful. */
+#include "drift_parts.h"
+
+#include <math.h>
+
+/* A linear figure and one of runs differ when the interval of the runs leaves out this much on
+ * either side of the linear figure: what fourth-order terms explain is left aside. Of a table of
+ * 95 % intervals some leave out the truth: they are widened by 2.5, to 1e-6 each for a figure that
+ * is near normal. */
+static const double tolerance = 0.05, widening = 2.5;
+
+/* Omitted terms of one case in a list. */
+static void warn_of_omitted(const drift_case *one)
+{
+    growing_list list = {0};
+    for (size_t i = 0; i < one->analysis->omitted_count; i++)
+        list_add_item(&list, "%s", one->analysis->omitted[i]);
+    if (list.size > 0)
+        command_warn("omitted",
+                     "%s: left out by the linear theory: %.239s; --monte-carlo has all that needs "
+                     "no temperature",
+                     one->label, list.text);
+    list_free(&list);
+}
+
+/* The first row of the table that is worth no more than this. */
+static const char *first_time(const drift_result *r, const drift_case *one, drift_validity validity,
+                              char text[DRIFT_TIME_TEXT])
+{
+    const drift_scene *scene = r->scene;
+    for (size_t k = 0; k < scene->row_count; k++)
+        if (drift_validity_of(&one->figures[scene->row[k]]) == validity)
+            return drift_time(scene->time[scene->row[k]], DRIFT_LINEAR, text);
+    return NULL;
+}
+
+static void warn_of_range(const drift_result *r, const drift_case *one)
+{
+    char text[DRIFT_TIME_TEXT];
+    if (first_time(r, one, DRIFT_LOST, text))
+        command_warn("no_position",
+                     "%s: at %s the error is beyond a tenth of the Earth's radius: no longer a "
+                     "position",
+                     one->label, text);
+    else if (first_time(r, one, DRIFT_ROUGH, text))
+        command_warn("nonlinear",
+                     "%s: at %s attitude errors exceed 0.1 rad: linear figures are rough from "
+                     "there (~)%s",
+                     one->label, text, r->found ? "" : "; --monte-carlo 1000 shows the whole");
+}
+
+/* First row where an interval of the runs leaves the linear figure out; -1: none. */
+static int disagreement(const drift_result *r, imk_drift_wish *wish)
+{
+    static const imk_drift_wish looked_at[] = {IMK_WISH_CEP, IMK_WISH_DRMS, IMK_WISH_VELOCITY,
+                                               IMK_WISH_TILT, IMK_WISH_HEADING};
+    for (size_t k = 0; k < r->scene->row_count; k++) {
+        const imk_drift_figures *f = &drift_last_case(r)->figures[r->scene->row[k]];
+        for (size_t c = 0; c < sizeof looked_at / sizeof looked_at[0]; c++) {
+            *wish = looked_at[c];
+            const double linear = imk_drift_wished(f, *wish),
+                         found = imk_drift_wished(&r->found[k], *wish);
+            const double low = imk_drift_wished(&r->low[k], *wish),
+                         high = imk_drift_wished(&r->high[k], *wish);
+            if (found * pow(low / found, widening) > (1 + tolerance) * linear ||
+                found * pow(high / found, widening) < (1 - tolerance) * linear)
+                return (int)k;
+        }
+    }
+    return -1;
+}
+
+static void warn_of_runs(const drift_result *r)
+{
+    imk_drift_wish wish;
+    char text[DRIFT_TIME_TEXT];
+    const size_t last = r->scene->row_count - 1;
+    if (r->used[last] < r->run_count)
+        command_warn("lost_runs",
+                     "%llu of %llu runs left the Earth or found no attitude; the figures are of "
+                     "the others",
+                     (unsigned long long)(r->run_count - r->used[last]),
+                     (unsigned long long)r->run_count);
+    const int row = disagreement(r, &wish);
+    if (row < 0)
+        return;
+    command_warn("disagreement",
+                 "from %s on the runs differ from the covariance by more than %g %% (%s): the "
+                 "runs are right, the linear theory leaves something out",
+                 drift_time(r->scene->time[r->scene->row[row]], DRIFT_LINEAR, text),
+                 100 * tolerance, drift_wish_name(wish));
+}
+
+void drift_warn(const drift_result *r)
+{
+    for (size_t c = 0; c < r->case_count; c++) {
+        if (c == 0 || r->cases[c].model != r->cases[c - 1].model)
+            warn_of_omitted(&r->cases[c]);
+        warn_of_range(r, &r->cases[c]);
+    }
+    if (r->found)
+        warn_of_runs(r);
+}

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* One run of a model into a record: its columns, and its rows as they are made. */
+#include "imukit/simulate_log.h"
+
+#include "jobs/arena_internal.h"
+#include "jobs/job_internal.h"
+
+#include <math.h>
+
+static const uint32_t settings_cookie = 0x53494D31; /* "SIM1" */
+
+imk_simulate_log_settings imk_simulate_log_default(void)
+{
+    return (imk_simulate_log_settings){.cookie = settings_cookie,
+                                       .simulation = imk_simulation_default()};
+}
+
+void imk_triad_axes(const imk_triad *triad, int axis[IMK_AXES_MAX])
+{
+    bool named = true, taken[3] = {false};
+    for (int i = 0; i < triad->axis_count; i++) {
+        axis[i] = -1;
+        for (int k = 0; k < 3; k++)
+            if (triad->direction[i][k] >= 1)
+                axis[i] = k;
+        named = named && axis[i] >= 0 && !taken[axis[i]];
+        if (named)
+            taken[axis[i]] = true;
+    }
+    for (int i = 0; i < triad->axis_count && !named; i++)
+        axis[i] = i;
+}
+
+/* ---- columns ---- */
+
+enum { COLUMNS_MAX = 2 + 2 * IMK_AXES_MAX }; /* time, channels, temperature */
+
+typedef struct layout {
+    size_t count, channels;
+    imk_log_column column[COLUMNS_MAX];
+    double factor[COLUMNS_MAX]; /* from samples to what is written: dt of increments */
+} layout;
+
+static void describe_triad(const imk_triad *triad, const char *name, imk_quantity quantity,
+                           imk_unit unit, double interval, layout *l)
+{
+    int axes[IMK_AXES_MAX];
+    imk_triad_axes(triad, axes);
+    for (int i = 0; triad->present && i < triad->axis_count; i++) {
+        imk_log_column *column = &l->column[l->count];
+        *column = (imk_log_column){.quantity = quantity, .axis = axes[i], .unit = unit};
+        imk_axis_name(name, axes[i], column->name);
+        l->factor[l->count] = 1;
+        if (triad->sensitivity.value[i] != 0) { /* counts are of the rate */
+            column->unit = imk_unit_of("count");
+        } else if (interval > 0) {
+            column->increment = true;
+            l->factor[l->count] = interval;
+        }
+        l->count++;
+        l->channels++;
+    }
+}
+
+static layout make_layout(const imk_model *model, const imk_simulate_log_settings *s)
+{
+    const bool steps = s->increments;
+    const double interval = steps ? 1 / s->simulation.rate : 0;
+    const imk_unit gyro =
+        s->gyro_unit.scale > 0 ? s->gyro_unit : imk_unit_of(steps ? "deg" : "deg/s");
+    const imk_unit accel =
+        s->accel_unit.scale > 0 ? s->accel_unit : imk_unit_of(steps ? "m/s" : "m/s^2");
+    layout l = {.count = 1, .factor = {1}};
+    l.column[0] = (imk_log_column){
+        .name = "time", .quantity = IMK_QUANTITY_TIME, .axis = -1, .unit = imk_unit_of("s")};
+    describe_triad(&model->gyro, steps ? "dtheta" : "gyro", IMK_QUANTITY_ANGULAR_RATE, gyro,
+                   interval, &l);
+    describe_triad(&model->accel, steps ? "dvel" : "accel", IMK_QUANTITY_SPECIFIC_FORCE, accel,
+                   interval, &l);
+    if (s->simulation.temperature) {
+        l.factor[l.count] = 1;
+        l.column[l.count++] = (imk_log_column){.name = "temperature",
+                                               .quantity = IMK_QUANTITY_TEMPERATURE,
+                                               .axis = -1,
+                                               .unit = imk_unit_of("degC")};
+    }
+    return l;
+}
+
+/* Decimals that hold every multiple of 1/rate after a start, up to nine. */
+static int time_decimals(double rate, double start)
+{
+    double scale = 1;
+    for (int decimals = 0; decimals < 9; decimals++, scale *= 10)
+        if (scale / rate == floor(scale / rate) && scale * start == floor(scale * start))
+            return decimals;
+    return 9;
+}
+
+/* ---- rows ---- */
+
+/* Rows made and written at a time: long enough to share among threads, short enough for the
+ * cache of a small machine. */
+enum { BLOCK_ROWS = 65536 };
+
+typedef struct recording {
+    const imk_simulate_log_settings *settings;
+    layout layout;
+    imk_simulator *simulator;
+    bool drops;
+    double *column[COLUMNS_MAX]; /* BLOCK_ROWS each */
+} recording;
+
+/* Take out the rows that are lost. @return how many stay */
+static size_t drop_rows(recording *r, uint64_t first, size_t count)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (imk_simulator_dropped(r->simulator, first + k))
+            continue;
+        for (size_t c = 0; c < r->layout.count; c++)
+            r->column[c][kept] = r->column[c][k];
+        kept++;
+    }
+    return kept;
+}
+
+/* @return how many rows there are */
+static size_t make_rows(recording *r, uint64_t first, size_t count, const imk_executor *executor)
+{
+    const imk_simulate_log_settings *s = r->settings;
+    const layout *l = &r->layout;
+    double *time = r->column[0];
+    for (size_t k = 0; k < count; k++)
+        time[k] = (double)(first + k) / s->simulation.rate;
+    if (s->simulation.temperature)
+        imk_temperature_at(s->simulation.temperature, count, time, r->column[1 + l->channels],
+                           NULL);
+    for (size_t k = 0; k < count && s->start != 0; k++)
+        time[k] += s->start;
+    imk_simulator_next(r->simulator, count, r->column + 1, executor);
+    for (size_t c = 1; c <= l->channels; c++)
+        if (l->factor[c] != 1)
+            for (size_t k = 0; k < count; k++)
+                r->column[c][k] *= l->factor[c];
+    return r->drops ? drop_rows(r, first, count) : count;
+}
+
+/* Vibration makes rows so slow to compute that fewer at a time keep the progress going. */
+static size_t rows_at_once(const imk_simulation *simulation)
+{
+    const imk_trajectory *trajectory = simulation->motion.trajectory;
+    size_t parts = trajectory ? imk_trajectory_substeps(trajectory, 1 / simulation->rate) : 1;
+    return parts < BLOCK_ROWS / 1024 ? BLOCK_ROWS / parts : 1024;
+}
+
+static imk_status stream(recording *r, const imk_record_sink *sink, const char *stage,
+                         const imk_job *job, imk_error *error)
+{
+    const imk_simulate_log_settings *s = r->settings;
+    const size_t step = rows_at_once(&s->simulation);
+    int decimals[COLUMNS_MAX];
+    for (size_t c = 0; c < r->layout.count; c++)
+        decimals[c] = c == 0 ? time_decimals(s->simulation.rate, s->start) : -1;
+    imk_status status = sink->begin(sink->context, r->layout.count, r->layout.column, decimals,
+                                    r->drops ? 0 : s->rows, error);
+    for (uint64_t first = 0; first < s->rows && status == IMK_OK; first += step) {
+        const size_t count = s->rows - first < step ? (size_t)(s->rows - first) : step;
+        const size_t made = make_rows(r, first, count, job->executor);
+        status = sink->write(sink->context, made, (const double *const *)r->column, job->executor,
+                             error);
+        if (status == IMK_OK)
+            status = imki_job_progress(job, stage, "rows", first + count, s->rows, error);
+    }
+    return status;
+}
+
+imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_settings *settings,
+                                const imk_record_sink *sink, const char *stage, const imk_job *job,
+                                imk_error *error)
+{
+    const imk_job alone = {.memory = 0};
+    job = job ? job : &alone;
+    if (settings->cookie != settings_cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
+                             "imk_simulate_log_default()");
+    imki_arena arena = {.allocator = job->allocator};
+    recording r = {.settings = settings,
+                   .layout = make_layout(model, settings),
+                   .drops = model->timing.drops.value > 0};
+    const size_t size = imk_simulator_size(model, &settings->simulation);
+    void *memory = imki_arena_take(&arena, size > 256 ? size : 256); /* a cache line begins there */
+    double *block = imki_arena_take(&arena, r.layout.count * BLOCK_ROWS * sizeof *block);
+    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    for (size_t c = 0; block && c < r.layout.count; c++)
+        r.column[c] = block + c * BLOCK_ROWS;
+    if (memory && block)
+        status =
+            imk_simulator_start(memory, size, model, &settings->simulation, &r.simulator, error);
+    if (status == IMK_OK)
+        status = stream(&r, sink, stage, job, error);
+    imki_arena_free(&arena);
+    return status;
+}
