@@ -35,14 +35,14 @@ typedef struct identification {
 int identify_run(const identify_options *o, const char *path, const imk_executor *executor,
                  imk_identify_log **log);
 
-/* identify_model.c */
+/* identify_write.c */
 /* The last part of a path. */
 const char *identify_base_name(const char *path);
 /* With --twin simulate the model over the length of the log; fill i->model, print what --into
  * changes, and write it to -o. @return -1 or the exit code */
 int identify_make_model(identification *i, const imk_executor *executor);
 
-/* identify_several.c: several logs, from reading them to the result. @return the exit code */
+/* identify_compare.c: several logs, from reading them to the result. @return the exit code */
 int identify_several(identification *joint, size_t count, const char *const *paths,
                      const imk_executor *executor);
 

@@ -9,18 +9,11 @@
 #include "imukit/log.h"
 
 /* The library's names under those that verbs use. */
-enum {
-    GAPS_REFUSE = IMK_GAPS_REFUSE,
-    GAPS_BRIDGE = IMK_GAPS_BRIDGE,
-    GAPS_LONGEST = IMK_GAPS_LONGEST,
-    GAPS_KEEP = IMK_GAPS_KEEP
-};
+enum { GAPS_KEEP = IMK_GAPS_KEEP };
 typedef imk_even_record log_channels;
 #define log_channel_column imk_even_record_column
 #define log_channel_data imk_even_record_data
-#define log_channel_finite imk_even_record_finite
 #define log_channels_free imk_even_record_free
-#define log_choose_channels imk_even_record_choose
 #define log_forget_faults imk_log_forget_faults
 
 /* What the options of log_input_options fill. */

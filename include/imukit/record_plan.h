@@ -74,7 +74,7 @@ typedef struct imk_record_plan {
 /** Plan the record of a model's noise.
  *  @param job     NULL: as if all zeros
  *  @param result  imk_record_plan_free() it, also on failure, where it holds the findings; NULL
- * when even its memory failed
+ *                 when even its memory failed
  *  @return as imk_identify_duration(); IMK_ERROR_MEMORY; and with a finding IMK_ERROR_RANGE (the
  *          length), _EMPTY (no noise), _SYNTAX and _NAME_UNKNOWN (a requirement) */
 IMK_API imk_status imk_record_plan_run(const imk_model *model,

@@ -7,7 +7,7 @@
 
 #include "report/growing_text_internal.h"
 
-/* ---- verdicts: identify_verdict.c ------------------------------------------------------------ */
+/* ---- verdicts: verdict_show.c ---------------------------------------------------------------- */
 
 void imki_verdict_add(imk_verdict *verdict, imk_finding_level level, const char *code,
                       const char *format, ...) __attribute__((format(printf, 4, 5)));
