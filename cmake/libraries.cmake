@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-# libimukit (everything left of io: libm only) and libimukit-io (files, threads, reports).
+# libimukit (the core: libm only), libimukit-physics (the instruments, on it) and libimukit-io (files,
+# threads, reports).
 #
 # Each is compiled once, as position-independent objects, and made into an archive and a shared
 # library.
 
 file(GLOB_RECURSE core_sources CONFIGURE_DEPENDS src/base/*.c src/model/*.c src/noise/*.c
-     src/motion/*.c src/simulate/*.c src/identify/*.c src/physics/*.c src/compensate/*.c
-     src/calibrate/*.c src/navigate/*.c)
+     src/motion/*.c src/simulate/*.c src/identify/*.c src/compensate/*.c src/calibrate/*.c
+     src/navigate/*.c)
+file(GLOB_RECURSE physics_sources CONFIGURE_DEPENDS src/physics/*.c)
 file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/jobs/*.c src/report/*.c src/io/*.c)
 set(IMUKIT_FILE_FILTER "" CACHE STRING "Regular expression: build only files of such names")
 list(FILTER core_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
+list(FILTER physics_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
+if(NOT physics_sources) # a library has a file
+  set(physics_sources src/physics/draws.c)
+endif()
 list(FILTER io_sources INCLUDE REGEX "/(${IMUKIT_FILE_FILTER})[^/]*$")
 
 # One file per instruction set, chosen at run time; the rest is compiled for the base machine.
@@ -45,9 +51,9 @@ set(imukit_soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 # makes NAME (archive) and, when asked for, NAME-shared. OURS are libraries made here before: the
 # archive needs theirs, the shared library their shared one.
 #
-# A shared library shows its public functions only, yet io reads the core's internal tables (of the
-# model's fields, of units). So libimukit-io.so takes the few objects that hold those from the
-# archive and keeps them to itself; the core has no writable data, so two copies cannot disagree.
+# A shared library shows its public functions only, yet the others use internals of the core (tables
+# of the model's fields and of units, linear systems). So they take the few objects that hold those
+# from the archive and keep them to themselves; the core has no writable data, so two copies cannot disagree.
 function(imukit_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;OURS;PUBLIC;PRIVATE")
   add_library(${name}-objects OBJECT ${arg_SOURCES})
@@ -88,6 +94,7 @@ function(imukit_library name)
 endfunction()
 
 imukit_library(imukit SOURCES ${core_sources} PUBLIC m)
+imukit_library(imukit-physics SOURCES ${physics_sources} OURS imukit PUBLIC m)
 
 if(IMUKIT_IO)
   find_package(PkgConfig REQUIRED)
@@ -98,7 +105,7 @@ if(IMUKIT_IO)
   pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial>=1.10.2 hdf5>=1.10.2)
   find_package(ZLIB REQUIRED)
   find_package(Threads REQUIRED)
-  imukit_library(imukit-io SOURCES ${io_sources} OURS imukit
+  imukit_library(imukit-io SOURCES ${io_sources} OURS imukit-physics imukit
                  PRIVATE PkgConfig::yaml PkgConfig::zstd PkgConfig::expat PkgConfig::hdf5
                          ZLIB::ZLIB Threads::Threads)
 endif()
@@ -106,8 +113,10 @@ endif()
 # The names users of the installed package see, valid within this tree as well.
 if(IMUKIT_SHARED)
   add_library(imukit::imukit ALIAS imukit-shared)
+  add_library(imukit::imukit_physics ALIAS imukit-physics-shared)
 else()
   add_library(imukit::imukit ALIAS imukit)
+  add_library(imukit::imukit_physics ALIAS imukit-physics)
 endif()
 if(IMUKIT_IO AND IMUKIT_SHARED)
   add_library(imukit::imukit_io ALIAS imukit-io-shared)

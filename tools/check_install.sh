@@ -14,7 +14,7 @@ mkdir -p "$out"
 cmake --install "$build" --prefix "$prefix" >/dev/null
 
 library=$(dirname "$(find "$prefix" -name 'libimukit.so')")
-for name in imukit imukit-io; do
+for name in imukit imukit-physics imukit-io; do
     objdump -p "$library/lib$name.so" | grep -q "SONAME *lib$name.so.0.1$" ||
         { echo "lib$name.so: the SONAME is not lib$name.so.0.1"; exit 1; }
 done
@@ -24,9 +24,12 @@ log=$out/log.csv
 gcc -std=c17 examples/simulate_model.c $(pkg-config --cflags --libs imukit-io) \
     -Wl,-rpath,"$library" -lm -o "$out/simulate_shared"
 gcc -std=c17 examples/read_log.c $(pkg-config --cflags imukit-io) -Wl,-Bstatic \
-    -L"$library" -limukit-io -limukit -Wl,-Bdynamic $(pkg-config --libs --static imukit-io) \
+    -L"$library" -limukit-io -limukit-physics -limukit -Wl,-Bdynamic $(pkg-config --libs --static imukit-io) \
     -o "$out/read_static"
+gcc -std=c17 tests/identity/physics_hash.c $(pkg-config --cflags --libs imukit-physics) \
+    -Wl,-rpath,"$library" -lm -o "$out/physics_shared"
 "$out/simulate_shared" tactical "$log"
+"$out/physics_shared" >/dev/null
 "$out/read_static" "$log"
 if objdump -p "$out/read_static" | grep 'NEEDED.*imukit'; then
     echo "the program linked with the archives asks for the shared library"

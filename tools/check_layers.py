@@ -1,19 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A module includes only headers from layers to its left (CONTRIBUTING.md):
+"""How the files stand to each other (CONTRIBUTING.md, "Where things go").
 
-    base < model < {noise, motion} < {simulate, identify, physics, compensate}
-         < {calibrate, navigate} < io < report < cli
+Layers: a module includes only headers from layers to its left; within braces nothing includes its
+neighbour. The command includes public headers and its own.
 
-Within braces nothing includes its neighbour. The command includes public headers only.
+    base < model < {noise, motion} < {simulate, identify, compensate}
+         < {calibrate, navigate, physics} < jobs < io < report < cli
+
+Rooms: a folder holds at most 35 files.
+
+Loops: where one file uses what another defines, and that one, perhaps through others, what the
+first defines, there are at most three of them, of one folder. Who uses what is read from the
+compiled objects.
 """
+import collections
+import os
 import pathlib
 import re
+import subprocess
 import sys
 
-LAYERS = [["base"], ["model"], ["noise", "motion"],
-          ["simulate", "identify", "physics", "compensate"], ["calibrate", "navigate"],
-          ["io"], ["report"], ["cli"]]
+LAYERS = [["base"], ["model"], ["noise", "motion"], ["simulate", "identify", "compensate"],
+          ["calibrate", "navigate", "physics"], ["jobs"], ["io"], ["report"], ["cli"]]
 RANK = {module: rank for rank, modules in enumerate(LAYERS) for module in modules}
 
 # Module of each public header. A new one must be added here.
@@ -26,84 +35,183 @@ PUBLIC = {
     "simulate": "simulate",
     "identify": "allan allan_fit allan_gaps allan_stream identify identify_joint identify_plan "
                 "identify_record record_screen spectrum",
-    "physics": "fibre_optic free_gyro instrument mems_accelerometer pendulous_servo rate_gyro "
-               "rate_integrating_gyro ring_laser shell_gyro spinning_mass suspended_rotor "
-               "tuned_gyro tuning_fork vibrating_beam",
     "compensate": "compensate firmware",
-    "calibrate": "calibration calibration_plan evaluate ferraris laboratory procedure "
-                 "reference_alignment repeatability static_detection test_record thermal",
+    "calibrate": "calibration calibration_plan evaluate ferraris procedure reference_alignment "
+                 "repeatability static_detection test_record thermal",
     "navigate": "alignment drift navigate zero_velocity",
-    "io": "campaign design_file firmware_file io log memory_limit model_file motion_file output_file "
-          "parameter_file thread_pool",
+    "physics": "fibre_optic free_gyro instrument laboratory mems_accelerometer pendulous_servo "
+               "rate_gyro rate_integrating_gyro ring_laser shell_gyro spinning_mass "
+               "suspended_rotor tuned_gyro tuning_fork vibrating_beam",
+    "io": "campaign design_file firmware_file io log memory_limit model_file motion_file "
+          "output_file parameter_file thread_pool",
     "report": "report",
 }
-# Headers that gather others: imukit.h the core, for users only; io.h what is right of it.
-GATHERING = {"imukit", "io"}
 MODULE_OF = {name: module for module, names in PUBLIC.items() for name in names.split()}
+# Headers that gather others, for users: each public header is in one of them.
+GATHERING = {"imukit", "physics", "io"}
+
+ROOM = 35
+LOOP = 3
+TREES = ("src", "cli", "tests")
+OBJECTS = ["imukit-objects", "imukit-physics-objects", "imukit-io-objects",
+           "imukit-command-objects"]
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = ROOT / os.environ.get("BUILD", "build")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 
-def module_included(file, target):
-    """Module a header belongs to, or None for one in the includer's own folder."""
-    if target.startswith("imukit/"):
-        name = target[len("imukit/"):].removesuffix(".h")
-        return name if name in GATHERING and name != "io" else MODULE_OF.get(name, "unknown")
-    folder = target.split("/")[0] if "/" in target else None
-    if folder is None:
-        return None if (file.parent / target).exists() else "unknown"
-    return folder if folder in RANK else "unknown"
+def code_files():
+    return [file for tree in ("src", "cli") for file in sorted((ROOT / tree).rglob("*.[ch]"))]
 
 
-def complaint(module, target, included):
-    if included == "unknown":
-        return f"{target} belongs to no layer (tools/check_layers.py lists the public headers)"
-    if module == "cli" and included is not None and not target.startswith("imukit/"):
-        return f"the command includes {target}, which is not public"
-    if included is None or included == module:
-        return None
-    if included in GATHERING - {"io"}:
-        return None if module == "cli" else f"{target} includes the whole core"
-    if RANK[included] < RANK[module]:
-        return None
-    return f"{module} includes {target} of {included}, which is not to its left"
+def includes(file):
+    """Lines and targets of the #include "…" of a file."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    return [(number, match[1]) for number, line in enumerate(lines, 1)
+            if (match := INCLUDE.match(line))]
 
 
-def check(file, module):
-    found = []
-    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
-        match = INCLUDE.match(line)
-        if not match:
+# ---- layers --------------------------------------------------------------------------------------
+
+def module_of(file):
+    """The module a file belongs to."""
+    parts = file.relative_to(ROOT).parts
+    if parts[0] == "include":
+        return MODULE_OF.get(file.stem)
+    return parts[1] if parts[0] == "src" else parts[0]
+
+
+def included_file(file, target):
+    """Where a header lies: public, beside its includer, or below src (cli, for the command)."""
+    own = ROOT / ("cli" if module_of(file) == "cli" else "src")
+    places = (ROOT / "include" / target, file.parent / target, own / target)
+    return next((place.resolve() for place in places if place.exists()), None)
+
+
+def wrong_include(file, target):
+    """What is wrong with an #include, or None."""
+    module, header = module_of(file), included_file(file, target)
+    if header is None:
+        return "no such header"
+    if module == "cli" and header.relative_to(ROOT).parts[0] == "src":
+        return "cli includes public headers and its own"
+    if header.parent.name == "imukit" and header.stem in GATHERING - {"io"}:
+        return None if module == "cli" else "it gathers headers for users"
+    included = module_of(header)
+    if included is None:
+        return "tools/check_layers.py does not list it"
+    if included != module and RANK[included] >= RANK[module]:
+        return f"{included} does not stand left of {module}"
+    return None
+
+
+def check_layers():
+    headers = sorted((ROOT / "include/imukit").glob("*.h"))
+    gathered = {pathlib.Path(target).stem for header in headers if header.stem in GATHERING
+                for _, target in includes(header)}
+    for header in headers:
+        if header.stem not in MODULE_OF.keys() | GATHERING:
+            yield f"{header.relative_to(ROOT)}: add it to the list in tools/check_layers.py"
+        if header.stem not in gathered | GATHERING:
+            yield f"{header.relative_to(ROOT)} is in none of {', '.join(sorted(GATHERING))}"
+    for file in code_files() + [header for header in headers if header.stem not in GATHERING]:
+        for number, target in includes(file):
+            if wrong := wrong_include(file, target):
+                yield f"{file.relative_to(ROOT)}:{number}: includes {target}: {wrong}"
+
+
+# ---- rooms ---------------------------------------------------------------------------------------
+
+def rooms():
+    """How many files each folder holds."""
+    return collections.Counter(file.parent.relative_to(ROOT).as_posix() for tree in TREES
+                               for file in (ROOT / tree).rglob("*.[ch]"))
+
+
+def check_rooms():
+    for folder, count in sorted(rooms().items()):
+        if count > ROOM:
+            yield f"{folder} holds {count} files, more than {ROOM}: divide it by topic"
+
+
+# ---- loops ---------------------------------------------------------------------------------------
+
+def symbols():
+    """For each source file: the names its object defines, and those it uses."""
+    for command in (["cmake", "-S", ROOT, "-B", BUILD],
+                    ["cmake", "--build", BUILD, "-j", str(os.cpu_count()), "--target", *OBJECTS]):
+        if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode != 0:
+            sys.exit("it does not compile")
+    defined, used = {}, {}
+    sources = [file.relative_to(ROOT).as_posix() for file in code_files()
+               if file.suffix == ".c"]
+    objects = [(source, BUILD / f"CMakeFiles/{target}.dir/{source}.o")
+               for source in sources for target in OBJECTS]
+    for source, path in objects:
+        if not path.exists():  # in another target, or not for this machine
             continue
-        included = module_included(file, match[1])
-        text = complaint(module, match[1], included)
-        if text:
-            found.append(f"{file.relative_to(ROOT)}:{number}: {text}")
+        listing = subprocess.run(["nm", "-P", path], capture_output=True, text=True, check=True)
+        names = [line.split() for line in listing.stdout.splitlines()]
+        defined[source] = {name for name, kind, *_ in names if kind in "TDRBV"}
+        used[source] = {name for name, kind, *_ in names if kind == "U"}
+    return defined, used
+
+
+def links(defined, used):
+    """For each file, the files it uses with the names that tie it to them."""
+    home = {name: file for file, names in defined.items() for name in names}
+    found = {file: collections.defaultdict(list) for file in defined}
+    for file, names in used.items():
+        for name in sorted(names & home.keys()):
+            found[file][home[name]].append(name)
     return found
 
 
+def reachable(graph, start):
+    seen, left = set(), [start]
+    while left:
+        for file in graph[left.pop()]:
+            if file not in seen:
+                seen.add(file)
+                left.append(file)
+    return seen
+
+
+def find_loops(graph):
+    """Sets of files each of which leads to all the others."""
+    reach = {file: reachable(graph, file) for file in graph}
+    loops = {frozenset(other for other in reach[file] if file in reach[other])
+             for file in graph if file in reach[file]}
+    return sorted(map(sorted, loops))
+
+
+def is_wrong(loop):
+    return len(loop) > LOOP or len({pathlib.PurePath(file).parent for file in loop}) > 1
+
+
+def describe(loop, graph):
+    yield f"a loop of {len(loop)} files (at most {LOOP}, of one folder):"
+    for file in loop:
+        for other in sorted(graph[file].keys() & set(loop)):
+            yield f"    {file} uses {', '.join(graph[file][other])} of {other}"
+
+
+# ---- all -----------------------------------------------------------------------------------------
+
 def main():
-    files = [(path, path.relative_to(ROOT / "src").parts[0])
-             for path in sorted((ROOT / "src").rglob("*.[ch]"))]
-    files += [(path, "cli") for path in sorted((ROOT / "cli").rglob("*.[ch]"))]
-    files += [(path, MODULE_OF.get(path.stem, "base"))
-              for path in sorted((ROOT / "include/imukit").glob("*.h"))
-              if path.stem not in GATHERING]
-    found = [line for path, module in files for line in check(path, module)]
-    found += [f"include/imukit/{path.name}: add it to the list in tools/check_layers.py"
-              for path in sorted((ROOT / "include/imukit").glob("*.h"))
-              if path.stem not in MODULE_OF and path.stem not in GATHERING]
-    # imukit.h gathers the core, io.h the rest: nothing public may be missing from both.
-    gathered = {match[1] for name in GATHERING
-                for match in re.finditer(r'#include "imukit/(\w+)\.h"',
-                                         (ROOT / f"include/imukit/{name}.h").read_text())}
-    found += [f"include/imukit/{name}.h is in neither imukit.h nor io.h"
-              for name in MODULE_OF
-              if (ROOT / f"include/imukit/{name}.h").exists()
-              and name not in gathered | GATHERING]
-    print("\n".join(found) if found else f"{len(files)} files")
-    return 1 if found else 0
+    failed = False
+    for line in [*check_layers(), *check_rooms()]:
+        print(line, flush=True)
+        failed = True
+    graph = links(*symbols())
+    loops = find_loops(graph)
+    for loop in loops:
+        if is_wrong(loop):
+            print("\n".join(describe(loop, graph)))
+            failed = True
+    print(f"{len(graph)} files, {len(rooms())} folders, {len(loops)} loops")
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# libimukit compiles unchanged, without a warning, for a Cortex-M4F and for WebAssembly. On the
-# Cortex its objects hold no writable data, and they link with newlib and libm alone. WebAssembly is
-# run by Node: the examples that need nothing else, and the two programs that hash what must be the
-# same bits everywhere, say there what they say here. The stack is what wasm-ld makes it, 64 KiB; it
-# stands below the data, so that to overflow it is to stop.
+# libimukit and libimukit-physics compile unchanged, without a warning, for a Cortex-M4F and for
+# WebAssembly. On the Cortex their objects hold no writable data, and link with newlib and libm alone.
+# WebAssembly is run by Node: the examples that need nothing else, and the two programs that hash
+# what must be the same bits everywhere, say there what they say here. The stack is what wasm-ld makes
+# it, 64 KiB; it stands below the data, so that to overflow it is to stop.
 set -eu
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
@@ -25,15 +25,15 @@ arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -st
     examples/identify_record.c build-check/cortex-m4/*.o -lm -o "$out/identify_record.elf" \
     2>"$out/link.log" || { grep -v 'is not implemented' "$out/link.log"; exit 1; }
 
-{ cmake -S . -B "$build" && cmake --build "$build" -j "$(nproc)" --target imukit; } \
+{ cmake -S . -B "$build" && cmake --build "$build" -j "$(nproc)" --target imukit-physics; } \
     >"$out/build.log" 2>&1 || { cat "$out/build.log"; exit 1; }
 # What includes a header of imukit-io needs more.
-io='campaign|design_file|firmware_file|io|log|model_file|motion_file|output_file|parameter_file'
+io='campaign|design_file|figure_file|firmware_file|io|log|model_file|motion_file|output_file|parameter_file'
 programs=$(grep -LE "\"imukit/($io|report|thread_pool)\.h\"" examples/*.c)
 run=0
 for source in $programs tests/identity/simulate_hash.c tests/identity/physics_hash.c; do
     name=$(basename "$source" .c)
-    gcc -std=c17 -O2 -Iinclude -ffp-contract=off "$source" "$build/libimukit.a" -lm -o "$out/$name"
+    gcc -std=c17 -O2 -Iinclude -ffp-contract=off "$source" "$build/libimukit-physics.a" "$build/libimukit.a" -lm -o "$out/$name"
     clang --target=wasm32-wasi -std=c17 -O2 -Iinclude -ffp-contract=off -Wl,--stack-first \
         "$source" "$out"/wasm32/*.o -lm -o "$out/$name.wasm"
     IMUKIT_ISA=scalar "$out/$name" >"$out/$name.expected"

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The deepest path of calls below any public function of libimukit takes at most 48 KiB of stack.
+"""The deepest path of calls below any public function of libimukit and libimukit-physics takes at
+most 48 KiB of stack.
 
     check_stack.py                  the objects of tools/compile_cortex.sh
     check_stack.py DIR [OBJDUMP]    other objects, compiled with -ffunction-sections,

@@ -1,14 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The names of the libraries: what libimukit asks for (libm and a few of string.h, nothing that
-# allocates, prints or opens), what it keeps (no writable data), what it gives (every function its
-# headers declare, and no other).
+# The names of the libraries: what libimukit and libimukit-physics ask for (libm and a few of string.h,
+# nothing that allocates, prints or opens), what they keep (no writable data), what each library
+# gives (every function its headers declare, and no other).
 set -u
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 cmake -S . -B "$build" >/dev/null &&
-    cmake --build "$build" -j "$(nproc)" \
-        --target imukit imukit-io imukit-shared imukit-io-shared >/dev/null || exit 1
+    cmake --build "$build" -j "$(nproc)" --target imukit-physics imukit-io-shared >/dev/null || exit 1
 status=0
 complain() { echo "$*"; status=1; }
 
@@ -17,13 +16,18 @@ allowed='mem(cpy|move|set|cmp|chr)|str(len|nlen|n?cpy|n?cmp|r?chr|str|c?spn|pbrk
 allowed="$allowed|__cpu_model|__cpu_indicator_init|_GLOBAL_OFFSET_TABLE_"
 libm=$(nm -D --defined-only "$(gcc -print-file-name=libm.so.6)" | sed 's/.* //; s/@.*//' | sort -u)
 
-defined=$(nm --defined-only "$build/libimukit.a" 2>/dev/null | awk 'NF == 3 { print $3 }' | sort -u)
-foreign=$(nm --undefined-only "$build/libimukit.a" 2>/dev/null | awk '$1 == "U" { print $2 }' |
-    sort -u | comm -23 - <(echo "$defined") | comm -23 - <(echo "$libm") |
-    grep -vxE "$allowed")
-for name in $foreign; do
-    complain "libimukit asks for $name:" $(nm -A --undefined-only "$build/libimukit.a" 2>/dev/null |
+core=("$build/libimukit.a" "$build/libimukit-physics.a")
+names() { nm -A "$@" "${core[@]}" 2>/dev/null; } # of symbols, each behind its file
+for name in $(names --undefined-only | awk 'NF > 1 { print $NF }' | sort -u |
+    comm -23 - <(names --defined-only | awk '{ print $NF }' | sort -u) | comm -23 - <(echo "$libm") |
+    grep -vxE "$allowed"); do
+    complain "the core asks for $name:" $(names --undefined-only |
         awk -v name="$name" '$NF == name { split($1, part, ":"); print part[2] }' | sort -u)
+done
+for name in $(nm --undefined-only "$build/libimukit.a" 2>/dev/null | awk '{ print $2 }' | sort -u |
+    comm -12 - <(nm --defined-only "$build/libimukit-physics.a" 2>/dev/null | awk '{ print $3 }' |
+        sort -u)); do
+    complain "libimukit asks for $name, which libimukit-physics has"
 done
 
 # Bytes of logs must not depend on the C library: there the elementary functions are our own.
@@ -39,8 +43,8 @@ for source in $(find src/simulate src/motion src/base/random src/base/elementary
     done
 done
 
-if tools/writable_data.sh objdump "$build/libimukit.a"; then
-    complain "libimukit holds writable data (above)"
+if tools/writable_data.sh objdump "${core[@]}"; then
+    complain "the core holds writable data (above)"
 fi
 
 declared() { # functions and constants with IMK_API in the headers given
@@ -48,14 +52,21 @@ declared() { # functions and constants with IMK_API in the headers given
         grep -oE 'IMK_API [^;{]*;' | grep -oE 'imk_[a-z0-9_]+ *\(|extern const [a-z_]+ imk_[a-z0-9_]+;' |
         sed 's/.* //; s/[(;]//' | tr -d ' (' | sort -u
 }
-exported=$(nm -D --defined-only "$build/libimukit.so" "$build/libimukit-io.so" |
-    awk 'NF == 3 { print $3 }' | sort -u)
-for name in $(comm -13 <(declared include/imukit/*.h) <(echo "$exported")); do
-    complain "$name is exported, but no public header declares it"
-done
-for name in $(comm -23 <(declared include/imukit/*.h) <(echo "$exported")); do
-    complain "$name is declared in $(grep -lwF "$name" include/imukit/*.h | head -n 1), but there is no such function"
-done
+count=0
+compare() { # LIBRARY HEADER: what it exports, and what that header and those it gathers declare
+    local headers="$2 $(sed -n 's/#include "\(.*\)"/include\/\1/p' "$2")" exported name
+    exported=$(nm -D --defined-only "$build/$1.so" | awk 'NF == 3 { print $3 }' | sort -u)
+    for name in $(comm -13 <(declared $headers) <(echo "$exported")); do
+        complain "$1 exports $name, which no header of its own declares"
+    done
+    for name in $(comm -23 <(declared $headers) <(echo "$exported")); do
+        complain "$name is declared in $(grep -lwF "$name" $headers | head -n 1), but $1 has no such function"
+    done
+    count=$((count + $(wc -l <<<"$exported")))
+}
+compare libimukit include/imukit/imukit.h
+compare libimukit-physics include/imukit/physics.h
+compare libimukit-io include/imukit/io.h
 
-echo "$(echo "$exported" | wc -l) public functions"
+echo "$count public functions"
 exit $status

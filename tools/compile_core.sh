@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Compiles files of libimukit apart from the build, without a warning, into DIRECTORY/NAME.o:
+# Compiles files of libimukit and libimukit-physics apart from the build, without a warning, into DIRECTORY/NAME.o:
 #
 #     tools/compile_core.sh DIRECTORY "FILE…" COMPILER FLAG…
 set -eu

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# libimukit for a Cortex-M4F in build-check/cortex-m4, each object with the compiler's call graph and
+# libimukit and libimukit-physics for a Cortex-M4F in build-check/cortex-m4, each object with the compiler's call graph and
 # frames (.ci) beside it; nothing to do when it is newer than what it is made of.
 set -eu
 cd "$(dirname "$0")/.."

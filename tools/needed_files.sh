@@ -6,4 +6,4 @@ set -eu
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 ld -M -o /dev/null -e 0 --unresolved-symbols=ignore-all --allow-multiple-definition "$@" \
-    "$build"/libimukit-io.a "$build"/libimukit.a | grep -oE '\([a-z0-9_]+\.c\.o\)' | tr -d '()' | sed 's/\.o$//' | sort -u
+    "$build"/libimukit-io.a "$build"/libimukit-physics.a "$build"/libimukit.a | grep -oE '\([a-z0-9_]+\.c\.o\)' | tr -d '()' | sed 's/\.o$//' | sort -u

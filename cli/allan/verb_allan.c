@@ -47,7 +47,7 @@ static const option allan_option_table[] = {
      "write the long table (one line per channel and averaging time, SI) here; - is standard "
      "output",
      offsetof(allan_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the deviations with their intervals", offsetof(allan_options, plot)},
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
      "write one self-contained page: plot and tables", offsetof(allan_options, report)},

@@ -2,6 +2,8 @@
 /* Residuals of each pose, and for each log where it was found to stand still. */
 #include "calibrate_parts.h"
 
+#include "imukit/figure_file.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -24,7 +24,7 @@ static const option result_options[] = {
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
      "write one self-contained page: verdict, parameters, residuals, model",
      offsetof(calibrate_options, report)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the residuals, and where each log stands still", offsetof(calibrate_options, plot)},
     {"poses", 0, OPTION_FLAG, NULL, NULL, NULL, "print every observation with its residuals",
      offsetof(calibrate_options, poses)},

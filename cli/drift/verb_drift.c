@@ -80,7 +80,7 @@ static const option output_option_table[] = {
      "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started again, it "
      "goes on. Else figures and terms against time (.csv)",
      offsetof(drift_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the growth and the shares of the terms", offsetof(drift_options, plot)},
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
      offsetof(drift_options, report)},

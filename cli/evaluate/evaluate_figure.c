@@ -3,6 +3,8 @@
  * make. */
 #include "evaluate_parts.h"
 
+#include "imukit/figure_file.h"
+
 #include <math.h>
 
 static void begin_panel(const evaluate_channel *c, const char *what, imk_figure_builder *figure)

@@ -16,7 +16,7 @@ static const option result_options[] = {
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
      "write a test report that can be printed: figures, plots, definitions, levels",
      offsetof(evaluate_options, report)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the deviations from both lines, and the hysteresis loop",
      offsetof(evaluate_options, plot)},
     {"levels", 0, OPTION_FLAG, NULL, NULL, NULL, "print the mean readings of every level",

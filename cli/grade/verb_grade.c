@@ -13,7 +13,7 @@ typedef struct grade_options {
 } grade_options;
 
 static const option grade_option_table[] = {
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the maps: stability of bias against that of scale factor, of gyros and of "
      "accelerometers, and cost against performance",
      offsetof(grade_options, plot)},

@@ -4,6 +4,7 @@
 #include "identify_parts.h"
 
 #include "imukit/distributions.h"
+#include "imukit/figure_file.h"
 
 #include <math.h>
 #include <stdlib.h>

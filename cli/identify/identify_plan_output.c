@@ -6,7 +6,7 @@
 #include "shell/json_output.h"
 #include "shell/text_table.h"
 
-#include "imukit/report.h"
+#include "imukit/figure_file.h"
 
 #include <math.h>
 #include <stdlib.h>

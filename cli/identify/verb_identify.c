@@ -12,7 +12,7 @@ static const option identify_option_table[] = {
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
      "write one self-contained page: verdict, parameters, Allan plots, model",
      offsetof(identify_options, report)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the Allan deviation of each channel with the model, and how far it is off",
      offsetof(identify_options, plot)},
     {"twin", 0, OPTION_FLAG, NULL, NULL, NULL,

@@ -61,7 +61,7 @@ static const option navigate_option_table[] = {
     {"output", 'o', OPTION_OUTPUT, "TRACK", NULL, NULL,
      "write the track: .csv (also .gz, .zst) or .npy; - is standard output",
      offsetof(navigate_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the track, and the way from the start against time", offsetof(navigate_options, plot)},
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
      offsetof(navigate_options, report)},

@@ -4,6 +4,8 @@
 #include "physics_parts.h"
 #include "shell/growing_list.h"
 
+#include "imukit/figure_file.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>

@@ -79,7 +79,7 @@ static const option output_option_table[] = {
     {"signal-rate", 0, OPTION_QUANTITY, "RATE", "Hz", NULL,
      "rows per second of --signals; default: the output rate. Another rate is a run of its own",
      offsetof(physics_options, signal_rate)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the outputs of the run against time (with --sine also against the input), or what "
      "--sweep found; without either, the views of the instrument",
      offsetof(physics_options, plot)},

@@ -215,9 +215,10 @@ int command_model(const char *name, imk_model *model, imk_document **document)
 int command_check_plot(const char *plot)
 {
     if (!plot || strcmp(plot, "term") == 0 || imk_has_ending(plot, ".svg") ||
-        imk_has_ending(plot, ".png"))
+        imk_has_ending(plot, ".png") || imk_has_ending(plot, ".pdf"))
         return -1;
-    return command_misused("--plot %s: expected a name ending in .svg or .png, or the word term",
+    return command_misused("--plot %s: expected a name ending in .svg, .png or .pdf, or the word "
+                           "term",
                            plot);
 }
 

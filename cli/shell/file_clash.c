@@ -138,10 +138,6 @@ static void add(run_files *files, const char *taker, const char *given, option_k
     add_name(files, taker, given, "", kind);
     if (imk_has_ending(given, ".npy"))
         add_name(files, taker, given, ".columns", kind);
-    if (kind == OPTION_OUTPUT && (imk_has_ending(given, ".svg") || imk_has_ending(given, ".png"))) {
-        add_name(files, taker, given, ".gp", kind);
-        add_name(files, taker, given, ".dat", kind);
-    }
 }
 
 static void add_all(run_files *files, const verb *v, const void *settings,

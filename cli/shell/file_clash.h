@@ -7,7 +7,7 @@
 #include "options.h"
 
 /* Compare the operands, the OPTION_FILEs and the OPTION_OUTPUTs of a command line, and the files
- * that come with them (FILE.npy.columns, FILE.svg.gp); and, where each is evidence by itself, the
+ * that come with them (FILE.npy.columns); and, where each is evidence by itself, the
  * operands with each other.
  * @return -1, or the exit code when there is a clash, which was told */
 int file_clash(const verb *v, const void *settings, const char *const *operands);

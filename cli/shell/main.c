@@ -73,7 +73,7 @@ static void main_manual(void)
         printf(".TP\n.BR imukit\\-%s (1)\n%s\n", verbs[i]->name, verbs[i]->summary);
     fputs(
         ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nno colours when set\n"
-        ".TP\n.B TMPDIR\nwhere figures are drawn before they are put in place, and where a copy of "
+        ".TP\n.B TMPDIR\nwhere gnuplot draws before a figure is put in place, and where a copy of "
         "a pipe is kept that is read twice\n"
         ".TP\n.B IMUKIT_GNUPLOT_SECONDS\nhow long gnuplot may take for a figure; default 120\n",
         stdout);

@@ -23,11 +23,8 @@ void page_put_table(imk_page *page, const text_table *table)
 int page_write(imk_page *page, const char *path)
 {
     imk_error error;
-    const bool lacks_figures = imk_page_lacks_figures(page);
     if (imk_page_write(page, path, &error) != IMK_OK)
         return command_error(&error, NULL);
-    if (lacks_figures)
-        command_note("%s has no figures: gnuplot is not installed; apt install gnuplot-nox", path);
     return -1;
 }
 

@@ -2,6 +2,7 @@
 /* Results become JSON, text, a page and a drawing. */
 #include "show.h"
 
+#include "imukit/figure_file.h"
 #include "imukit/model_file.h"
 
 #include <errno.h>
@@ -62,10 +63,9 @@ static int write_page(const imk_result *result, const char *path)
 {
     char *text = NULL;
     size_t size = 0;
-    bool complete = true;
     imk_output_file *file;
     imk_error error;
-    imk_status status = imk_result_to_page(result, &text, &size, &complete, &error);
+    imk_status status = imk_result_to_page(result, &text, &size, &error);
     if (status == IMK_OK)
         status = imk_output_file_open(path, &file, &error);
     if (status == IMK_OK) {
@@ -73,11 +73,7 @@ static int write_page(const imk_result *result, const char *path)
         status = imk_output_file_commit(file, &error);
     }
     free(text);
-    if (status != IMK_OK)
-        return command_error(&error, NULL);
-    if (!complete)
-        command_note("%s has no figures: gnuplot is not installed; apt install gnuplot-nox", path);
-    return -1;
+    return status == IMK_OK ? -1 : command_error(&error, NULL);
 }
 
 static void print(const imk_result *result, bool json, FILE *out)

@@ -52,7 +52,7 @@ static const option spectrum_option_table[] = {
      "write the densities (100 per decade, one line per channel and frequency, SI) here; - is "
      "standard output",
      offsetof(spectrum_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|FILE.png|term", NULL, NULL,
+    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the root densities with their intervals, lines marked",
      offsetof(spectrum_options, plot)},
     {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,

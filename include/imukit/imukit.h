@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file imukit.h
- *  Everything of libimukit. Reading and writing files: imukit/io.h. */
+ *  Everything of libimukit. Instruments: imukit/physics.h; reading and writing files:
+ *  imukit/io.h. */
 #ifndef IMUKIT_IMUKIT_H
 #define IMUKIT_IMUKIT_H
 
@@ -23,20 +24,15 @@
 #include "imukit/evaluate.h"
 #include "imukit/executor.h"
 #include "imukit/ferraris.h"
-#include "imukit/fibre_optic.h"
 #include "imukit/filter_noise.h"
 #include "imukit/firmware.h"
 #include "imukit/fourier.h"
-#include "imukit/free_gyro.h"
 #include "imukit/identify.h"
 #include "imukit/identify_joint.h"
 #include "imukit/identify_plan.h"
 #include "imukit/identify_record.h"
-#include "imukit/instrument.h"
-#include "imukit/laboratory.h"
 #include "imukit/least_squares.h"
 #include "imukit/linear_algebra.h"
-#include "imukit/mems_accelerometer.h"
 #include "imukit/model.h"
 #include "imukit/model_parameter.h"
 #include "imukit/motion.h"
@@ -44,30 +40,20 @@
 #include "imukit/names.h"
 #include "imukit/navigate.h"
 #include "imukit/noise.h"
-#include "imukit/pendulous_servo.h"
 #include "imukit/procedure.h"
 #include "imukit/random.h"
-#include "imukit/rate_gyro.h"
-#include "imukit/rate_integrating_gyro.h"
 #include "imukit/record_screen.h"
 #include "imukit/reference_alignment.h"
 #include "imukit/repeatability.h"
-#include "imukit/ring_laser.h"
 #include "imukit/samples.h"
-#include "imukit/shell_gyro.h"
 #include "imukit/simulate.h"
 #include "imukit/spectrum.h"
-#include "imukit/spinning_mass.h"
 #include "imukit/static_detection.h"
 #include "imukit/status.h"
-#include "imukit/suspended_rotor.h"
 #include "imukit/test_record.h"
 #include "imukit/thermal.h"
-#include "imukit/tuned_gyro.h"
-#include "imukit/tuning_fork.h"
 #include "imukit/units.h"
 #include "imukit/utf8.h"
-#include "imukit/vibrating_beam.h"
 #include "imukit/zero_velocity.h"
 
 #endif

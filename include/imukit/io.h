@@ -6,6 +6,7 @@
 
 #include "imukit/campaign.h"
 #include "imukit/design_file.h"
+#include "imukit/figure_file.h"
 #include "imukit/firmware_file.h"
 #include "imukit/log.h"
 #include "imukit/memory_limit.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file report.h
- *  Tables, plots (by gnuplot) and self-contained HTML pages. Part of libimukit-io. */
+ *  Figures as data, drawn as SVG, and self-contained HTML pages. Figures and animations need memory
+ *  and arithmetic only; as files: imukit/figure_file.h. Part of libimukit-io. */
 #ifndef IMUKIT_REPORT_H
 #define IMUKIT_REPORT_H
 
-#include "imukit/output_file.h"
 #include "imukit/status.h"
 
 #include <stdbool.h>
@@ -44,8 +44,9 @@ typedef struct imk_region {
 
 /** Where the key of a panel stands. */
 typedef enum imk_key_place {
-    IMK_KEY_UPPER = 0, /**< the upper right corner; beside the axes of a single panel */
-    IMK_KEY_LOWER,     /**< the lower right corner, which rising curves leave free */
+    IMK_KEY_UPPER = 0, /**< the upper right corner, or another where it hides much less; beside the
+                            axes of a single panel */
+    IMK_KEY_LOWER,     /**< the lower right corner, which rising curves leave free, or another */
     IMK_KEY_BELOW      /**< below the axes */
 } imk_key_place;
 
@@ -70,19 +71,10 @@ typedef struct imk_figure {
     const imk_panel *panels;
 } imk_figure;
 
-/** True when gnuplot is on PATH. */
-IMK_API bool imk_plot_available(void);
-
-/** Draw a figure to FILE.svg or FILE.png, or to standard output with "term" (in letters, as large
- *  as the terminal; in colours on a terminal unless NO_COLOR is set). gnuplot runs in a folder of
- *  TMPDIR and sees no name but its own there, so none is a command to it; it has 120 s, or
- *  IMUKIT_GNUPLOT_SECONDS. Without gnuplot FILE.svg.dat and FILE.svg.gp are written instead and
- *  IMK_ERROR_UNSUPPORTED names the package to install.
- *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_FORMAT
- *          (another ending), IMK_ERROR_UNSUPPORTED, IMK_ERROR_OPEN, IMK_ERROR_WRITE */
-IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_error *error);
-
-/** The figure as SVG text obtained from malloc(), for a page. */
+/** The figure as SVG text obtained from malloc(). A curve of any number of points is drawn by 20
+ * 000 at most: those are left out that fall on the same pixel; a drawing has less than half a
+ * megabyte for each of its curves. Equal figures give equal bytes, in any locale.
+ *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_figure_svg(const imk_figure *figure, char **svg, size_t *size,
                                   imk_error *error);
 
@@ -104,11 +96,6 @@ typedef struct imk_animation {
 IMK_API imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t *size,
                                      imk_error *error);
 
-/** Write it to a file whose name ends in .svg.
- *  @return as imk_animation_svg(); IMK_ERROR_FORMAT (another ending), _OPEN, _WRITE */
-IMK_API imk_status imk_animation_write(const imk_animation *animation, const char *path,
-                                       imk_error *error);
-
 /** A self-contained HTML page being built: styles and drawings are inside, nothing is fetched,
  * every text is escaped. Functions accept the NULL of a failed imk_page_create(), which
  * imk_page_write() then reports. */
@@ -124,8 +111,8 @@ IMK_API void imk_page_text(imk_page *page, const char *text);
 IMK_API void imk_page_verdict(imk_page *page, int level, const char *text);
 /** A table of rows x columns texts, the first row the header. */
 IMK_API void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *const *cells);
-/** A figure, drawn into the page. Without gnuplot a note says what to install, and of a figure
- *  without a point to draw what is missing; any other failure becomes that of imk_page_write(). */
+/** A figure, drawn into the page. Of one without a point to draw a note says what is missing; any
+ *  other failure becomes that of imk_page_write(). */
 IMK_API void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption);
 /** An animation, drawn into the page. */
 IMK_API void imk_page_animation(imk_page *page, const imk_animation *animation,
@@ -134,8 +121,6 @@ IMK_API void imk_page_animation(imk_page *page, const imk_animation *animation,
 IMK_API void imk_page_break(imk_page *page);
 /** Preformatted text, such as a model file. */
 IMK_API void imk_page_code(imk_page *page, const char *text);
-/** Does the page lack figures because gnuplot is not installed? */
-IMK_API bool imk_page_lacks_figures(const imk_page *page);
 /** The page as text obtained from malloc(); frees the page.
  *  @return as imk_page_write(), but for files */
 IMK_API imk_status imk_page_take(imk_page *page, char **text, size_t *size, imk_error *error);

@@ -151,11 +151,10 @@ IMK_API imk_status imk_result_to_key(const imk_result *result, char **text, size
  *  NULL: none */
 IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold, const char *plain,
                                       char **text, size_t *size);
-/** What is meant for the page, self-contained.
- *  @param complete  false: figures are left out because gnuplot is not installed
- *  @param error     also says why a figure could not be drawn */
+/** What is meant for the page, self-contained. @param error  also says why a figure could not be
+ *  drawn */
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
-                                      bool *complete, imk_error *error);
+                                      imk_error *error);
 /** @} */
 
 #ifdef __cplusplus

@@ -354,22 +354,3 @@ imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t 
     *svg = made;
     return IMK_OK;
 }
-
-imk_status imk_animation_write(const imk_animation *animation, const char *path, imk_error *error)
-{
-    char *svg;
-    size_t size;
-    imk_output_file *file;
-    if (!imk_has_ending(path, ".svg"))
-        return imk_error_set(error, IMK_ERROR_FORMAT, "animation", path, "a name ending in .svg");
-    imk_status status = imk_animation_svg(animation, &svg, &size, error);
-    if (status != IMK_OK)
-        return status;
-    status = imk_output_file_open(path, &file, error);
-    if (status == IMK_OK) {
-        imk_output_file_write(file, svg, size);
-        status = imk_output_file_commit(file, error);
-    }
-    free(svg);
-    return status;
-}

@@ -1,35 +1,157 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What figure.c hands to gnuplot.c and figure_file.c: the script and the numbers of a figure as
- * text; and the drawing. */
+/* What the files that draw a figure share. Axes, sizes and colours are those of gnuplot's drawings
+ * too (io/plot/gnuplot_script.c). Lengths are in pixels, y downwards; the drawing is written in
+ * whole tenths of them. */
 #ifndef IMUKIT_REPORT_FIGURE_INTERNAL_H
 #define IMUKIT_REPORT_FIGURE_INTERNAL_H
 
+#include "growing_text_internal.h"
+
 #include "imukit/report.h"
 
-typedef enum imki_terminal {
-    IMKI_TERMINAL_SVG = 0,
-    IMKI_TERMINAL_PNG,
-    IMKI_TERMINAL_TEXT
-} imki_terminal;
+#include <math.h>
 
-/* Where a script draws to and reads from. */
-typedef struct imki_drawing {
-    imki_terminal terminal;
-    const char *output, *data; /* paths the script names */
-    int width, height;         /* characters; of IMKI_TERMINAL_TEXT only */
-    bool color;                /* of IMKI_TERMINAL_TEXT only */
-} imki_drawing;
+/* ---- figure_axes.c --------------------------------------------------------------------------- */
+
+/* What an axis shows, with some air around the data; of a logarithmic one, exponents of ten. */
+typedef struct imki_axis {
+    double low, high;
+    bool logarithmic;
+    bool few_decades; /* powers of ten alone would be one label or two */
+} imki_axis;
+
+/* Can a value stand on such an axis? */
+bool imki_drawable(double value, bool logarithmic);
 
 /* Refuse a figure that cannot be drawn: no panel, a panel without a drawable point. */
 imk_status imki_figure_check(const imk_figure *figure, imk_error *error);
 
-/* The gnuplot script and its data, texts from malloc(); NULL when memory is exhausted. */
-char *imki_figure_script(const imk_figure *figure, const imki_drawing *drawing, size_t *size);
-char *imki_figure_data(const imk_figure *figure, size_t *size);
+/* The axes of a panel that has passed. */
+void imki_panel_axes(const imk_panel *panel, imki_axis *x, imki_axis *y);
 
-/* Draw with gnuplot, in a temporary folder: the drawing from malloc(), with a terminating zero.
- * output and data of `drawing` are set. */
-imk_status imki_gnuplot_draw(const imk_figure *figure, imki_drawing *drawing, char **image,
-                             size_t *size, imk_error *error);
+/* Where a drawable value stands: 0 at the low end, 1 at the high one, and beyond. */
+double imki_axis_place(const imki_axis *axis, double value);
+
+/* Filled between lower and upper? */
+bool imki_curve_is_filled(const imk_curve *curve);
+
+/* The colour of an index, "#0072b2". */
+const char *imki_color(int index);
+
+typedef struct imki_figure_size {
+    size_t columns, rows;
+    int width, height, head; /* of all; head is above the panels */
+} imki_figure_size;
+imki_figure_size imki_figure_measure(const imk_figure *figure);
+
+/* ---- figure_ticks.c -------------------------------------------------------------------------- */
+
+enum { IMKI_TICKS_MAX = 256 };
+
+/* A mark of an axis, and the line of the grid that goes through it. */
+typedef struct imki_tick {
+    double place; /* 0 … 1 */
+    bool labelled;
+    char text[40];  /* "0.5", or "2·10" with a power behind */
+    char power[16]; /* raised: "−3"; "" without */
+} imki_tick;
+
+typedef struct imki_ticks {
+    size_t count;
+    imki_tick tick[IMKI_TICKS_MAX];
+} imki_ticks;
+
+/* Ticks from low to high of an axis so long, on which labels need so much room. */
+void imki_axis_ticks(const imki_axis *axis, double length, double room, imki_ticks *ticks);
+
+/* ---- figure_text.c --------------------------------------------------------------------------- */
+
+/* Width of a line in DejaVu Sans, about; where another font stands in, it is narrower or as wide.
+ */
+double imki_line_width(const char *text, double font_size);
+
+typedef enum imki_anchor { IMKI_START = 0, IMKI_MIDDLE, IMKI_END } imki_anchor;
+
+/* A line of text, as it is. One that is wider than `width` becomes smaller, and where that is not
+ * enough its middle is left out. `more` is further attributes, or "". */
+void imki_svg_line(imki_text *out, double x, double y, imki_anchor anchor, double font_size,
+                   double width, const char *more, const char *text);
+
+/* ---- figure_curve.c -------------------------------------------------------------------------- */
+
+/* A pair of axes on the drawing. */
+typedef struct imki_frame {
+    double left, top, right, bottom;
+    imki_axis x, y;
+} imki_frame;
+
+typedef struct imki_box {
+    double left, top, right, bottom;
+} imki_box;
+
+/* Where a drawable value stands. */
+double imki_frame_x(const imki_frame *frame, double value);
+double imki_frame_y(const imki_frame *frame, double value);
+bool imki_frame_has(const imki_frame *frame, double x, double y);
+
+/* What a curve covers at a place, within the frame. */
+typedef struct imki_slice {
+    double x, top, bottom;
+} imki_slice;
+
+/* From the lower to the upper limit of point i. @return false: it cannot be drawn */
+bool imki_slice_make(const imki_frame *frame, const imk_curve *curve, size_t i, imki_slice *slice);
+
+/* The half of a pixel's column that a place is in. */
+static inline long imki_column(double x)
+{
+    return (long)floor(2 * x);
+}
+
+/* The path of a curve, which is within the frame. However many points a curve has, at most
+ * IMKI_CURVE_POINTS_MAX are drawn: about 200 kB. */
+enum { IMKI_CURVE_POINTS_MAX = 20000 };
+void imki_curve_draw(imki_text *out, const imki_frame *frame, const imk_curve *curve);
+
+/* How many parts of a curve reach into a box? */
+size_t imki_curve_touches(const imki_frame *frame, const imk_curve *curve, const imki_box *box);
+
+/* An open <path …> as a curve has it, up to d=" and without it. */
+void imki_curve_style(imki_text *out, const imk_curve *curve);
+
+/* ---- figure_points.c ------------------------------------------------------------------------- */
+
+/* In the data of a path: the marks of a curve, their error bars, and a single large mark. */
+void imki_points_draw(imki_text *out, const imki_frame *frame, const imk_curve *curve);
+void imki_bars_draw(imki_text *out, const imki_frame *frame, const imk_curve *curve);
+void imki_put_diamond(imki_text *out, double x, double y);
+
+/* ---- figure_key.c ---------------------------------------------------------------------------- */
+
+/* The names of the curves in rows and columns. */
+typedef struct imki_key {
+    size_t entries, columns, rows;
+    double font_size, pitch, entry_width; /* pitch: from row to row */
+    double width, height;
+} imki_key;
+
+/* Make the key of a panel, with columns as the width allows, `columns_max` at most; the rows are
+ * closer where the height is little. */
+imki_key imki_key_make(const imk_panel *panel, double font_size, double width, double height,
+                       size_t columns_max);
+void imki_key_draw(imki_text *out, const imki_key *key, const imk_panel *panel, double left,
+                   double top);
+
+/* ---- figure_region.c ------------------------------------------------------------------------- */
+
+void imki_regions_draw(imki_text *out, const imki_frame *frame, const imk_panel *panel);
+void imki_region_labels_draw(imki_text *out, const imki_frame *frame, const imk_panel *panel);
+
+/* ---- all of them ----------------------------------------------------------------------------- */
+
+static inline long imki_tenths(double pixels)
+{
+    return lround(10 * pixels);
+}
 
 #endif

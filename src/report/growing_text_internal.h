@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Text that grows in memory while it is written. */
-#ifndef IMUKI_GROWING_TEXT_INTERNAL_H
-#define IMUKI_GROWING_TEXT_INTERNAL_H
+#ifndef IMUKIT_REPORT_GROWING_TEXT_INTERNAL_H
+#define IMUKIT_REPORT_GROWING_TEXT_INTERNAL_H
 
 #include <stdbool.h>
 #include <stddef.h>

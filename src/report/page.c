@@ -2,6 +2,7 @@
 /* A self-contained HTML page: styles and drawings inside, nothing fetched, every text escaped. */
 #include "markup_internal.h"
 
+#include "imukit/output_file.h"
 #include "imukit/report.h"
 
 #include <stdlib.h>
@@ -12,7 +13,6 @@
 struct imk_page {
     imki_text text;
     int figures;
-    bool lacks_figures;
     imk_error failure; /* of the first drawing that failed */
 };
 
@@ -111,39 +111,22 @@ void imk_page_code(imk_page *page, const char *text)
     element(page, "<pre>", text, "</pre>\n");
 }
 
-/* Length of a <title> or <desc> element at this place, 0 when there is none: browsers would show
- * gnuplot's name for a curve as a tooltip. */
-static size_t caption_length(const char *c)
-{
-    static const char *const ends[][2] = {{"<title>", "</title>"}, {"<desc>", "</desc>"}};
-    for (size_t i = 0; i < 2; i++) {
-        const char *end =
-            strncmp(c, ends[i][0], strlen(ends[i][0])) == 0 ? strstr(c, ends[i][1]) : NULL;
-        if (end)
-            return (size_t)(end - c) + strlen(ends[i][1]);
-    }
-    return 0;
-}
-
-/* The drawing without its XML prologue. Identifiers are made unique, since several drawings share
- * the page: every id gnuplot gives starts with "gp" or "gnuplot" after one of these openings. */
+/* A drawing of ours, where identifiers are made unique, since several drawings share the page. No
+ * text of a caller can hold one of these openings: its quotes are escaped. */
 static void put_svg(imk_page *page, const char *svg)
 {
-    static const char *const openings[] = {"id=\"", "href='#", "href=\"#", "url(#", "id='"};
-    const char *start = strstr(svg, "<svg");
+    static const char *const openings[] = {" id=\"", " clip-path=\"url(#", "href=\"#"};
     page->figures++;
-    for (const char *c = start ? start : ""; *c;) {
-        c += caption_length(c);
+    while (*svg) {
         size_t length = 0;
         for (size_t i = 0; i < sizeof openings / sizeof openings[0] && length == 0; i++)
-            if (strncmp(c, openings[i], strlen(openings[i])) == 0)
+            if (strncmp(svg, openings[i], strlen(openings[i])) == 0)
                 length = strlen(openings[i]);
         if (length == 0) {
-            if (*c)
-                imki_text_put_char(&page->text, *c++);
+            imki_text_put_char(&page->text, *svg++);
         } else {
-            imki_text_add(&page->text, "%.*sf%d-", (int)length, c, page->figures);
-            c += length;
+            imki_text_add(&page->text, "%.*sf%d-", (int)length, svg, page->figures);
+            svg += length;
         }
     }
 }
@@ -162,8 +145,7 @@ void imk_page_figure(imk_page *page, const imk_figure *figure, const char *capti
     size_t size;
     imk_error error;
     const bool drawn = imk_figure_svg(figure, &svg, &size, &error) == IMK_OK;
-    if (!drawn && (error.status == IMK_ERROR_EMPTY || !imk_plot_available())) {
-        page->lacks_figures = page->lacks_figures || error.status != IMK_ERROR_EMPTY;
+    if (!drawn && error.status == IMK_ERROR_EMPTY) {
         element(page, "<p class=\"verdict note\">Figure left out: ", error.found, "; ");
         element(page, "", error.expected, ".</p>\n");
         return;
@@ -198,11 +180,6 @@ void imk_page_animation(imk_page *page, const imk_animation *animation, const ch
     put_svg(page, svg);
     element(page, "<figcaption>", caption, "</figcaption>\n</figure>\n");
     free(svg);
-}
-
-bool imk_page_lacks_figures(const imk_page *page)
-{
-    return page && page->lacks_figures;
 }
 
 imk_status imk_page_take(imk_page *page, char **text, size_t *size, imk_error *error)

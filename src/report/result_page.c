@@ -45,8 +45,7 @@ static void put_block(imk_page *page, const imki_block *block, imki_arena *scrat
     }
 }
 
-imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size, bool *complete,
-                              imk_error *error)
+imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size, imk_error *error)
 {
     if (!result || result->arena.failed)
         return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
@@ -56,7 +55,6 @@ imk_status imk_result_to_page(const imk_result *result, char **text, size_t *siz
         if (b->audience & IMK_FOR_PAGE)
             put_block(page, b, &scratch);
     imki_arena_free(&scratch);
-    *complete = !imk_page_lacks_figures(page);
     if (!scratch.failed)
         return imk_page_take(page, text, size, error);
     (void)imk_page_write(page, NULL, NULL);

@@ -7,7 +7,7 @@
 
 #define _DEFAULT_SOURCE
 #include "check.h"
-#include "imukit/report.h"
+#include "imukit/figure_file.h"
 
 #include <jansson.h>
 #include <stdbool.h>

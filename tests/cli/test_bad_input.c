@@ -251,7 +251,7 @@ static void test_memory_is_limited(void **state)
     write_good();
     put("gnuplot", "#!/bin/sh\nulimit -d >limit.txt\n");
     run("chmod +x gnuplot; H=$PWD; sed -i \"s,limit.txt,$H/limit.txt,\" gnuplot; "
-        "PATH=$H:$PATH $I allan good.csv --plot p.svg");
+        "PATH=$H:$PATH $I allan good.csv --plot p.png");
     assert_int_equal(run("cat limit.txt"), 0);
     const double kilobytes = strtod(out, NULL); /* 0 when it is unlimited */
     assert_true(kilobytes >= 1e3 && 1024 * kilobytes <= 0.876 * (double)imk_memory_limit());

@@ -224,8 +224,6 @@ static void test_logs(void **state)
 static void test_report(void **state)
 {
     (void)state;
-    if (!imk_plot_available())
-        skip();
     write_table("t.csv", "reading [deg/s]", 1);
     assert_int_equal(run("$I evaluate t.csv --limit 'hysteresis 0.1 %' --unit 'A <b>' --serial 7 "
                          "--plot p.svg --report r.html"),
@@ -247,8 +245,6 @@ static void test_report(void **state)
 static void test_plot_of_several_channels(void **state)
 {
     (void)state;
-    if (!imk_plot_available())
-        skip();
     write_table("t.csv", "reading_x [deg/s]", 1);
     assert_int_equal(run("awk -F, 'NR == 1 { print $0 \",reading_y [deg/s],reading_z [deg/s]\" }"
                          " NR > 1 { print $0 \",\" $2 \",\" $2 }' t.csv >three.csv && "

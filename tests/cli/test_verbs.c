@@ -193,9 +193,10 @@ static void test_allan_taus(void **state)
                   "allows, 1 s to 500 s\n" TRY("allan"));
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 10s,1s", 2,
                   "imukit allan: error: --tau 10s,1s: the times must ascend\n" TRY("allan"));
-    check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --plot a.pdf", 2,
-                  "imukit allan: error: --plot a.pdf: expected a name ending in .svg or .png, or "
-                  "the word term\n" TRY("allan"));
+    check_message(
+        "$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --plot a.gif", 2,
+        "imukit allan: error: --plot a.gif: expected a name ending in .svg, .png or .pdf, or "
+        "the word term\n" TRY("allan"));
     sweep();
 }
 
@@ -222,8 +223,7 @@ static void test_identify_recovers_the_model(void **state)
     check_contains(out, "<h2>Verdict</h2>", "page");
     check_contains(out, "imukit identify s.csv --truth AHRS --confidence 0.9999", "page");
     check_contains(out, "angle_random_walk: ", "page");
-    if (imk_plot_available())
-        check_contains(out, "<svg", "page");
+    check_contains(out, "<svg", "page");
     sweep();
 }
 
@@ -381,25 +381,19 @@ static void test_convert(void **state)
 static void test_plots(void **state)
 {
     (void)state;
-    if (!imk_plot_available()) {
-        print_message("skipped: gnuplot is not installed\n");
-        skip();
-    }
     write_good();
     assert_int_equal(run("$I allan good.csv --plot a.svg && grep -c '</svg>' a.svg"), 0);
+    if (!imk_plot_available()) {
+        print_message("the rest skipped: gnuplot is not installed\n");
+        sweep();
+        return;
+    }
     assert_int_equal(run("$I identify good.csv --plot b.png && head -c 4 b.png | tail -c 3 >&2"),
                      0);
     check_contains(err, "PNG", "png");
     assert_int_equal(run("$I allan good.csv --plot term"), 0);
     check_contains(out, "averaging time [s]", "terminal");
     assert_null(strchr(out, '\033'));
-    /* Without gnuplot the script and the data are left, and the message names the package. */
-    assert_int_equal(run("PATH=/nonexistent $I allan good.csv --plot c.svg"), 1);
-    check_contains(err, "c.svg: gnuplot is not installed; apt install gnuplot-nox", "no gnuplot");
-    assert_int_equal(
-        run("test -s c.svg.dat && test -s c.svg.gp && ! test -e c.svg && gnuplot c.svg.gp && grep "
-            "-q '</svg>' c.svg"),
-        0);
     sweep();
 }
 

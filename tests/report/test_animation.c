@@ -4,7 +4,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "check.h"
 
-#include "imukit/report.h"
+#include "imukit/figure_file.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -63,13 +63,9 @@ static void test_texts_are_escaped(void **state)
 static void test_figures_are_inline(void **state)
 {
     (void)state;
-    if (!imk_plot_available()) {
-        print_message("skipped: gnuplot is not installed\n");
-        skip();
-    }
     double x[] = {1, 2, 3}, y[] = {1, 4, 9};
     imk_curve curve = {"squares", IMK_CURVE_POINTS, 0, 3, x, y, NULL, NULL};
-    imk_panel panel = {"panel", "x", "y", false, false, 1, &curve, 0, NULL, IMK_KEY_UPPER};
+    imk_panel panel = {"url(#x id=\"y", "x", "y", false, false, 1, &curve, 0, NULL, IMK_KEY_UPPER};
     imk_figure figure = {"", 1, 1, &panel};
     imk_page *page = imk_page_create("t", "s");
     imk_page_figure(page, &figure, "first");
@@ -77,8 +73,12 @@ static void test_figures_are_inline(void **state)
     char *text = written(page);
     assert_int_equal(occurrences(text, "<svg"), 2);
     assert_int_equal(occurrences(text, "<?xml"), 0);
-    assert_int_equal(occurrences(text, "id=\"f1-gnuplot_plot_1\""), 1);
-    assert_int_equal(occurrences(text, "id=\"f2-gnuplot_plot_1\""), 1);
+    assert_int_equal(occurrences(text, "id=\"f1-frame1\""), 1);
+    assert_int_equal(occurrences(text, "\"url(#f1-frame1)\""), 1);
+    assert_int_equal(occurrences(text, "id=\"f2-frame1\""), 1);
+    assert_int_equal(occurrences(text, "\"url(#f2-frame1)\""), 1);
+    /* A text that looks like one is left as it is: as label and as title of both. */
+    assert_int_equal(occurrences(text, "url(#x id=&quot;y"), 4);
     assert_int_equal(occurrences(text, "<title>"), 1); /* the page's */
     /* Nothing is fetched: the only addresses are the names of XML vocabularies. */
     assert_int_equal(occurrences(text, "http"), occurrences(text, "http://www.w3.org/"));

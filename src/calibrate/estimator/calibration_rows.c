@@ -270,3 +270,20 @@ int imki_item_rows(imki_estimator *e, const imki_point *point, size_t item, imki
     return item < e->observations ? observation_rows(e, point, item, row)
                                   : turn_rows(e, point, item - e->observations, row);
 }
+
+int imki_whitened_rows(imki_estimator *e, size_t item)
+{
+    const int count = imki_item_rows(e, &e->now, item, e->row);
+    for (int i = 0; i < count; i++) {
+        imki_row *row = &e->row[i];
+        const double total = imki_row_variance(e, row), scale = 1.0 / sqrt(total);
+        const double scaled = row->sigma * e->factor[row->group];
+        row->share = scaled * scaled / total;
+        row->residual *= scale;
+        for (int k = 0; k < row->locals; k++)
+            row->by_local[k] *= scale;
+        for (int k = 0; k < row->globals; k++)
+            row->by_global[k] *= scale;
+    }
+    return count;
+}

@@ -35,23 +35,6 @@ static const double least_variance = 0.02, least_variance_placed = 1e-9;
 /* Factors with fewer degrees of freedom stay 1: the sigmas are taken as stated. */
 static const double least_freedom = 3.0;
 
-int imki_whitened_rows(imki_estimator *e, size_t item)
-{
-    const int count = imki_item_rows(e, &e->now, item, e->row);
-    for (int i = 0; i < count; i++) {
-        imki_row *row = &e->row[i];
-        const double total = imki_row_variance(e, row), scale = 1.0 / sqrt(total);
-        const double scaled = row->sigma * e->factor[row->group];
-        row->share = scaled * scaled / total;
-        row->residual *= scale;
-        for (int k = 0; k < row->locals; k++)
-            row->by_local[k] *= scale;
-        for (int k = 0; k < row->globals; k++)
-            row->by_global[k] *= scale;
-    }
-    return count;
-}
-
 /* Of some rows of one group. */
 static double distance_of(const imki_estimator *e, const imki_row *row, int count, double w,
                           double least, int *degrees)

@@ -132,6 +132,8 @@ void imki_earth_move(const double n[3], const double a[3], const double b[3], co
 
 /* ---- calibration_rows.c ---- */
 int imki_item_rows(imki_estimator *e, const imki_point *point, size_t item, imki_row *row);
+/* Rows of an item over their sigma and factor, in e->row. @return their number */
+int imki_whitened_rows(imki_estimator *e, size_t item);
 /* Two unit vectors across a unit vector. */
 void imki_across(const double n[3], double a[3], double b[3]);
 /* Put the parameters of a point into the model. */
@@ -182,8 +184,6 @@ typedef struct imki_fit {
     bool estimated[IMK_GROUPS];                    /* the factor; else it is 1 */
     double slow_square[IMK_GROUPS]; /* what slow noise is expected to add to shared_square */
 } imki_fit;
-/* Rows of an item over their sigma and factor, in e->row. @return their number */
-int imki_whitened_rows(imki_estimator *e, size_t item);
 /* Squared distances of an item's rows, by group, from what the others predict, over their variance:
  * chi-square with so many degrees (0: nothing to tell it by) when sigmas are right. */
 void imki_item_distances(imki_estimator *e, size_t item, double square[IMK_GROUPS],

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The procedures by number: names, defaults, what each does with a record; and what they share:
- * checks before, and putting the calibration back when one fails. */
+/* The procedures by number: names, defaults, what each does with a record; checks before, and
+ * putting the calibration back when one fails. */
 #include "procedure_internal.h"
 
 #include "calibrate/estimator/calibration_internal.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { COOKIE = 0x50524F31, ALIGNMENT = 64 };
+enum { ALIGNMENT = 64 };
 
 #define DEGREE 0.017453292519943295
 
@@ -41,7 +41,7 @@ const char *imk_procedure_name(imk_procedure procedure)
 
 imk_procedure_settings imk_procedure_default(imk_procedure procedure)
 {
-    imk_procedure_settings settings = {.cookie = COOKIE,
+    imk_procedure_settings settings = {.cookie = IMKI_PROCEDURE_COOKIE,
                                        .stationary = imk_static_default(),
                                        .trim = 0.2,
                                        .steady_rate = 1e-4,
@@ -166,7 +166,7 @@ imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calib
 {
     if (!exists(procedure) || !calibration || !record || !settings || !workspace)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "procedure", NULL, "see procedure.h");
-    if (settings->cookie != COOKIE || calibration->cookie != IMKI_CALIBRATION_COOKIE)
+    if (settings->cookie != IMKI_PROCEDURE_COOKIE || calibration->cookie != IMKI_CALIBRATION_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, NULL, NULL,
                              "start from imk_procedure_default() and imk_calibration_default()");
     imk_status status = check_settings(settings, error);
@@ -205,50 +205,4 @@ imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calib
     seen->observations = calibration->observation_count - seen->first_observation;
     seen->turns = calibration->turn_count - seen->first_turn;
     return IMK_OK;
-}
-
-/* ---- shared -----------------------------------------------------------------------------------
- */
-
-/* Elements of the misalignments or cross-axis terms of accelerometers that a frame leaves free; a
- * symmetric one ties the pairs, so that all have a value. */
-static bool frame_leaves(imk_triad_frame frame, int axis, int element)
-{
-    return frame == IMK_FRAME_UPPER ? element > axis : frame != IMK_FRAME_LOWER || element < axis;
-}
-
-imk_status imki_free_term(const imki_procedure_call *call, int sensor, int term, int elements,
-                          bool attitudes_known)
-{
-    imk_calibration *c = call->calibration;
-    const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
-    const int axes = c->record[call->record]->axis_count[sensor];
-    const bool rows = term == IMK_MODEL_MISALIGNMENT || term == IMK_MODEL_CROSS_AXIS;
-    if (call->keep_free)
-        return IMK_OK;
-    for (int axis = 0; axis < axes; axis++)
-        for (int element = 0; element < elements; element++) {
-            if (rows && triad->axis_count == 3 && element == axis)
-                continue;
-            if (rows && sensor == IMK_ACCEL && triad->axis_count == 3 && !attitudes_known &&
-                !frame_leaves(c->frame, axis, element))
-                continue;
-            const imk_status status = imk_calibration_free(c, sensor, term, axis, element);
-            if (status == IMK_ERROR_RANGE)
-                return imk_error_set(call->error, status, "parameters", NULL,
-                                     "at most 64 parameters can be estimated at once");
-            if (status != IMK_OK)
-                return imk_error_set(call->error, status, "parameters", NULL,
-                                     "a term that this sensor has");
-        }
-    return IMK_OK;
-}
-
-double imki_reading_si(const imk_model *model, const imk_test_record *record, int sensor, int axis,
-                       double reading)
-{
-    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
-    if (!record || !record->counts[sensor])
-        return reading;
-    return (reading - triad->zero_offset.value[axis]) / triad->sensitivity.value[axis];
 }

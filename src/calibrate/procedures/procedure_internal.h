@@ -5,6 +5,8 @@
 
 #include "imukit/procedure.h"
 
+enum { IMKI_PROCEDURE_COOKIE = 0x50524F31 };
+
 /* What an observe function gets: settings are valid, the record is appended already. */
 typedef struct imki_procedure_call {
     imk_procedure procedure;
@@ -39,7 +41,7 @@ imk_status imki_thermal_observe(const imki_procedure_call *call);
 size_t imki_thermal_workspace(const imk_test_record *record,
                               const imk_procedure_settings *settings);
 
-/* ---- shared, procedure.c ---- */
+/* ---- procedure_shared.c ---- */
 
 /* Make every element of a term free on all axes of a sensor that the record has (the diagonal of
  * misalignment aside; of accelerometers only what the frame leaves when `attitudes_known` is
@@ -51,5 +53,15 @@ imk_status imki_free_term(const imki_procedure_call *call, int sensor, int term,
 /* Readings of a mean in SI by the model's nominal sensitivity and zero offset. */
 double imki_reading_si(const imk_model *model, const imk_test_record *record, int sensor, int axis,
                        double reading);
+
+/* d(reading)/d(input) of an axis in the record's unit: its sensitivity, 1 in SI. */
+double imki_counts_per_unit(const imk_model *model, const imk_test_record *record, int sensor,
+                            int axis);
+/* False: readings in counts, and nobody knows how many make a unit. */
+bool imki_unit_known(const imk_model *model, const imk_test_record *record, int sensor);
+/* Append to a text of so many bytes, as far as there is room. */
+void imki_append(char *text, size_t size, const char *more);
+/* x to so many significant digits. */
+double imki_round_digits(double x, int digits);
 
 #endif

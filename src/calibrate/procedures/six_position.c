@@ -13,7 +13,6 @@
 #include "imukit/elementary.h"
 
 #include <math.h>
-#include <string.h>
 
 size_t imki_six_position_workspace(const imk_test_record *record,
                                    const imk_procedure_settings *settings)
@@ -21,50 +20,9 @@ size_t imki_six_position_workspace(const imk_test_record *record,
     return imki_stretches_workspace(record, settings);
 }
 
-/* ---- units ------------------------------------------------------------------------------------
- */
-
 static const imk_triad *triad_of(const imk_model *model, int sensor)
 {
     return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
-double imki_counts_per_unit(const imk_model *model, const imk_test_record *record, int sensor,
-                            int axis)
-{
-    return record->counts[sensor] ? triad_of(model, sensor)->sensitivity.value[axis] : 1.0;
-}
-
-bool imki_unit_known(const imk_model *model, const imk_test_record *record, int sensor)
-{
-    for (int i = 0; i < record->axis_count[sensor]; i++)
-        if (imki_counts_per_unit(model, record, sensor, i) == 0.0)
-            return false;
-    return true;
-}
-
-void imki_append(char *text, size_t size, const char *more)
-{
-    const size_t length = strlen(text), room = size - 1 - length, wanted = strlen(more);
-    const size_t taken = wanted < room ? wanted : room;
-    memcpy(text + length, more, taken);
-    text[length + taken] = '\0';
-}
-
-double imki_round_digits(double x, int digits)
-{
-    if (x == 0.0 || !isfinite(x))
-        return x;
-    double low = 1.0, scale = 1.0;
-    while (digits-- > 1)
-        low *= 10.0;
-    while (fabs(x) * scale < low && scale < 1e300)
-        scale *= 10.0;
-    if (scale > 1.0)
-        return rint(x * scale) / scale;
-    while (fabs(x) / scale >= 10.0 * low)
-        scale *= 10.0;
-    return rint(x / scale) * scale;
 }
 
 /* ---- the Earth --------------------------------------------------------------------------------

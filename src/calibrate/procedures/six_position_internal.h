@@ -64,15 +64,6 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_bench_
  * vertical `up` (unit, body axes), and the part that it does tell. */
 void imki_earth_at_rest(const imk_calibration *calibration, const double up[3], double rate[3],
                         double sigma[3]);
-/* d(reading)/d(input) of an axis in the record's unit: its sensitivity, 1 in SI. */
-double imki_counts_per_unit(const imk_model *model, const imk_test_record *record, int sensor,
-                            int axis);
-/* False: readings in counts, and nobody knows how many make a unit. */
-bool imki_unit_known(const imk_model *model, const imk_test_record *record, int sensor);
-/* Append to a text of so many bytes, as far as there is room. */
-void imki_append(char *text, size_t size, const char *more);
-/* x to so many significant digits. */
-double imki_round_digits(double x, int digits);
 
 /* ---- ferraris_turns.c ---- */
 

@@ -248,7 +248,7 @@ imk_status imk_reference_stretches(const imk_test_record *record,
                                    size_t capacity, size_t *count, imk_error *error)
 {
     scan s = {.record = record};
-    if (settings->cookie != imk_procedure_default(IMK_PROCEDURE_RATE_TABLE).cookie)
+    if (settings->cookie != IMKI_PROCEDURE_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
                              "start from imk_procedure_default()");
     if (!(record->dt > 0.0 && record->dt < HUGE_VAL))

@@ -29,20 +29,6 @@ static const double SAME_POSE = 0.1;
 /* Least standard deviation of poses along a principal axis, in units of gravity. */
 static const double FLAT = 0.1;
 
-imki_axis_unit imki_record_unit(const imk_test_record *record, const imk_model *model, int sensor,
-                                int axis)
-{
-    if (!record->counts[sensor])
-        return (imki_axis_unit){1.0, 0.0};
-    if (!model)
-        return (imki_axis_unit){0.0, 0.0};
-    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
-    const double sensitivity = triad->sensitivity.value[axis];
-    if (!triad->present || axis >= triad->axis_count || sensitivity == 0.0)
-        return (imki_axis_unit){0.0, 0.0};
-    return (imki_axis_unit){1.0 / sensitivity, triad->zero_offset.value[axis]};
-}
-
 static imk_doubt_finding finding(imk_doubt kind, int sensor, int axis, double value, double limit)
 {
     return (imk_doubt_finding){

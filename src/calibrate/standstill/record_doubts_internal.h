@@ -16,7 +16,7 @@ static inline void imki_doubt_add(imki_doubt_list *list, imk_doubt_finding findi
         list->doubt[list->count++] = finding;
 }
 
-/* Reading in SI = (reading - zero) * unit; unit 0: not known. */
+/* record_turns.c: reading in SI = (reading - zero) * unit; unit 0: not known. */
 typedef struct imki_axis_unit {
     double unit, zero;
 } imki_axis_unit;

@@ -27,6 +27,20 @@ enum { TURNS_MAX = 48, TURNS_MIN = 3, TURN_STEPS = 256, ALL = 48 };
  * biases, scale factors and misalignments of a raw unit explain. */
 static const double TURN_LEAST = 0.35, EXPLAINED = 0.26;
 
+imki_axis_unit imki_record_unit(const imk_test_record *record, const imk_model *model, int sensor,
+                                int axis)
+{
+    if (!record->counts[sensor])
+        return (imki_axis_unit){1.0, 0.0};
+    if (!model)
+        return (imki_axis_unit){0.0, 0.0};
+    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    const double sensitivity = triad->sensitivity.value[axis];
+    if (!triad->present || axis >= triad->axis_count || sensitivity == 0.0)
+        return (imki_axis_unit){0.0, 0.0};
+    return (imki_axis_unit){1.0 / sensitivity, triad->zero_offset.value[axis]};
+}
+
 /* Another explanation must explain this many turns more, leave no more than this share of what is
  * unexplained as the log stands, and of all turns: a bad turn in ten must not hide a mistake, nor
  * some bad turns make one. Of explanations that differ by less than a turn in three, the simplest:

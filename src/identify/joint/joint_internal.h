@@ -6,12 +6,6 @@
 #include "identify/likelihood/identify_internal.h"
 #include "imukit/identify_joint.h"
 
-struct imk_spectral_summary {
-    uint32_t cookie;
-    double scale;     /* of the record: the bands are of the record times it */
-    imki_bands bands; /* without ramp; singles and ends are 0 */
-};
-
 /* joint_agreement.c: each record alone against the joint fit of `w`, whose trial and chosen it
  * uses, and `bands` for one record. Values in the unit of the records. */
 void imki_joint_agreement(imki_work *w, const imk_identification *joint, size_t count,

@@ -10,31 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { SUMMARY_COOKIE = 0x5A3A0001 };
-
-size_t imk_spectral_summary_size(void)
-{
-    return sizeof(imk_spectral_summary);
-}
-
-void imki_summary_save(const imki_work *w, imk_spectral_summary *summary)
-{
-    if (!summary)
-        return;
-    summary->cookie = SUMMARY_COOKIE;
-    summary->scale = w->scale;
-    summary->bands = *w->bands;
-    imki_bands *bands = &summary->bands;
-    for (size_t b = 0; b < bands->singles; b++) {
-        const double ramp = w->fit->ramp_active ? w->fit->ramp : 0;
-        const double c = bands->coefficient[b] - ramp * bands->ramp[b];
-        bands->power[b] = c * c * bands->dt;
-    }
-    bands->singles = 0;
-    memset(bands->end_product, 0, sizeof bands->end_product);
-    memset(bands->end_square, 0, sizeof bands->end_square);
-}
-
 static bool stands_alone(const imki_bands *bands, size_t b)
 {
     return bands->degrees[b] < 1.5;
@@ -124,7 +99,7 @@ static imk_status check(const imk_identify_settings *settings, size_t count,
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
                              "imk_identify_joint_workspace_size() bytes");
     for (size_t r = 0; r < count; r++) {
-        if (summaries[r]->cookie != SUMMARY_COOKIE)
+        if (summaries[r]->cookie != IMKI_SUMMARY_COOKIE)
             return imk_error_set(error, IMK_ERROR_UNINITIALISED, "summary", NULL,
                                  "identify each record with settings.summary first");
         if (!(fabs(summaries[r]->bands.dt / summaries[0]->bands.dt - 1) < 1e-3)) {

@@ -7,7 +7,6 @@
 #include "imukit/fourier.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { COOKIE = 0x1DE70001, SAMPLES_MIN = 256, SORTED = 65536 };
 
@@ -33,6 +32,27 @@ size_t imk_identify_workspace_size(size_t n)
     return 64 + 3 * aligned((n + 1) * sizeof(double)) + aligned(sizeof(imki_bands)) +
            aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) + 3 * aligned(sizeof(imki_fit)) +
            aligned(imk_cosine_workspace_size(n)) + imki_missing_size(missing_maximum(n));
+}
+
+/* Cut NaN off the ends of a record; returns how many at its start. A length with large prime
+ * factors may need more memory than the whole did: then missing samples at the end stay, or, where
+ * there are none, a few present ones go. */
+static size_t trim(size_t *n, const double **samples)
+{
+    const size_t allowed = imk_identify_workspace_size(*n);
+    size_t before = 0, end = *n;
+    while (end > 0 && isnan((*samples)[end - 1]))
+        end--;
+    while (before < end && isnan((*samples)[before]))
+        before++;
+    size_t length = end - before;
+    while (before + length < *n && imk_identify_workspace_size(length) > allowed)
+        length++;
+    while (length > 0 && imk_identify_workspace_size(length) > allowed)
+        length--;
+    *n = length;
+    *samples += before;
+    return before;
 }
 
 static void *take(char **memory, size_t size)
@@ -214,7 +234,7 @@ imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
                                 size_t workspace_size, imk_error *error)
 {
     size_t missing = 0;
-    const size_t before = imki_missing_trim(&n, &samples);
+    const size_t before = trim(&n, &samples);
     imk_status status = check_arguments(settings, n, samples, workspace_size, &missing, error);
     if (status == IMK_ERROR_NOT_FINITE && error && error->index >= 0)
         error->index = (size_t)error->index + before < INT32_MAX ? error->index + (int)before : -1;

@@ -4,7 +4,7 @@
 #ifndef IMUKIT_IDENTIFY_INTERNAL_H
 #define IMUKIT_IDENTIFY_INTERNAL_H
 
-#include "identify/records/screen_internal.h" /* the record's faults: record_checks.c */
+#include "identify/records/screen_internal.h" /* the record's faults */
 #include "imukit/identify.h"
 
 enum {
@@ -202,7 +202,15 @@ int imki_fast_shape_refine(imki_work *w, imk_identification *result);
  * times what these add to their uncertainty. */
 void imki_identify_widen(imki_work *w, imk_identification *result);
 
-/* joint_records.c: what a joint estimate needs, after the terms are found; NULL: nothing. */
+/* What a joint estimate needs of a record. */
+enum { IMKI_SUMMARY_COOKIE = 0x5A3A0001 };
+struct imk_spectral_summary {
+    uint32_t cookie;
+    double scale;     /* of the record: the bands are of the record times it */
+    imki_bands bands; /* without ramp; singles and ends are 0 */
+};
+
+/* spectral_summary.c: filled after the terms are found; NULL: nothing. */
 void imki_summary_save(const imki_work *w, imk_spectral_summary *summary);
 
 /* The steps of imk_identify_channel(), in order, one file each. */

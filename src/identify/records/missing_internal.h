@@ -92,8 +92,6 @@ void imki_missing_spread(const imki_missing *m, size_t n, const double *coeffici
 /* Bytes for so many missing samples; its place in memory that is aligned to 64. */
 size_t imki_missing_size(size_t count);
 imki_missing *imki_missing_place(void *memory, size_t count);
-/* Cut NaN off the ends of a record; returns how many at its start. */
-size_t imki_missing_trim(size_t *n, const double **samples);
 /* Estimate spectrum and missing samples (NaN) of the work's samples by turns; they come back
  * filled, and the result says what was missing. */
 void imki_missing_fill(imki_work *w, imk_identification *result);

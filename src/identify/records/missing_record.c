@@ -55,26 +55,6 @@ imki_missing *imki_missing_place(void *memory, size_t count)
     return m;
 }
 
-/* A length with large prime factors may need more memory than the whole did: then missing samples
- * at the end stay, or, where there are none, a few present ones go. */
-size_t imki_missing_trim(size_t *n, const double **samples)
-{
-    const size_t allowed = imk_identify_workspace_size(*n);
-    size_t before = 0, end = *n;
-    while (end > 0 && isnan((*samples)[end - 1]))
-        end--;
-    while (before < end && isnan((*samples)[before]))
-        before++;
-    size_t length = end - before;
-    while (before + length < *n && imk_identify_workspace_size(length) > allowed)
-        length++;
-    while (length > 0 && imk_identify_workspace_size(length) > allowed)
-        length--;
-    *n = length;
-    *samples += before;
-    return before;
-}
-
 /* Runs by octaves of their length. */
 static void add_run(imki_missing *m, size_t run)
 {

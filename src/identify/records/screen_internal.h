@@ -18,10 +18,12 @@ void imki_sort(double *a, size_t count);
  * of that step; else 0. */
 double imki_record_resolution(size_t n, const double *samples, double *scratch,
                               size_t scratch_count);
-unsigned imki_record_verdict(size_t n, const double *samples, double resolution, double deviation);
 /* True when samples pile up at this extreme value (toward: the inside, -1 or 1). */
 bool imki_record_sticks(size_t n, const double *samples, double extreme, double toward,
                         double step);
+
+/* record_verdict.c: of a whole record. */
+unsigned imki_record_verdict(size_t n, const double *samples, double resolution, double deviation);
 
 /* screen_outliers.c */
 typedef struct imki_outlier_rule {

@@ -45,16 +45,6 @@ imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, siz
     return IMK_OK;
 }
 
-bool imki_is_text(const char *bytes, size_t size)
-{
-    for (size_t i = 0; i < size; i++) {
-        const unsigned char c = (unsigned char)bytes[i];
-        if (c < 9 || (c > 13 && c < 32) || c == 127)
-            return false;
-    }
-    return true;
-}
-
 bool imki_is_script_name(const char *path)
 {
     return imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml") ||

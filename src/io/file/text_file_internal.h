@@ -14,7 +14,15 @@ imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, siz
                                imk_error *error);
 
 /* No control characters but those between lines and words stand in a text. */
-bool imki_is_text(const char *bytes, size_t size);
+static inline bool imki_is_text(const char *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; i++) {
+        const unsigned char c = (unsigned char)bytes[i];
+        if (c < 9 || (c > 13 && c < 32) || c == 127)
+            return false;
+    }
+    return true;
+}
 
 /* Is it a script by its name: .yaml, .yml, .json? */
 bool imki_is_script_name(const char *path);

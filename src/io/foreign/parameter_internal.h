@@ -5,8 +5,8 @@
 #ifndef IMUKIT_PARAMETER_INTERNAL_H
 #define IMUKIT_PARAMETER_INTERNAL_H
 
-#include "report/growing_text_internal.h"
 #include "io/model/document_internal.h"
+#include "report/growing_text_internal.h"
 
 #include "imukit/parameter_file.h"
 

@@ -68,6 +68,10 @@ size_t imki_document_end(const imk_document *document, int node);
 imk_status imki_document_error(const imk_document *document, int node, imk_status status,
                                const char *found, const char *expected, imk_error *error);
 
+/* IMK_ERROR_KEY_UNKNOWN with the nearest of the names that would be known. */
+imk_status imki_refuse_name(const imk_document *document, int key, size_t count,
+                            const char *const *candidates, imk_error *error);
+
 /* model_yaml_read.c: the model that the tree says. Ranges are left to imk_model_validate(). */
 imk_status imki_document_read_model(const imk_document *document, imk_model *model,
                                     imk_error *error);

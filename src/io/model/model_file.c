@@ -19,39 +19,6 @@
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-/* Give a validation error the place of the value it speaks of. */
-static void place_error(const imk_document *document, imk_error *error)
-{
-    if (!error || error->field[0] == '\0')
-        return;
-    int node = imki_document_find(document, 0, error->field, NULL);
-    error->line = document->node[node].line;
-    error->column = document->node[node].column;
-    if (error->found[0] == '\0' && document->node[node].kind == IMKI_NODE_SCALAR)
-        snprintf(error->found, sizeof error->found, "%.80s", document->node[node].text);
-}
-
-imk_status imki_document_open(const char *text, size_t size, bool validate, imk_document **document,
-                              imk_error *error)
-{
-    imk_document *made = NULL;
-    imk_status status = imki_document_parse(text, size, &made, error);
-    if (status != IMK_OK)
-        return status;
-    status = imki_document_read_model(made, &made->model, error);
-    if (status == IMK_OK && validate) {
-        status = imk_model_validate(&made->model, error);
-        if (status != IMK_OK)
-            place_error(made, error);
-    }
-    if (status != IMK_OK) {
-        imk_document_free(made);
-        return status;
-    }
-    *document = made;
-    return IMK_OK;
-}
-
 imk_status imk_model_parse(const char *text, size_t size, imk_model *model, imk_document **document,
                            imk_error *error)
 {

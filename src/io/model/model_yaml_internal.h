@@ -14,10 +14,6 @@ imk_status imki_parse_quantity(const char *text, size_t length, const char *si, 
                                size_t max_count, double *values, double *sigmas, size_t *count,
                                imk_unit *unit, imk_error *error);
 
-/* IMK_ERROR_KEY_UNKNOWN with the nearest of the names that would be known. */
-imk_status imki_refuse_name(const imk_document *document, int key, size_t count,
-                            const char *const *candidates, imk_error *error);
-
 /* ---- items: everything a model file can say, in the order in which it is written ------------- */
 
 typedef enum imki_item_type {

@@ -4,8 +4,6 @@
  * directions (number of axes) and the density (one- or two-sided). */
 #include "model_reader_internal.h"
 
-#include "base/nearest_name_internal.h"
-
 #include <stdio.h>
 #include <string.h>
 
@@ -56,23 +54,6 @@ static imk_status refuse_key(imki_reader *r, int key, const char *path, const ch
     if (prefix_length == 0)
         candidates[count++] = "evidence";
     return imki_refuse_name(r->document, key, count, candidates, r->error);
-}
-
-imk_status imki_refuse_name(const imk_document *document, int key, size_t count,
-                            const char *const *candidates, imk_error *error)
-{
-    char expected[sizeof error->expected];
-    size_t nearest = imki_nearest_name(document->node[key].text, count, candidates);
-    if (nearest != SIZE_MAX) {
-        snprintf(expected, sizeof expected, "did you mean \"%s\"?", candidates[nearest]);
-    } else {
-        size_t length = (size_t)snprintf(expected, sizeof expected, "one of");
-        for (size_t i = 0; i < count && length + strlen(candidates[i]) + 8 < sizeof expected; i++)
-            length += (size_t)snprintf(expected + length, sizeof expected - length, "%s %s",
-                                       i > 0 ? "," : "", candidates[i]);
-    }
-    return imki_document_error(document, key, IMK_ERROR_KEY_UNKNOWN, document->node[key].text,
-                               expected, error);
 }
 
 static const imki_field *exact_field(const char *path, int kind)
@@ -336,4 +317,37 @@ imk_status imki_document_read_model(const imk_document *document, imk_model *mod
     if (status == IMK_OK)
         status = imki_read_correlation(document, &model->correlation, error);
     return status;
+}
+
+/* Give a validation error the place of the value it speaks of. */
+static void place_error(const imk_document *document, imk_error *error)
+{
+    if (!error || error->field[0] == '\0')
+        return;
+    int node = imki_document_find(document, 0, error->field, NULL);
+    error->line = document->node[node].line;
+    error->column = document->node[node].column;
+    if (error->found[0] == '\0' && document->node[node].kind == IMKI_NODE_SCALAR)
+        snprintf(error->found, sizeof error->found, "%.80s", document->node[node].text);
+}
+
+imk_status imki_document_open(const char *text, size_t size, bool validate, imk_document **document,
+                              imk_error *error)
+{
+    imk_document *made = NULL;
+    imk_status status = imki_document_parse(text, size, &made, error);
+    if (status != IMK_OK)
+        return status;
+    status = imki_document_read_model(made, &made->model, error);
+    if (status == IMK_OK && validate) {
+        status = imk_model_validate(&made->model, error);
+        if (status != IMK_OK)
+            place_error(made, error);
+    }
+    if (status != IMK_OK) {
+        imk_document_free(made);
+        return status;
+    }
+    *document = made;
+    return IMK_OK;
 }

@@ -8,13 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
-imk_geodetic imki_default_place(void)
-{
-    return (imk_geodetic){.latitude = PI / 4.0};
-}
-
 static imk_status finish(imk_status status, imk_motion_file *made, imk_motion_file **file)
 {
     if (status == IMK_OK)

@@ -73,7 +73,7 @@ bool imki_has_poses(const imk_log *log);
 imk_status imki_recorded_open(imk_log *log, const imk_log_settings *settings, imk_motion_file *file,
                               imk_error *error);
 
-/* Check that a column has a unit of this dimension and no missing number. */
+/* table_column.c: check that a column has a unit of this dimension and no missing number. */
 imk_status imki_table_column_check(const imk_log *log, size_t column, const char *si,
                                    imk_error *error);
 
@@ -81,7 +81,10 @@ imk_status imki_table_column_check(const imk_log *log, size_t column, const char
 imk_status imki_table_row_error(const char *name, imk_status status, size_t row, const char *found,
                                 const char *expected, imk_error *error);
 
-/* motion_file.c: where a trajectory goes when its place is not said: 45 deg north. */
-imk_geodetic imki_default_place(void);
+/* Where a trajectory goes when its place is not said: 45 deg north. */
+static inline imk_geodetic imki_default_place(void)
+{
+    return (imk_geodetic){.latitude = 3.14159265358979323846 / 4.0};
+}
 
 #endif

@@ -232,6 +232,18 @@ static imk_status validate(const void *design, imk_error *error)
     return imk_fibre_optic_validate(design, error);
 }
 
+void imk_fibre_optic_reduce(const imk_fibre_optic *design, imk_model *model)
+{
+    imki_fibre_optic_reduce(design, imki_reduction_begin(model, &imk_fibre_optic_instrument));
+}
+
+static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
+                       imk_error *error)
+{
+    const imk_status status = imk_fibre_optic_validate(design, error);
+    return status == IMK_OK ? imki_fibre_optic_init(design, settings, state, error) : status;
+}
+
 static void reduce(const void *design, imk_model *model)
 {
     imk_fibre_optic_reduce(design, model);
@@ -309,7 +321,7 @@ const imk_instrument imk_fibre_optic_instrument = {
     IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
-    .init = imki_fibre_optic_init,
+    .init = init,
     .step = imki_fibre_optic_step,
     .observe = imki_fibre_optic_observe,
     .reduce = reduce,

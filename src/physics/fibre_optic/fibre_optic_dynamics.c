@@ -320,9 +320,7 @@ imk_status imki_fibre_optic_init(const void *design, const imk_physics_settings 
     const imk_fibre_optic *d = design;
     size_t count;
     double step;
-    imk_status status = imk_fibre_optic_validate(d, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
+    imk_status status = imki_settings_check(settings, error);
     if (status != IMK_OK)
         return status;
     const double longest = imki_fibre_optic_step_length(d, settings);

@@ -196,9 +196,8 @@ static void linear(imk_temperature_polynomial *polynomial, double coefficient)
     polynomial->maximum = 358.15;
 }
 
-void imk_fibre_optic_reduce(const imk_fibre_optic *design, imk_model *model)
+void imki_fibre_optic_reduce(const imk_fibre_optic *design, imk_triad *triad)
 {
-    imk_triad *triad = imki_reduction_begin(model, &imk_fibre_optic_instrument);
     const bool open = design->loop == IMK_FIBRE_OPTIC_OPEN;
     const double scale = imk_fibre_optic_scale(design);
     /* reading per rate of phase: what phases that are not Sagnac's are multiplied by */

@@ -40,6 +40,7 @@ static inline double imki_fibre_optic_scale_ratio(const imk_fibre_optic *design,
             design->wavelength_temperature * warmer);
 }
 
+/* Of a design that has been validated. */
 imk_status imki_fibre_optic_init(const void *design, const imk_physics_settings *settings,
                                  void *state, imk_error *error);
 void imki_fibre_optic_step(void *state, const imk_exposure *exposure, double *outputs);
@@ -90,5 +91,8 @@ typedef struct imki_fibre_optic_state {
     imki_wander phase;
     imki_draws draws;
 } imki_fibre_optic_state;
+
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_fibre_optic_reduce(const imk_fibre_optic *design, imk_triad *triad);
 
 #endif

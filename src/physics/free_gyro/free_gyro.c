@@ -386,6 +386,11 @@ static void observe(const void *memory, double *values)
     values[STOP] = state->on_stop ? 1.0 : 0.0;
 }
 
+void imk_free_gyro_reduce(const imk_free_gyro *design, imk_model *model)
+{
+    imki_free_gyro_reduce(design, imki_reduction_begin(model, &imk_free_gyro_instrument));
+}
+
 static void reduce(const void *design, imk_model *model)
 {
     imk_free_gyro_reduce(design, model);

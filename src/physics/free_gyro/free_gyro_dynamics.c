@@ -54,6 +54,11 @@ static const double stage_time[STAGES] = {0.0, A1, A1 + A2, 0.5, 0.5 + A3, 0.5 +
  * rounding does not add up. */
 enum { STEPS_BETWEEN_SINES = 64 };
 
+double imk_free_gyro_momentum(const imk_free_gyro *design)
+{
+    return design->rotor_polar * design->spin_rate * (1.0 + design->spin_error);
+}
+
 imki_free_gyro_parts imki_free_gyro_parts_of(const imk_free_gyro *design)
 {
     const double a = design->inner_inertia[0] + design->rotor_transverse;

@@ -15,11 +15,6 @@
 #define LOWEST_TEMPERATURE 233.15
 #define HIGHEST_TEMPERATURE 358.15
 
-double imk_free_gyro_momentum(const imk_free_gyro *design)
-{
-    return design->rotor_polar * design->spin_rate * (1.0 + design->spin_error);
-}
-
 static double outer_inertia(const imki_free_gyro_parts *parts, double cosine)
 {
     return parts->j_least + parts->a_c * cosine * cosine;
@@ -102,9 +97,8 @@ static void reduce_force_terms(const imki_free_gyro_parts *parts, const directio
     add_product(passed * s * e[2], axes->x, axes->y, square);
 }
 
-void imk_free_gyro_reduce(const imk_free_gyro *design, imk_model *model)
+void imki_free_gyro_reduce(const imk_free_gyro *design, imk_triad *gyro)
 {
-    imk_triad *gyro = imki_reduction_begin(model, &imk_free_gyro_instrument);
     const imki_free_gyro_parts parts = imki_free_gyro_parts_of(design);
     const directions axes = directions_of(design->start_outer, design->start_inner);
     const double c = imk_cos(design->start_inner), per_h = 1.0 / (parts.h * c);

@@ -24,6 +24,9 @@ void imki_trials_run(const imk_laboratory *laboratory, size_t count, imki_trial 
 /* Bytes of one state. */
 size_t imki_state_size(const imk_laboratory *laboratory);
 
+/* Whole samples of this time, rounded up, at least one. */
+size_t imki_samples_in(double time, double rate);
+
 /* A constant trial with this input along x added to the surroundings. */
 imki_trial imki_trial_of(const imk_laboratory *laboratory, double input);
 

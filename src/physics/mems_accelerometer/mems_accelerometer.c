@@ -308,6 +308,19 @@ static imk_status validate(const void *design, imk_error *error)
     return imk_mems_accelerometer_validate(design, error);
 }
 
+void imk_mems_accelerometer_reduce(const imk_mems_accelerometer *design, imk_model *model)
+{
+    imki_mems_accelerometer_reduce(design,
+                                   imki_reduction_begin(model, &imk_mems_accelerometer_instrument));
+}
+
+static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
+                       imk_error *error)
+{
+    const imk_status status = imk_mems_accelerometer_validate(design, error);
+    return status == IMK_OK ? imki_mems_init(design, settings, state, error) : status;
+}
+
 static void reduce(const void *design, imk_model *model)
 {
     imk_mems_accelerometer_reduce(design, model);
@@ -324,7 +337,7 @@ const imk_instrument imk_mems_accelerometer_instrument = {
     IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
-    .init = imki_mems_init,
+    .init = init,
     .step = imki_mems_step,
     .observe = imki_mems_observe,
     .reduce = reduce,

@@ -327,9 +327,7 @@ imk_status imki_mems_init(const void *design, const imk_physics_settings *settin
                           imk_error *error)
 {
     mems_state *m = state;
-    imk_status status = imk_mems_accelerometer_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
+    imk_status status = imki_settings_check(settings, error);
     if (status != IMK_OK)
         return status;
     memset(m, 0, sizeof *m);

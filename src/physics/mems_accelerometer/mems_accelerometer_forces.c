@@ -210,14 +210,6 @@ double imk_mems_accelerometer_limit(const imk_mems_accelerometer *d)
                                       : 0.5 * unit * square(d->feedback_voltage);
 }
 
-double imk_mems_accelerometer_rectification(const imk_mems_accelerometer *d, double frequency)
-{
-    const imki_mems_point p = imki_mems_operating_point(d);
-    const double w = 2.0 * IMKI_PI * frequency;
-    const double gain = p.a1 * p.a1 / (square(p.a1 - w * w) + square(p.damping * w));
-    return imki_mems_static_errors(d, &p).k2 * gain;
-}
-
 imk_mems_gains imk_mems_accelerometer_gains(const imk_mems_accelerometer *d)
 {
     const double w = 2.0 * IMKI_PI * d->bandwidth;

@@ -118,10 +118,14 @@ typedef struct imki_mems_state {
     imki_wander bias, gain;
 } imki_mems_state;
 
+/* Of a design that has been validated. */
 imk_status imki_mems_init(const void *design, const imk_physics_settings *settings, void *state,
                           imk_error *error);
 void imki_mems_step(void *state, const imk_exposure *exposure, double *outputs);
 void imki_mems_observe(const void *state, double *signals);
 double imki_mems_step_length(const void *design, const imk_physics_settings *settings);
+
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_mems_accelerometer_reduce(const imk_mems_accelerometer *design, imk_triad *triad);
 
 #endif

@@ -61,9 +61,7 @@ imk_status imki_servo_init(const void *design, const imk_physics_settings *setti
                            imk_error *error)
 {
     servo *s = state;
-    imk_status status = imk_pendulous_servo_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
+    imk_status status = imki_settings_check(settings, error);
     if (status != IMK_OK)
         return status;
     const design_type *d = design;

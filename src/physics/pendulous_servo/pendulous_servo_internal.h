@@ -33,9 +33,13 @@ static inline double imki_servo_stiffness(const imk_pendulous_servo *design)
 }
 
 double imki_servo_step_length(const void *design, const imk_physics_settings *settings);
+/* Of a design that has been validated. */
 imk_status imki_servo_init(const void *design, const imk_physics_settings *settings, void *state,
                            imk_error *error);
 void imki_servo_step(void *state, const imk_exposure *exposure, double *outputs);
 void imki_servo_observe(const void *state, double *signals);
+
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_pendulous_servo_reduce(const imk_pendulous_servo *design, imk_triad *triad);
 
 #endif

@@ -59,9 +59,7 @@ imk_status imki_rate_gyro_init(const void *design, const imk_physics_settings *s
 {
     const imk_rate_gyro *d = design;
     imki_rate_gyro_state *s = state;
-    imk_status status = imk_rate_gyro_validate(d, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
+    imk_status status = imki_settings_check(settings, error);
     if (status != IMK_OK)
         return status;
     memset(s, 0, sizeof *s);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The floated rate-integrating gyro: what its two files share. */
+/* The floated rate-integrating gyro: what its files share. */
 #ifndef IMUKI_RATE_INTEGRATING_GYRO_INTERNAL_H
 #define IMUKI_RATE_INTEGRATING_GYRO_INTERNAL_H
 
@@ -42,11 +42,15 @@ typedef struct imki_rate_integrating_gyro_state {
 } imki_rate_integrating_gyro_state;
 
 imki_gimbal imki_rate_integrating_gyro_gimbal(const imk_rate_integrating_gyro *design);
+/* Of a design that has been validated. */
 imk_status imki_rate_integrating_gyro_init(const void *design, const imk_physics_settings *settings,
                                            void *state, imk_error *error);
 void imki_rate_integrating_gyro_step(void *state, const imk_exposure *exposure, double *outputs);
 void imki_rate_integrating_gyro_observe(const void *state, double *signals);
 double imki_rate_integrating_gyro_step_length(const void *design,
                                               const imk_physics_settings *settings);
+
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *design, imk_triad *triad);
 
 #endif

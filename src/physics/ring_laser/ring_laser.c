@@ -452,6 +452,11 @@ static imk_status validate(const void *design, imk_error *error)
     return imk_ring_laser_validate(design, error);
 }
 
+void imk_ring_laser_reduce(const imk_ring_laser *design, imk_model *model)
+{
+    imki_ring_laser_reduce(design, imki_reduction_begin(model, &imk_ring_laser_instrument));
+}
+
 static void reduce(const void *design, imk_model *model)
 {
     imk_ring_laser_reduce(design, model);

@@ -147,4 +147,7 @@ void imki_ring_laser_slow(imki_ring_laser *gyro, double rate);
 /* Longest internal step of the full level [s], and the longest allowed. */
 double imki_ring_laser_step(const imk_ring_laser *design, double bend, double pull, double cycle);
 
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_ring_laser_reduce(const imk_ring_laser *design, imk_triad *triad);
+
 #endif

@@ -153,9 +153,8 @@ static void reduce_temperature(const imk_ring_laser *design, imk_triad *triad)
     }
 }
 
-void imk_ring_laser_reduce(const imk_ring_laser *design, imk_model *model)
+void imki_ring_laser_reduce(const imk_ring_laser *design, imk_triad *triad)
 {
-    imk_triad *triad = imki_reduction_begin(model, &imk_ring_laser_instrument);
     triad->bias.fixed.value[0] = design->null_shift.fixed;
     triad->bias.repeatability.value[0] = design->null_shift.repeatability;
     triad->scale_factor.fixed.value[0] = design->scale_factor.error;

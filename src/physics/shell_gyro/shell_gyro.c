@@ -215,6 +215,11 @@ static imk_status validate(const void *design, imk_error *error)
     return imk_shell_gyro_validate(design, error);
 }
 
+void imk_shell_gyro_reduce(const imk_shell_gyro *design, imk_model *model)
+{
+    imki_shell_gyro_reduce(design, imki_reduction_begin(model, &imk_shell_gyro_instrument));
+}
+
 static void reduce(const void *design, imk_model *model)
 {
     imk_shell_gyro_reduce(design, model);

@@ -176,4 +176,7 @@ void imki_shell_step(void *state_pointer, const imk_exposure *exposure, double *
 void imki_shell_observe(const void *state_pointer, double *values);
 double imki_shell_step_length(const void *design, const imk_physics_settings *settings);
 
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_shell_gyro_reduce(const imk_shell_gyro *design, imk_triad *triad);
+
 #endif

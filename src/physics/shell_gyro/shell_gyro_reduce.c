@@ -87,9 +87,8 @@ static void add_noise(const imk_shell_gyro *design, imk_triad *triad, double gai
         gain * design->anisotropy.damping_repeatability / (2.0 * k);
 }
 
-void imk_shell_gyro_reduce(const imk_shell_gyro *design, imk_model *model)
+void imki_shell_gyro_reduce(const imk_shell_gyro *design, imk_triad *triad)
 {
-    imk_triad *triad = imki_reduction_begin(model, &imk_shell_gyro_instrument);
     add_temperature(design, triad);
     const double gain = 1.0 + triad->scale_factor.fixed.value[0];
     add_noise(design, triad, gain);

@@ -451,6 +451,12 @@ static void observe(const void *memory, double *values)
     values[FALLEN] = state->fallen ? 1.0 : 0.0;
 }
 
+void imk_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_model *model)
+{
+    imki_suspended_rotor_reduce(design,
+                                imki_reduction_begin(model, &imk_suspended_rotor_instrument));
+}
+
 static void reduce(const void *design, imk_model *model)
 {
     imk_suspended_rotor_reduce(design, model);

@@ -127,9 +127,8 @@ static void reduce_drift(const imk_suspended_rotor *design, const imki_suspended
     gyro->bias.temperature.maximum = HIGHEST_TEMPERATURE;
 }
 
-void imk_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_model *model)
+void imki_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_triad *gyro)
 {
-    imk_triad *gyro = imki_reduction_begin(model, &imk_suspended_rotor_instrument);
     const imki_suspended_ball ball = imki_suspended_ball_of(design);
     const double step = design->readout_resolution;
     double s[3], row[3];

@@ -50,16 +50,26 @@ typedef struct imki_tuned_gyro_state {
     imki_draws torque_draws[2], pickoff_draws[2];
 } imki_tuned_gyro_state;
 
+/* Ag + Bg - Cg of the gimbal [kg m^2]. */
+static inline double imki_tuned_gyro_gimbal_sum(const imk_tuned_gyro *design)
+{
+    return design->gimbal_inertia_x + design->gimbal_inertia_y - design->gimbal_inertia_z;
+}
+
 void imki_rotor_start(imki_rotor_step *rotor, const imk_tuned_gyro *design, double step);
 void imki_capture_loop_start(imki_capture_loop *loop, const imk_tuned_gyro *design, double step);
 /* False when the loop, sampled at this step, drives the rotor. */
 bool imki_capture_loop_stable(const imk_tuned_gyro *design, double step);
 double imki_tuned_gyro_longest_step(const imk_tuned_gyro *design);
 
+/* Of a design that has been validated. */
 imk_status imki_tuned_gyro_init(const void *design, const imk_physics_settings *settings,
                                 void *state, imk_error *error);
 void imki_tuned_gyro_step(void *state, const imk_exposure *exposure, double *outputs);
 void imki_tuned_gyro_observe(const void *state, double *signals);
 double imki_tuned_gyro_step_length(const void *design, const imk_physics_settings *settings);
+
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_tuned_gyro_reduce(const imk_tuned_gyro *design, imk_triad *triad);
 
 #endif

@@ -224,6 +224,18 @@ static imk_status validate(const void *design, imk_error *error)
     return imk_tuning_fork_validate(design, error);
 }
 
+void imk_tuning_fork_reduce(const imk_tuning_fork *design, imk_model *model)
+{
+    imki_tuning_fork_reduce(design, imki_reduction_begin(model, &imk_tuning_fork_instrument));
+}
+
+static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
+                       imk_error *error)
+{
+    const imk_status status = imk_tuning_fork_validate(design, error);
+    return status == IMK_OK ? imki_fork_init(design, settings, state, error) : status;
+}
+
 static void reduce(const void *design, imk_model *model)
 {
     imk_tuning_fork_reduce(design, model);
@@ -314,7 +326,7 @@ const imk_instrument imk_tuning_fork_instrument = {
     IMKI_TABLES,
     .set_default = set_default,
     .validate = validate,
-    .init = imki_fork_init,
+    .init = init,
     .step = imki_fork_step,
     .observe = imki_fork_observe,
     .reduce = reduce,

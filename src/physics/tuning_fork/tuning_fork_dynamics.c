@@ -356,9 +356,7 @@ imk_status imki_fork_init(const void *place, const imk_physics_settings *setting
     size_t count = 0;
     double step = 0.0;
     int steps = 0;
-    imk_status status = imk_tuning_fork_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
+    imk_status status = imki_settings_check(settings, error);
     if (status == IMK_OK && settings->level == IMK_LEVEL_FULL)
         status = divide(design, settings, &count, &step, &steps, error);
     if (status != IMK_OK)

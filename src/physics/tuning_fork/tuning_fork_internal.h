@@ -181,10 +181,14 @@ typedef struct imki_fork_state {
 } imki_fork_state;
 
 /* The functions of imk_instrument that run the gyro. */
+/* Of a design that has been validated. */
 imk_status imki_fork_init(const void *place, const imk_physics_settings *settings, void *memory,
                           imk_error *error);
 void imki_fork_step(void *place, const imk_exposure *exposure, double *outputs);
 void imki_fork_observe(const void *place, double *signals);
 double imki_fork_step_length(const void *place, const imk_physics_settings *settings);
+
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_tuning_fork_reduce(const imk_tuning_fork *design, imk_triad *triad);
 
 #endif

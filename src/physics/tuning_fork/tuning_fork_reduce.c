@@ -108,9 +108,8 @@ static void bandwidth(const imk_tuning_fork *design, imk_triad *gyro)
         gyro->damping.value[0] = damping > narrowest ? damping : narrowest;
 }
 
-void imk_tuning_fork_reduce(const imk_tuning_fork *design, imk_model *model)
+void imki_tuning_fork_reduce(const imk_tuning_fork *design, imk_triad *gyro)
 {
-    imk_triad *gyro = imki_reduction_begin(model, &imk_tuning_fork_instrument);
     const double slope = slope_at(design, IMKI_FORK_REFERENCE), turn = 1e-6;
     const int leak = design->arrangement == IMK_TUNING_FORK_IN_PLANE ? 1 : 2;
     imk_tuning_fork turned = *design;

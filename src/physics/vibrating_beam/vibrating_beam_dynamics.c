@@ -82,9 +82,7 @@ imk_status imki_beams_start(const void *design, const imk_physics_settings *sett
 {
     const imk_vibrating_beam *d = design;
     imki_beams *s = state;
-    imk_status status = imk_vibrating_beam_validate(d, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
+    imk_status status = imki_settings_check(settings, error);
     if (status != IMK_OK)
         return status;
     memset(s, 0, sizeof *s);

@@ -45,12 +45,19 @@ double imki_beam_mass(const imk_vibrating_beam *design);
 double imki_beam_phase_density(const imk_vibrating_beam *design);
 double imki_suspension_density(const imk_vibrating_beam *design);
 
+/* The reading of two frequencies, by the nominal design [m/s^2]. */
+double imki_beams_reading(const imk_vibrating_beam *design, double f1, double f2);
+
 double imki_beams_step_length(const void *design, const imk_physics_settings *settings);
+/* Of a design that has been validated. */
 imk_status imki_beams_start(const void *design, const imk_physics_settings *settings, void *state,
                             imk_error *error);
 const imk_vibrating_beam *imki_beams_design(const void *state);
 /* A sample: the frequencies that the counters read [Hz]. */
 void imki_beams_advance(void *state, const imk_exposure *exposure, double frequency[2]);
 void imki_beams_observe(const void *state, double *signals);
+
+/* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
+void imki_vibrating_beam_reduce(const imk_vibrating_beam *design, imk_triad *triad);
 
 #endif

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Figures: what the script says, that gnuplot draws it, and what happens without gnuplot. */
+/* Figures as files: what gnuplot's script says, that it draws it, and what happens without it. */
 #define _POSIX_C_SOURCE 200809L
 #include "check.h"
-#include "report/figure_internal.h"
+#include "io/plot/gnuplot_internal.h"
+
+#include "imukit/figure_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -70,12 +72,12 @@ static bool exists(const char *path)
 static void test_script_quotes_texts(void **state)
 {
     (void)state;
-    imki_drawing drawing = {IMKI_TERMINAL_SVG, "it's.svg", "d.dat", 0, 0, false};
+    imki_drawing drawing = {IMKI_TERMINAL_PNG, "it's.png", "d.dat", 0, 0, false};
     size_t size = 0;
     char *script = imki_figure_script(&figure, &drawing, &size);
     assert_non_null(script);
     assert_int_equal(strlen(script), size);
-    assert_non_null(strstr(script, "set output 'it''s.svg'\n"));
+    assert_non_null(strstr(script, "set output 'it''s.png'\n"));
     assert_non_null(strstr(script, "set title 'a_b `id` $x' noenhanced\n"));
     assert_non_null(strstr(script, "title 'gyro_x''s' noenhanced"));
     assert_null(strchr(script, '"'));
@@ -86,7 +88,7 @@ static void test_script_quotes_texts(void **state)
 static void test_script_is_utf8(void **state)
 {
     (void)state;
-    imki_drawing drawing = {IMKI_TERMINAL_SVG, "a\xF6.svg", "d\xFF.dat", 0, 0, false};
+    imki_drawing drawing = {IMKI_TERMINAL_PNG, "a\xF6.png", "d\xFF.dat", 0, 0, false};
     imk_panel odd = panel;
     odd.title = "l\xF6g";
     const imk_figure one = {"", 1, 1, &odd};
@@ -94,7 +96,7 @@ static void test_script_is_utf8(void **state)
     char *script = imki_figure_script(&one, &drawing, &size);
     assert_non_null(script);
     assert_non_null(strstr(script, "set title 'l\xEF\xBF\xBDg' noenhanced\n"));
-    assert_non_null(strstr(script, "set output 'a\xF6.svg'\n"));
+    assert_non_null(strstr(script, "set output 'a\xF6.png'\n"));
     assert_non_null(strstr(script, "'d\xFF.dat' index 0"));
     free(script);
 }
@@ -104,7 +106,7 @@ static void test_script_is_utf8(void **state)
 static void test_axes_span_points_only(void **state)
 {
     (void)state;
-    imki_drawing drawing = {IMKI_TERMINAL_SVG, "x.svg", "d.dat", 0, 0, false};
+    imki_drawing drawing = {IMKI_TERMINAL_PNG, "x.png", "d.dat", 0, 0, false};
     size_t size = 0;
     char *script = imki_figure_script(&figure, &drawing, &size);
     double low = 0, high = 0;
@@ -117,28 +119,25 @@ static void test_axes_span_points_only(void **state)
     free(script);
 }
 
-static void test_draws_svg_and_png(void **state)
+static void test_draws_every_kind(void **state)
 {
     (void)state;
+    static const struct {
+        const char *name, *begins;
+    } kinds[] = {{"a.svg", "<svg "}, {"a.png", "\x89PNG\r\n\x1a\n"}, {"a.pdf", "%PDF-"}};
     imk_error error;
-    if (!imk_plot_available()) {
-        print_message("skipped: gnuplot is not installed\n");
-        skip();
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        if (i > 0 && !imk_plot_available()) {
+            print_message("skipped: gnuplot is not installed\n");
+            skip();
+        }
+        const char *path = path_in_directory(kinds[i].name);
+        CHECK_OK(imk_figure_write(&figure, path, &error));
+        char *drawn = read_text(path);
+        assert_memory_equal(drawn, kinds[i].begins, strlen(kinds[i].begins));
+        free(drawn);
+        unlink(path);
     }
-    char *path = path_in_directory("a.svg");
-    CHECK_OK(imk_figure_write(&figure, path, &error));
-    char *svg = read_text(path);
-    assert_non_null(strstr(svg, "<svg"));
-    assert_non_null(strstr(svg, "</svg>"));
-    assert_non_null(strstr(svg, "a_b `id` $x"));
-    free(svg);
-    unlink(path);
-    path = path_in_directory("a.png");
-    CHECK_OK(imk_figure_write(&figure, path, &error));
-    char *png = read_text(path);
-    assert_memory_equal(png, "\x89PNG\r\n\x1a\n", 8);
-    free(png);
-    unlink(path);
 }
 
 /* A map: regions alone span the axes, and their names are texts like any other. */
@@ -162,7 +161,7 @@ static void test_regions(void **state)
     const imk_panel two[] = {map, map};
     const imk_figure drawn = {.title = "", .panel_count = 1, .columns = 1, .panels = &map};
     const imk_figure large = {.title = "", .panel_count = 2, .columns = 2, .panels = two};
-    imki_drawing drawing = {IMKI_TERMINAL_SVG, "a.svg", "a.dat", 0, 0, false};
+    imki_drawing drawing = {IMKI_TERMINAL_PNG, "a.png", "a.dat", 0, 0, false};
     size_t size = 0;
     char *script = imki_figure_script(&drawn, &drawing, &size);
     assert_non_null(script);
@@ -175,67 +174,49 @@ static void test_regions(void **state)
     free(script);
     script = imki_figure_script(&large, &drawing, &size);
     assert_non_null(script);
-    assert_non_null(strstr(script, "svg size 1600,580 "));
+    assert_non_null(strstr(script, "pngcairo size 3200,1160 "));
     free(script);
-    if (!imk_plot_available())
-        return;
-    char *path = path_in_directory("map.svg");
-    imk_error error;
-    CHECK_OK(imk_figure_write(&drawn, path, &error));
-    char *svg = read_text(path);
-    assert_non_null(strstr(svg, "ring laser"));
-    free(svg);
-    unlink(path);
 }
 
 static void test_refuses_what_cannot_be_drawn(void **state)
 {
     (void)state;
     imk_error error;
-    CHECK_STATUS(imk_figure_write(&figure, path_in_directory("a.pdf"), &error), IMK_ERROR_FORMAT);
+    CHECK_STATUS(imk_figure_write(&figure, path_in_directory("a.gif"), &error), IMK_ERROR_FORMAT);
     assert_non_null(strstr(error.expected, ".svg"));
     double nothing[POINTS] = {0}; /* no logarithm */
     imk_curve curve = {"", IMK_CURVE_POINTS, 0, POINTS, tau, nothing, NULL, NULL};
     imk_panel empty = {"empty", "", "", true, true, 1, &curve, 0, NULL, IMK_KEY_UPPER};
     imk_figure bad = {"", 1, 1, &empty};
-    CHECK_STATUS(imk_figure_write(&bad, path_in_directory("a.svg"), &error), IMK_ERROR_EMPTY);
+    CHECK_STATUS(imk_figure_write(&bad, path_in_directory("a.png"), &error), IMK_ERROR_EMPTY);
     assert_string_equal(error.field, "empty");
-    assert_false(exists(path_in_directory("a.svg")));
+    assert_false(exists(path_in_directory("a.png")));
 }
 
-/* Without gnuplot on PATH the script and its data are left, and the message names the package. */
+/* Without gnuplot on PATH, SVG is drawn as ever; of the rest the message names the package. */
 static void test_without_gnuplot(void **state)
 {
     (void)state;
+    static const char *const others[] = {"b.png", "b.pdf", "term"};
     imk_error error;
     char *saved = strdup(getenv("PATH"));
     setenv("PATH", directory, 1);
     assert_false(imk_plot_available());
-    const imk_status in_letters = imk_figure_write(&figure, "term", &error);
-    imk_status status = imk_figure_write(&figure, path_in_directory("b.svg"), &error);
-    char *svg = NULL;
-    size_t size;
-    imk_error svg_error;
-    imk_status svg_status = imk_figure_svg(&figure, &svg, &size, &svg_error);
+    CHECK_OK(imk_figure_write(&figure, path_in_directory("b.svg"), &error));
+    unlink(path_in_directory("b.svg"));
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        const bool in_letters = strcmp(others[i], "term") == 0;
+        const char *path = in_letters ? others[i] : path_in_directory(others[i]);
+        CHECK_STATUS(imk_figure_write(&figure, path, &error), IMK_ERROR_UNSUPPORTED);
+        assert_non_null(strstr(error.expected, "gnuplot-nox"));
+        assert_int_equal(strstr(error.expected, ".svg needs nothing") != NULL, !in_letters);
+        assert_false(exists(path));
+    }
     setenv("PATH", saved, 1);
     free(saved);
-    CHECK_STATUS(in_letters, IMK_ERROR_UNSUPPORTED);
-    CHECK_STATUS(status, IMK_ERROR_UNSUPPORTED);
-    CHECK_STATUS(svg_status, IMK_ERROR_UNSUPPORTED);
-    assert_non_null(strstr(error.expected, "gnuplot-nox"));
-    assert_non_null(strstr(svg_error.expected, "gnuplot-nox"));
-    assert_false(exists(path_in_directory("b.svg")));
-    char *data = read_text(path_in_directory("b.svg.dat"));
-    assert_non_null(strstr(data, "\n1 1 0.9 1.1\n"));
-    free(data);
-    char *script = read_text(path_in_directory("b.svg.gp"));
-    assert_non_null(strstr(script, "b.svg.dat' index 0"));
-    free(script);
-    unlink(path_in_directory("b.svg.dat"));
-    unlink(path_in_directory("b.svg.gp"));
 }
 
-/* Without a temporary folder nothing is drawn, and nothing is freed that was not made. */
+/* Without a temporary folder gnuplot draws nothing, and nothing is freed that was not made. */
 static void test_without_temporary_folder(void **state)
 {
     (void)state;
@@ -245,20 +226,15 @@ static void test_without_temporary_folder(void **state)
     const char *before = getenv("TMPDIR");
     char *saved = before ? strdup(before) : NULL;
     setenv("TMPDIR", "/nonexistent", 1);
-    imk_status status = imk_figure_write(&figure, path_in_directory("a.svg"), &error);
-    char *svg = NULL;
-    size_t size;
-    const imk_status svg_status = imk_figure_svg(&figure, &svg, &size, NULL);
+    imk_status status = imk_figure_write(&figure, path_in_directory("a.png"), &error);
     if (saved)
         setenv("TMPDIR", saved, 1);
     else
         unsetenv("TMPDIR");
     free(saved);
     CHECK_STATUS(status, IMK_ERROR_OPEN);
-    CHECK_STATUS(svg_status, IMK_ERROR_OPEN);
     assert_string_equal(error.field, "temporary folder");
-    assert_null(svg);
-    assert_false(exists(path_in_directory("a.svg")));
+    assert_false(exists(path_in_directory("a.png")));
 }
 
 int main(void)
@@ -267,7 +243,7 @@ int main(void)
         cmocka_unit_test(test_script_quotes_texts),
         cmocka_unit_test(test_script_is_utf8),
         cmocka_unit_test(test_axes_span_points_only),
-        cmocka_unit_test(test_draws_svg_and_png),
+        cmocka_unit_test(test_draws_every_kind),
         cmocka_unit_test(test_regions),
         cmocka_unit_test(test_refuses_what_cannot_be_drawn),
         cmocka_unit_test(test_without_gnuplot),

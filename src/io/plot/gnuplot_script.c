@@ -1,103 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A figure as a gnuplot script and a file of numbers.
+/* A figure as a gnuplot script and a file of numbers, for the terminal and for pictures that are
+ * not SVG. Axes, sizes and colours are those of our own drawings (report/figure_axes.c).
  *
  * Every text of the caller is drawn without gnuplot's markup (`noenhanced`) and quoted, so that an
- * underscore is an underscore and no label can run a command. The axes span points, error bars and
- * bands; lines are clipped to them, because the asymptote of one noise term would otherwise squeeze
- * the data into a corner. */
-#include "figure_internal.h"
+ * underscore is an underscore and no label can run a command. */
+#include "gnuplot_internal.h"
 
-#include "growing_text_internal.h"
+#include "report/figure_internal.h"
 
 #include "imukit/decimal.h"
 #include "imukit/utf8.h"
-
-#include <math.h>
-
-/* Colours that readers with any colour vision can tell apart [OKABE2008], and two greys. */
-static const char *const palette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                      "#e69f00", "#56b4e9", "#333333", "#999999"};
-enum { PALETTE_SIZE = sizeof palette / sizeof palette[0] };
-
-/* Up to this ratio an axis has labels at 1, 2 and 5. */
-static const double few_decades = 300;
-
-enum { PANEL_WIDTH = 480, PANEL_HEIGHT = 380, SINGLE_WIDTH = 860, SINGLE_HEIGHT = 560 };
-enum { LARGE_WIDTH = 800, LARGE_HEIGHT = 540 };
-
-typedef struct span {
-    double low, high;
-} span;
-
-static bool drawable(double value, bool logarithmic)
-{
-    return isfinite(value) && (!logarithmic || value > 0);
-}
-
-static void span_add(span *s, double value, bool logarithmic)
-{
-    if (!drawable(value, logarithmic))
-        return;
-    s->low = value < s->low ? value : s->low;
-    s->high = value > s->high ? value : s->high;
-}
-
-static bool is_filled(const imk_curve *curve)
-{
-    return curve->style == IMK_CURVE_BAND || curve->style == IMK_CURVE_LAYER;
-}
-
-static bool spans_axes(const imk_curve *curve)
-{
-    return curve->style == IMK_CURVE_POINTS || curve->style == IMK_CURVE_MARKS || is_filled(curve);
-}
-
-/* Spans of a panel's points, bands and regions; of its lines when it has nothing else. */
-static void panel_spans(const imk_panel *panel, span *x, span *y)
-{
-    bool lines_only = panel->region_count == 0;
-    for (size_t c = 0; c < panel->curve_count; c++)
-        lines_only = lines_only && !spans_axes(&panel->curves[c]);
-    *x = *y = (span){(double)INFINITY, -(double)INFINITY};
-    for (size_t r = 0; r < panel->region_count; r++) {
-        const imk_region *region = &panel->regions[r];
-        span_add(x, region->x_low, panel->x_logarithmic);
-        span_add(x, region->x_high, panel->x_logarithmic);
-        span_add(y, region->y_low, panel->y_logarithmic);
-        span_add(y, region->y_high, panel->y_logarithmic);
-    }
-    for (size_t c = 0; c < panel->curve_count; c++) {
-        const imk_curve *curve = &panel->curves[c];
-        if (!lines_only && !spans_axes(curve))
-            continue;
-        for (size_t i = 0; i < curve->count; i++) {
-            if (!drawable(curve->x[i], panel->x_logarithmic))
-                continue;
-            span_add(x, curve->x[i], panel->x_logarithmic);
-            if (!is_filled(curve))
-                span_add(y, curve->y[i], panel->y_logarithmic);
-            if (curve->lower && curve->upper) {
-                span_add(y, curve->lower[i], panel->y_logarithmic);
-                span_add(y, curve->upper[i], panel->y_logarithmic);
-            }
-        }
-    }
-}
-
-imk_status imki_figure_check(const imk_figure *figure, imk_error *error)
-{
-    if (!figure || figure->panel_count == 0 || !figure->panels)
-        return imk_error_set(error, IMK_ERROR_EMPTY, "figure", NULL, "a panel to draw");
-    for (size_t p = 0; p < figure->panel_count; p++) {
-        span x, y;
-        panel_spans(&figure->panels[p], &x, &y);
-        if (!(x.low <= x.high) || !(y.low <= y.high))
-            return imk_error_set(error, IMK_ERROR_EMPTY, figure->panels[p].title,
-                                 "no finite point (positive on a logarithmic axis)",
-                                 "data to draw");
-    }
-    return IMK_OK;
-}
 
 /* Text in single quotes, where a quote is doubled and nothing else is special; control characters
  * become blanks, and bytes that are no UTF-8 its replacement character. */
@@ -135,33 +47,22 @@ static void number(imki_text *out, double value)
     imki_text_put(out, isfinite(value) ? text : "NaN");
 }
 
-/* A logarithmic axis spans at least a factor of two: a flat response is drawn flat. */
-static const double least_decades = 0.3;
-
-/* Some air around the data: a tenth of the span, on a logarithmic axis in decades. */
-static void range(imki_text *out, const char *axis, span s, bool logarithmic)
+static void range(imki_text *out, const char *name, const imki_axis *axis)
 {
-    double low = logarithmic ? log10(s.low) : s.low;
-    double high = logarithmic ? log10(s.high) : s.high;
-    double air = high > low ? 0.07 * (high - low) : fmax(0.1 * fabs(high), logarithmic ? 0.3 : 0.1);
-    if (logarithmic)
-        air = fmax(air, 0.5 * (least_decades - (high - low)));
-    low -= air;
-    high += air;
-    imki_text_add(out, "set %srange [", axis);
-    number(out, logarithmic ? pow(10, low) : low);
+    imki_text_add(out, "set %srange [", name);
+    number(out, axis->logarithmic ? pow(10, fmax(axis->low, -307)) : axis->low);
     imki_text_put_char(out, ':');
-    number(out, logarithmic ? pow(10, high) : high);
+    number(out, axis->logarithmic ? pow(10, fmin(axis->high, 308)) : axis->high);
     imki_text_put(out, "]\n");
 }
 
 /* Ticks at 1, 2 and 5 for an axis of few decades, where powers of ten alone would be one label. */
-static void close_ticks(imki_text *out, const char *axis, span s)
+static void close_ticks(imki_text *out, const char *name, const imki_axis *axis)
 {
     static const int digits[] = {1, 2, 5};
     const char *comma = "";
-    imki_text_add(out, "set %stics (", axis);
-    for (int power = (int)floor(log10(s.low)) - 1; power <= (int)ceil(log10(s.high)); power++) {
+    imki_text_add(out, "set %stics (", name);
+    for (int power = (int)floor(axis->low); power <= (int)ceil(axis->high); power++) {
         for (int i = 0; i < 3; i++) {
             imki_text_add(out, "%s'", comma);
             if (power >= -3 && power <= 4)
@@ -176,26 +77,26 @@ static void close_ticks(imki_text *out, const char *axis, span s)
     imki_text_put(out, ")\n");
 }
 
-static void write_axis(imki_text *out, const char *axis, const char *label, span s,
-                       bool logarithmic, bool text_terminal)
+static void write_axis(imki_text *out, const char *name, const char *label, const imki_axis *axis,
+                       bool text_terminal)
 {
-    imki_text_add(out, "set %slabel ", axis);
+    imki_text_add(out, "set %slabel ", name);
     quote(out, label);
-    imki_text_add(out, " noenhanced\nset %stics autofreq\n", axis);
-    if (logarithmic)
-        imki_text_add(out, "set logscale %s 10\nset m%stics 10\nset format %s '%s'\n", axis, axis,
-                      axis, text_terminal ? "%.0e" : "10^{%T}");
+    imki_text_add(out, " noenhanced\nset %stics autofreq\n", name);
+    if (axis->logarithmic)
+        imki_text_add(out, "set logscale %s 10\nset m%stics 10\nset format %s '%s'\n", name, name,
+                      name, text_terminal ? "%.0e" : "10^{%T}");
     else
-        imki_text_add(out, "unset logscale %s\nset m%stics 2\nset format %s '%%g'\n", axis, axis,
-                      axis);
-    range(out, axis, s, logarithmic);
-    if (logarithmic && !text_terminal && s.high < few_decades * s.low)
-        close_ticks(out, axis, s);
+        imki_text_add(out, "unset logscale %s\nset m%stics 2\nset format %s '%%g'\n", name, name,
+                      name);
+    range(out, name, axis);
+    if (axis->few_decades && !text_terminal)
+        close_ticks(out, name, axis);
 }
 
 static void write_curve(imki_text *out, const imk_curve *curve, size_t index, const imki_drawing *d)
 {
-    const char *color = palette[(unsigned)curve->color % PALETTE_SIZE];
+    const char *color = imki_color(curve->color);
     bool text = d->terminal == IMKI_TERMINAL_TEXT;
     quote_name(out, d->data);
     imki_text_add(out, " index %zu ", index);
@@ -257,7 +158,7 @@ static void write_regions(imki_text *out, const imk_panel *panel, bool text)
     imki_text_put(out, "unset object\nunset label\n");
     for (size_t r = 0; r < panel->region_count; r++) {
         const imk_region *region = &panel->regions[r];
-        const char *color = palette[(unsigned)region->color % PALETTE_SIZE];
+        const char *color = imki_color(region->color);
         if (!text) {
             imki_text_add(out, "set object %zu rectangle from ", r + 1);
             corner(out, region->x_low, region->y_low);
@@ -298,21 +199,21 @@ static void write_key(imki_text *out, imk_key_place place, bool single)
 static void write_panel(imki_text *out, const imk_panel *panel, size_t first_index,
                         const imki_drawing *drawing, bool single)
 {
-    span x, y;
-    panel_spans(panel, &x, &y);
+    imki_axis x, y;
+    imki_panel_axes(panel, &x, &y);
     bool text = drawing->terminal == IMKI_TERMINAL_TEXT;
     imki_text_put(out, "set title ");
     quote(out, panel->title);
     imki_text_put(out, " noenhanced\n");
-    write_axis(out, "x", panel->x_label, x, panel->x_logarithmic, text);
-    write_axis(out, "y", panel->y_label, y, panel->y_logarithmic, text);
+    write_axis(out, "x", panel->x_label, &x, text);
+    write_axis(out, "y", panel->y_label, &y, text);
     write_regions(out, panel, text);
     if (!text)
         write_key(out, panel->key, single);
     const char *separator = "plot ";
     for (size_t c = 0; c < panel->curve_count; c++) {
         /* A band of letters would hide the points. */
-        if (text && is_filled(&panel->curves[c]) && panel->curve_count > 1)
+        if (text && imki_curve_is_filled(&panel->curves[c]) && panel->curve_count > 1)
             continue;
         imki_text_put(out, separator);
         write_curve(out, &panel->curves[c], first_index + c, drawing);
@@ -324,44 +225,22 @@ static void write_panel(imki_text *out, const imk_panel *panel, size_t first_ind
     imki_text_put_char(out, '\n');
 }
 
-static size_t figure_columns(const imk_figure *figure)
-{
-    size_t columns = figure->columns > 0 ? figure->columns : 1;
-    return columns < figure->panel_count ? columns : figure->panel_count;
-}
-
-static bool is_map(const imk_figure *figure)
-{
-    for (size_t p = 0; p < figure->panel_count; p++)
-        if (figure->panels[p].region_count > 0)
-            return true;
-    return false;
-}
-
 static void write_terminal(imki_text *out, const imk_figure *figure, const imki_drawing *drawing)
 {
-    size_t columns = figure_columns(figure);
-    size_t rows = (figure->panel_count + columns - 1) / columns;
-    bool single = figure->panel_count == 1;
-    size_t width = columns * (is_map(figure) ? LARGE_WIDTH : PANEL_WIDTH);
-    size_t height = rows * (is_map(figure) ? LARGE_HEIGHT : PANEL_HEIGHT) + 40;
-    if (single) {
-        width = SINGLE_WIDTH;
-        height = SINGLE_HEIGHT;
-    }
+    const imki_figure_size size = imki_figure_measure(figure);
     switch (drawing->terminal) {
-    case IMKI_TERMINAL_SVG:
-        imki_text_add(out,
-                      "set terminal svg size %zu,%zu dynamic background '#ffffff' "
-                      "font 'DejaVu Sans,Verdana,sans-serif,12' enhanced\n",
-                      width, height);
-        break;
     case IMKI_TERMINAL_PNG:
         /* Twice the size at twice the scale: sharp on dense screens and in print. */
         imki_text_add(out,
-                      "set terminal pngcairo size %zu,%zu background '#ffffff' "
+                      "set terminal pngcairo size %d,%d background '#ffffff' "
                       "font 'DejaVu Sans,12' fontscale 1.8 linewidth 2 pointscale 2 enhanced\n",
-                      2 * width, 2 * height);
+                      2 * size.width, 2 * size.height);
+        break;
+    case IMKI_TERMINAL_PDF:
+        imki_text_add(out,
+                      "set terminal pdfcairo size %d.%02din,%d.%02din background '#ffffff' "
+                      "font 'DejaVu Sans,12' enhanced\n",
+                      size.width / 100, size.width % 100, size.height / 100, size.height % 100);
         break;
     case IMKI_TERMINAL_TEXT:
         imki_text_add(out, "set terminal dumb size %d,%d noenhanced %s\n", drawing->width,
@@ -390,15 +269,13 @@ static void write_style(imki_text *out, const imk_figure *figure, const imki_dra
 char *imki_figure_script(const imk_figure *figure, const imki_drawing *drawing, size_t *size)
 {
     imki_text text = {.bytes = NULL}, *out = &text;
-    imki_text_put(out,
-                  "# Drawn by imukit. Run it again with: gnuplot FILE.gp\nset encoding utf8\n");
+    imki_text_put(out, "set encoding utf8\n");
     write_terminal(out, figure, drawing);
     write_style(out, figure, drawing);
-    size_t columns = figure_columns(figure);
+    const imki_figure_size grid = imki_figure_measure(figure);
     bool multiplot = figure->panel_count > 1 && drawing->terminal != IMKI_TERMINAL_TEXT;
     if (multiplot) {
-        imki_text_add(out, "set multiplot layout %zu,%zu",
-                      (figure->panel_count + columns - 1) / columns, columns);
+        imki_text_add(out, "set multiplot layout %zu,%zu", grid.rows, grid.columns);
         if (figure->title && figure->title[0]) {
             imki_text_put(out, " title ");
             quote(out, figure->title);

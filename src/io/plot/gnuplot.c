@@ -3,14 +3,14 @@
  * time, and a signal that ends this process ends it too (io/leftovers.c). What it has drawn is
  * taken when it is whole only: gnuplot does not notice that the disk is full. */
 #define _GNU_SOURCE /* posix_spawn_file_actions_addchdir_np() */
-#include "figure_internal.h"
+#include "gnuplot_internal.h"
 
 #include "imukit/decimal.h"
+#include "imukit/figure_file.h"
 #include "io/file/leftovers_internal.h"
 #include "io/file/system_error_internal.h"
 #include "scratch_folder_internal.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -198,13 +198,11 @@ static bool ends_with(const char *text, size_t size, const char *end, size_t end
 static bool is_whole(const imk_figure *figure, const imki_drawing *drawing, const char *image,
                      size_t size)
 {
-    static const char svg_end[] = "</svg>", png_end[] = "\0\0\0\0IEND\xAE\x42\x60\x82";
+    static const char pdf_end[] = "%%EOF\n", png_end[] = "\0\0\0\0IEND\xAE\x42\x60\x82";
     size_t lines = 0;
     switch (drawing->terminal) {
-    case IMKI_TERMINAL_SVG:
-        while (size > 0 && isspace((unsigned char)image[size - 1]))
-            size--;
-        return ends_with(image, size, svg_end, sizeof svg_end - 1);
+    case IMKI_TERMINAL_PDF:
+        return ends_with(image, size, pdf_end, sizeof pdf_end - 1);
     case IMKI_TERMINAL_PNG:
         return ends_with(image, size, png_end, sizeof png_end - 1);
     case IMKI_TERMINAL_TEXT:

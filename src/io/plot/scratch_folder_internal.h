@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The private temporary folder in which gnuplot draws. */
-#ifndef IMUKIT_REPORT_SCRATCH_FOLDER_INTERNAL_H
-#define IMUKIT_REPORT_SCRATCH_FOLDER_INTERNAL_H
+#ifndef IMUKIT_SCRATCH_FOLDER_INTERNAL_H
+#define IMUKIT_SCRATCH_FOLDER_INTERNAL_H
 
 #include "imukit/status.h"
 

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file figure_file.h
+ *  Figures and animations as files and on the terminal. Part of libimukit-io. */
+#ifndef IMUKIT_FIGURE_FILE_H
+#define IMUKIT_FIGURE_FILE_H
+
+#include "imukit/report.h"
+#include "imukit/status.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** True when gnuplot is on PATH, which all but SVG needs. */
+IMK_API bool imk_plot_available(void);
+
+/** Draw a figure to FILE.svg, FILE.png or FILE.pdf, or to standard output with "term" (in letters,
+ *  as large as the terminal; in colours on a terminal unless NO_COLOR is set). SVG is drawn by
+ *  imk_figure_svg(), the others by gnuplot, which runs in a folder of TMPDIR and sees no name but
+ * its own there, so none is a command to it; it has 120 s, or IMUKIT_GNUPLOT_SECONDS.
+ *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_FORMAT
+ *          (another ending), IMK_ERROR_UNSUPPORTED (gnuplot is missing, or failed), IMK_ERROR_OPEN,
+ *          IMK_ERROR_WRITE, IMK_ERROR_MEMORY */
+IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_error *error);
+
+/** Write an animation to a file whose name ends in .svg.
+ *  @return as imk_animation_svg(); IMK_ERROR_FORMAT (another ending), _OPEN, _WRITE */
+IMK_API imk_status imk_animation_write(const imk_animation *animation, const char *path,
+                                       imk_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

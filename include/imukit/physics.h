@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file physics.h
+ *  Everything of libimukit-physics: the instruments and their laboratory. */
+#ifndef IMUKIT_PHYSICS_H
+#define IMUKIT_PHYSICS_H
+
+#include "imukit/fibre_optic.h"
+#include "imukit/free_gyro.h"
+#include "imukit/instrument.h"
+#include "imukit/laboratory.h"
+#include "imukit/mems_accelerometer.h"
+#include "imukit/pendulous_servo.h"
+#include "imukit/rate_gyro.h"
+#include "imukit/rate_integrating_gyro.h"
+#include "imukit/ring_laser.h"
+#include "imukit/shell_gyro.h"
+#include "imukit/spinning_mass.h"
+#include "imukit/suspended_rotor.h"
+#include "imukit/tuned_gyro.h"
+#include "imukit/tuning_fork.h"
+#include "imukit/vibrating_beam.h"
+
+#endif
