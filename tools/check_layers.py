@@ -6,7 +6,7 @@ Layers: a module includes only headers from layers to its left; within braces no
 neighbour. The command includes public headers and its own.
 
     base < model < {noise, motion} < {simulate, identify, compensate}
-         < {calibrate, navigate, physics} < jobs < io < report < cli
+         < {calibrate, navigate, physics} < jobs < report < io < cli
 
 Rooms: a folder holds at most 35 files.
 
@@ -22,7 +22,7 @@ import subprocess
 import sys
 
 LAYERS = [["base"], ["model"], ["noise", "motion"], ["simulate", "identify", "compensate"],
-          ["calibrate", "navigate", "physics"], ["jobs"], ["io"], ["report"], ["cli"]]
+          ["calibrate", "navigate", "physics"], ["jobs"], ["report"], ["io"], ["cli"]]
 RANK = {module: rank for rank, modules in enumerate(LAYERS) for module in modules}
 
 # Module of each public header. A new one must be added here.
@@ -42,13 +42,15 @@ PUBLIC = {
     "physics": "fibre_optic free_gyro instrument laboratory mems_accelerometer pendulous_servo "
                "rate_gyro rate_integrating_gyro ring_laser shell_gyro spinning_mass "
                "suspended_rotor tuned_gyro tuning_fork vibrating_beam",
-    "io": "campaign design_file firmware_file io log memory_limit model_file motion_file "
-          "output_file parameter_file thread_pool",
-    "report": "report",
+    "jobs": "allan_log allocator channel_units even_record identify_log job readable record "
+            "simulate_log spectrum_log",
+    "report": "report result show",
+    "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "
+          "motion_file output_file parameter_file thread_pool",
 }
 MODULE_OF = {name: module for module, names in PUBLIC.items() for name in names.split()}
 # Headers that gather others, for users: each public header is in one of them.
-GATHERING = {"imukit", "physics", "io"}
+GATHERING = {"imukit", "physics", "jobs", "io"}
 
 ROOM = 35
 LOOP = 3

@@ -53,8 +53,8 @@ declared() { # functions and constants with IMK_API in the headers given
         sed 's/.* //; s/[(;]//' | tr -d ' (' | sort -u
 }
 count=0
-compare() { # LIBRARY HEADER: what it exports, and what that header and those it gathers declare
-    local headers="$2 $(sed -n 's/#include "\(.*\)"/include\/\1/p' "$2")" exported name
+compare() { # LIBRARY HEADER…: what it exports, and what these and those they gather declare
+    local headers="${*:2} $(sed -n 's/#include "\(.*\)"/include\/\1/p' "${@:2}")" exported name
     exported=$(nm -D --defined-only "$build/$1.so" | awk 'NF == 3 { print $3 }' | sort -u)
     for name in $(comm -13 <(declared $headers) <(echo "$exported")); do
         complain "$1 exports $name, which no header of its own declares"
@@ -66,7 +66,7 @@ compare() { # LIBRARY HEADER: what it exports, and what that header and those it
 }
 compare libimukit include/imukit/imukit.h
 compare libimukit-physics include/imukit/physics.h
-compare libimukit-io include/imukit/io.h
+compare libimukit-io include/imukit/io.h include/imukit/jobs.h
 
 echo "$count public functions"
 exit $status

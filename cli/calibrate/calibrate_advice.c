@@ -60,9 +60,9 @@ static bool find_poses(imk_calibration *c, imk_pose_advice advice[POSES])
     c->record[0] = &none;
     c->record_count = 1;
     const size_t size = imk_next_pose_workspace_size(c);
-    void *workspace = malloc(size > 0 ? size : 1);
+    void *workspace = command_memory(NULL, size);
     const bool found =
-        workspace && imk_next_pose(c, pose_sigma, workspace, size, POSES, advice, &error) == IMK_OK;
+        imk_next_pose(c, pose_sigma, workspace, size, POSES, advice, &error) == IMK_OK;
     free(workspace);
     return found;
 }
@@ -72,27 +72,24 @@ static double whole_degrees(double angle)
     return floor(angle / degree + 0.5) + 0.0;
 }
 
-bool bench_advise(const bench *b, const bench_log *log, char *text, size_t size)
+void bench_advise(const bench *b, const bench_log *log, const char *before, char *text, size_t size)
 {
     imk_pose_advice advice[POSES];
-    imk_calibration *c = calloc(1, sizeof *c);
-    bool found = false;
-    if (c) {
-        imk_calibration_default(c);
-        c->gravity = b->calibration->gravity;
-        c->observation_capacity = log->interval_count + POSES;
-        c->observation = calloc(c->observation_capacity, sizeof *c->observation);
-        free_accelerometers(c);
-        found = c->observation && observe_rests(b, log, c) && find_poses(c, advice);
-        free(c->observation);
-    }
+    imk_calibration *c = command_zeroed(sizeof *c);
+    imk_calibration_default(c);
+    c->gravity = b->calibration->gravity;
+    c->observation_capacity = log->interval_count + POSES;
+    c->observation = command_zeroed(c->observation_capacity * sizeof *c->observation);
+    free_accelerometers(c);
+    const bool found = observe_rests(b, log, c) && find_poses(c, advice);
+    free(c->observation);
     free(c);
-    size_t used = 0;
-    for (int k = 0; found && k < POSES && used < size; k++)
-        used += (size_t)snprintf(text + used, size - used, "%sroll %.0f pitch %.0f deg",
-                                 k == 0           ? ""
-                                 : k + 1 == POSES ? " and "
-                                                  : ", ",
-                                 whole_degrees(advice[k].roll), whole_degrees(advice[k].pitch));
-    return found;
+    text[0] = '\0';
+    if (found)
+        snprintf(text, size,
+                 "%sroll %.0f pitch %.0f deg, roll %.0f pitch %.0f deg and roll %.0f pitch %.0f "
+                 "deg",
+                 before, whole_degrees(advice[0].roll), whole_degrees(advice[0].pitch),
+                 whole_degrees(advice[1].roll), whole_degrees(advice[1].pitch),
+                 whole_degrees(advice[2].roll), whole_degrees(advice[2].pitch));
 }

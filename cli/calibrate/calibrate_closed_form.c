@@ -44,9 +44,7 @@ static int find(bench *b, imk_ferraris_stretch *stretch, size_t *count)
     bench_log *log = &b->log[0];
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_FERRARIS, &log->record, &log->settings);
-    void *workspace = malloc(size);
-    if (!workspace)
-        return command_failed("memory is exhausted");
+    void *workspace = command_memory(NULL, size);
     imk_status status = imk_ferraris_stretches(&log->record, &log->settings, &b->calibration->model,
                                                b->calibration->gravity, workspace, size, STRETCHES,
                                                stretch, count, &error);
@@ -79,11 +77,9 @@ static void state(imk_calibration_result *r, int sensor, int term, int elements)
 }
 
 /* As a result of the estimator: sigmas to first order, without correlations. */
-static int fill_result(bench *b)
+static void fill_result(bench *b)
 {
-    imk_calibration_result *r = b->result = calloc(1, sizeof *r);
-    if (!r)
-        return command_failed("memory is exhausted");
+    imk_calibration_result *r = b->result = command_zeroed(sizeof *r);
     r->model = b->calibration->model;
     imk_triad *triad[2] = {&r->model.gyro, &r->model.accel};
     const imk_ferraris_triad *solved[2] = {&b->ferraris->gyro, &b->ferraris->accel};
@@ -103,7 +99,6 @@ static int fill_result(bench *b)
     const char *frame = imk_triad_frame_name(IMK_FRAME_REFERENCE);
     snprintf(r->model.gyro_evidence.frame, sizeof r->model.gyro_evidence.frame, "%s", frame);
     snprintf(r->model.accel_evidence.frame, sizeof r->model.accel_evidence.frame, "%s", frame);
-    return -1;
 }
 
 int bench_closed_form(bench *b)
@@ -111,10 +106,10 @@ int bench_closed_form(bench *b)
     imk_ferraris_stretch stretch[STRETCHES];
     size_t count = 0;
     int code = check(b);
-    b->ferraris = calloc(1, sizeof *b->ferraris);
-    if (code < 0 && !b->ferraris)
-        code = command_failed("memory is exhausted");
+    b->ferraris = command_zeroed(sizeof *b->ferraris);
     if (code < 0)
         code = find(b, stretch, &count);
-    return code < 0 ? fill_result(b) : code;
+    if (code < 0)
+        fill_result(b);
+    return code;
 }

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Doubts as sentences: what was found, what is expected, and the option or the action that mends
- * it. */
+ * it; and what doubts, the findings over temperature and the warnings add up to. */
 #include "calibrate_parts.h"
+#include "shell/growing_list.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
-
-static const char *const sensor_names[2] = {"gyro", "accelerometer"};
-static const char *const column_names[2] = {"gyro", "accel"};
 
 /* A factor counts as seen when it is met to this part: placement and scale factors are well below,
  * and the factors asked for are farther apart. */
@@ -16,9 +15,18 @@ static const double factor_tolerance = 0.12;
 /* Residuals this far above the noise are not a trembling hand: the model is another one. */
 static const double residual_alarm = 100;
 
-char axis_letter(int axis)
+static calibrate_sentence say(calibrate_level level, const char *code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static calibrate_sentence say(calibrate_level level, const char *code, const char *format, ...)
 {
-    return axis < 0 ? '?' : axis < 3 ? "xyz"[axis] : (char)('0' + axis);
+    calibrate_sentence sentence = {.level = level};
+    snprintf(sentence.code, sizeof sentence.code, "%s", code);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(sentence.text, sizeof sentence.text, format, arguments);
+    va_end(arguments);
+    return sentence;
 }
 
 static bool is_near(double value, double due)
@@ -28,36 +36,25 @@ static bool is_near(double value, double due)
 
 /* ---- on a log -------------------------------------------------------------------------------- */
 
-/* Holds are looked for in these. */
-static bool looks_for_holds(const bench_log *log)
-{
-    return log->procedure == IMK_PROCEDURE_MULTIPOSITION;
-}
-
+/* Worth a look only where holds are looked for. */
 bool doubt_matters(const bench_log *log, const imk_doubt_finding *doubt)
 {
+    const bool looks_for_holds = log->procedure == IMK_PROCEDURE_MULTIPOSITION;
+    const bool takes_holds = looks_for_holds || log->procedure == IMK_PROCEDURE_SIXPOSITION;
     switch (doubt->kind) {
     case IMK_DOUBT_NEVER_STATIC:
-        return looks_for_holds(log) || log->procedure == IMK_PROCEDURE_SIXPOSITION ||
-               log->procedure == IMK_PROCEDURE_THERMAL;
+        return takes_holds || log->procedure == IMK_PROCEDURE_THERMAL;
     case IMK_DOUBT_NEVER_MOVES:
-        return looks_for_holds(log) || log->procedure == IMK_PROCEDURE_SIXPOSITION;
+        return takes_holds;
     case IMK_DOUBT_FEW_POSES:
     case IMK_DOUBT_ONE_PLANE:
-        return looks_for_holds(log);
+        return looks_for_holds;
     default:
         return true;
     }
 }
 
-/* Does the header state the unit? Then it is the header that is wrong. */
-static bool stated(const bench_log *log, int sensor)
-{
-    const imk_quantity kinds[2] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
-    const int column = imk_log_find(&log->log, kinds[sensor], 0);
-    return column >= 0 && log->log.column[column].unit.text[0] != '\0';
-}
-
+/* As the header states it; "": it does not. */
 static const char *unit_of_column(const bench_log *log, int sensor)
 {
     const imk_quantity kinds[2] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
@@ -80,23 +77,20 @@ static calibrate_sentence gravity_unit(const bench *b, const bench_log *log, dou
         if (!is_near(ratio, units[k].ratio) || strcmp(found, units[k].unit) == 0)
             continue;
         if (strcmp(units[k].unit, "ft/s^2") == 0)
-            return sentence_make(
-                LEVEL_USELESS, "gravity_unit",
-                "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: the columns "
-                "look like ft/s^2; multiply them by 0.3048",
-                force, b->calibration->gravity);
-        return sentence_make(
-            LEVEL_USELESS, "gravity_unit",
-            "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: the columns look "
-            "like %s, not %s; %s %s",
-            force, b->calibration->gravity, units[k].unit, found[0] ? found : "m/s^2",
-            stated(log, 1) ? "correct the header to" : "add --accel-unit", units[k].unit);
+            return say(LEVEL_USELESS, "gravity_unit",
+                       "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: the columns "
+                       "look like ft/s^2; multiply them by 0.3048",
+                       force, b->calibration->gravity);
+        return say(LEVEL_USELESS, "gravity_unit",
+                   "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: the columns look "
+                   "like %s, not %s; %s %s",
+                   force, b->calibration->gravity, units[k].unit, found[0] ? found : "m/s^2",
+                   found[0] ? "correct the header to" : "add --accel-unit", units[k].unit);
     }
-    return sentence_make(
+    return say(
         LEVEL_USELESS, "gravity_unit",
-        "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: no usual unit "
-        "explains it; check the unit of the accelerometer columns, or give raw counts with "
-        "--accel-sensitivity",
+        "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: no usual unit explains it; "
+        "check the unit of the accelerometer columns, or give raw counts with --accel-sensitivity",
         force, b->calibration->gravity);
 }
 
@@ -107,16 +101,15 @@ static calibrate_sentence rate_unit(const bench_log *log, double ratio)
                        : is_near(ratio, 1 / degrees) ? "rad/s"
                                                      : NULL;
     if (!unit)
-        return sentence_make(
-            LEVEL_USELESS, "rate_unit",
-            "the gyros turn %.4g times as far as the accelerometers saw the unit turned: "
-            "check the unit of the gyro columns, and of the times",
-            ratio);
-    return sentence_make(
-        LEVEL_USELESS, "rate_unit",
-        "the gyros turn %.4g times as far as the accelerometers saw the unit turned: the "
-        "columns look like %s; %s %s",
-        ratio, unit, stated(log, 0) ? "correct the header to" : "add --gyro-unit", unit);
+        return say(LEVEL_USELESS, "rate_unit",
+                   "the gyros turn %.4g times as far as the accelerometers saw the unit turned: "
+                   "check the unit of the gyro columns, and of the times",
+                   ratio);
+    return say(LEVEL_USELESS, "rate_unit",
+               "the gyros turn %.4g times as far as the accelerometers saw the unit turned: the "
+               "columns look like %s; %s %s",
+               ratio, unit, unit_of_column(log, 0)[0] ? "correct the header to" : "add --gyro-unit",
+               unit);
 }
 
 static calibrate_sentence time_unit(const bench_log *log, double factor)
@@ -127,47 +120,41 @@ static calibrate_sentence time_unit(const bench_log *log, double factor)
                                               : NULL;
     const double rate = factor / log->record.dt;
     if (!unit)
-        return sentence_make(
-            LEVEL_USELESS, "time_unit",
-            "the times are about %.3g times too long for what the gyros turned: check the "
-            "unit of the time column",
-            factor);
-    return sentence_make(
-        LEVEL_USELESS, "time_unit",
-        "the samples are %.4g s apart, far too long for what the gyros turned: the times "
-        "look like %s; add --time-unit %s, or correct the header (then the rate is %.4g "
-        "Hz)",
-        log->record.dt, unit, unit, rate);
+        return say(LEVEL_USELESS, "time_unit",
+                   "the times are about %.3g times too long for what the gyros turned: check the "
+                   "unit of the time column",
+                   factor);
+    return say(LEVEL_USELESS, "time_unit",
+               "the samples are %.4g s apart, far too long for what the gyros turned: the times "
+               "look like %s; add --time-unit %s, or correct the header (then the rate is %.4g Hz)",
+               log->record.dt, unit, unit, rate);
 }
 
 static calibrate_sentence few_poses(const bench *b, const bench_log *log,
                                     const imk_doubt_finding *d)
 {
-    char poses[120] = "";
-    const bool known = bench_advise(b, log, poses, sizeof poses);
-    return sentence_make(
-        b->result ? LEVEL_WARNING : LEVEL_USELESS, "few_poses",
-        "%g poses are there, %g or more are needed: hold the unit still for some seconds "
-        "with each of its six faces down, and on edges and corners between%s%s",
-        d->value, d->limit, known ? "; most would tell " : "", poses);
+    char poses[160];
+    bench_advise(b, log, "; most would tell ", poses, sizeof poses);
+    return say(b->result ? LEVEL_WARNING : LEVEL_USELESS, "few_poses",
+               "%g poses are there, %g or more are needed: hold the unit still for some seconds "
+               "with each of its six faces down, and on edges and corners between%s",
+               d->value, d->limit, poses);
 }
 
 static calibrate_sentence one_plane(const bench *b, const bench_log *log,
                                     const imk_doubt_finding *d)
 {
-    char poses[120] = "";
-    const bool known = bench_advise(b, log, poses, sizeof poses);
+    char poses[160];
+    bench_advise(b, log, "; most would tell ", poses, sizeof poses);
     const calibrate_level level = b->result ? LEVEL_WARNING : LEVEL_USELESS;
+    const char axis = axis_letter(d->axis);
     if (d->axis < 0)
-        return sentence_make(level, "one_plane",
-                             "the poses all lie in one plane: add some far out of it%s%s",
-                             known ? "; most would tell " : "", poses);
-    return sentence_make(
-        level, "one_plane",
-        "the poses all lie in one plane: gravity hardly ever acts along %c; add poses with "
-        "%c up, with %c down and with %c at 45 deg%s%s",
-        axis_letter(d->axis), axis_letter(d->axis), axis_letter(d->axis), axis_letter(d->axis),
-        known ? "; most would tell " : "", poses);
+        return say(level, "one_plane", "the poses all lie in one plane: add some far out of it%s",
+                   poses);
+    return say(level, "one_plane",
+               "the poses all lie in one plane: gravity hardly ever acts along %c; add poses with "
+               "%c up, with %c down and with %c at 45 deg%s",
+               axis, axis, axis, axis, poses);
 }
 
 /* Whole numbers in the unit of the file, of some size: counts, whatever the header says. */
@@ -194,71 +181,63 @@ static calibrate_sentence never_static(const bench *b, const bench_log *log)
 {
     for (int sensor = 1; sensor >= 0; sensor--)
         if (!log->record.counts[sensor] && is_whole(log, sensor))
-            return sentence_make(
-                LEVEL_USELESS, "counts",
-                "no rest is found, and the %s readings are whole numbers: if they are counts, not "
-                "%s, write [count] into the header (or give --%s-unit count)",
-                sensor_names[sensor], unit_of_column(log, sensor), column_names[sensor]);
+            return say(LEVEL_USELESS, "counts",
+                       "no rest is found, and the %s readings are whole numbers: if they are "
+                       "counts, not %s, write [count] into the header (or give --%s-unit count)",
+                       sensor_titles[sensor], unit_of_column(log, sensor), sensor_keys[sensor]);
     if (!isnan(b->options->minimum))
-        return sentence_make(
-            LEVEL_USELESS, "never_static",
-            "the unit never stands still for %.4g s, which --minimum asks for: shorten it, or rest "
-            "longer in each pose",
-            b->options->minimum);
-    return sentence_make(
+        return say(LEVEL_USELESS, "never_static",
+                   "the unit never stands still for %.4g s, which --minimum asks for: shorten it, "
+                   "or rest longer in each pose",
+                   b->options->minimum);
+    return say(
         LEVEL_USELESS, "never_static",
-        "the unit never stands still for long enough: %.2g %% of the log does, by windows "
-        "of %.2g s; put it down for 3 s or more in each pose (a hand is not still). If it "
-        "did rest at the beginning, add --initial-rest 10s, so that its noise is learnt "
-        "there",
+        "the unit never stands still for long enough: %.2g %% of the log does, by windows of %.2g "
+        "s; put it down for 3 s or more in each pose (a hand is not still). If it did rest at the "
+        "beginning, add --initial-rest 10s, so that its noise is learnt there",
         100 * log->stationary.standing, log->stationary.window);
 }
 
 static calibrate_sentence swapped(const imk_doubt_finding *d)
 {
-    const char *sensor = d->sensor >= 0 ? column_names[d->sensor] : "gyro";
+    const char *sensor = d->sensor >= 0 ? sensor_keys[d->sensor] : "gyro";
     if (d->axis < 0 || d->other < 0)
-        return sentence_make(
-            LEVEL_USELESS, "swapped_axes",
-            "the axes of gyros and accelerometers are in different orders: the turns of the "
-            "gyros do not lead from one attitude of the accelerometers to the next; put "
-            "the columns in order with --columns, so that x, y, z mean the same for both");
-    return sentence_make(
-        LEVEL_USELESS, "swapped_axes",
-        "%s_%c and %s_%c look exchanged%s: only then do the turns of the gyros lead from "
-        "one attitude of the accelerometers to the next; exchange the two names, in the "
-        "header or by --columns",
-        sensor, axis_letter(d->axis), sensor, axis_letter(d->other),
-        d->sensor >= 0 ? "" : " (or those of the accelerometers), and signs are changed");
+        return say(LEVEL_USELESS, "swapped_axes",
+                   "the axes of gyros and accelerometers are in different orders: the turns of the "
+                   "gyros do not lead from one attitude of the accelerometers to the next; put the "
+                   "columns in order with --columns, so that x, y, z mean the same for both");
+    return say(LEVEL_USELESS, "swapped_axes",
+               "%s_%c and %s_%c look exchanged%s: only then do the turns of the gyros lead from "
+               "one attitude of the accelerometers to the next; exchange the two names, in the "
+               "header or by --columns",
+               sensor, axis_letter(d->axis), sensor, axis_letter(d->other),
+               d->sensor >= 0 ? "" : " (or those of the accelerometers), and signs are changed");
 }
 
 static calibrate_sentence left_handed(const imk_doubt_finding *d)
 {
     if (d->axis < 0)
-        return sentence_make(
-            LEVEL_USELESS, "left_handed",
-            "the gyros turn the wrong way round against the accelerometers, all three: "
-            "change the sign of all gyro columns");
+        return say(LEVEL_USELESS, "left_handed",
+                   "the gyros turn the wrong way round against the accelerometers, all three: "
+                   "change the sign of all gyro columns");
     const char *sensor = d->sensor == 1 ? "accel" : "gyro";
-    return sentence_make(
-        LEVEL_USELESS, "left_handed",
-        "%s_%c has the wrong sign against the others: the axes are mirrored "
-        "(left-handed), and the turns of the gyros lead from one attitude of the "
-        "accelerometers to the next only with its sign changed; change it in the log",
-        sensor, axis_letter(d->axis));
+    return say(LEVEL_USELESS, "left_handed",
+               "%s_%c has the wrong sign against the others: the axes are mirrored (left-handed), "
+               "and the turns of the gyros lead from one attitude of the accelerometers to the "
+               "next only with its sign changed; change it in the log",
+               sensor, axis_letter(d->axis));
 }
 
 static calibrate_sentence on_log(const bench *b, const bench_log *log, const imk_doubt_finding *d)
 {
-    const char *sensor = d->sensor >= 0 ? sensor_names[d->sensor] : "sensor";
+    const char *sensor = d->sensor >= 0 ? sensor_titles[d->sensor] : "sensor";
     switch (d->kind) {
     case IMK_DOUBT_NEVER_STATIC:
         return never_static(b, log);
     case IMK_DOUBT_NEVER_MOVES:
-        return sentence_make(
-            LEVEL_USELESS, "never_moves",
-            "the unit stands still all the time, in one pose: turn it to others, each for "
-            "some seconds; a log at rest is for imukit identify");
+        return say(LEVEL_USELESS, "never_moves",
+                   "the unit stands still all the time, in one pose: turn it to others, each for "
+                   "some seconds; a log at rest is for imukit identify");
     case IMK_DOUBT_FEW_POSES:
         return few_poses(b, log, d);
     case IMK_DOUBT_ONE_PLANE:
@@ -268,19 +247,17 @@ static calibrate_sentence on_log(const bench *b, const bench_log *log, const imk
     case IMK_DOUBT_RATE_UNIT:
         return rate_unit(log, d->value);
     case IMK_DOUBT_SATURATED:
-        return sentence_make(
-            LEVEL_WARNING, "saturated",
-            "%s %c is at the end of its range in %.3g %% of the log; the %s it spoils are left "
-            "out: choose a larger range in the device, or %s",
-            sensor, axis_letter(d->axis), 100 * d->value, d->sensor == 0 ? "turns" : "poses",
-            d->sensor == 0 ? "turn more slowly" : "poses without this axis along gravity");
+        return say(LEVEL_WARNING, "saturated",
+                   "%s %c is at the end of its range in %.3g %% of the log; the %s it spoils are "
+                   "left out: choose a larger range in the device, or %s",
+                   sensor, axis_letter(d->axis), 100 * d->value, d->sensor == 0 ? "turns" : "poses",
+                   d->sensor == 0 ? "turn more slowly" : "poses without this axis along gravity");
     case IMK_DOUBT_COUNTS:
-        return sentence_make(
-            LEVEL_USELESS, "counts",
-            "the %s readings are whole numbers, and at rest no usual unit makes gravity of "
-            "them: they look like counts; write [count] into the header (or add --%s-unit "
-            "count) and, if you know it, --%s-sensitivity",
-            sensor, column_names[d->sensor > 0], column_names[d->sensor > 0]);
+        return say(LEVEL_USELESS, "counts",
+                   "the %s readings are whole numbers, and at rest no usual unit makes gravity of "
+                   "them: they look like counts; write [count] into the header (or add --%s-unit "
+                   "count) and, if you know it, --%s-sensitivity",
+                   sensor, sensor_keys[d->sensor > 0], sensor_keys[d->sensor > 0]);
     case IMK_DOUBT_SWAPPED_AXES:
         return swapped(d);
     case IMK_DOUBT_LEFT_HANDED:
@@ -288,11 +265,10 @@ static calibrate_sentence on_log(const bench *b, const bench_log *log, const imk
     case IMK_DOUBT_TIME_UNIT:
         return time_unit(log, d->value);
     default:
-        return sentence_make(
-            LEVEL_USELESS, "stuck",
-            "%s %c never changes its reading: the axis is dead, or its column is not what "
-            "it is called",
-            sensor, axis_letter(d->axis));
+        return say(LEVEL_USELESS, "stuck",
+                   "%s %c never changes its reading: the axis is dead, or its column is not what "
+                   "it is called",
+                   sensor, axis_letter(d->axis));
     }
 }
 
@@ -306,12 +282,11 @@ static calibrate_sentence correlated(const bench *b, double correlation)
         if (r->weakest_parameter[k] >= 0)
             (void)imk_model_parameter_name(r->parameter[r->weakest_parameter[k]],
                                            k == 0 ? one : other);
-    return sentence_make(
-        LEVEL_WARNING, "correlated",
-        "%s and %s are hardly told apart (correlation %.4f): what one has too much the "
-        "other has too little; their sum is known better than each. More differing poses "
-        "or turns tell them apart, or leave one out",
-        one, other, correlation);
+    return say(LEVEL_WARNING, "correlated",
+               "%s and %s are hardly told apart (correlation %.4f): what one has too much the "
+               "other has too little; their sum is known better than each. More differing poses or "
+               "turns tell them apart, or leave one out",
+               one, other, correlation);
 }
 
 static calibrate_sentence on_solution(const bench *b, const imk_doubt_finding *d)
@@ -319,27 +294,24 @@ static calibrate_sentence on_solution(const bench *b, const imk_doubt_finding *d
     switch (d->kind) {
     case IMK_DOUBT_RESIDUALS:
         if (sqrt(d->value) > residual_alarm)
-            return sentence_make(
-                LEVEL_WARNING, "residuals",
-                "the residuals are %.3g times what the noise within the holds explains: the model "
-                "does not describe this log. Check the signs and order of the axes, labels, and "
-                "that the log is of the procedure named",
-                sqrt(d->value));
-        return sentence_make(
-            LEVEL_NOTE, "residuals",
-            "the residuals are %.3g times what the noise within the holds explains "
-            "(chi-square per degree of freedom %.3g): the table, the hand or the sensor "
-            "does more than the model says; all 1 sigma are widened by it",
-            sqrt(d->value), d->value);
+            return say(LEVEL_WARNING, "residuals",
+                       "the residuals are %.3g times what the noise within the holds explains: the "
+                       "model does not describe this log. Check the signs and order of the axes, "
+                       "labels, and that the log is of the procedure named",
+                       sqrt(d->value));
+        return say(LEVEL_NOTE, "residuals",
+                   "the residuals are %.3g times what the noise within the holds explains "
+                   "(chi-square per degree of freedom %.3g): the table, the hand or the sensor "
+                   "does more than the model says; all 1 sigma are widened by it",
+                   sqrt(d->value), d->value);
     case IMK_DOUBT_CORRELATED:
         return correlated(b, d->value);
     default:
-        return sentence_make(
-            LEVEL_WARNING, "outliers",
-            "%.3g %% of the observations do not fit the others and are left out; --poses "
-            "lists them. More than a few say that the unit moved during the holds, or that "
-            "a unit or label is wrong",
-            100 * d->value);
+        return say(LEVEL_WARNING, "outliers",
+                   "%.3g %% of the observations do not fit the others and are left out; --poses "
+                   "lists them. More than a few say that the unit moved during the holds, or that "
+                   "a unit or label is wrong",
+                   100 * d->value);
     }
 }
 
@@ -373,4 +345,112 @@ void doubts_of_named_holds(bench_log *log)
             log->doubt[i].kind != IMK_DOUBT_FEW_POSES)
             log->doubt[kept++] = log->doubt[i];
     log->doubt_count = kept;
+}
+
+/* ---- all of them ----------------------------------------------------------------------------- */
+
+static void add(bench *b, calibrate_sentence sentence)
+{
+    if (b->sentence_count < CALIBRATE_SENTENCES_MAX)
+        b->sentence[b->sentence_count++] = sentence;
+}
+
+static void add_thermal(bench *b, const bench_log *log)
+{
+    const imk_thermal_findings *f = log->thermal;
+    for (int sensor = 0; f && sensor < 2; sensor++)
+        for (int i = 0; i < f->axis_count[sensor]; i++) {
+            const imk_thermal_axis *a = &f->axis[sensor][i];
+            if (a->single_valued || !(a->gap_largest > 0))
+                continue;
+            const imk_unit unit =
+                imk_unit_readable(imk_unit_of(sensor_units[sensor]).dimension, a->gap_largest);
+            add(b,
+                say(LEVEL_WARNING, "hysteresis",
+                    "%s: %s %c reads differently while warming and while cooling, by up to %.3g "
+                    "%s: no polynomial of the temperature can follow it; what compensation leaves "
+                    "is %.3g %s rms",
+                    log->path, sensor_titles[sensor], axis_letter(i), a->gap_largest / unit.scale,
+                    unit.text, a->rms_compensated / unit.scale, unit.text));
+        }
+    if (f && !f->both_directions)
+        add(b, say(LEVEL_NOTE, "one_direction",
+                   "%s: the temperature went one way only, so hysteresis may be there unseen: "
+                   "sweep up and down",
+                   log->path));
+    if (f && f->accel_shared)
+        add(b, say(LEVEL_NOTE, "one_pose",
+                   "%s: in one pose the bias of accelerometers over temperature cannot be told "
+                   "from that of their scale factor: the coefficients hold for this pose; sweep in "
+                   "several to tell them apart",
+                   log->path));
+}
+
+/* "gyro.nonlinearity.k2" of gyro.nonlinearity.k2.x. */
+static void term_of(imk_model_parameter parameter, char term[IMK_MODEL_PARAMETER_NAME])
+{
+    parameter.axis = parameter.element = 0;
+    term[0] = '\0';
+    if (imk_model_parameter_name(parameter, term) != IMK_OK)
+        return;
+    char *axis = strstr(term, ".x");
+    if (axis)
+        *axis = '\0';
+}
+
+/* Terms a procedure would have estimated and the log does not determine, on some axes at least. */
+static void add_undetermined(bench *b, const bench_log *log)
+{
+    const imk_procedure_findings *f = &log->findings;
+    growing_list names = {0};
+    char term[IMK_MODEL_PARAMETER_NAME];
+    for (size_t k = 0; k < f->undetermined_count && k < IMK_UNDETERMINED_MAX; k++) {
+        term_of(f->undetermined[k], term);
+        if (bench_find(b, f->undetermined[k]) < 0 && !(names.text && strstr(names.text, term)))
+            list_add_item(&names, "%s", term);
+    }
+    if (names.text)
+        add(b, say(LEVEL_NOTE, "undetermined",
+                   "%s does not determine %s (on all axes): left as before. Inputs along other "
+                   "axes, or more levels, would",
+                   log->path, names.text));
+    list_free(&names);
+}
+
+/* What a log showed already need not be said of the solution again, nor of each axis. */
+static bool is_said(const bench *b, const char *code)
+{
+    for (size_t k = 0; k < b->sentence_count; k++)
+        if (strcmp(b->sentence[k].code, code) == 0)
+            return true;
+    return false;
+}
+
+void bench_judge(bench *b)
+{
+    /* What was warned of on the way here belongs to the verdict too. */
+    for (size_t k = 0; k < command_warning_count(); k++) {
+        const command_warning *warning = command_warning_get(k);
+        add(b, say(LEVEL_WARNING, warning->code, "%s", warning->message));
+    }
+    const size_t said = b->sentence_count;
+    for (size_t k = 0; k < b->log_count; k++) {
+        const bench_log *log = &b->log[k];
+        for (size_t d = 0; d < log->doubt_count; d++) {
+            if (!doubt_matters(log, &log->doubt[d]))
+                continue;
+            const calibrate_sentence plain = doubt_sentence(b, log, &log->doubt[d]);
+            add(b, say(plain.level, plain.code, "%.150s: %.540s", log->path, plain.text));
+        }
+        add_undetermined(b, log);
+        add_thermal(b, log);
+    }
+    for (size_t d = 0; d < b->doubt_count; d++) {
+        const calibrate_sentence sentence = doubt_sentence(b, NULL, &b->doubt[d]);
+        if (!is_said(b, sentence.code))
+            add(b, sentence);
+    }
+    for (size_t k = said; k < b->sentence_count; k++)
+        if (b->sentence[k].level >= LEVEL_WARNING)
+            command_warn(b->sentence[k].code, "%s", b->sentence[k].text);
 }

@@ -6,14 +6,15 @@
 #include <math.h>
 #include <string.h>
 
-/* The first doubt that makes a log useless. */
-static const imk_doubt_finding *reason(const bench *b, const bench_log *log)
+/* The first doubt that makes a log useless, as a message. @return -1 when there is none */
+static int tell_doubt(const bench *b, const bench_log *log)
 {
-    for (size_t k = 0; k < log->doubt_count; k++)
-        if (doubt_matters(log, &log->doubt[k]) &&
-            doubt_sentence(b, log, &log->doubt[k]).level == LEVEL_USELESS)
-            return &log->doubt[k];
-    return NULL;
+    for (size_t k = 0; k < log->doubt_count; k++) {
+        const calibrate_sentence sentence = doubt_sentence(b, log, &log->doubt[k]);
+        if (doubt_matters(log, &log->doubt[k]) && sentence.level == LEVEL_USELESS)
+            return command_failed("%s: %s", log->path, sentence.text);
+    }
+    return -1;
 }
 
 /* Only rows with a temperature above 0 K count. */
@@ -35,18 +36,15 @@ static int few_temperatures(const bench_log *log, const imk_error *error)
 
 static int too_short(const bench_log *log, const imk_error *error)
 {
+    static const char *const things[] = {"hold", "turn", "step"};
+    static const char *const many[] = {"holds", "turns", "steps of constant reference"};
     const char *name = imk_procedure_name(log->procedure);
     const char *due = error->expected;
-    if (strcmp(error->field, "hold") == 0)
-        return command_failed("%s: %g of at least %g holds were found for %s%s%s", log->path,
-                              error->value, error->limit, name, due[0] ? ": " : "", due);
-    if (strcmp(error->field, "turn") == 0)
-        return command_failed("%s: %g of at least %g turns were found for %s%s%s", log->path,
-                              error->value, error->limit, name, due[0] ? ": " : "", due);
-    if (strcmp(error->field, "step") == 0)
-        return command_failed("%s: %g of at least %g steps of constant reference were found for "
-                              "%s%s%s",
-                              log->path, error->value, error->limit, name, due[0] ? ": " : "", due);
+    for (size_t k = 0; k < 3; k++)
+        if (strcmp(error->field, things[k]) == 0)
+            return command_failed("%s: %g of at least %g %s were found for %s%s%s", log->path,
+                                  error->value, error->limit, many[k], name, due[0] ? ": " : "",
+                                  due);
     if (strcmp(error->field, "temperature") == 0)
         return command_failed("%s: the temperature varies by %.3g K; at least %.3g K are needed to "
                               "see what it does",
@@ -77,19 +75,18 @@ static int key_missing(const bench_log *log, const imk_error *error)
 
 static int unit_missing(const bench *b, const bench_log *log, const imk_error *error)
 {
-    const bool gyro = strncmp(error->field, "gyro", 4) == 0;
+    const int sensor = strncmp(error->field, "gyro", 4) == 0 ? 0 : 1;
     return command_failed(
         "%s: the %s readings are counts, and %s does not tell how many make a unit: add "
         "--%s-sensitivity \"%s\" from the data sheet, or --model MODEL of an earlier calibration",
-        log->path, gyro ? "gyro" : "accelerometer",
+        log->path, sensor_titles[sensor],
         b->repeatability ? "repeatability" : imk_procedure_name(log->procedure),
-        gyro ? "gyro" : "accel", gyro ? "4778 count/(rad/s)" : "415 count/(m/s^2)");
+        sensor_keys[sensor], sensor == 0 ? "4778 count/(rad/s)" : "415 count/(m/s^2)");
 }
 
 /* Columns without a single number, or rows. */
 static int not_finite(const bench_log *log, const imk_error *error)
 {
-    static const char *const names[2] = {"gyro", "accel"};
     for (int sensor = 0; sensor < 2; sensor++)
         for (int axis = 0; axis < log->record.axis_count[sensor]; axis++) {
             size_t row = 0;
@@ -98,8 +95,7 @@ static int not_finite(const bench_log *log, const imk_error *error)
             if (row == log->record.count)
                 return command_failed("%s: %s_%c is never a number: nothing can be estimated from "
                                       "it; look into the log, or name the columns with --columns",
-                                      log->path, names[sensor],
-                                      axis < 3 ? "xyz"[axis] : '0' + axis);
+                                      log->path, sensor_keys[sensor], axis_letter(axis));
         }
     size_t first;
     const size_t missing = bench_rows_missing(&log->record, &first);
@@ -128,11 +124,9 @@ static int not_following(const bench_log *log, const imk_error *error)
 
 int bench_observe_failed(const bench *b, const bench_log *log, const imk_error *error)
 {
-    const imk_doubt_finding *doubt = reason(b, log);
-    if (doubt) {
-        const calibrate_sentence sentence = doubt_sentence(b, log, doubt);
-        return command_failed("%s: %s", log->path, sentence.text);
-    }
+    const int code = tell_doubt(b, log);
+    if (code >= 0)
+        return code;
     switch (error->status) {
     case IMK_ERROR_TOO_SHORT:
         return too_short(log, error);
@@ -183,7 +177,7 @@ static const char *remedy_for(const imk_model_parameter *parameter)
 static int undetermined(const bench *b, const imk_error *error)
 {
     imk_model_parameter parameter;
-    char poses[120] = "";
+    char poses[160] = "";
     if (imk_model_parameter_parse(error->field, &parameter) != IMK_OK)
         return command_error(error, NULL);
     const imk_triad *triad =
@@ -191,22 +185,20 @@ static int undetermined(const bench *b, const imk_error *error)
     if (triad->axis_count > 3 && !b->options->model && !b->options->into)
         return command_failed("the log has %d %s axes, and where they point is not known: add "
                               "--model MODEL that says so, as %s.direction",
-                              triad->axis_count, parameter.sensor == 0 ? "gyro" : "accelerometer",
-                              parameter.sensor == 0 ? "gyro" : "accel");
-    const bool known = b->log_count == 1 && b->log[0].procedure == IMK_PROCEDURE_MULTIPOSITION &&
-                       bench_advise(b, &b->log[0], poses, sizeof poses);
-    return command_failed("the logs do not determine %s: %s%s%s", error->field,
-                          remedy_for(&parameter),
-                          known ? "; of further poses most would tell " : "", poses);
+                              triad->axis_count, sensor_titles[parameter.sensor],
+                              sensor_keys[parameter.sensor]);
+    if (b->log_count == 1 && b->log[0].procedure == IMK_PROCEDURE_MULTIPOSITION)
+        bench_advise(b, &b->log[0], "; of further poses most would tell ", poses, sizeof poses);
+    return command_failed("the logs do not determine %s: %s%s", error->field,
+                          remedy_for(&parameter), poses);
 }
 
 int bench_solve_failed(const bench *b, const imk_error *error)
 {
     for (size_t k = 0; k < b->log_count; k++) {
-        const imk_doubt_finding *doubt = reason(b, &b->log[k]);
-        if (doubt)
-            return command_failed("%s: %s", b->log[k].path,
-                                  doubt_sentence(b, &b->log[k], doubt).text);
+        const int code = tell_doubt(b, &b->log[k]);
+        if (code >= 0)
+            return code;
     }
     switch (error->status) {
     case IMK_ERROR_SINGULAR:

@@ -34,6 +34,11 @@ static void drop_rows(bench_log *b, int time)
                      b->path, b->dropped);
 }
 
+double bench_time(const imk_test_record *record, size_t row)
+{
+    return record->time ? record->time[row] : (double)row * record->dt;
+}
+
 static bool is_missing(const imk_test_record *record, size_t row)
 {
     bool missing = record->temperature && !isfinite(record->temperature[row]);
@@ -75,7 +80,6 @@ static bool in_counts(const imk_log_column *column)
 static int take_axes(bench_log *b, int sensor)
 {
     static const imk_quantity kinds[2] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
-    static const char *const names[2] = {"gyro", "accel"};
     imk_test_record *record = &b->record;
     int axes = 0;
     for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
@@ -85,12 +89,12 @@ static int take_axes(bench_log *b, int sensor)
         if (axis != axes)
             return command_failed("%s has %s_%c but no %s_%c: calibration needs the axes one after "
                                   "the other; name the columns with --columns",
-                                  b->path, names[sensor], axis < 3 ? "xyz"[axis] : '0' + axis,
-                                  names[sensor], axes < 3 ? "xyz"[axes] : '0' + axes);
+                                  b->path, sensor_keys[sensor], axis_letter(axis),
+                                  sensor_keys[sensor], axis_letter(axes));
         const bool counts = in_counts(&b->log.column[column]);
         if (axes > 0 && counts != record->counts[sensor])
             return command_failed("%s: some %s columns are in counts and some are not", b->path,
-                                  names[sensor]);
+                                  sensor_keys[sensor]);
         record->counts[sensor] = counts;
         record->reading[sensor][axes++] = b->log.data[column];
     }
@@ -132,10 +136,8 @@ static int take_sections(const bench *b, bench_log *log)
     if (code >= 0 || column < 0)
         return code;
     const size_t rows = log->log.rows, labels = log->log.label_count;
-    log->section = malloc((rows > 0 ? rows : 1) * sizeof *log->section);
-    log->section_name = malloc((labels > 0 ? labels : 1) * sizeof *log->section_name);
-    if (!log->section || !log->section_name)
-        return command_failed("memory is exhausted");
+    log->section = command_memory(NULL, rows * sizeof *log->section);
+    log->section_name = command_memory(NULL, (labels + 1) * sizeof *log->section_name);
     for (size_t row = 0; row < rows; row++) {
         const double label = log->log.data[column][row];
         const bool none = !(label >= 0 && label < (double)labels);

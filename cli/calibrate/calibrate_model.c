@@ -5,6 +5,7 @@
  * Values are rounded to a hundredth of their 1 sigma, in the units of the model file, so that the
  * file can be read by people and says what was computed all the same. */
 #include "calibrate_parts.h"
+#include "shell/growing_list.h"
 #include "shell/model_changes.h"
 
 #include "imukit/utf8.h"
@@ -143,19 +144,14 @@ static bool estimated(const bench *b, int sensor)
     return b->runs && b->runs->axis_count[sensor] > 0;
 }
 
-static size_t add_text(const char *more, char *text, size_t size, size_t used)
-{
-    return used < size ? used + imk_utf8_clean(more, text + used, size - used) : used;
-}
-
 /* Names of the logs, and how they were used. */
 static void describe(const bench *b, imk_evidence *evidence)
 {
-    size_t used = 0;
-    for (size_t k = 0; k < b->log_count; k++) {
-        used = add_text(k > 0 ? ", " : "", evidence->source, sizeof evidence->source, used);
-        used = add_text(b->log[k].record.name, evidence->source, sizeof evidence->source, used);
-    }
+    growing_list logs = {0}, names = {0};
+    for (size_t k = 0; k < b->log_count; k++)
+        list_add_item(&logs, "%s", b->log[k].record.name);
+    imk_utf8_clean(logs.text, evidence->source, sizeof evidence->source);
+    list_free(&logs);
     if (b->runs) {
         snprintf(evidence->method, sizeof evidence->method,
                  "imukit %s calibrate: repeatability of %zu runs", IMK_VERSION, b->run_count);
@@ -167,19 +163,17 @@ static void describe(const bench *b, imk_evidence *evidence)
                  b->calibration->gravity);
         return;
     }
-    char names[80] = "";
-    used = 0;
-    for (size_t k = 0; k < b->log_count && used < sizeof names; k++) {
+    for (size_t k = 0; k < b->log_count; k++) {
         const char *name = imk_procedure_name(b->log[k].procedure);
-        if (!strstr(names, name))
-            used +=
-                (size_t)snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", name);
+        if (!names.text || !strstr(names.text, name))
+            list_add_item(&names, "%s", name);
     }
     snprintf(evidence->method, sizeof evidence->method,
              "imukit %s calibrate: %s, maximum likelihood, %zu observations, %zu turns, gravity "
              "%.6g m/s^2",
-             IMK_VERSION, names, b->calibration->observation_count, b->calibration->turn_count,
+             IMK_VERSION, names.text, b->calibration->observation_count, b->calibration->turn_count,
              b->calibration->gravity);
+    list_free(&names);
 }
 
 static void name_model(const bench *b, imk_model *model)

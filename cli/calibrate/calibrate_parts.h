@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Parts of imukit calibrate: what was asked, the logs, the problem and its solution, and the ways
- * to show it. */
+/* Parts of imukit calibrate: what was asked, the logs, the problem and its solution, and how it is
+ * shown. */
 #ifndef IMUKIT_CALIBRATE_PARTS_H
 #define IMUKIT_CALIBRATE_PARTS_H
 
 #include "log/log_input.h"
-#include "shell/text_table.h"
+#include "shell/show.h"
 
 #include "imukit/earth.h"
 #include "imukit/ferraris.h"
@@ -13,7 +13,6 @@
 #include "imukit/motion_file.h"
 #include "imukit/procedure.h"
 #include "imukit/repeatability.h"
-#include "imukit/report.h"
 #include "imukit/thermal.h"
 
 typedef struct calibrate_options {
@@ -97,6 +96,8 @@ typedef struct bench {
 /* calibrate_input.c: a log with its columns as a record. */
 int bench_load(bench *b, bench_log *log);
 void bench_log_free(bench_log *log);
+/* When a row was taken [s]. */
+double bench_time(const imk_test_record *record, size_t row);
 /* Rows with a reading or a temperature that is no number. @param first  set when there are some */
 size_t bench_rows_missing(const imk_test_record *record, size_t *first);
 /* calibrate_reference.c: what the unit was exposed to, from columns or from --motion. */
@@ -118,45 +119,43 @@ int bench_list_terms(const bench *b, const char *option_name, const char *item, 
                      imk_model_parameter *parameter, size_t *count);
 int bench_switch_terms(const calibrate_options *o, imk_procedure procedure,
                        imk_procedure_settings *settings);
-/* calibrate_runs.c: --procedure repeatability. */
+/* calibrate_runs.c: --procedure repeatability, of logs or of models, each the calibration of a
+ * run. */
 int bench_compare_runs(bench *b);
-/* calibrate_run_models.c: the same from models, each the calibration of a run. */
 bool bench_has_run_models(const bench *b);
 int bench_compare_models(bench *b);
 
 /* calibrate_plan.c: --plan, the operand being a model. @return the exit code */
 int bench_plan(bench *b);
 
-/* calibrate_advice.c: the poses that would tell most, as a list of angles; false: not known. */
-bool bench_advise(const bench *b, const bench_log *log, char *text, size_t size);
+/* calibrate_advice.c: the poses that would tell most, as a list of angles behind `before`; "" where
+ * they are not known. */
+void bench_advise(const bench *b, const bench_log *log, const char *before, char *text,
+                  size_t size);
 
 /* calibrate_failures.c: why a log could not be used, or the problem not be solved. */
 int bench_observe_failed(const bench *b, const bench_log *log, const imk_error *error);
 int bench_solve_failed(const bench *b, const imk_error *error);
 
 /* calibrate_doubts.c: doubts as sentences. */
-char axis_letter(int axis); /* x, y, z, 3 … 7 */
 calibrate_sentence doubt_sentence(const bench *b, const bench_log *log,
                                   const imk_doubt_finding *doubt);
+/* Is it worth a look in this log? Some are only where holds are looked for. */
+bool doubt_matters(const bench_log *log, const imk_doubt_finding *doubt);
 /* Take away the doubts whether holds can be found where sections name them: the procedure counts
  * the faces. */
 void doubts_of_named_holds(bench_log *log);
-/* calibrate_verdict.c */
-calibrate_sentence sentence_make(calibrate_level level, const char *code, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
 /* Sentences on logs and solution; warnings also go to standard error. */
 void bench_judge(bench *b);
-calibrate_level bench_level(const bench *b);
-/* "good", "usable, but …": the verdict in one sentence. */
-void bench_verdict(const bench *b, char *text, size_t size);
-/* What a doubt is about: worth a look only where holds are looked for. */
-bool doubt_matters(const bench_log *log, const imk_doubt_finding *doubt);
 
 /* calibrate_model.c: fill b->model; write it to -o. */
 void bench_make_model(bench *b);
 int bench_write_model(bench *b);
 
-/* calibrate_units.c: units in which parameters are shown and written. */
+/* calibrate_units.c: words and units in which sensors and parameters are shown and written. Gyros
+ * come first. */
+extern const char *const sensor_keys[2], *const sensor_titles[2], *const sensor_units[2];
+char axis_letter(int axis); /* x, y, z, 3 … 7 */
 imk_unit parameter_unit(imk_model_parameter parameter, double magnitude);
 /* As in the model file, whatever the size. */
 const char *parameter_file_unit(imk_model_parameter parameter);
@@ -165,24 +164,21 @@ void parameter_title(imk_model_parameter parameter, char *text, size_t size);
 /* Index of a parameter of the solution, or -1. */
 int bench_find(const bench *b, imk_model_parameter parameter);
 
-/* calibrate_tables.c. Tables without rows when there is nothing to say. */
-text_table bench_parameter_table(const bench *b, int sensor);
-text_table bench_fit_table(const bench *b);
-text_table bench_pose_table(const bench *b);
-text_table bench_run_table(const bench *b, int sensor);
-/* calibrate_thermal_table.c */
-text_table bench_thermal_table(const bench_log *log, int sensor, bool brief);
-/* Sentences on what was left out, correlated, refused and on the frame: `line` of the text;
- * false beyond the last. */
-bool bench_remark(const bench *b, size_t line, char *text, size_t size);
-
-/* calibrate_output.c */
-void bench_print(const bench *b);
-int bench_json(const bench *b, int code);
-/* calibrate_figure.c */
-int bench_draw(const bench *b, const char *path);
-void bench_put_figure(const bench *b, imk_page *page);
-/* calibrate_report.c */
-int bench_report(const bench *b, const char *path);
+/* calibrate_show.c: all of it as a result. @return is there a figure? */
+bool bench_show(const bench *b, imk_result *result);
+/* calibrate_words.c */
+calibrate_level bench_level(const bench *b);
+/* "Good: …", "Usable with care …": the verdict in one sentence. */
+void bench_verdict(const bench *b, char *text, size_t size);
+/* On frame and gravity, what was left out and what is correlated. */
+void bench_show_remarks(const bench *b, imk_result *result);
+/* calibrate_tables.c */
+void bench_show_parameters(const bench *b, int sensor, imk_result *result);
+void bench_show_runs(const bench *b, int sensor, imk_result *result);
+void bench_show_thermal(const bench_log *log, int sensor, bool brief, imk_result *result);
+void bench_show_fit(const bench *b, imk_result *result);
+void bench_show_poses(const bench *b, imk_result *result);
+/* calibrate_figure.c. @return is there something to draw? */
+bool bench_show_figure(const bench *b, imk_result *result);
 
 #endif

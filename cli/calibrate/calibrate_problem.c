@@ -65,19 +65,17 @@ static int apply_counts(const calibrate_options *o, int sensor, imk_triad *triad
 /* Counts per unit say nothing about readings that have a unit. */
 static int check_counts(const bench *b, int sensor, bool counts)
 {
-    static const char *const names[2] = {"gyro", "accel"};
     const calibrate_options *o = b->options;
     if (counts || (!o->sensitivity[sensor] && !o->zero_offset[sensor]))
         return -1;
     return command_misused("--%s-%s is for readings in counts, and those of %s have a unit",
-                           names[sensor], o->sensitivity[sensor] ? "sensitivity" : "zero",
+                           sensor_keys[sensor], o->sensitivity[sensor] ? "sensitivity" : "zero",
                            b->log[0].path);
 }
 
 /* Axes of the logs; a model that is given must have them. */
 static int match_axes(bench *b, imk_model *model, bool given)
 {
-    static const char *const names[2] = {"gyro", "accelerometer"};
     imk_triad *triad[2] = {&model->gyro, &model->accel};
     for (int sensor = 0; sensor < 2; sensor++) {
         int axes = 0;
@@ -87,11 +85,11 @@ static int match_axes(bench *b, imk_model *model, bool given)
             const int here = record->axis_count[sensor];
             if (here > 0 && axes > 0 && here != axes)
                 return command_failed("%s has %d %s axes and the others have %d", b->log[k].path,
-                                      here, names[sensor], axes);
+                                      here, sensor_titles[sensor], axes);
             if (here > 0 && axes > 0 && counts != record->counts[sensor])
                 return command_failed("%s: its %s readings are in counts and those of other logs "
                                       "are not, or the reverse",
-                                      b->log[k].path, names[sensor]);
+                                      b->log[k].path, sensor_titles[sensor]);
             axes = here > 0 ? here : axes;
             counts = here > 0 ? record->counts[sensor] : counts;
         }
@@ -102,7 +100,7 @@ static int match_axes(bench *b, imk_model *model, bool given)
             return command_failed("%s has %d %s axes, the log has %d: they cannot be matched",
                                   b->options->into ? b->options->into : b->options->model,
                                   triad[sensor]->present ? triad[sensor]->axis_count : 0,
-                                  names[sensor], axes);
+                                  sensor_titles[sensor], axes);
         if (!given) {
             triad[sensor]->present = axes > 0;
             triad[sensor]->axis_count = axes > 0 ? axes : 3;
@@ -362,27 +360,19 @@ static int detect(const bench *b, bench_log *log)
     imk_error error;
     const imk_model *model = &b->calibration->model;
     const size_t size = imk_static_workspace_size(&log->record, &log->settings.stationary);
-    void *workspace = malloc(size > 0 ? size : 1);
-    const bool drawn = b->options->plot || b->options->report;
-    size_t capacity = INTERVALS;
-    imk_status status = IMK_ERROR_MEMORY;
-    if (drawn)
+    void *workspace = command_memory(NULL, size);
+    imk_status status;
+    if (b->options->plot || b->options->report)
         log->activity = command_memory(NULL, log->record.count * sizeof *log->activity);
-    for (int attempt = 0; workspace && attempt < 2; attempt++) {
-        free(log->interval);
-        log->interval = malloc(capacity * sizeof *log->interval);
-        if (!log->interval)
-            break;
+    for (size_t capacity = INTERVALS;; capacity = log->interval_count) {
+        log->interval = command_memory(log->interval, capacity * sizeof *log->interval);
         status = imk_static_detect(&log->record, &log->settings.stationary, model, workspace, size,
                                    log->interval, capacity, &log->interval_count, log->activity,
                                    &log->stationary, &error);
         if (status != IMK_OK || log->interval_count <= capacity)
             break;
-        capacity = log->interval_count;
     }
     free(workspace);
-    if (status == IMK_ERROR_MEMORY)
-        return command_failed("memory is exhausted");
     if (status == IMK_OK) {
         log->doubt_count =
             imk_record_doubts(&log->record, &log->stationary, log->interval_count, log->interval,
@@ -398,19 +388,12 @@ static int detect(const bench *b, bench_log *log)
     return bench_is_known(log->procedure) ? -1 : bench_observe_failed(b, log, &error);
 }
 
-static bool grow(imk_calibration *c)
+static void grow(imk_calibration *c)
 {
-    size_t capacity = c->observation_capacity > 0 ? 2 * c->observation_capacity : CAPACITY;
-    imk_observation *observation = realloc(c->observation, capacity * sizeof *observation);
-    if (!observation)
-        return false;
-    c->observation = observation;
-    imk_turn *turn = realloc(c->turn, capacity * sizeof *turn);
-    if (!turn)
-        return false;
-    c->turn = turn;
+    const size_t capacity = c->observation_capacity > 0 ? 2 * c->observation_capacity : CAPACITY;
+    c->observation = command_memory(c->observation, capacity * sizeof *c->observation);
+    c->turn = command_memory(c->turn, capacity * sizeof *c->turn);
     c->observation_capacity = c->turn_capacity = capacity;
-    return true;
 }
 
 static bool wants_room(imk_status status, const imk_error *error, const imk_calibration *c)
@@ -425,17 +408,13 @@ static int look_at_temperature(const bench *b, bench_log *log)
     imk_error error;
     imk_thermal_settings settings = imk_thermal_default();
     const size_t size = imk_thermal_workspace_size();
-    void *workspace = malloc(size);
-    log->thermal = calloc(1, sizeof *log->thermal);
+    void *workspace = command_memory(NULL, size);
+    log->thermal = command_zeroed(sizeof *log->thermal);
     settings.reference_temperature = log->settings.reference_temperature;
     settings.order = log->settings.temperature_order > 0 ? log->settings.temperature_order : -1;
-    imk_status status = IMK_ERROR_MEMORY;
-    if (workspace && log->thermal)
-        status = imk_thermal_analyse(&log->record, &settings, &b->calibration->model, workspace,
-                                     size, log->thermal, &error);
+    const imk_status status = imk_thermal_analyse(&log->record, &settings, &b->calibration->model,
+                                                  workspace, size, log->thermal, &error);
     free(workspace);
-    if (status == IMK_ERROR_MEMORY)
-        return command_failed("memory is exhausted");
     if (status == IMK_OK)
         return -1;
     /* Several poses: nothing can be said about each by itself. */
@@ -452,17 +431,16 @@ int bench_observe(bench *b, bench_log *log)
     if (code >= 0)
         return code;
     const size_t size = imk_procedure_workspace_size(log->procedure, &log->record, &log->settings);
-    void *workspace = malloc(size);
-    imk_status status = IMK_ERROR_MEMORY;
-    if (workspace && (c->observation || grow(c)))
-        do
-            status = imk_procedure_observe(log->procedure, c, &log->record, &log->settings,
-                                           b->options->estimate != NULL, workspace, size,
-                                           &log->findings, &error);
-        while (wants_room(status, &error, c) && grow(c));
+    void *workspace = command_memory(NULL, size);
+    if (!c->observation)
+        grow(c);
+    imk_status status;
+    while (wants_room(status = imk_procedure_observe(log->procedure, c, &log->record,
+                                                     &log->settings, b->options->estimate != NULL,
+                                                     workspace, size, &log->findings, &error),
+                      &error, c))
+        grow(c);
     free(workspace);
-    if (status == IMK_ERROR_MEMORY)
-        return command_failed("memory is exhausted");
     if (status != IMK_OK)
         return bench_observe_failed(b, log, &error);
     return log->procedure == IMK_PROCEDURE_THERMAL ? look_at_temperature(b, log) : -1;
@@ -492,11 +470,10 @@ int bench_solve(bench *b)
     imk_error error;
     shorten_nominal(b);
     const size_t size = imk_calibration_workspace_size(b->calibration);
-    void *workspace = malloc(size > 0 ? size : 1);
-    b->result = malloc(sizeof *b->result);
-    imk_status status = IMK_ERROR_MEMORY;
-    if (workspace && b->result)
-        status = imk_calibration_solve(b->calibration, workspace, size, b->result, &error);
+    void *workspace = command_memory(NULL, size);
+    b->result = command_memory(NULL, sizeof *b->result);
+    const imk_status status =
+        imk_calibration_solve(b->calibration, workspace, size, b->result, &error);
     free(workspace);
     if (status == IMK_OK) {
         b->doubt_count = imk_solution_doubts(b->calibration, b->result, BENCH_DOUBTS_MAX, b->doubt);
@@ -504,6 +481,5 @@ int bench_solve(bench *b)
     }
     free(b->result);
     b->result = NULL;
-    return status == IMK_ERROR_MEMORY ? command_failed("memory is exhausted")
-                                      : bench_solve_failed(b, &error);
+    return bench_solve_failed(b, &error);
 }

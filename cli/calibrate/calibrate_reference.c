@@ -20,8 +20,8 @@ static double *reference_column(bench_log *log, int column)
 {
     const size_t rows = log->record.count;
     if (!log->reference)
-        log->reference = calloc(BENCH_REFERENCES * rows, sizeof *log->reference);
-    return log->reference ? log->reference + (size_t)column * rows : NULL;
+        log->reference = command_zeroed(BENCH_REFERENCES * rows * sizeof *log->reference);
+    return log->reference + (size_t)column * rows;
 }
 
 /* ---- columns --------------------------------------------------------------------------------- */
@@ -49,7 +49,6 @@ static int find_column(const bench_log *log, const char *name, const char *unit,
 /* reference_rate_x … of one vector: the components that are not there are zero. */
 static int take_vector(bench_log *log, const char *name, const char *unit, const double *target[3])
 {
-    double *zero = NULL;
     int column[3];
     for (int k = 0; k < 3; k++) {
         char full[48];
@@ -60,11 +59,8 @@ static int take_vector(bench_log *log, const char *name, const char *unit, const
     }
     if (column[0] < 0 && column[1] < 0 && column[2] < 0)
         return -1;
-    for (int k = 0; k < 3; k++) {
-        if (column[k] < 0 && !zero && !(zero = reference_column(log, 0)))
-            return command_failed("memory is exhausted");
-        target[k] = column[k] < 0 ? zero : log->log.data[column[k]];
-    }
+    for (int k = 0; k < 3; k++)
+        target[k] = column[k] < 0 ? reference_column(log, 0) : log->log.data[column[k]];
     return -1;
 }
 
@@ -82,11 +78,8 @@ static int take_table(const bench *b, bench_log *log)
         return command_misused("%s has a column table_rate: say about which axis of the unit it "
                                "turns, such as --table-axis z",
                                log->path);
-    double *zero = reference_column(log, 0);
-    if (!zero)
-        return command_failed("memory is exhausted");
     for (int k = 0; k < 3; k++)
-        log->record.reference_rate[k] = zero;
+        log->record.reference_rate[k] = reference_column(log, 0);
     log->record.reference_rate[b->options->table_axis] = log->log.data[column];
     return -1;
 }
@@ -98,17 +91,12 @@ static bool has_reference(const bench_log *log)
 
 /* ---- programme ------------------------------------------------------------------------------- */
 
-static double time_of(const imk_test_record *record, size_t row)
-{
-    return record->time ? record->time[row] : (double)row * record->dt;
-}
-
 static void fill_from_recorded(const imk_recorded_motion *motion, bench_log *log,
                                double *const column[BENCH_REFERENCES])
 {
     for (size_t row = 0; row < log->record.count; row++) {
         const double place =
-            floor((time_of(&log->record, row) - log->motion_offset) * motion->rate + 0.5);
+            floor((bench_time(&log->record, row) - log->motion_offset) * motion->rate + 0.5);
         const bool inside = place >= 0 && place < (double)motion->count;
         const size_t k = inside ? (size_t)place : 0;
         for (int i = 0; i < 3; i++) {
@@ -123,18 +111,18 @@ static void fill_from_recorded(const imk_recorded_motion *motion, bench_log *log
 }
 
 /* Means over stretches without gap: sample k covers the sample interval that ends at its time. */
-static bool fill_from_trajectory(const imk_trajectory *trajectory, bench_log *log,
+static void fill_from_trajectory(const imk_trajectory *trajectory, bench_log *log,
                                  double *const column[BENCH_REFERENCES])
 {
     const imk_test_record *record = &log->record;
     const imk_random random = imk_random_seeded(0);
-    double *boundary = malloc((record->count + 1) * sizeof *boundary);
-    for (size_t begin = 0, end; boundary && begin < record->count; begin = end) {
-        double now = time_of(record, begin);
+    double *boundary = command_memory(NULL, (record->count + 1) * sizeof *boundary);
+    for (size_t begin = 0, end; begin < record->count; begin = end) {
+        double now = bench_time(record, begin);
         boundary[0] = now - record->dt - log->motion_offset;
         boundary[1] = now - log->motion_offset;
         for (end = begin + 1; end < record->count; end++) {
-            const double next = time_of(record, end);
+            const double next = bench_time(record, end);
             if (imk_step_is_gap(next - now, record->dt))
                 break;
             now = next;
@@ -146,15 +134,13 @@ static bool fill_from_trajectory(const imk_trajectory *trajectory, bench_log *lo
         imk_trajectory_means(trajectory, random.kernel, end - begin, boundary, at, at + 6, at + 3);
     }
     free(boundary);
-    return boundary != NULL;
 }
 
-static bool fill_from_motion(const bench *b, bench_log *log)
+static void fill_from_motion(const bench *b, bench_log *log)
 {
     double *column[BENCH_REFERENCES];
     for (int i = 0; i < BENCH_REFERENCES; i++)
-        if (!(column[i] = reference_column(log, i)))
-            return false;
+        column[i] = reference_column(log, i);
     for (int i = 0; i < 3; i++) {
         log->record.reference_rate[i] = column[i];
         log->record.reference_force[i] = column[3 + i];
@@ -162,9 +148,9 @@ static bool fill_from_motion(const bench *b, bench_log *log)
     }
     const imk_motion *motion = imk_motion_file_motion(b->motion);
     if (motion->trajectory)
-        return fill_from_trajectory(motion->trajectory, log, column);
-    fill_from_recorded(motion->recorded, log, column);
-    return true;
+        fill_from_trajectory(motion->trajectory, log, column);
+    else
+        fill_from_recorded(motion->recorded, log, column);
 }
 
 /* Where the log begins in the programme, from the readings. */
@@ -173,10 +159,9 @@ static imk_status search_offset(const bench_log *log, imk_reference_shift *shift
     const double length = (double)log->record.count * log->record.dt;
     const double most = fmin(largest_shift, length / 4);
     const size_t size = imk_reference_offset_workspace_size(&log->record, most);
-    void *workspace = malloc(size > 0 ? size : 1);
+    void *workspace = command_memory(NULL, size);
     const imk_status status =
-        workspace ? imk_reference_offset(&log->record, most, workspace, size, shift, error)
-                  : imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
+        imk_reference_offset(&log->record, most, workspace, size, shift, error);
     free(workspace);
     return status;
 }
@@ -207,8 +192,8 @@ static void check_offset(const bench_log *log)
 {
     imk_error error;
     imk_reference_shift shift;
-    if (command_unless_memory(search_offset(log, &shift, &error)) != IMK_OK ||
-        !(shift.correlation > followed) || fabs(shift.offset) < log->record.dt + 5 * shift.sigma)
+    if (search_offset(log, &shift, &error) != IMK_OK || !(shift.correlation > followed) ||
+        fabs(shift.offset) < log->record.dt + 5 * shift.sigma)
         return;
     command_warn("motion_offset",
                  "%s follows the programme best when that begins %.4f s %s in the log than it "
@@ -231,15 +216,14 @@ static int take_motion(const bench *b, bench_log *log)
                                    "programme begins, such as 2.5s, or auto",
                                    text);
     }
-    if (!fill_from_motion(b, log))
-        return command_failed("memory is exhausted");
+    fill_from_motion(b, log);
     if (!search) {
         check_offset(log);
         return -1;
     }
-    int code = find_offset(log);
-    if (code < 0 && !fill_from_motion(b, log))
-        code = command_failed("memory is exhausted");
+    const int code = find_offset(log);
+    if (code < 0)
+        fill_from_motion(b, log);
     return code;
 }
 

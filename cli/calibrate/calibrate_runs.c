@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* --procedure repeatability: the logs, or the sections of one, are power cycles of a unit that was
- * not moved; how much bias differs from one to the next. */
+ * not moved; how much bias differs from one to the next. Or the operands are models, each the
+ * calibration of a power cycle: bias and scale factor are compared. */
 #include "calibrate_parts.h"
+
+#include "imukit/distributions.h"
+#include "imukit/names.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,6 +13,8 @@
 
 /* What is left out at both ends of a run, and the shortest run, unless told [s]. */
 static const double usual_trim = 0.2, usual_minimum = 1.0;
+
+/* ---- logs ------------------------------------------------------------------------------------ */
 
 static int take_runs(bench *b, const bench_log *log, imk_static_interval *run)
 {
@@ -27,7 +33,7 @@ static int take_runs(bench *b, const bench_log *log, imk_static_interval *run)
     return -1;
 }
 
-static int compare(bench *b, const imk_static_interval *run)
+static int compare_holds(bench *b, const imk_static_interval *run)
 {
     imk_error error;
     const bool counts[2] = {b->log[0].record.counts[0], b->log[0].record.counts[1]};
@@ -46,13 +52,13 @@ static int compare(bench *b, const imk_static_interval *run)
 
 int bench_compare_runs(bench *b)
 {
-    imk_static_interval *run = malloc(IMK_RUNS_MAX * sizeof *run);
-    b->runs = calloc(1, sizeof *b->runs);
-    int code = run && b->runs ? -1 : command_failed("memory is exhausted");
+    imk_static_interval *run = command_memory(NULL, IMK_RUNS_MAX * sizeof *run);
+    int code = -1;
+    b->runs = command_zeroed(sizeof *b->runs);
     for (size_t k = 0; code < 0 && k < b->log_count; k++)
         code = take_runs(b, &b->log[k], run);
     if (code < 0)
-        code = compare(b, run);
+        code = compare_holds(b, run);
     free(run);
     if (code >= 0)
         return code;
@@ -64,4 +70,179 @@ int bench_compare_runs(bench *b)
                      "it fixed, or state how well it is put back with --placement 0.1deg",
                      b->runs->attitude * 1e3);
     return -1;
+}
+
+/* ---- models ---------------------------------------------------------------------------------- */
+
+static bool is_model(const char *path)
+{
+    return imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml") ||
+           imk_has_ending(path, ".json");
+}
+
+bool bench_has_run_models(const bench *b)
+{
+    if (!b->options->procedure || strcmp(b->options->procedure, "repeatability") != 0)
+        return false;
+    for (size_t k = 0; k < b->log_count; k++)
+        if (is_model(b->log[k].path))
+            return true;
+    return false;
+}
+
+/* Degrees of freedom of a sigma, from the 95 % interval beside it: Student's quantile is their
+ * ratio. Both are rounded in a file, so that what is nearly normal counts as normal. */
+static double freedom_of(const imk_evidence *evidence, const char *key, int axis, double sigma)
+{
+    for (int k = 0; k < evidence->interval_count; k++) {
+        if (strcmp(evidence->interval[k].key, key) != 0)
+            continue;
+        const double half = 0.5 * (evidence->interval[k].upper.value[axis] -
+                                   evidence->interval[k].lower.value[axis]);
+        double low = 1, high = 200;
+        if (!(half > imk_student_quantile(0.975, high) * sigma))
+            return HUGE_VAL;
+        for (int step = 0; step < 40; step++) {
+            const double middle = sqrt(low * high);
+            if (imk_student_quantile(0.975, middle) * sigma > half)
+                low = middle;
+            else
+                high = middle;
+        }
+        return low;
+    }
+    return HUGE_VAL;
+}
+
+static void state(imk_calibration_result *r, int sensor, int term, int axis, double value,
+                  double sigma, double freedom)
+{
+    const size_t k = r->parameter_count++;
+    r->parameter[k] = (imk_model_parameter){(uint8_t)sensor, (uint8_t)term, (uint8_t)axis, 0};
+    r->value[k] = value;
+    r->sigma[k] = sigma;
+    r->freedom[k] = freedom;
+}
+
+/* Bias and scale factor with their sigmas; of counts by the sensitivities and zeros of the first
+ * model, since each may have found its own nominal ones. */
+static void state_model(imk_calibration_result *r, const imk_model *model, const imk_model *first)
+{
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const imk_triad *t = sensor == 0 ? &model->gyro : &model->accel;
+        const imk_triad *f = sensor == 0 ? &first->gyro : &first->accel;
+        const imk_evidence *evidence = sensor == 0 ? &model->gyro_evidence : &model->accel_evidence;
+        for (int axis = 0; t->present && axis < t->axis_count; axis++) {
+            const double nominal = f->sensitivity.value[axis];
+            const bool counts = nominal != 0;
+            const double ratio = counts ? t->sensitivity.value[axis] / nominal : 1;
+            const double shift =
+                counts ? (t->zero_offset.value[axis] - f->zero_offset.value[axis]) / nominal : 0;
+            const double bias = t->bias.fixed.sigma[axis];
+            const double scale = t->scale_factor.fixed.sigma[axis];
+            if (bias > 0)
+                state(r, sensor, IMK_MODEL_BIAS, axis, ratio * t->bias.fixed.value[axis] + shift,
+                      fabs(ratio) * bias, freedom_of(evidence, "bias.fixed", axis, bias));
+            if (scale > 0)
+                state(r, sensor, IMK_MODEL_SCALE_FACTOR, axis,
+                      ratio * (1 + t->scale_factor.fixed.value[axis]) - 1, fabs(ratio) * scale,
+                      freedom_of(evidence, "scale_factor.fixed", axis, scale));
+        }
+    }
+}
+
+/* The same axes, counts where the first has counts, one frame. */
+static int check_alike(const char *path, const imk_model *model, const char *first_path,
+                       const imk_model *first)
+{
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const imk_triad *t = sensor == 0 ? &model->gyro : &model->accel;
+        const imk_triad *f = sensor == 0 ? &first->gyro : &first->accel;
+        const char *frame = (sensor == 0 ? &model->gyro_evidence : &model->accel_evidence)->frame;
+        const char *other = (sensor == 0 ? &first->gyro_evidence : &first->accel_evidence)->frame;
+        if (t->present != f->present || (t->present && t->axis_count != f->axis_count))
+            return command_failed("%s and %s have not the same %s axes: they are not runs of one "
+                                  "unit",
+                                  first_path, path, sensor_titles[sensor]);
+        if (t->present && (t->sensitivity.value[0] != 0) != (f->sensitivity.value[0] != 0))
+            return command_failed("%s and %s: the %s readings are in counts in one and not in the "
+                                  "other",
+                                  first_path, path, sensor_titles[sensor]);
+        if (strcmp(frame, other) != 0)
+            return command_failed("%s is in the frame \"%s\", %s in \"%s\": calibrate all runs "
+                                  "alike, with the same --frame",
+                                  first_path, other, path, frame);
+    }
+    return -1;
+}
+
+static int load_model(bench *b, size_t index, imk_model *first, imk_calibration_result *r)
+{
+    bench_log *log = &b->log[index];
+    imk_model *model = index == 0 ? first : &r->model;
+    if (!is_model(log->path))
+        return command_misused("--procedure repeatability: %s is a log and others are models: "
+                               "calibrate each run first, or give logs only",
+                               log->path);
+    const int code = command_model(log->path, model, NULL);
+    if (code >= 0)
+        return code;
+    const char *slash = strrchr(log->path, '/');
+    log->record.name = slash ? slash + 1 : log->path;
+    state_model(r, model, first);
+    if (r->parameter_count == 0)
+        return command_failed("%s states no uncertainty of bias or scale factor: give the models "
+                              "that imukit calibrate wrote, one of each run",
+                              log->path);
+    return check_alike(log->path, model, b->log[0].path, first);
+}
+
+static int compare_models(bench *b, const imk_calibration_result *const *run)
+{
+    imk_error error;
+    size_t found = 0;
+    if (b->log_count < 2)
+        return command_failed("1 run: at least two are needed, better ten; give the model of each "
+                              "power cycle");
+    if (imk_repeatability_of_calibrations(b->log_count, run, 0.95, b->runs, &error) != IMK_OK)
+        return command_error(&error, NULL);
+    for (int sensor = 0; sensor < 2; sensor++)
+        found += b->runs->axis_count[sensor] > 0;
+    if (found == 0)
+        return command_failed("no bias and no scale factor is stated with its uncertainty by all "
+                              "of these models");
+    b->run_count = b->log_count;
+    return -1;
+}
+
+/* The axes of the first model, as those of a log: what --into is checked against. */
+static void take_axes(bench *b, const imk_model *first)
+{
+    for (size_t k = 0; k < b->log_count; k++) {
+        imk_test_record *record = &b->log[k].record;
+        record->axis_count[0] = first->gyro.present ? first->gyro.axis_count : 0;
+        record->axis_count[1] = first->accel.present ? first->accel.axis_count : 0;
+    }
+}
+
+int bench_compare_models(bench *b)
+{
+    imk_calibration_result *result = command_zeroed(b->log_count * sizeof *result);
+    const imk_calibration_result *run[IMK_TEST_RECORDS_MAX];
+    imk_model *first = command_zeroed(sizeof *first);
+    b->runs = command_zeroed(sizeof *b->runs);
+    int code = bench_choose(b);
+    for (size_t k = 0; code < 0 && k < b->log_count; k++) {
+        run[k] = &result[k];
+        code = load_model(b, k, first, &result[k]);
+    }
+    if (code < 0) {
+        take_axes(b, first);
+        code = bench_known_before(b);
+    }
+    if (code < 0)
+        code = compare_models(b, run);
+    free(result);
+    free(first);
+    return code;
 }

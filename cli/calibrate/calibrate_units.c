@@ -1,9 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Units and titles of the numbers of a model. */
+/* Units and titles of sensors and of the numbers of a model. */
 #include "calibrate_parts.h"
 
 #include <math.h>
 #include <string.h>
+
+const char *const sensor_keys[2] = {"gyro", "accel"};
+const char *const sensor_titles[2] = {"gyro", "accelerometer"};
+const char *const sensor_units[2] = {"rad/s", "m/s^2"};
+
+char axis_letter(int axis)
+{
+    return axis < 0 ? '?' : axis < 3 ? "xyz"[axis] : (char)('0' + axis);
+}
 
 typedef struct term_words {
     const char *unit[2]; /* of the model file: gyro, accel; powers of kelvin are added */

@@ -187,16 +187,15 @@ static int show(bench *b)
         code = bench_write_model(b);
     else if (o->output)
         command_note("%s is not written (--anyway would)", o->output);
-    if (code < 0 && o->report)
-        code = bench_report(b, o->report);
     if (code >= 0)
         return code;
-    if (o->json)
-        code = bench_json(b, end);
-    else if (!options_stdout_taken())
-        bench_print(b);
-    const int drawn = o->plot ? bench_draw(b, o->plot) : -1;
-    return drawn >= 0 ? drawn : code >= 0 ? code : end;
+    imk_result *result = show_begin("calibrate");
+    const bool drawn = bench_show(b, result);
+    const show_options options = {.report = o->report,
+                                  .plot = o->plot,
+                                  .json = o->json,
+                                  .lacking = drawn ? NULL : "observations to draw"};
+    return show_end(result, &options, end);
 }
 
 static int observe_and_solve(bench *b)
@@ -244,12 +243,10 @@ static int check(const calibrate_options *o)
 
 static void free_bench(bench *b)
 {
-    for (size_t k = 0; b->log && k < b->log_count; k++)
+    for (size_t k = 0; k < b->log_count; k++)
         bench_log_free(&b->log[k]);
-    if (b->calibration) {
-        free(b->calibration->observation);
-        free(b->calibration->turn);
-    }
+    free(b->calibration->observation);
+    free(b->calibration->turn);
     imk_motion_file_free(b->motion);
     imk_document_free(b->document);
     free(b->calibration);
@@ -282,21 +279,15 @@ static int run(int count, char **words)
         code = check(&o);
     if (code >= 0)
         return code;
-    bench *b = calloc(1, sizeof *b);
-    if (!b)
-        return command_failed("memory is exhausted");
+    bench *b = command_zeroed(sizeof *b);
     b->options = &o;
     while (b->log_count < IMK_TEST_RECORDS_MAX && paths[b->log_count])
         b->log_count++;
-    b->log = calloc(b->log_count + 1, sizeof *b->log);
-    b->calibration = calloc(1, sizeof *b->calibration);
-    if (b->log && b->calibration) {
-        for (size_t k = 0; k < b->log_count; k++)
-            b->log[k].path = paths[k];
-        code = o.plan ? bench_plan(b) : calibrate(b);
-    } else {
-        code = command_failed("memory is exhausted");
-    }
+    b->log = command_zeroed(b->log_count * sizeof *b->log);
+    b->calibration = command_zeroed(sizeof *b->calibration);
+    for (size_t k = 0; k < b->log_count; k++)
+        b->log[k].path = paths[k];
+    code = o.plan ? bench_plan(b) : calibrate(b);
     free_bench(b);
     return code;
 }

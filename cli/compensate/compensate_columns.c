@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which column of a log is which axis of a model, and what the corrected log looks like. */
 #include "compensate_parts.h"
-#include "log/log_columns.h"
+#include "log/log_units.h"
 
 #include "imukit/simulate_log.h"
 

@@ -5,7 +5,7 @@
  */
 #include "compensate_parts.h"
 
-#include "log/log_columns.h"
+#include "log/log_units.h"
 #include "shell/progress.h"
 
 #include "imukit/samples.h"

@@ -31,7 +31,7 @@ typedef struct scene {
 int scene_open(const simulate_options *o, const imk_model *model, scene *s);
 void scene_free(scene *s);
 
-/* ---- simulate_log.c ---- */
+/* ---- simulate_run.c ---- */
 
 /* Units of the columns. @return -1 or the exit code */
 int simulate_units(const simulate_options *o, const imk_model *model,

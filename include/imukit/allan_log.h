@@ -52,8 +52,8 @@ typedef struct imk_allan_log {
  *  @param job     NULL: as if all zeros
  *  @param result  imk_allan_log_free() it, also on failure, where it holds the findings; NULL when
  *                 even its memory failed
- *  @return what imk_even_record_load() returns, and, with a finding, IMK_ERROR_CONSTANT,
- * _TOO_SHORT, _GAP (a statistic that needs every sample), _RANGE (a time) */
+ *  @return what imk_even_record_load() returns, and with a finding IMK_ERROR_CONSTANT,
+ *          _TOO_SHORT, _GAP (a statistic that needs every sample), _RANGE (a time) */
 IMK_API imk_status imk_allan_log_run(const imk_record_source *source,
                                      const imk_allan_log_settings *settings, const imk_job *job,
                                      imk_allan_log **result, imk_error *error);

@@ -6,10 +6,10 @@
 
 #include <stddef.h>
 
-/** Memory as of realloc(): `at` NULL takes some, `size` 0 gives it back and returns NULL; NULL for
+/** Memory as of realloc(): `at` NULL takes some, `size` 0 gives it back and returns NULL. NULL for
  * a size above 0 means that memory is exhausted. The address is a multiple of alignof(max_align_t).
- *  A structure of zeros stands for realloc() and free(). Called by several
- *  threads at once where a job has several. */
+ * Several threads call it at once where a job has several. A structure of zeros stands for
+ * realloc() and free(). */
 typedef struct imk_allocator {
     void *(*resize)(void *context, void *at, size_t size);
     void *context;

@@ -37,10 +37,9 @@ typedef struct imk_even_record {
 /** Read a whole source and make its channels equally spaced: gyros and accelerometers, or every
  *  other column where there are none. Numbers beyond IMK_READING_MAX are no readings. Free with
  *  imk_even_record_free(), also on error.
- *  @param rate  [Hz] the samples were taken at; 0: by their times, or the source's
  *  @return what the source returns; IMK_ERROR_MEMORY, _CANCELLED; and with a finding that says why:
- *          _EMPTY (no row), _COLUMN (no channel), _TOO_SHORT, _RATE_MISSING, _TIME_ORDER (times
- * that are no grid), _GAP (refused) */
+ *          _EMPTY (no row), _COLUMN (no channel), _TOO_SHORT, _RATE_MISSING, _TIME_ORDER
+ *          (times that are no grid), _GAP (refused) */
 IMK_API imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy gaps,
                                         const imk_job *job, imk_even_record *record,
                                         imk_findings *findings, imk_error *error);

@@ -51,16 +51,16 @@ typedef struct imk_identify_log {
  *  @param job     NULL: as if all zeros
  *  @param result  imk_identify_log_free() it, also on failure, where it holds the findings; NULL
  *                 when even its memory failed
- *  @return as imk_even_record_load(), imk_identify_channel() (error.field: the channel), and, with
- * a finding, IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP (from_allan needs every sample) */
+ *  @return as imk_even_record_load(), imk_identify_channel() (error.field: the channel), and with a
+ *          finding IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP (from_allan needs every sample) */
 IMK_API imk_status imk_identify_log_run(const imk_record_source *source,
                                         const imk_identify_log_settings *settings,
                                         const imk_job *job, imk_identify_log **result,
                                         imk_error *error);
 IMK_API void imk_identify_log_free(imk_identify_log *result);
 
-/** Noise model of what was identified: nothing but noise, output filter and evidence, rounded to
- * the digits the values have in the units of a model file.
+/** Noise model of what was identified: nothing but noise, output filter and evidence, rounded
+ *  to the digits the values have in the units of a model file.
  *  @param source  what the evidence says it is from, such as the name of the file */
 IMK_API void imk_identify_log_model(const imk_identify_log *log, const char *source,
                                     imk_model *model);

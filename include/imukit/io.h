@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file io.h
- *  Everything of libimukit-io: files, threads, sentences. Needs libyaml, zlib, zstd, pthreads. */
+ *  Everything of libimukit-io: jobs, files, threads, messages. Needs libyaml, zlib, zstd, pthreads.
+ */
 #ifndef IMUKIT_IO_H
 #define IMUKIT_IO_H
 
@@ -8,13 +9,13 @@
 #include "imukit/design_file.h"
 #include "imukit/figure_file.h"
 #include "imukit/firmware_file.h"
+#include "imukit/jobs.h"
 #include "imukit/log.h"
 #include "imukit/memory_limit.h"
 #include "imukit/model_file.h"
 #include "imukit/motion_file.h"
 #include "imukit/output_file.h"
 #include "imukit/parameter_file.h"
-#include "imukit/report.h"
 #include "imukit/thread_pool.h"
 
 #ifdef __cplusplus

@@ -2,8 +2,8 @@
 /** @file record.h
  *  Records of sensors: what their columns are, where their rows come from, and one in memory.
  *
- *  Jobs (job.h) take a record source: a file is one kind (imk_log_source(), log.h), arrays in
- * memory are another (imk_array_source()). */
+ *  Jobs (job.h) take a record source: a file is one kind (imk_log_source(), log.h), arrays
+ *  in memory are another (imk_array_source_make()); they give to a record sink. */
 #ifndef IMUKIT_RECORD_H
 #define IMUKIT_RECORD_H
 
@@ -97,7 +97,7 @@ typedef struct imk_array_source {
 
 /** A source of `rows` rows in one array per column.
  *  @param names  gyro_x [rad/s], accel_x [m/s^2], time [s], temperature [K] and so on, without
- * units
+ *                units
  *  @param rate   [Hz]; 0: from a column named time
  *  @param memory what the source is about, until it is not used any more
  *  @return IMK_ERROR_COLUMN (too many, or a name twice), IMK_ERROR_RATE_MISSING, IMK_ERROR_MEMORY

@@ -71,9 +71,9 @@ typedef struct imk_figure {
     const imk_panel *panels;
 } imk_figure;
 
-/** The figure as SVG text obtained from malloc(). A curve of any number of points is drawn by 20
- * 000 at most: those are left out that fall on the same pixel; a drawing has less than half a
- * megabyte for each of its curves. Equal figures give equal bytes, in any locale.
+/** The figure as SVG text obtained from malloc(). A curve of any number of points is drawn by
+ *  20 000 at most: those are left out that fall on the same pixel. A drawing has less than half a
+ *  megabyte for each of its curves. Equal figures give equal bytes, in any locale.
  *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_figure_svg(const imk_figure *figure, char **svg, size_t *size,
                                   imk_error *error);

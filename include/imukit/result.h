@@ -37,8 +37,6 @@ IMK_API void imk_result_free(imk_result *result);
  *  @{ */
 IMK_API void imk_result_object(imk_result *result, const char *key);
 IMK_API void imk_result_array(imk_result *result, const char *key);
-/** A copy of a key that lives as long as the result. */
-IMK_API const char *imk_result_keep(imk_result *result, const char *key);
 /** End the object or array that was begun last. */
 IMK_API void imk_result_end(imk_result *result);
 /** A key that is made at run time, which lives as long as the result. */

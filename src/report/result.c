@@ -57,12 +57,6 @@ void imk_result_array(imk_result *result, const char *key)
         result->open = made;
 }
 
-const char *imk_result_keep(imk_result *result, const char *key)
-{
-    const char *kept = result ? imki_arena_text(&result->arena, key) : NULL;
-    return kept ? kept : "";
-}
-
 void imk_result_end(imk_result *result)
 {
     /* Where memory failed, what was to be ended may not have been begun. */

@@ -106,6 +106,9 @@ imk_table *imk_result_table(imk_result *result, unsigned right)
     return &made->table;
 }
 
+/* The separator of units of ASCII: no text of a person has it. */
+enum { CELL_END = 0x1f };
+
 /* A cell of `length` bytes; what a terminal could take for a command becomes "?". */
 static const char *clean_cell(imki_arena *arena, const char *text, size_t length)
 {
@@ -123,11 +126,16 @@ static const char *clean_cell(imki_arena *arena, const char *text, size_t length
     return cell ? cell : "";
 }
 
-static void add_cells(imk_table *table, const char *text)
+/* The cells of a format: its tabs are told from those of the arguments. */
+static void add_cells(imk_table *table, const char *format, va_list arguments)
 {
     imki_row *row = &table->row[table->rows - 1];
+    char *pattern = imki_arena_text(table->arena, format);
+    for (char *c = pattern; c && *c; c++)
+        *c = *c == '\t' ? CELL_END : *c;
+    const char *text = pattern ? imki_arena_format(table->arena, pattern, arguments) : "";
     for (;;) {
-        const size_t length = strcspn(text, "\t");
+        const size_t length = strcspn(text, (const char[]){CELL_END, '\0'});
         row->cells = imki_arena_extend(table->arena, row->cells, row->count, sizeof *row->cells);
         if (!row->cells) {
             row->count = 0;
@@ -153,7 +161,7 @@ void imk_table_row(imk_table *table, const char *format, ...)
     va_list arguments;
     table->row[table->rows++] = (imki_row){0};
     va_start(arguments, format);
-    add_cells(table, imki_arena_format(table->arena, format, arguments));
+    add_cells(table, format, arguments);
     va_end(arguments);
 }
 
@@ -163,7 +171,7 @@ void imk_table_add(imk_table *table, const char *format, ...)
         return;
     va_list arguments;
     va_start(arguments, format);
-    add_cells(table, imki_arena_format(table->arena, format, arguments));
+    add_cells(table, format, arguments);
     va_end(arguments);
 }
 

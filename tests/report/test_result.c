@@ -76,7 +76,7 @@ static void put_display(imk_result *r)
     imk_table *table = imk_result_table(r, 2);
     imk_table_row(table, "tau\t%s", "value");
     imk_table_row(table, "\xC2\xB5s");
-    imk_table_add(table, "%d\t%s", 7, "more\x1b[0m");
+    imk_table_add(table, "%d\t%s", 7, "more\x1b\t[0m");
     imk_table_row(table, "\t\tend");
     (void)imk_result_table(r, 0); /* without rows: nothing */
     imk_figure_builder *figure = imk_result_figure(r, "figure", 1, "Caption");
@@ -93,7 +93,7 @@ static void put_display(imk_result *r)
 
 static const char expected_text[] = "Head\nA warning & more.\nonly on the terminal\n\n"
                                     "tau  value\n"
-                                    "\xC2\xB5s       7  more?[0m\n"
+                                    "\xC2\xB5s       7  more??[0m\n"
                                     "            end\n";
 
 static void test_json(void **state)

@@ -199,7 +199,7 @@ static void parameter_data(const imk_channel_spectrum *f, const imk_log_column *
     for (int term = 0; term <= IMK_NOISE_RANDOM_WALK; term++) {
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
         const bool other = imk_channel_kind_of(column) == IMK_CHANNEL_OTHER;
-        imki_show_estimate(result, imk_result_keep(result, display.key), &f->fit.term[term],
+        imki_show_estimate(result, imk_result_key(result, "%s", display.key), &f->fit.term[term],
                            other ? display.unit.scale : 1, display.si);
     }
     imk_result_end(result);

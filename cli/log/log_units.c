@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Columns of a log that is written. */
-#include "log_columns.h"
+#include "log_units.h"
 
 #include "shell/command.h"
 

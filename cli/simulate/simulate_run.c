@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One run into one log, and the truth into another. */
-#include "log/log_columns.h"
+#include "log/log_units.h"
 #include "shell/job_progress.h"
 #include "simulate_parts.h"
 
