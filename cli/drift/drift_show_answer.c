@@ -102,8 +102,9 @@ static void show_terms(const drift_result *r, const drift_answer *answer, imk_re
     if (command_unless_memory(imk_model_print_json(one->model, NULL, &text, &size, NULL)) == IMK_OK)
         (void)imk_result_json(model, "model", text);
     free(text);
-    imk_table_row(table, "term\tis\tmust become\tfactor%s",
-                  answer->alone ? "\tthis one alone" : "");
+    imk_table_row(table, "term\tis\tmust become\tfactor");
+    if (answer->alone)
+        imk_table_add(table, "this one alone");
     for (size_t i = 0; i < answer->order_count; i++) {
         const size_t k = answer->order[i];
         imk_table_row(table, "%s", one->analysis->source[k].text);
