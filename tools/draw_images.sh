@@ -6,7 +6,7 @@
 #     tools/draw_images.sh             all
 #     tools/draw_images.sh ring_laser  those whose name contains it
 #
-# The same seed makes the same runs; the drawings differ with the version of gnuplot.
+# The same seed makes the same runs, and the same drawings.
 set -eu
 cd "$(dirname "$0")/.."
 imukit=${IMUKIT:-${BUILD:-build}/imukit}

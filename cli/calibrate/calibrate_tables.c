@@ -77,11 +77,12 @@ static void add_parameter(imk_table *table, const bench *b, imk_model_parameter 
 /* Readings in counts: what they make of a unit of input, and what they are without any. */
 static void add_counts(imk_table *table, const bench *b, int sensor, const imk_triad *triad)
 {
-    static const char *const titles[2] = {"counts per unit\tcount/(rad/s)",
-                                          "counts per unit\tcount/(m/s^2)"};
     static const int terms[2] = {IMK_MODEL_SCALE_FACTOR, IMK_MODEL_BIAS};
     for (int row = 0; row < 2 && triad->sensitivity.value[0] != 0; row++) {
-        imk_table_row(table, "%s", row == 0 ? titles[sensor] : "counts at zero input\tcount");
+        if (row == 0)
+            imk_table_row(table, "counts per unit\tcount/(%s)", sensor_units[sensor]);
+        else
+            imk_table_row(table, "counts at zero input\tcount");
         for (int axis = 0; axis < triad->axis_count; axis++) {
             const imk_model_parameter p = {(uint8_t)sensor, (uint8_t)terms[row], (uint8_t)axis, 0};
             const int found = bench_find(b, p);

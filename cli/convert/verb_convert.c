@@ -2,8 +2,8 @@
 /* imukit convert: logs, model files and parameter files of other programs between formats. */
 #include "convert_motion.h"
 #include "convert_parameters.h"
-#include "log/log_units.h"
 #include "log/log_input.h"
+#include "log/log_units.h"
 #include "shell/command.h"
 #include "shell/progress.h"
 

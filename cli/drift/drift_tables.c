@@ -53,8 +53,10 @@ static void show_one(const drift_result *r, const drift_case *one, imk_result *r
 {
     const bool is_free = r->scene->settings.vertical == IMK_VERTICAL_FREE;
     imk_table *table = begin_table(result, is_free ? 0x3FEU : 0xFEU);
-    imk_table_row(table, is_free ? "time\tCEP\t\tR95\tDRMS\theight\tvelocity\tclimb\ttilt\theading"
-                                 : "time\tCEP\t\tR95\tDRMS\tvelocity\ttilt\theading");
+    if (is_free)
+        imk_table_row(table, "time\tCEP\t\tR95\tDRMS\theight\tvelocity\tclimb\ttilt\theading");
+    else
+        imk_table_row(table, "time\tCEP\t\tR95\tDRMS\tvelocity\ttilt\theading");
     for (size_t k = 0; k < r->scene->row_count; k++) {
         const size_t t = r->scene->row[k];
         const imk_drift_figures *f = &one->figures[t];

@@ -148,9 +148,12 @@ static void show_figures(const evaluation *v, const char *name, const evaluate_s
         char value[NUMBER];
         if (!isfinite(f->value) && !isfinite(f->upper) && row->verdict == VERDICT_NONE)
             continue;
-        if (imk_table_rows(table) == 0)
-            imk_table_row(table, "%s\tvalue\t%g %% interval\tunit%s", name,
-                          100 * v->options->confidence, limits ? "\tlimit\tverdict" : "");
+        if (imk_table_rows(table) == 0) {
+            imk_table_row(table, "%s\tvalue\t%g %% interval\tunit", name,
+                          100 * v->options->confidence);
+            if (limits)
+                imk_table_add(table, "limit\tverdict");
+        }
         number(f->value / scale, 0.25 * (f->upper - f->lower) / scale, value);
         imk_table_row(table, "%s\t%s", row->title, value);
         add_interval(row, table);

@@ -1,138 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit identify of several logs: each is identified alone, its samples let go, and all are
  * compared. */
-#include "identify_several.h"
+#include "identify_parts.h"
+#include "shell/growing_list.h"
+#include "shell/job_progress.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static int identify_one_log(identification *i, const imk_identify_log_settings *settings,
-                            const imk_executor *executor)
-{
-    const int code = identify_run(i, settings, executor);
-    if (code < 0) {
-        imk_identify_log_let_samples_go(i->found);
-        identify_judge(i);
-        identify_warn(i);
-    }
-    return code;
-}
-
-/* Base names, unless two are the same. */
-static void label_logs(several_logs *s, const char *const *paths)
-{
-    bool same = false;
-    for (size_t r = 0; r < s->count; r++)
-        for (size_t q = 0; q < r; q++)
-            same = same || strcmp(identify_base_name(paths[r]), identify_base_name(paths[q])) == 0;
-    size_t used = 0;
-    for (size_t r = 0; r < s->count; r++) {
-        s->label[r] = same ? paths[r] : identify_base_name(paths[r]);
-        if (used < sizeof s->path)
-            used += (size_t)snprintf(s->path + used, sizeof s->path - used, "%s%s", r ? ", " : "",
-                                     identify_base_name(paths[r]));
-    }
-}
-
-static int check_channels(const several_logs *s, size_t record)
-{
-    const log_channels *first = &s->log[0]->found->record, *other = &s->log[record]->found->record;
-    bool same = first->count == other->count;
-    for (size_t c = 0; c < first->count && same; c++)
-        same = strcmp(log_channel_column(first, c)->name, log_channel_column(other, c)->name) == 0;
-    if (!same)
-        return command_failed("%s and %s do not have the same channels (%zu from %s on, %zu from "
-                              "%s on): only logs of the same columns can be compared",
-                              s->label[0], s->label[record], first->count,
-                              log_channel_column(first, 0)->name, other->count,
-                              log_channel_column(other, 0)->name);
-    if (s->options->runs && fabs(other->dt / first->dt - 1) > 1e-3)
-        return command_failed("%s was sampled at %.6g Hz, %s at %.6g Hz: runs of one sensor have "
-                              "one sample rate; identify them apart, or with --devices",
-                              s->label[0], 1 / first->dt, s->label[record], 1 / other->dt);
-    return -1;
-}
-
-static int load_logs(several_logs *s, const char *const *paths,
-                     const imk_identify_log_settings *settings, const imk_executor *executor)
-{
-    for (size_t r = 0; r < s->count; r++) /* before the others have taken their time */
-        if (strcmp(paths[r], "-") != 0 && access(paths[r], R_OK) != 0)
-            return command_failed("%s cannot be read", paths[r]);
-    for (size_t r = 0; r < s->count; r++) {
-        identification *i = s->log[r] = calloc(1, sizeof *i);
-        if (!i)
-            return command_failed("memory is exhausted");
-        i->options = s->options;
-        i->path = paths[r];
-        i->label = s->label[r];
-        int code = identify_one_log(i, settings, executor);
-        if (code < 0)
-            code = check_channels(s, r);
-        if (code >= 0)
-            return code;
-    }
-    return -1;
-}
-
-/* The channels of the first log, the rows of the longest, the time of all. */
-static int start_joint(several_logs *s, const imk_model *truth)
-{
-    identification *j = s->joint = calloc(1, sizeof *j);
-    s->agreement = calloc(IMK_LOG_COLUMNS_MAX, sizeof *s->agreement);
-    s->term = calloc(IMK_LOG_COLUMNS_MAX, sizeof *s->term);
-    if (j)
-        j->found = calloc(1, sizeof *j->found);
-    if (!j || !j->found || !s->agreement || !s->term)
-        return command_failed("memory is exhausted");
-    j->found->settings = s->log[0]->found->settings;
-    j->found->settings.summarise = false;
-    j->options = s->options;
-    j->path = s->path;
-    j->joint = true;
-    j->truth = *truth;
-    for (size_t r = 0; r < s->count; r++) {
-        const log_channels *channels = &s->log[r]->found->record;
-        const size_t longest = j->found->record.rows;
-        if (r == 0)
-            j->found->record = *channels;
-        j->found->record.rows = channels->rows > longest ? channels->rows : longest;
-        j->found->duration += channels->dt * (double)channels->rows;
-    }
-    return -1;
-}
-
-static bool is_bad(const several_logs *s)
-{
-    for (size_t r = 0; r < s->count; r++)
-        if (identify_is_bad(s->log[r]))
-            return true;
-    return identify_is_bad(s->joint);
-}
-
-static int present(several_logs *s, const imk_executor *executor)
-{
-    const identify_options *o = s->options;
-    int code = -1;
-    identify_warn(s->joint);
-    if (o->runs && o->twin)
-        code = identify_twin(s->joint, executor);
-    if (code < 0 && o->runs)
-        code = identify_write_model(s->joint);
-    if (code < 0 && o->report)
-        code = several_report(s, o->report);
-    if (code >= 0)
-        return code;
-    code = o->strict && is_bad(s) ? EXIT_FAILED : EXIT_DONE;
-    if (o->json)
-        code = several_json(s, code);
-    else if (!options_stdout_taken())
-        several_print(s);
-    const int drawn = o->plot ? identify_draw(s->joint, o->plot) : -1;
-    return drawn < 0 ? code : drawn;
-}
+typedef struct several_logs {
+    const identify_options *options;
+    size_t count;
+    imk_identify_log *log[IMK_JOINT_RECORDS_MAX];
+    imk_identify_shown shown[IMK_JOINT_RECORDS_MAX];
+    const char *label[IMK_JOINT_RECORDS_MAX]; /* the names without folders, if all differ */
+} several_logs;
 
 static int check_request(const identify_options *o)
 {
@@ -152,37 +35,112 @@ static int check_request(const identify_options *o)
     return -1;
 }
 
-int identify_several(const identify_options *options, size_t count, const char *const *paths,
-                     const imk_identify_log_settings *settings, const imk_model *truth,
+/* @param all  the names of all in one */
+static void label_logs(several_logs *s, const char *const *paths, growing_list *all)
+{
+    bool same = false;
+    for (size_t r = 0; r < s->count; r++) {
+        list_add_item(all, "%s", identify_base_name(paths[r]));
+        for (size_t q = 0; q < r; q++)
+            same = same || strcmp(identify_base_name(paths[r]), identify_base_name(paths[q])) == 0;
+    }
+    for (size_t r = 0; r < s->count; r++) {
+        s->label[r] = s->shown[r].label = same ? paths[r] : identify_base_name(paths[r]);
+        s->shown[r].name = paths[r];
+    }
+}
+
+/* Why two logs cannot be compared. @return -1 or the exit code */
+static int check_channels(const several_logs *s, size_t record)
+{
+    const imk_even_record *first = &s->log[0]->record, *other = &s->log[record]->record;
+    imk_error error;
+    if (imk_identify_comparable(s->log[0], s->log[record], s->options->runs, &error) == IMK_OK)
+        return -1;
+    if (strcmp(error.field, "rate") == 0)
+        return command_failed("%s was sampled at %.6g Hz, %s at %.6g Hz: runs of one sensor have "
+                              "one sample rate; identify them apart, or with --devices",
+                              s->label[0], 1 / first->dt, s->label[record], 1 / other->dt);
+    return command_failed("%s and %s do not have the same channels (%zu from %s on, %zu from "
+                          "%s on): only logs of the same columns can be compared",
+                          s->label[0], s->label[record], first->count,
+                          imk_even_record_column(first, 0)->name, other->count,
+                          imk_even_record_column(other, 0)->name);
+}
+
+static int identify_each(several_logs *s, const imk_executor *executor, imk_result *result)
+{
+    for (size_t r = 0; r < s->count; r++) /* before the others have taken their time */
+        if (strcmp(s->shown[r].name, "-") != 0 && access(s->shown[r].name, R_OK) != 0)
+            return command_failed("%s cannot be read", s->shown[r].name);
+    int code = -1;
+    for (size_t r = 0; r < s->count && code < 0; r++) {
+        imk_identify_shown *shown = &s->shown[r];
+        code = identify_run(s->options, shown->name, executor, &s->log[r]);
+        if (code >= 0)
+            break;
+        imk_identify_log_let_samples_go(s->log[r]);
+        shown->log = s->log[r];
+        shown->verdict = imk_identify_verdict(s->log[r], shown->label, result);
+        identify_warn(&shown->verdict);
+        code = check_channels(s, r);
+    }
+    return code;
+}
+
+static int compare(several_logs *s, identification *joint, const imk_executor *executor,
+                   imk_result *result)
+{
+    imk_identify_several *several;
+    imk_error error;
+    const imk_identify_log *const *logs = (const imk_identify_log *const *)s->log;
+    const imk_status status = s->options->runs
+                                  ? imk_identify_runs(s->count, logs, NULL, &several, &error)
+                                  : imk_identify_devices(s->count, logs, NULL, &several, &error);
+    if (command_unless_memory(status) != IMK_OK) {
+        imk_result_free(result);
+        return command_error(&error, joint->shown.name);
+    }
+    joint->shown.log = &several->joint;
+    joint->shown.verdict = imk_several_verdict(several, s->label, result);
+    identify_warn(&joint->shown.verdict);
+    bool warns = imk_verdict_warns(&joint->shown.verdict);
+    for (size_t r = 0; r < s->count; r++)
+        warns = warns || imk_verdict_warns(&s->shown[r].verdict);
+    int code = several->runs ? identify_make_model(joint, executor) : -1;
+    if (code < 0) {
+        imk_show_identify_several(several, &joint->shown, s->shown, result);
+        imk_result_for(result, IMK_FOR_PAGE);
+        show_origin(result);
+        code = identify_end(joint, result, warns);
+    } else {
+        imk_result_free(result);
+    }
+    imk_identify_several_free(several);
+    return code;
+}
+
+int identify_several(identification *joint, size_t count, const char *const *paths,
                      const imk_executor *executor)
 {
-    int code = check_request(options);
+    int code = check_request(joint->options);
     if (code >= 0)
         return code;
-    several_logs *s = calloc(1, sizeof *s);
-    if (!s)
-        return command_failed("memory is exhausted");
-    s->options = options;
+    growing_list all = {0};
+    several_logs *s = command_zeroed(sizeof *s);
+    imk_result *result = show_begin("identify");
+    s->options = joint->options;
     s->count = count;
-    label_logs(s, paths);
-    code = load_logs(s, paths, settings, executor);
+    label_logs(s, paths, &all);
+    joint->shown.name = all.text;
+    code = identify_each(s, executor, result);
     if (code < 0)
-        code = start_joint(s, truth);
-    if (code < 0)
-        code = options->runs ? several_join_runs(s) : several_compare_devices(s);
-    if (code < 0)
-        code = present(s, executor);
-    for (size_t r = 0; r < count; r++) {
-        if (s->log[r])
-            identify_free(s->log[r]);
-        free(s->log[r]);
-    }
-    if (s->joint) {
-        identify_free(s->joint);
-        free(s->joint);
-    }
-    free(s->agreement);
-    free(s->term);
+        code = compare(s, joint, executor, result);
+    else
+        imk_result_free(result);
+    for (size_t r = 0; r < count; r++)
+        imk_identify_log_free(s->log[r]);
+    list_free(&all);
     free(s);
     return code;
 }

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit identify: log at rest -> stochastic model with confidence intervals and a verdict. */
-#include "identify_curve.h"
-#include "identify_plan_parts.h"
-#include "identify_several.h"
+#include "identify_parts.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const option identify_option_table[] = {
     {"output", 'o', OPTION_OUTPUT, "MODEL", NULL, NULL, "write the model here (.yaml or .json)",
@@ -128,107 +127,81 @@ const verb identify_verb = {
                 offsetof(identify_options, log)}},
     .run = run};
 
-static void print_text(const identification *i)
+void identify_warn(const imk_verdict *verdict)
 {
-    for (channel_kind kind = CHANNEL_GYRO; kind < CHANNEL_KINDS; kind++) {
-        text_table table = identify_table(i, kind);
-        if (table.rows > 0) {
-            text_table_print(&table, stdout);
-            putchar('\n');
-        }
-        text_table_free(&table);
-    }
-    if (i->options->truth) {
-        size_t covered, stated;
-        text_table table = identify_truth_table(i, &covered, &stated);
-        text_table_print(&table, stdout);
-        text_table_free(&table);
-        printf("%zu of %zu intervals cover the truth; %g %% are expected to.\n\n", covered, stated,
-               100 * i->options->confidence);
-    }
-    for (size_t k = 0; k < i->verdict_count; k++)
-        if (i->verdict[k].level != VERDICT_WARNING)
-            printf("%s\n", i->verdict[k].text);
+    (void)command_unless_memory(verdict->message ? IMK_OK : IMK_ERROR_MEMORY);
+    for (size_t k = 0; k < verdict->count; k++)
+        if (verdict->message[k].level == IMK_FINDING_WARNING)
+            command_warn(verdict->message[k].code, "%s", verdict->message[k].text);
 }
 
-static void suggest_next(const identification *i)
+int identify_end(const identification *i, imk_result *result, bool warns)
 {
     const identify_options *o = i->options;
+    const bool model = i->model.gyro.present || i->model.accel.present;
+    imk_result_for(result, IMK_FOR_TERMINAL);
     if (o->report)
-        printf("Report: %s\n", o->report);
+        imk_result_line(result, "Report: %s", o->report);
     if (o->output)
-        printf("Model: %s\nNext: imukit grade %s, or imukit convert %s imu.yaml --to kalibr for a "
-               "filter\n",
-               o->output, o->output, o->output);
-    else if (i->model.gyro.present || i->model.accel.present)
-        printf("Next: add -o model.yaml to keep the model, --report report.html for a page\n");
+        imk_result_line(result,
+                        "Model: %s\nNext: imukit grade %s, or imukit convert %s imu.yaml --to "
+                        "kalibr for a filter",
+                        o->output, o->output, o->output);
+    else if (model && i->shown.log->origin != IMK_IDENTIFY_RECORDS)
+        imk_result_line(result, "Next: add -o model.yaml to keep the model, --report report.html "
+                                "for a page");
+    const show_options options = {.report = o->report, .plot = o->plot, .json = o->json};
+    return show_end(result, &options, o->strict && warns ? EXIT_FAILED : EXIT_DONE);
 }
 
-/* Everything after the channels are identified. */
-static int present(identification *i, const imk_executor *executor)
+/* The model, and how the page came about. */
+static void end_page(const identification *i, imk_result *result)
 {
-    const identify_options *o = i->options;
-    int code = -1;
-    if (!o->curve)
-        identify_judge(i);
-    identify_warn(i);
-    if (o->twin)
-        code = identify_twin(i, executor);
-    if (code < 0)
-        code = identify_write_model(i);
-    if (code < 0 && o->report)
-        code = identify_report(i, o->report);
-    if (code >= 0)
-        return code;
-    code = o->strict && identify_is_bad(i) ? EXIT_FAILED : EXIT_DONE;
-    if (o->json) {
-        code = identify_json(i, code);
-    } else if (!options_stdout_taken()) {
-        print_text(i);
-        suggest_next(i);
+    const char *model = i->options->output ? i->options->output : "model.yaml";
+    imk_result_for(result, IMK_FOR_PAGE);
+    if (i->model.gyro.present || i->model.accel.present)
+        show_model(result, "Model file", &i->model);
+    show_origin(result);
+    imk_result_heading(result, "Next");
+    imk_result_code(result,
+                    imk_result_key(result,
+                                   "imukit grade %s\n"
+                                   "imukit simulate %s --rate %gHz --duration 1h --seed 2 -o "
+                                   "another.csv\n"
+                                   "imukit identify %s --into MODEL -o MODEL   # only the noise of "
+                                   "an existing model",
+                                   model, model, 1 / i->shown.log->record.dt, i->shown.name));
+}
+
+static int identify_log(identification *i, const imk_executor *executor)
+{
+    imk_identify_log *log;
+    int code = identify_run(i->options, i->shown.name, executor, &log);
+    if (code < 0) {
+        imk_result *result = show_begin("identify");
+        i->shown.log = log;
+        i->shown.verdict = imk_identify_verdict(log, NULL, result);
+        identify_warn(&i->shown.verdict);
+        code = identify_make_model(i, executor);
+        if (code < 0) {
+            imk_show_identify_log(&i->shown, result);
+            if (i->options->report)
+                end_page(i, result);
+            code = identify_end(i, result, imk_verdict_warns(&i->shown.verdict));
+        } else {
+            imk_result_free(result);
+        }
     }
-    int drawn = o->plot ? identify_draw(i, o->plot) : -1;
-    return drawn < 0 ? code : drawn;
-}
-
-static int identify_log(identification *i, const imk_identify_log_settings *settings,
-                        const imk_executor *executor)
-{
-    int code = identify_run(i, settings, executor);
-    if (code < 0)
-        code = present(i, executor);
-    identify_free(i);
+    imk_identify_log_free(log);
     return code;
-}
-
-static int identify_table_of_deviations(identification *i, const imk_executor *executor)
-{
-    const identify_options *o = i->options;
-    const identify_curve_input input = {o->log.rate, o->duration, o->tolerance,
-                                        o->gauss_markov.value, o->plain};
-    int code = identify_curve(i, &input);
-    if (code < 0)
-        code = present(i, executor);
-    identify_free(i);
-    return code;
-}
-
-static int plan(const identify_options *o)
-{
-    const identify_plan_request request = {.model = o->plan,
-                                           .want = o->want,
-                                           .significance = o->significance,
-                                           .plot = o->plot,
-                                           .rate = o->log.rate,
-                                           .duration = o->duration,
-                                           .json = o->json,
-                                           .strict = o->strict};
-    return identify_plan_run(&request);
 }
 
 /* Options that go with Allan deviations only. @return -1 or the exit code */
 static int check_allan(const identify_options *o)
 {
+    if (o->curve && (!(o->log.rate > 0) || !(o->duration > 0)))
+        return command_misused("a curve does not say how long and how fast was recorded: give "
+                               "--rate and --duration, such as --rate 100Hz --duration 3h");
     if (o->curve && (o->keep || o->twin))
         return command_misused("%s is about the samples of a log; a curve has none",
                                o->keep ? "--keep" : "--twin");
@@ -275,25 +248,52 @@ static int check_request(const identify_options *o, size_t logs)
     return check_allan(o);
 }
 
+/* What --keep leaves of everything that can be taken out. @return -1 or the exit code */
+static int parse_keep(identify_options *o)
+{
+    static const struct {
+        const char *name;
+        unsigned bit;
+    } parts[] = {{"outliers", IMK_SCREEN_OUTLIERS},       {"stuck", IMK_SCREEN_STUCK},
+                 {"saturated", IMK_SCREEN_SATURATED},     {"warm-up", IMK_SCREEN_WARM_UP},
+                 {"temperature", IMK_SCREEN_TEMPERATURE}, {"all", IMK_SCREEN_ALL}};
+    enum { PARTS = sizeof parts / sizeof parts[0] };
+    o->take_out = IMK_SCREEN_ALL;
+    for (const char *text = o->keep; text && *text;) {
+        const size_t length = strcspn(text, ",");
+        size_t k = 0;
+        while (k < PARTS &&
+               (strlen(parts[k].name) != length || strncmp(parts[k].name, text, length) != 0))
+            k++;
+        if (k == PARTS)
+            return command_misused("--keep: \"%.*s\" is none of outliers, stuck, saturated, "
+                                   "warm-up, temperature, all",
+                                   (int)length, text);
+        o->take_out &= ~parts[k].bit;
+        text += length + (text[length] == ',');
+    }
+    return -1;
+}
+
 static int identify_operands(const identify_options *o, size_t logs, const char *const *operands)
 {
-    imk_identify_log_settings settings;
-    identification *i = calloc(1, sizeof *i);
-    if (!i)
-        return command_failed("memory is exhausted");
+    identification *i = command_zeroed(sizeof *i);
     i->options = o;
-    i->path = operands[0];
-    int code = identify_settings(o, &settings);
-    if (code < 0)
-        code = o->truth ? command_model(o->truth, &i->truth, NULL) : -1;
+    i->shown.name = operands[0];
+    int code = -1;
+    if (o->truth) {
+        code = command_model(o->truth, &i->truth, NULL);
+        i->shown.truth = &i->truth;
+    }
     if (code < 0) {
         imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-        imk_executor executor = imk_thread_pool_executor(pool);
-        code = logs > 1   ? identify_several(o, logs, operands, &settings, &i->truth, &executor)
-               : o->curve ? identify_table_of_deviations(i, &executor)
-                          : identify_log(i, &settings, &executor);
+        const imk_executor executor = imk_thread_pool_executor(pool);
+        code =
+            logs > 1 ? identify_several(i, logs, operands, &executor) : identify_log(i, &executor);
         imk_thread_pool_destroy(pool);
     }
+    for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++)
+        imk_allan_curve_free(&i->twin[c], &(imk_allocator){0});
     free(i);
     return code;
 }
@@ -313,7 +313,9 @@ static int run(int count, char **words)
         code = check_request(&o, logs);
     if (code < 0)
         code = command_check_plot(o.plot);
+    if (code < 0)
+        code = parse_keep(&o);
     if (code >= 0)
         return code;
-    return o.plan ? plan(&o) : identify_operands(&o, logs, operands);
+    return o.plan ? identify_plan(&o) : identify_operands(&o, logs, operands);
 }

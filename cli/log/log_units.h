@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the columns of a log are called that is written, their units, and its words. */
-#ifndef IMUKIT_LOG_COLUMNS_H
-#define IMUKIT_LOG_COLUMNS_H
+#ifndef IMUKIT_WRITTEN_COLUMNS_H
+#define IMUKIT_WRITTEN_COLUMNS_H
 
 #include "imukit/log.h"
 #include "imukit/model.h"

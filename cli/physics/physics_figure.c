@@ -27,6 +27,15 @@ static const char *label(char text[PHYSICS_LABEL], const char *name, const char 
     return text;
 }
 
+static void begin_panel(imk_figure_builder *figure, const char *title, const char *x, const char *y,
+                        const char *unit)
+{
+    char x_label[PHYSICS_LABEL], y_label[PHYSICS_LABEL];
+    const imk_panel panel = {
+        .title = title, .x_label = label(x_label, x, unit), .y_label = label(y_label, y, unit)};
+    imk_figure_panel(figure, &panel);
+}
+
 /* ---- a run ----------------------------------------------------------------------------------- */
 
 static void add_curves(const physics_run *run, const double *x, const double *output,
@@ -61,11 +70,8 @@ void physics_show_run_figure(const physics *p, const physics_run *run, imk_resul
         add_curves(run, run->time, run->curve[i], IMK_CURVE_LINE, i == 0, figure);
     }
     if (p->input.is_sine) {
-        const char *unit = physics_output_unit(p, run, 0).text;
-        const imk_panel panel = {.title = "Output against input",
-                                 .x_label = label(x, "input", unit),
-                                 .y_label = label(y, "output", unit)};
-        imk_figure_panel(figure, &panel);
+        begin_panel(figure, "Output against input", "input", "output",
+                    physics_output_unit(p, run, 0).text);
         add_curves(run, run->input, run->curve[0], IMK_CURVE_POINTS, true, figure);
     }
 }
@@ -365,51 +371,28 @@ int physics_animate(const physics *p, const char *path)
 /* Distance from the straight line through zero of the computed scale, in parts of full scale. */
 static void add_table(const imk_laboratory_result *r, bool gyro, imk_figure_builder *figure)
 {
-    enum { MOST = IMK_LABORATORY_POINTS_MAX };
     const char *unit = gyro ? "deg/s" : "m/s^2";
     const double scale = imk_unit_of(unit).scale;
-    double input[MOST], error[MOST], lower[MOST], upper[MOST];
-    char x[PHYSICS_LABEL], y[PHYSICS_LABEL];
+    begin_panel(figure, gyro ? "Rate table" : "Static response", "input", "output - input", unit);
+    imk_figure_curve(figure, &(imk_curve){.label = "", .style = IMK_CURVE_POINTS}, 1);
     for (int i = 0; i < r->point_count; i++) {
-        const double spread = 2 * r->point[i].sigma / scale;
-        input[i] = r->point[i].input / scale;
-        error[i] = (r->point[i].output - r->point[i].input) / scale;
-        lower[i] = error[i] - spread;
-        upper[i] = error[i] + spread;
+        const imk_laboratory_point *at = &r->point[i];
+        const double error = (at->output - at->input) / scale, spread = 2 * at->sigma / scale;
+        imk_figure_bar(figure, at->input / scale, error, error - spread, error + spread);
     }
-    const imk_panel panel = {.title = gyro ? "Rate table" : "Static response",
-                             .x_label = label(x, "input", unit),
-                             .y_label = label(y, "output - input", unit)};
-    const imk_curve curve = {.label = "",
-                             .style = IMK_CURVE_POINTS,
-                             .count = (size_t)r->point_count,
-                             .x = input,
-                             .y = error,
-                             .lower = lower,
-                             .upper = upper};
-    imk_figure_panel(figure, &panel);
-    imk_figure_curve(figure, &curve, 1);
 }
 
 static void add_response(const imk_laboratory_result *r, imk_figure_builder *figure)
 {
-    double frequency[IMK_LABORATORY_FREQUENCIES_MAX], gain[IMK_LABORATORY_FREQUENCIES_MAX];
-    for (int i = 0; i < r->response_count; i++) {
-        frequency[i] = r->response[i].frequency;
-        gain[i] = r->response[i].gain;
-    }
     const imk_panel panel = {.title = "Frequency response",
                              .x_label = "frequency [Hz]",
                              .y_label = "gain",
                              .x_logarithmic = true,
                              .y_logarithmic = true};
-    const imk_curve curve = {.label = "",
-                             .style = IMK_CURVE_POINTS,
-                             .count = (size_t)r->response_count,
-                             .x = frequency,
-                             .y = gain};
     imk_figure_panel(figure, &panel);
-    imk_figure_curve(figure, &curve, 1);
+    imk_figure_curve(figure, &(imk_curve){.label = "", .style = IMK_CURVE_POINTS}, 1);
+    for (int i = 0; i < r->response_count; i++)
+        imk_figure_point(figure, r->response[i].frequency, r->response[i].gain);
 }
 
 bool physics_show_laboratory_figure(const physics *p, const physics_laboratory *l,

@@ -127,12 +127,11 @@ static imk_status put_row(sheet *s, double time, const double *values, size_t co
 }
 
 /* @return -1 or the exit code */
-static int close_sheet(sheet *s, imk_status status)
+static int close_sheet(sheet *s)
 {
     imk_error error;
     int code = -1;
-    if (s->writer && status == IMK_OK)
-        status = flush(s);
+    const imk_status status = flush(s);
     /* a failed write is told by commit, which knows the system's reason */
     if (s->writer && imk_log_commit(s->writer, &error) != IMK_OK)
         code = command_error(&error, NULL);
@@ -315,7 +314,7 @@ int physics_run_make(const physics *p, physics_run *run)
         return code;
     }
     finish(p, run);
-    code = close_sheet(&log, IMK_OK);
-    const int second = close_sheet(&signals, IMK_OK);
+    code = close_sheet(&log);
+    const int second = close_sheet(&signals);
     return code >= 0 ? code : second;
 }

@@ -131,6 +131,7 @@ const verb physics_verb = {
 static int check_tasks(const physics_options *o, const char *operand)
 {
     const bool runs = !isnan(o->duration), models = o->reduce || o->sweep;
+    const char *const model_task = o->reduce ? "reduce" : "sweep";
     if (o->list && operand)
         return command_misused("--list takes no instrument");
     if (!operand && !o->list && (models || o->show || runs || o->plot || o->report || o->animate))
@@ -141,7 +142,7 @@ static int check_tasks(const physics_options *o, const char *operand)
         return command_misused("--show prints the design and nothing else");
     if (models && runs)
         return command_misused("--duration runs the instrument and --%s does not: leave one out",
-                               o->reduce ? "reduce" : "sweep");
+                               model_task);
     if (o->view && (o->output || o->signals))
         return command_misused("%s: a view is drawn, not written; leave --view out to write a run",
                                o->output ? "-o" : "--signals");
@@ -153,21 +154,16 @@ static int check_tasks(const physics_options *o, const char *operand)
                                o->rate ? "rate" : "acceleration");
     if (o->animate && (runs || models))
         return command_misused("--animate draws a view of the instrument: leave --%s out",
-                               runs        ? "duration"
-                               : o->reduce ? "reduce"
-                                           : "sweep");
+                               runs ? "duration" : model_task);
     if (o->view && ((!o->plot && !o->animate) || models))
         return command_misused("--view is drawn by --plot FILE or --animate FILE%s%s: add one",
-                               models ? ", without --" : "",
-                               !models     ? ""
-                               : o->reduce ? "reduce"
-                                           : "sweep");
+                               models ? ", without --" : "", models ? model_task : "");
     if (o->single_axis && !(models && o->output))
         return command_misused("--single-axis is about the model that --reduce -o MODEL.yaml "
                                "writes");
     if (models && o->signals)
         return command_misused("--signals needs a run: add --duration TIME, and leave --%s out",
-                               o->reduce ? "reduce" : "sweep");
+                               model_task);
     return -1;
 }
 

@@ -2,16 +2,14 @@
 /* Two model files compared line by line. */
 #include "model_changes.h"
 
-#include "command.h"
+#include "show.h"
 
-#include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Lines of one text that the other does not hold. Of the correlations, hundreds of numbers that
  * change with every digit, only that they do. */
-static void print_missing_lines(const char *text, const char *other, char sign)
+static void show_missing_lines(const char *text, const char *other, char sign, imk_result *result)
 {
     bool correlations = false, named = false;
     while (*text) {
@@ -25,9 +23,9 @@ static void print_missing_lines(const char *text, const char *other, char sign)
             line += other_length + (line[other_length] == '\n');
         }
         if (!found && !correlations)
-            fprintf(stderr, "%c %.*s\n", sign, (int)length, text);
+            imk_result_line(result, "%c %.*s", sign, (int)length, text);
         else if (!found && !named)
-            fprintf(stderr, "%c correlation: …\n", sign);
+            imk_result_line(result, "%c correlation: …", sign);
         named = named || (!found && correlations);
         text += length + (text[length] == '\n');
     }
@@ -43,9 +41,12 @@ void model_print_changes(const char *path, const imk_model *before, const imk_mo
             IMK_OK &&
         command_unless_memory(imk_model_print(after, document, &new_text, &size, &error)) ==
             IMK_OK) {
-        fprintf(stderr, "Changes to %s:\n", path);
-        print_missing_lines(old_text, new_text, '-');
-        print_missing_lines(new_text, old_text, '+');
+        imk_result *result = show_begin("changes");
+        imk_result_line(result, "Changes to %s:", path);
+        show_missing_lines(old_text, new_text, '-', result);
+        show_missing_lines(new_text, old_text, '+', result);
+        show_aside(result);
+        imk_result_free(result);
     }
     free(old_text);
     free(new_text);

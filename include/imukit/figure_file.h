@@ -18,8 +18,8 @@ IMK_API bool imk_plot_available(void);
 
 /** Draw a figure to FILE.svg, FILE.png or FILE.pdf, or to standard output with "term" (in letters,
  *  as large as the terminal; in colours on a terminal unless NO_COLOR is set). SVG is drawn by
- *  imk_figure_svg(), the others by gnuplot, which runs in a folder of TMPDIR and sees no name
- *  but its own there, so none is a command to it; it has 120 s, or IMUKIT_GNUPLOT_SECONDS.
+ *  imk_figure_svg(), the others by gnuplot. That runs in a folder of TMPDIR and sees no name but
+ *  its own there, so none is a command to it; it has 120 s, or IMUKIT_GNUPLOT_SECONDS.
  *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_FORMAT
  *          (another ending), IMK_ERROR_UNSUPPORTED (gnuplot is missing, or failed), IMK_ERROR_OPEN,
  *          IMK_ERROR_WRITE, IMK_ERROR_MEMORY */

@@ -34,9 +34,17 @@ typedef struct imk_identify_log_settings {
 
 IMK_API imk_identify_log_settings imk_identify_log_default(void);
 
+/** What the figures are of. */
+typedef enum imk_identify_origin {
+    IMK_IDENTIFY_RECORD = 0,
+    IMK_IDENTIFY_RECORDS, /**< several together (identify_several.h): nothing about samples */
+    IMK_IDENTIFY_CURVE    /**< a table of Allan deviations (identify_curve.h) */
+} imk_identify_origin;
+
 /** What was found. */
 typedef struct imk_identify_log {
     imk_identify_log_settings settings;
+    imk_identify_origin origin;
     imk_even_record record; /**< without samples where the record was never held */
     double duration;        /**< [s] recorded */
     bool screened;          /**< a record that was never held is not */

@@ -78,20 +78,21 @@ IMK_API imk_status imk_identify_bounds(const imk_expected_noise *noise,
                                        size_t workspace_size, imk_error *error);
 
 /** What a record shall tell. */
-typedef struct imk_identify_wish {
+typedef struct imk_identify_requirement {
     int term;         /**< imk_noise_term, or IMK_NOISE_TERMS + i for Gauss-Markov term i */
     bool time;        /**< of a Gauss-Markov term: its correlation time instead of its sigma */
     double relative;  /**< wanted standard deviation over value; 0: not asked */
     double detection; /**< wanted chance of being called present, < 1; 0: not asked */
-} imk_identify_wish;
+} imk_identify_requirement;
 
-/** The shortest record that grants a wish, to 0.1 %. About 50 ms.
+/** The shortest record that meets a requirement, to 0.1 %. About 50 ms.
  *  @return as imk_identify_bounds(); IMK_ERROR_NO_CONVERGENCE when no record up to 1e12 samples
  *          does */
 IMK_API imk_status imk_identify_duration(const imk_expected_noise *noise,
                                          const imk_bounds_settings *settings,
-                                         const imk_identify_wish *wish, double *duration,
-                                         void *workspace, size_t workspace_size, imk_error *error);
+                                         const imk_identify_requirement *requirement,
+                                         double *duration, void *workspace, size_t workspace_size,
+                                         imk_error *error);
 
 #ifdef __cplusplus
 }

@@ -49,7 +49,7 @@ enum { IMK_FINDINGS_MAX = 64, IMK_FINDING_NUMBERS = 6 };
 typedef struct imk_finding {
     const char *code; /**< "jitter"; lives for ever */
     imk_finding_level level;
-    char name[64];                      /**< the channel it is about, or a word; "" */
+    char name[96];                      /**< the channel it is about, or a word; "" */
     double number[IMK_FINDING_NUMBERS]; /**< what they are says finding_text.c, by code */
 } imk_finding;
 

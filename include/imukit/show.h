@@ -6,6 +6,8 @@
 #define IMUKIT_SHOW_RESULTS_H
 
 #include "imukit/allan_log.h"
+#include "imukit/identify_several.h"
+#include "imukit/record_plan.h"
 #include "imukit/result.h"
 #include "imukit/spectrum_log.h"
 
@@ -19,6 +21,51 @@ IMK_API void imk_show_allan_log(const imk_allan_log *allan, const char *name, im
 /** Densities, lines and parameters: a table for each kind of sensor, a figure. */
 IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char *name,
                                    imk_result *result);
+
+/** @name What was identified
+ *  @{ */
+/** A message of a verdict. */
+typedef struct imk_message {
+    imk_finding_level level; /**< good, note or warning */
+    const char *code, *text;
+} imk_message;
+
+/** What a record is good for, and what is wrong with it. Its memory is the result's. */
+typedef struct imk_verdict {
+    imk_result *result;
+    const char *label; /**< before each message; NULL: nothing */
+    size_t count;
+    imk_message *message; /**< NULL when memory is exhausted: there is one at least */
+} imk_verdict;
+
+IMK_API imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
+                                         imk_result *result);
+/** @param labels  of the records */
+IMK_API imk_verdict imk_several_verdict(const imk_identify_several *several,
+                                        const char *const *labels, imk_result *result);
+IMK_API bool imk_verdict_warns(const imk_verdict *verdict);
+
+/** One record, or several together, and what stands beside it. */
+typedef struct imk_identify_shown {
+    const imk_identify_log *log;
+    const char *name, *label; /**< such as its path, and the last part of it */
+    imk_verdict verdict;
+    const imk_model *truth;      /**< NULL: not known */
+    const imk_allan_curve *twin; /**< of each channel (imk_identify_log_twin()); NULL: none */
+} imk_identify_shown;
+
+/** Parameters, truth, verdict and a figure. */
+IMK_API void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result);
+/** @param joint    of several->joint; its name tells of all records
+ *  @param records  the names, labels and verdicts of several->log */
+IMK_API void imk_show_identify_several(const imk_identify_several *several,
+                                       const imk_identify_shown *joint,
+                                       const imk_identify_shown *records, imk_result *result);
+/** @} */
+
+/** What records of several lengths tell, how long they must be, and, of a curve, a figure. */
+IMK_API void imk_show_record_plan(const imk_record_plan *plan, const char *name,
+                                  imk_result *result);
 
 #ifdef __cplusplus
 }

@@ -177,7 +177,7 @@ static bool is_map(const imk_figure *figure)
 
 imki_figure_size imki_figure_measure(const imk_figure *figure)
 {
-    if (figure->panel_count == 1)
+    if (figure->panel_count <= 1)
         return (imki_figure_size){1, 1, SINGLE_WIDTH, SINGLE_HEIGHT, 0};
     size_t columns = figure->columns > 0 ? figure->columns : 1;
     columns = columns < figure->panel_count ? columns : figure->panel_count;

@@ -301,7 +301,7 @@ void imki_curve_style(imki_text *out, const imk_curve *curve)
         break;
     case IMK_CURVE_POINTS:
         imki_text_add(
-            out, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"44\" stroke-linecap=\"round\"",
+            out, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"48\" stroke-linecap=\"round\"",
             color);
         break;
     case IMK_CURVE_LINE:

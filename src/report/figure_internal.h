@@ -109,7 +109,7 @@ static inline long imki_column(double x)
 }
 
 /* The path of a curve, which is within the frame. However many points a curve has, at most
- * IMKI_CURVE_POINTS_MAX are drawn: about 200 kB. */
+ * IMKI_CURVE_POINTS_MAX are drawn, of 8 to 32 bytes. */
 enum { IMKI_CURVE_POINTS_MAX = 20000 };
 void imki_curve_draw(imki_text *out, const imki_frame *frame, const imk_curve *curve);
 

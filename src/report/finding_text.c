@@ -12,6 +12,13 @@
 #include <string.h>
 
 #define HOW_TO_GO_ON "use --gaps longest (the longest clean stretch) or --gaps bridge (interpolate)"
+#define CURVE_FIT "{name}: chi-square {0.1f} for {1} degrees of freedom ({2.2g} by chance)"
+#define LEFT_OUT "tau below {3.3g} s are left out: the terms do not explain them."
+#define CURVE_MISFIT                                                                               \
+    "The terms do not explain the curve, or it is not what was said: do its clusters overlap "     \
+    "(--plain)? Was it read from a page (--tolerance)? Do not trust the intervals."
+#define PLAN_LENGTH                                                                                \
+    "--plan: a record of {0g} s at {1g} Hz has not the 256 to 1e12 samples that are due; "
 
 static const struct message {
     const char *code, *text;
@@ -72,6 +79,29 @@ static const struct message {
                         "--gaps bridge)"},
     {"allan_fit", "{name}: Allan deviations fitted from {0.3g} s to {1.3g} s, chi-square {2.1f} "
                   "for {3} degrees of freedom ({4.2g} by chance)."},
+    /* identify_curve.c */
+    {"long_table", "looks like the long table of imukit allan; a curve has a column for each "
+                   "channel, such as tau [s],gyro_x [deg/s]. From the log itself, --method allan "
+                   "does the same, and needs no table"},
+    {"no_curve", "a table of Allan deviations has a column tau [s] and columns such as gyro_x "
+                 "[deg/s]"},
+    {"too_few_tau", "{0} tau are multiples of 1/{1g} s and at most half of {2g} s; a fit needs 4"},
+    {"curve", CURVE_FIT "."},
+    {"curve_from", CURVE_FIT "; " LEFT_OUT},
+    {"curve_misfit", CURVE_FIT ". " CURVE_MISFIT},
+    {"curve_misfit_from", CURVE_FIT "; " LEFT_OUT " " CURVE_MISFIT},
+    /* record_plan.c, plan_requirement.c */
+    {"plan_length", PLAN_LENGTH "change --duration or --rate"},
+    {"plan_no_length", PLAN_LENGTH "add another --duration"},
+    {"no_noise", "states no noise, from which to tell how long to record: a catalogue entry near "
+                 "it does (imukit devices), or imukit identify finds it in a first log at rest"},
+    {"requirement", "--want \"{name}\": expected a term and its 1 sigma in per cent of it, such as "
+                    "\"bias_instability 5%\", or \"rate_random_walk detected 95%\""},
+    {"requirement_chance",
+     "--want \"{name}\": behind \"detected\" a chance below 100% is due, such "
+     "as 95%"},
+    {"requirements", "--want: these are more than {0} wishes"},
+    {"no_such_noise", "--want \"{name}\": there is no such noise"},
     /* spectrum_log.c */
     {"too_few_for_spectrum", "{0} rows are too few for a spectrum; 64 are needed, and some "
                              "thousands useful"},

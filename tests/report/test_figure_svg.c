@@ -490,8 +490,9 @@ static void test_open_region(void **state)
 
 enum { MANY = 1000000 };
 
-/* A curve is less than half a megabyte, also where it goes to and fro, or has a gap at each second
- * point; and a single spike among a million points is as high as it is. */
+/* A curve is less than a megabyte, a line along its axis less than a tenth, also where it goes to
+ * and fro, or has a gap at each second point; and a single spike among a million points is as high
+ * as it is. */
 static void test_a_million_points(void **state)
 {
     (void)state;
@@ -507,7 +508,7 @@ static void test_a_million_points(void **state)
         gaps[i] = i % 2 ? (double)NAN : random[i];
     }
     y[654321] = 3;
-    static const size_t most[] = {110000, 500000, 110000, 60000, 60000, 500000};
+    static const size_t most[] = {100000, 500000, 100000, 100000, 100000, 500000};
     for (int style = IMK_CURVE_LINE; style <= IMK_CURVE_MARKS; style++) {
         const drawing *d = draw_curve((imk_curve_style)style, MANY, x, y, false);
         const double height = d->bottom - d->top;
@@ -522,7 +523,7 @@ static void test_a_million_points(void **state)
     draw_curve(IMK_CURVE_LINE, MANY, gaps, y, false);
     assert_true(last_size < 500000);
     draw_curve(IMK_CURVE_BAND, MANY, gaps, y, false);
-    assert_true(last_size < 700000); /* each slice has two ends */
+    assert_true(last_size < 1000000); /* each slice has two ends */
     free(x);
     free(y);
     free(random);

@@ -4,24 +4,25 @@
 
 #include <math.h>
 
-static bool granted(const imk_identification_bounds *bounds, const imk_identify_wish *wish)
+static bool met(const imk_identification_bounds *bounds,
+                const imk_identify_requirement *requirement)
 {
-    const int i = wish->term - IMK_NOISE_TERMS;
-    const imk_bound *bound = i < 0        ? &bounds->term[wish->term]
-                             : wish->time ? &bounds->correlation_time[i]
-                                          : &bounds->sigma[i];
-    return (!(wish->relative > 0) || bound->relative <= wish->relative) &&
-           (!(wish->detection > 0) || bound->detection >= wish->detection);
+    const int i = requirement->term - IMK_NOISE_TERMS;
+    const imk_bound *bound = i < 0               ? &bounds->term[requirement->term]
+                             : requirement->time ? &bounds->correlation_time[i]
+                                                 : &bounds->sigma[i];
+    return (!(requirement->relative > 0) || bound->relative <= requirement->relative) &&
+           (!(requirement->detection > 0) || bound->detection >= requirement->detection);
 }
 
 imk_status imk_identify_duration(const imk_expected_noise *noise,
-                                 const imk_bounds_settings *settings, const imk_identify_wish *wish,
-                                 double *duration, void *workspace, size_t workspace_size,
-                                 imk_error *error)
+                                 const imk_bounds_settings *settings,
+                                 const imk_identify_requirement *requirement, double *duration,
+                                 void *workspace, size_t workspace_size, imk_error *error)
 {
-    if (wish->term < 0 || wish->term >= IMK_NOISE_TERMS + noise->gauss_markov_count ||
-        !(wish->relative > 0 || wish->detection > 0) || !(wish->detection < 1))
-        return imk_error_set(error, IMK_ERROR_RANGE, "wish", NULL,
+    if (requirement->term < 0 || requirement->term >= IMK_NOISE_TERMS + noise->gauss_markov_count ||
+        !(requirement->relative > 0 || requirement->detection > 0) || !(requirement->detection < 1))
+        return imk_error_set(error, IMK_ERROR_RANGE, "requirement", NULL,
                              "a term of the noise, a relative sigma > 0 or a chance below 1");
     const double dt = settings->dt;
     double low = 256 * dt, high = low;
@@ -31,10 +32,10 @@ imk_status imk_identify_duration(const imk_expected_noise *noise,
             imk_identify_bounds(noise, settings, high, &bounds, workspace, workspace_size, error);
         if (status != IMK_OK && status != IMK_ERROR_SINGULAR)
             return status;
-        if (status == IMK_OK && granted(&bounds, wish))
+        if (status == IMK_OK && met(&bounds, requirement))
             break;
         if (!(high < 1e12 * dt))
-            return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, "wish", NULL,
+            return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, "requirement", NULL,
                                  "something that a record of 1e12 samples can tell");
     }
     while (high > 1.001 * low) {
@@ -42,7 +43,7 @@ imk_status imk_identify_duration(const imk_expected_noise *noise,
         const double middle = sqrt(low * high);
         const imk_status status =
             imk_identify_bounds(noise, settings, middle, &bounds, workspace, workspace_size, error);
-        *(status == IMK_OK && granted(&bounds, wish) ? &high : &low) = middle;
+        *(status == IMK_OK && met(&bounds, requirement) ? &high : &low) = middle;
     }
     *duration = high;
     return IMK_OK;

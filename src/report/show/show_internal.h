@@ -18,6 +18,14 @@ imki_words imki_plus_minus(double value, double sigma, double scale);
 /* A value alone, by its uncertainty; or to `digits` when that is 0. */
 imki_words imki_value(double value, double uncertainty, int digits);
 
+/* "1.2 to 3.4", to the digits that the width leaves. */
+imki_words imki_range(double lower, double upper, double scale);
+/* The interval of an estimate, or "< 3.4" of what is absent. */
+imki_words imki_interval(const imk_estimate *estimate, double scale);
+/* "0.03", "below 1e-12" */
+imki_words imki_chance(double probability);
+imki_words imki_duration(double seconds);
+
 /* The channels of a kind. @return how many */
 size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t *member);
 

@@ -21,6 +21,41 @@ imki_words imki_plus_minus(double value, double sigma, double scale)
     return words;
 }
 
+imki_words imki_range(double lower, double upper, double scale)
+{
+    const double width = (upper - lower) / scale / 4;
+    char first[IMKI_WORDS / 2 - 4], second[IMKI_WORDS / 2 - 4];
+    imki_words words;
+    imk_readable_value(lower / scale, width, 3, first, sizeof first);
+    imk_readable_value(upper / scale, width, 3, second, sizeof second);
+    snprintf(words.text, sizeof words.text, "%s to %s", first, second);
+    return words;
+}
+
+imki_words imki_interval(const imk_estimate *e, double scale)
+{
+    imki_words words;
+    if (e->present)
+        return imki_range(e->lower, e->upper, scale);
+    snprintf(words.text, sizeof words.text, "< %.60s", imki_value(e->upper / scale, 0, 2).text);
+    return words;
+}
+
+imki_words imki_chance(double probability)
+{
+    imki_words words;
+    snprintf(words.text, sizeof words.text, probability < 1e-12 ? "below 1e-12" : "%.2g",
+             probability);
+    return words;
+}
+
+imki_words imki_duration(double seconds)
+{
+    imki_words words;
+    imk_readable_duration(seconds, words.text, sizeof words.text);
+    return words;
+}
+
 size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t *member)
 {
     size_t count = 0;

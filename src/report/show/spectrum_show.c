@@ -49,9 +49,8 @@ static void show_densities(const imk_spectrum_log *s, imk_channel_kind kind, imk
         return;
     const imk_unit unit = root_unit(s, member[0]);
     imk_spectrum_band all[IMK_SPECTRUM_COARSE * 12];
-    const size_t count =
-        imk_spectrum_bands(&s->channel[member[0]].spectrum, IMK_SPECTRUM_COARSE, 0.95, 0, NULL,
-                           sizeof all / sizeof all[0], all);
+    const size_t count = imk_spectrum_bands(&s->channel[member[0]].spectrum, IMK_SPECTRUM_COARSE,
+                                            0.95, 0, NULL, sizeof all / sizeof all[0], all);
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table, "frequency [Hz]");
     for (size_t k = 0; k < members; k++)
@@ -106,13 +105,11 @@ static void show_lines(const imk_spectrum_log *s, imk_result *result)
 
 static void parameter_cell(imk_table *table, const imk_estimate *e, double scale)
 {
-    const double width = (e->upper - e->lower) / scale / 4;
     if (!e->present)
         imk_table_add(table, "absent (< %s)", imki_value(e->upper / scale, 0, 2).text);
     else
-        imk_table_add(table, "%s (%s to %s)", imki_plus_minus(e->value, e->sigma, scale).text,
-                      imki_value(e->lower / scale, width, 3).text,
-                      imki_value(e->upper / scale, width, 3).text);
+        imk_table_add(table, "%s (%s)", imki_plus_minus(e->value, e->sigma, scale).text,
+                      imki_range(e->lower, e->upper, scale).text);
 }
 
 static void show_parameters(const imk_spectrum_log *s, imk_channel_kind kind, imk_result *result)
@@ -261,8 +258,7 @@ static void show_data(const imk_spectrum_log *s, const char *name, imk_result *r
 static void show_curves(const imk_channel_spectrum *f, const char *name, int color, double scale,
                         imk_figure_builder *figure)
 {
-    imk_figure_curve(figure, &(imk_curve){.label = "", .style = IMK_CURVE_BAND, .color = color},
-                     1);
+    imk_figure_curve(figure, &(imk_curve){.label = "", .style = IMK_CURVE_BAND, .color = color}, 1);
     for (size_t i = 0; i < f->fine_count; i++)
         imk_figure_bar(figure, f->fine[i].frequency, sqrt(f->fine[i].density) * scale,
                        sqrt(f->fine[i].lower) * scale, sqrt(f->fine[i].upper) * scale);
@@ -302,9 +298,8 @@ void imk_show_spectrum_log(const imk_spectrum_log *s, const char *name, imk_resu
 {
     size_t lines = 0;
     show_data(s, name, result);
-    imk_result_title(result, "Power spectral density",
-                     "%.120s: %zu samples of %zu channels, %g Hz", name, s->record.rows,
-                     s->record.count, 1 / s->record.dt);
+    imk_result_title(result, "Power spectral density", "%.120s: %zu samples of %zu channels, %g Hz",
+                     name, s->record.rows, s->record.count, 1 / s->record.dt);
     imk_figure_builder *figure = imk_result_figure(
         result, name, 2,
         "Root densities, and their intervals as bands. Large points: spectral lines.");

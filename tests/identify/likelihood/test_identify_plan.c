@@ -129,7 +129,7 @@ static void test_shapes_cost(void **state)
     assert_true(without.correlation_time[0].relative == 0);
 }
 
-/* The duration is where the bound crosses the wish. */
+/* The duration is where the bound crosses the requirement. */
 static void test_duration(void **state)
 {
     (void)state;
@@ -139,30 +139,33 @@ static void test_duration(void **state)
     void *workspace = malloc(size);
     imk_error error;
     double duration = 0, longer = 0;
-    imk_identify_wish wish = {.term = IMK_NOISE_BIAS_INSTABILITY, .relative = 0.05};
+    imk_identify_requirement requirement = {.term = IMK_NOISE_BIAS_INSTABILITY, .relative = 0.05};
     CHECK_STATUS(
-        imk_identify_duration(&noise, &settings, &wish, &duration, workspace, size, &error),
+        imk_identify_duration(&noise, &settings, &requirement, &duration, workspace, size, &error),
         IMK_OK);
-    CHECK_RELATIVE(bounds_of(&noise, &settings, duration).term[wish.term].relative, 0.05, 1e-3);
-    wish.relative = 0.025;
-    CHECK_STATUS(imk_identify_duration(&noise, &settings, &wish, &longer, workspace, size, &error),
-                 IMK_OK);
+    CHECK_RELATIVE(bounds_of(&noise, &settings, duration).term[requirement.term].relative, 0.05,
+                   1e-3);
+    requirement.relative = 0.025;
+    CHECK_STATUS(
+        imk_identify_duration(&noise, &settings, &requirement, &longer, workspace, size, &error),
+        IMK_OK);
     /* Half the sigma for four times the record, but for the random walk, which a longer one tells
      * better. */
     CHECK_RELATIVE(longer / duration, 4, 0.1);
-    wish = (imk_identify_wish){.term = IMK_NOISE_RANDOM_WALK, .detection = 0.9};
+    requirement = (imk_identify_requirement){.term = IMK_NOISE_RANDOM_WALK, .detection = 0.9};
     CHECK_STATUS(
-        imk_identify_duration(&noise, &settings, &wish, &duration, workspace, size, &error),
+        imk_identify_duration(&noise, &settings, &requirement, &duration, workspace, size, &error),
         IMK_OK);
-    assert_true(bounds_of(&noise, &settings, duration).term[wish.term].detection >= 0.9);
-    assert_true(bounds_of(&noise, &settings, 0.99 * duration).term[wish.term].detection < 0.9);
-    wish = (imk_identify_wish){.term = IMK_NOISE_QUANTIZATION, .relative = 0.1};
+    assert_true(bounds_of(&noise, &settings, duration).term[requirement.term].detection >= 0.9);
+    assert_true(bounds_of(&noise, &settings, 0.99 * duration).term[requirement.term].detection <
+                0.9);
+    requirement = (imk_identify_requirement){.term = IMK_NOISE_QUANTIZATION, .relative = 0.1};
     CHECK_STATUS(
-        imk_identify_duration(&noise, &settings, &wish, &duration, workspace, size, &error),
+        imk_identify_duration(&noise, &settings, &requirement, &duration, workspace, size, &error),
         IMK_ERROR_NO_CONVERGENCE);
-    wish = (imk_identify_wish){.term = IMK_NOISE_TERMS, .relative = 0.1};
+    requirement = (imk_identify_requirement){.term = IMK_NOISE_TERMS, .relative = 0.1};
     CHECK_STATUS(
-        imk_identify_duration(&noise, &settings, &wish, &duration, workspace, size, &error),
+        imk_identify_duration(&noise, &settings, &requirement, &duration, workspace, size, &error),
         IMK_ERROR_RANGE);
     free(workspace);
 }

@@ -70,6 +70,7 @@ static const sentence_of_status sentences[] = {
     {IMK_ERROR_RATE_MISSING, "the sample rate is not known: X y", "the sample rate is not known"},
     {IMK_ERROR_UNSUPPORTED, "this is not supported: X y", "this is not supported"},
     {IMK_ERROR_NAME_UNKNOWN, "\"X y\" is not a known name", "the name is not known"},
+    {IMK_ERROR_CANCELLED, "the work was given up: X y", "the work was given up"},
 };
 
 static void every_status(void **state)

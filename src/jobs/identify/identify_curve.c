@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A noise model from a table of Allan deviations. */
+#include "imukit/identify_curve.h"
+
+#include "jobs/allan/allan_curve_internal.h"
+#include "jobs/arena_internal.h"
+#include "jobs/job_internal.h"
+#include "jobs/record/even_record_internal.h"
+
+#include "imukit/allan_fit.h"
+#include "imukit/distributions.h"
+#include "imukit/samples.h"
+
+#include <math.h>
+#include <string.h>
+
+static const uint32_t settings_cookie = 0x49444331; /* "IDC1" */
+
+/* Neighbours closer than this ratio hold next to nothing new, and make the covariance singular. */
+static const double least_ratio = 1.1;
+
+/* Below this chance the terms do not explain the curve. */
+static const double misfit_chance = 0.001;
+
+/* The tau in the table that are used. */
+typedef struct used_rows {
+    size_t count, row[IMK_ALLAN_FIT_FACTORS_MAX], factor[IMK_ALLAN_FIT_FACTORS_MAX];
+    double tau[IMK_ALLAN_FIT_FACTORS_MAX];
+} used_rows;
+
+imk_identify_curve_settings imk_identify_curve_default(void)
+{
+    return (imk_identify_curve_settings){
+        .cookie = settings_cookie, .confidence = 0.95, .significance = 0.01};
+}
+
+static int find_column(const imk_log *log, const char *name)
+{
+    for (size_t c = 0; c < log->column_count; c++)
+        if (strcmp(log->column[c].name, name) == 0)
+            return (int)c;
+    return -1;
+}
+
+/* Rows whose tau is a multiple of the sample interval, within 1 %, in steps of at least a ratio. */
+static void choose_rows(const imk_identify_curve_settings *s, const double *tau, size_t rows,
+                        used_rows *used)
+{
+    const double n = floor(s->duration * s->rate + 0.5);
+    for (double ratio = least_ratio;; ratio *= 1.1) {
+        double last = 0;
+        used->count = 0;
+        for (size_t k = 0; k < rows; k++) {
+            const double m = floor(tau[k] * s->rate + 0.5);
+            if (!(m >= 1) || 2 * m > n || fabs(m / (tau[k] * s->rate) - 1) > 0.01 ||
+                (used->count > 0 && m < ratio * last))
+                continue;
+            last = m;
+            if (used->count < IMK_ALLAN_FIT_FACTORS_MAX) {
+                used->row[used->count] = k;
+                used->factor[used->count] = (size_t)m;
+                used->tau[used->count] = m / s->rate;
+            }
+            used->count++;
+        }
+        if (used->count <= IMK_ALLAN_FIT_FACTORS_MAX)
+            return;
+    }
+}
+
+/* The channels beside tau, and the rows. */
+static imk_status choose(imk_identify_log *log, const imk_identify_curve_settings *s,
+                         used_rows *used, imk_error *error)
+{
+    imk_even_record *record = &log->record;
+    imk_even_record_choose(record);
+    int tau = find_column(&record->log, "tau");
+    if (tau < 0)
+        tau = find_column(&record->log, "tau_s");
+    if (find_column(&record->log, "edf") >= 0)
+        return imki_fail(&log->findings, error, IMK_ERROR_FORMAT, "long_table", NULL, 0, NULL);
+    size_t kept = 0;
+    for (size_t c = 0; c < record->count; c++)
+        if (record->column[c] != tau)
+            record->column[kept++] = record->column[c];
+    record->count = kept;
+    if (tau < 0 || kept == 0)
+        return imki_fail(&log->findings, error, IMK_ERROR_FORMAT, "no_curve", NULL, 0, NULL);
+    choose_rows(s, record->log.data[tau], record->log.rows, used);
+    if (used->count < 4)
+        return imki_fail(&log->findings, error, IMK_ERROR_TOO_SHORT, "too_few_tau", NULL,
+                         IMKI_NUMBERS((double)used->count, s->rate, s->duration));
+    record->dt = 1 / s->rate;
+    record->rows = imk_samples_in(s->duration, record->dt);
+    return IMK_OK;
+}
+
+static void store(imk_identification *result, const imk_allan_fit *fit, const double *deviation,
+                  const used_rows *used)
+{
+    result->mean = result->deviation = (double)NAN; /* not in a table */
+    memcpy(result->term, fit->term, sizeof result->term);
+    memcpy(result->correlation, fit->correlation, sizeof result->correlation);
+    result->gauss_markov_count = fit->gauss_markov_count;
+    for (int k = 0; k < fit->gauss_markov_count; k++) {
+        result->gauss_markov[k].sigma = fit->gauss_markov[k].sigma;
+        result->gauss_markov[k].correlation_time = fit->gauss_markov[k].correlation_time;
+    }
+    double least = deviation[0];
+    for (size_t k = 1; k < used->count; k++)
+        least = fmin(least, deviation[k]);
+    result->minimum_floor = least / 0.6642824702679600; /* sqrt(2 ln 2/pi) */
+    result->valid_from = result->five_terms_from = used->tau[fit->first];
+    result->valid_to = result->longest = used->tau[used->count - 1];
+}
+
+/* The deviations as points of a plot: each has the degrees of freedom that the model gives it. */
+static imk_status keep_curve(imk_identify_log *log, size_t channel, const imk_allan_fit *fit,
+                             const double *deviation, const used_rows *used,
+                             const imk_allocator *allocator)
+{
+    const double tail = (1 - log->settings.confidence) / 2;
+    imk_allan_point point[IMK_ALLAN_FIT_FACTORS_MAX] = {0};
+    for (size_t k = 0; k < used->count; k++) {
+        imk_allan_point *p = &point[k];
+        const double ratio = fit->expected[k] / fit->sigma[k];
+        p->m = used->factor[k];
+        p->edf = 2 * ratio * ratio;
+        p->deviation = deviation[k];
+        p->lower = p->deviation * sqrt(p->edf / imk_chi_square_quantile(1 - tail, p->edf));
+        p->upper = p->deviation * sqrt(p->edf / imk_chi_square_quantile(tail, p->edf));
+    }
+    return imki_allan_curve_of(used->count, point, log->record.dt, allocator, &log->curve[channel]);
+}
+
+static void tell_fit(imk_identify_log *log, size_t channel, const imk_allan_fit *fit,
+                     const used_rows *used)
+{
+    static const char *const codes[2][2] = {{"curve", "curve_from"},
+                                            {"curve_misfit", "curve_misfit_from"}};
+    const bool bad = fit->probability < misfit_chance;
+    imki_find(&log->findings, bad ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, codes[bad][fit->first > 0],
+              imk_even_record_column(&log->record, channel)->name,
+              IMKI_NUMBERS(fit->chi_square, (double)fit->degrees, fit->probability,
+                           used->tau[fit->first]));
+}
+
+static imk_status fit_channel(imk_identify_log *log, size_t channel,
+                              const imk_identify_curve_settings *s, const used_rows *used,
+                              imki_arena *scratch)
+{
+    const double *data = imk_even_record_data(&log->record, channel);
+    double deviations[IMK_ALLAN_FIT_FACTORS_MAX], variances[IMK_ALLAN_FIT_FACTORS_MAX];
+    for (size_t k = 0; k < used->count; k++) {
+        deviations[k] = data[used->row[k]];
+        variances[k] = deviations[k] * deviations[k];
+    }
+    const imk_allan_table table = {.dt = log->record.dt,
+                                   .count = used->count,
+                                   .factors = used->factor,
+                                   .variances = variances,
+                                   .strides = s->plain ? used->factor : NULL,
+                                   .record_count = 1,
+                                   .lengths = &log->record.rows};
+    imk_allan_fit_settings settings = imk_allan_fit_default();
+    settings.confidence = s->confidence;
+    settings.significance = s->significance;
+    settings.tolerance = s->tolerance;
+    settings.gauss_markov_max = s->gauss_markov_max;
+    const size_t size = imk_allan_fit_workspace_size(&settings, used->count, 0);
+    void *workspace = imki_arena_take(scratch, size);
+    imk_allan_fit *fit = imki_arena_take(scratch, sizeof *fit);
+    if (!workspace || !fit)
+        return IMK_ERROR_MEMORY;
+    imk_status status = imk_allan_fit_table(&settings, &table, fit, workspace, size, NULL);
+    if (status == IMK_OK)
+        status = keep_curve(log, channel, fit, deviations, used, &scratch->allocator);
+    if (status == IMK_OK) {
+        store(&log->result[channel], fit, deviations, used);
+        tell_fit(log, channel, fit, used);
+    }
+    return status;
+}
+
+static imk_status fit_all(imk_identify_log *log, const imk_record_source *source,
+                          const imk_identify_curve_settings *s, const imk_job *job,
+                          imk_error *error)
+{
+    used_rows used;
+    imk_status status = imki_record_load(source, job, &log->record.log, error);
+    if (status == IMK_OK)
+        status = choose(log, s, &used, error);
+    for (size_t c = 0; status == IMK_OK && c < log->record.count; c++) {
+        imki_arena scratch = {.allocator = job->allocator};
+        status = fit_channel(log, c, s, &used, &scratch);
+        imki_arena_free(&scratch);
+        if (status == IMK_ERROR_MEMORY)
+            imk_error_set(error, status, NULL, NULL, NULL);
+        else if (status != IMK_OK)
+            imki_fail(&log->findings, error, status, "column_failed",
+                      imk_even_record_column(&log->record, c)->name, IMKI_NUMBERS(status));
+    }
+    return status;
+}
+
+imk_status imk_identify_curve_run(const imk_record_source *source,
+                                  const imk_identify_curve_settings *settings, const imk_job *job,
+                                  imk_identify_log **result, imk_error *error)
+{
+    const imk_job alone = {.memory = 0};
+    job = job ? job : &alone;
+    *result = NULL;
+    if (settings->cookie != settings_cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
+                             "imk_identify_curve_default()");
+    if (!(settings->rate > 0) || !(settings->duration > 0))
+        return imk_error_set(error, IMK_ERROR_RANGE, settings->rate > 0 ? "duration" : "rate", NULL,
+                             NULL);
+    imk_identify_log *made = imki_resize(&job->allocator, NULL, sizeof *made);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    memset(made, 0, sizeof *made);
+    made->settings = imk_identify_log_default();
+    made->settings.confidence = settings->confidence;
+    made->settings.significance = settings->significance;
+    made->settings.from_allan = true;
+    made->origin = IMK_IDENTIFY_CURVE;
+    made->duration = settings->duration;
+    *result = made;
+    const imk_status status = fit_all(made, source, settings, job, error);
+    made->record.log.allocator = job->allocator;
+    return status;
+}

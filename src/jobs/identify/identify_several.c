@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Several records that were identified alone, put side by side. */
+#include "identify_several_internal.h"
+
+#include "jobs/arena_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+imk_status imk_identify_comparable(const imk_identify_log *first, const imk_identify_log *other,
+                                   bool runs, imk_error *error)
+{
+    const imk_even_record *a = &first->record, *b = &other->record;
+    bool same = a->count == b->count;
+    for (size_t c = 0; c < a->count && same; c++)
+        same = strcmp(imk_even_record_column(a, c)->name, imk_even_record_column(b, c)->name) == 0;
+    if (!same)
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "channels", NULL, NULL);
+    if (runs && fabs(b->dt / a->dt - 1) > 1e-3)
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "rate", NULL, NULL);
+    return IMK_OK;
+}
+
+void imk_identify_several_free(imk_identify_several *result)
+{
+    if (!result)
+        return;
+    const imk_allocator allocator = result->joint.record.log.allocator;
+    for (size_t c = 0; c < IMK_LOG_COLUMNS_MAX; c++)
+        imk_allan_curve_free(&result->joint.curve[c], &allocator);
+    imki_resize(&allocator, result, 0);
+}
+
+imk_identify_several *imki_several_begin(bool runs, size_t count,
+                                         const imk_identify_log *const *logs, const imk_job *job,
+                                         imk_error *error)
+{
+    for (size_t r = 1; r < count; r++)
+        if (imk_identify_comparable(logs[0], logs[r], runs, error) != IMK_OK) {
+            if (error)
+                error->index = (int)r;
+            return NULL;
+        }
+    if (count < 2 || count > IMK_JOINT_RECORDS_MAX) {
+        imk_error_set(error, IMK_ERROR_ARGUMENT, "count", NULL, NULL);
+        return NULL;
+    }
+    const imk_allocator allocator = job ? job->allocator : (imk_allocator){0};
+    imk_identify_several *s = imki_resize(&allocator, NULL, sizeof *s);
+    if (!s) {
+        imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+        return NULL;
+    }
+    memset(s, 0, sizeof *s);
+    s->runs = runs;
+    s->count = count;
+    imk_identify_log *joint = &s->joint;
+    joint->settings = logs[0]->settings;
+    joint->settings.summarise = false;
+    joint->origin = IMK_IDENTIFY_RECORDS;
+    joint->record = logs[0]->record;
+    memset(joint->record.log.data, 0, sizeof joint->record.log.data); /* the record's own */
+    joint->record.log.label = NULL;
+    joint->record.log.label_count = 0;
+    joint->record.log.allocator = allocator;
+    joint->record.temperature = NULL;
+    for (size_t r = 0; r < count; r++) {
+        const imk_even_record *record = &logs[r]->record;
+        s->log[r] = logs[r];
+        joint->record.rows = record->rows > joint->record.rows ? record->rows : joint->record.rows;
+        joint->duration += logs[r]->duration;
+    }
+    return s;
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What identification is shown by, of one record and of several. */
+#ifndef IMUKI_IDENTIFY_SHOW_INTERNAL_H
+#define IMUKI_IDENTIFY_SHOW_INTERNAL_H
+
+#include "show_internal.h"
+
+#include "report/growing_text_internal.h"
+
+/* ---- verdicts: identify_verdict.c ------------------------------------------------------------ */
+
+void imki_verdict_add(imk_verdict *verdict, imk_finding_level level, const char *code,
+                      const char *format, ...) __attribute__((format(printf, 4, 5)));
+/* The same of a list, unless it is empty; it is freed. */
+void imki_verdict_list(imk_verdict *verdict, imk_finding_level level, const char *code,
+                       const char *before, imki_text *list, const char *after);
+/* The array "verdict". */
+void imki_verdict_data(const imk_verdict *verdict, imk_result *result);
+/* Coloured boxes. */
+void imki_verdict_boxes(const imk_verdict *verdict, imk_result *result);
+/* Lines of all but the warnings, which go to standard error. */
+void imki_verdict_lines(const imk_verdict *verdict, imk_result *result);
+
+/* ---- parts: identify_show.c, identify_tables.c, identify_figure_show.c ------------------------
+ */
+
+/* The object of a channel, which is left open; of a joint estimate without what concerns samples.
+ */
+void imki_channel_data(const imk_identify_log *log, size_t channel, imk_result *result);
+/* "channels", all of them. */
+void imki_channels_data(const imk_identify_log *log, imk_result *result);
+
+/* A table for each kind of sensor: values with their intervals below them. */
+void imki_identify_tables(const imk_identify_log *log, imk_result *result);
+/* Truth beside the estimates, and how many intervals cover it. */
+void imki_truth_table(const imk_identify_shown *shown, imk_result *result);
+
+/* The Allan deviations of each channel; on the page with the misfit below each. */
+void imki_identify_figure(const imk_identify_shown *shown, const char *caption, imk_result *result);
+
+#endif

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What was identified as tables: a row of values and one of intervals for each term. */
+#include "identify_show_internal.h"
+
+#include <math.h>
+
+/* One estimate per member (NULL: none on that channel): values, and intervals below them. */
+static void estimate_rows(imk_table *table, const char *name, imk_unit unit,
+                          const imk_estimate *const *estimates, size_t members, double confidence)
+{
+    imk_table_row(table, "%s\t%s", name, unit.text);
+    for (size_t k = 0; k < members; k++) {
+        const imk_estimate *e = estimates[k];
+        imk_table_add(table, "%s",
+                      !e           ? ""
+                      : e->present ? imki_plus_minus(e->value, e->sigma, unit.scale).text
+                                   : "absent");
+    }
+    imk_table_row(table, "\t%g %%", 100 * confidence);
+    for (size_t k = 0; k < members; k++)
+        imk_table_add(table, "%s",
+                      estimates[k] ? imki_interval(estimates[k], unit.scale).text : "");
+}
+
+static void term_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
+                      size_t members)
+{
+    const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
+    const imk_unit unit = imk_channel_term(column, IMK_NOISE_BIAS_INSTABILITY).unit;
+    const imk_estimate *estimates[IMK_LOG_COLUMNS_MAX], *times[IMK_LOG_COLUMNS_MAX];
+    const double confidence = log->settings.confidence;
+    for (int term = 0; term < IMK_NOISE_TERMS; term++) {
+        const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
+        for (size_t k = 0; k < members; k++)
+            estimates[k] = &log->result[member[k]].term[term];
+        /* Each of several records has a ramp of its own. */
+        if (log->origin != IMK_IDENTIFY_RECORDS || term != IMK_NOISE_RAMP)
+            estimate_rows(table, display.name, display.unit, estimates, members, confidence);
+    }
+    for (int n = 0; n < IMK_TERMS_MAX; n++) {
+        bool any = false;
+        for (size_t k = 0; k < members; k++) {
+            const imk_identification *r = &log->result[member[k]];
+            const bool has = n < r->gauss_markov_count;
+            estimates[k] = has ? &r->gauss_markov[n].sigma : NULL;
+            times[k] = has ? &r->gauss_markov[n].correlation_time : NULL;
+            any = any || has;
+        }
+        if (!any)
+            break;
+        estimate_rows(table, "Gauss-Markov sigma", unit, estimates, members, confidence);
+        estimate_rows(table, "correlation time", imk_unit_of("s"), times, members, confidence);
+    }
+}
+
+static void from_cell(imk_table *table, double from)
+{
+    if (isfinite(from))
+        imk_table_add(table, "%.3g", from);
+    else
+        imk_table_add(table, "nowhere");
+}
+
+/* Mean, the Allan floor beside B, and from which averaging time on the model holds. */
+static void record_rows(imk_table *table, const imk_identify_log *log, const size_t *member,
+                        size_t members)
+{
+    const imk_log_column *column = imk_even_record_column(&log->record, member[0]);
+    const imk_unit floor_unit = imk_channel_term(column, IMK_NOISE_BIAS_INSTABILITY).unit;
+    double largest = 0;
+    for (size_t k = 0; k < members; k++)
+        largest = fmax(largest, fabs(log->result[member[k]].mean));
+    const imk_unit mean_unit = imk_channel_readable_unit(column, largest);
+    imk_table_row(table, "Allan minimum / 0.664\t%s", floor_unit.text);
+    for (size_t k = 0; k < members; k++)
+        imk_table_add(table, "%.4g", log->result[member[k]].minimum_floor / floor_unit.scale);
+    imk_table_row(table, "mean of the record\t%s", mean_unit.text);
+    for (size_t k = 0; k < members; k++)
+        imk_table_add(table, "%.5g", log->result[member[k]].mean / mean_unit.scale);
+    imk_table_row(table, "model holds from tau =\ts");
+    for (size_t k = 0; k < members; k++)
+        from_cell(table, log->result[member[k]].valid_from);
+    imk_table_row(table, "the five terms alone from\ts");
+    for (size_t k = 0; k < members; k++)
+        from_cell(table, log->result[member[k]].five_terms_from);
+}
+
+void imki_identify_tables(const imk_identify_log *log, imk_result *result)
+{
+    for (imk_channel_kind kind = IMK_CHANNEL_GYRO; kind < IMK_CHANNEL_KINDS; kind++) {
+        size_t member[IMK_LOG_COLUMNS_MAX];
+        const size_t members = imki_members(&log->record, kind, member);
+        if (members == 0)
+            continue;
+        imk_table *table = imk_result_table(result, 0);
+        imk_table_row(table, "%s\tunit", imk_channel_kind_name(kind));
+        for (size_t k = 0; k < members; k++)
+            imk_table_add(table, "%s",
+                          imk_channel_axis_name(imk_even_record_column(&log->record, member[k])));
+        term_rows(table, log, member, members);
+        if (log->origin == IMK_IDENTIFY_RECORD)
+            record_rows(table, log, member, members);
+        imk_result_gap(result);
+    }
+}
+
+/* The true value of a term in a model, SI; NaN when the model has no such axis. */
+static double true_value(const imk_model *truth, const imk_log_column *column, imk_noise_term term)
+{
+    const imk_triad *triad =
+        column->quantity == IMK_QUANTITY_ANGULAR_RATE ? &truth->gyro : &truth->accel;
+    if (!triad->present || column->axis < 0 || column->axis >= triad->axis_count)
+        return (double)NAN;
+    const imk_axes *axes[IMK_NOISE_TERMS] = {&triad->noise.quantization, &triad->noise.white,
+                                             &triad->noise.bias_instability,
+                                             &triad->noise.random_walk, &triad->noise.ramp};
+    return axes[term]->value[column->axis];
+}
+
+static void truth_row(imk_table *table, const imk_identify_shown *shown, size_t channel,
+                      imk_noise_term term, size_t *covered)
+{
+    const imk_log_column *column = imk_even_record_column(&shown->log->record, channel);
+    const imk_estimate *e = &shown->log->result[channel].term[term];
+    const double truth = true_value(shown->truth, column, term);
+    const bool ramp = term == IMK_NOISE_RAMP;
+    if (isnan(truth) || (truth == 0 && !e->present) ||
+        (ramp && shown->log->origin == IMK_IDENTIFY_RECORDS))
+        return;
+    const imk_term_display display = imk_channel_term(column, term);
+    const double scale = display.unit.scale, size = ramp ? truth : fabs(truth);
+    const bool inside = size >= e->lower && size <= e->upper;
+    imk_table_row(table, "%s\t%s\t%.4g\t%s\t%s\t%s\t%s", column->name, display.name, truth / scale,
+                  e->present ? imki_value(e->value / scale, e->sigma / scale, 4).text : "absent",
+                  imki_range(e->lower, e->upper, scale).text, display.unit.text,
+                  inside ? "yes" : "no");
+    *covered += inside;
+}
+
+void imki_truth_table(const imk_identify_shown *shown, imk_result *result)
+{
+    const imk_even_record *record = &shown->log->record;
+    size_t covered = 0;
+    imk_table *table = imk_result_table(result, 0);
+    imk_table_row(table, "channel\tterm\ttruth\testimate\tinterval\tunit\tcovered");
+    for (size_t c = 0; c < record->count; c++)
+        if (imk_channel_kind_of(imk_even_record_column(record, c)) != IMK_CHANNEL_OTHER)
+            for (int term = 0; term < IMK_NOISE_TERMS; term++)
+                truth_row(table, shown, c, (imk_noise_term)term, &covered);
+    if (shown->log->origin == IMK_IDENTIFY_RECORDS)
+        imk_result_gap(result);
+    imk_result_line(result, "%zu of %zu intervals cover the truth; %g %% are expected to.", covered,
+                    table ? imk_table_rows(table) - 1 : 0, 100 * shown->log->settings.confidence);
+    imk_result_gap(result);
+}

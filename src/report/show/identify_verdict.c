@@ -1,0 +1,435 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The verdict on a record in words: what it is good for, and what is wrong with it. */
+#include "identify_show_internal.h"
+
+#include "report/result_internal.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Gravity on the surface of the Earth [m/s^2]: equator to pole by WGS84, rounded outwards; what is
+ * off by more than 5 % is no specific force at rest. */
+static const double gravity_least = 9.78 * (1 - 0.05), gravity_most = 9.83 * (1 + 0.05);
+
+/* ---- messages -------------------------------------------------------------------------------- */
+
+void imki_verdict_add(imk_verdict *v, imk_finding_level level, const char *code, const char *format,
+                      ...)
+{
+    if (!v->result)
+        return;
+    imki_arena *arena = &v->result->arena;
+    va_list arguments;
+    va_start(arguments, format);
+    const char *text = imki_arena_format(arena, format, arguments);
+    va_end(arguments);
+    v->message = imki_arena_extend(arena, v->message, v->count, sizeof *v->message);
+    if (!v->message) {
+        v->count = 0;
+        return;
+    }
+    if (v->label)
+        text = imk_result_key(v->result, "%.200s: %s", v->label, text);
+    v->message[v->count++] = (imk_message){level, code, text};
+}
+
+void imki_verdict_list(imk_verdict *v, imk_finding_level level, const char *code,
+                       const char *before, imki_text *list, const char *after)
+{
+    if (list->size > 0)
+        imki_verdict_add(v, level, code, "%s%s%s", before, list->bytes, after);
+    if (v->result && list->failed)
+        v->result->arena.failed = true;
+    free(list->bytes);
+}
+
+bool imk_verdict_warns(const imk_verdict *v)
+{
+    for (size_t k = 0; k < v->count; k++)
+        if (v->message[k].level == IMK_FINDING_WARNING)
+            return true;
+    return false;
+}
+
+void imki_verdict_data(const imk_verdict *v, imk_result *result)
+{
+    static const char *const levels[] = {"good", "note", "warning"};
+    imk_result_array(result, "verdict");
+    for (size_t k = 0; k < v->count; k++) {
+        imk_result_object(result, NULL);
+        imk_result_text(result, "level", levels[v->message[k].level]);
+        imk_result_text(result, "code", v->message[k].code);
+        imk_result_text(result, "message", v->message[k].text);
+        imk_result_end(result);
+    }
+    imk_result_end(result);
+}
+
+void imki_verdict_boxes(const imk_verdict *v, imk_result *result)
+{
+    for (size_t k = 0; k < v->count; k++)
+        imk_result_finding(result, (int)v->message[k].level, v->message[k].text);
+}
+
+void imki_verdict_lines(const imk_verdict *v, imk_result *result)
+{
+    for (size_t k = 0; k < v->count; k++)
+        if (v->message[k].level != IMK_FINDING_WARNING)
+            imk_result_line(result, "%s", v->message[k].text);
+}
+
+/* ---- what is found on some channels ---------------------------------------------------------- */
+
+/* Does something hold on a channel? What was found there is added to an empty text. */
+typedef bool (*assessment)(const imk_identify_log *log, size_t channel, imki_text *detail);
+
+static imk_unit unit_for(const imk_identify_log *log, size_t channel, double value)
+{
+    return imk_channel_readable_unit(imk_even_record_column(&log->record, channel), value);
+}
+
+static bool find_outliers(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    const imk_unit unit = unit_for(log, channel, s->largest_outlier);
+    imki_text_add(detail, "%zu, the largest %.3g %s or %.3g standard deviations off",
+                  s->outliers.count, s->largest_outlier / unit.scale, unit.text,
+                  s->noise > 0 ? s->largest_outlier / s->noise : (double)INFINITY);
+    return s->outliers.count > 0;
+}
+
+static bool find_stuck(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    imki_text_add(detail, "%zu samples in %zu %s, the longest of %zu", s->stuck.count,
+                  s->stuck.runs, s->stuck.runs == 1 ? "run" : "runs", s->longest_stuck);
+    return s->stuck.count > 0;
+}
+
+static bool find_saturated(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    imki_text_add(detail, "%zu samples", log->screen[channel].saturated.count);
+    return log->screen[channel].saturated.count > 0;
+}
+
+static bool find_warm_up(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    const imk_unit unit = unit_for(log, channel, s->warm_up_amplitude);
+    imki_text_add(
+        detail, "%s %s at the start, falling with %s s",
+        imki_plus_minus(s->warm_up_amplitude, s->warm_up_amplitude_sigma, unit.scale).text,
+        unit.text, imki_plus_minus(s->warm_up_time, s->warm_up_time_sigma, 1).text);
+    return s->warm_up;
+}
+
+static bool find_temperature(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    const imk_unit unit = unit_for(log, channel, s->temperature_slope);
+    imki_text_add(
+        detail, "%s %s/degC%s",
+        imki_plus_minus(s->temperature_slope, s->temperature_slope_sigma, unit.scale).text,
+        unit.text, s->temperature_degree > 1 ? " and a curvature" : "");
+    return s->temperature_degree > 0;
+}
+
+static bool find_steps(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    const imk_unit unit = unit_for(log, channel, s->largest_step);
+    imki_text_add(detail, "%zu, the largest %.3g %s at %.5g s", s->steps.count,
+                  s->largest_step / unit.scale, unit.text, (double)s->steps.first * log->record.dt);
+    return s->steps.count > 0;
+}
+
+/* Not what was taken out: other messages tell of it. */
+static bool find_missing(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_screen *s = &log->screen[channel];
+    const imk_identification *r = &log->result[channel];
+    const size_t missing = log->screened ? s->missing.count : r->missing;
+    imki_text_add(detail, "%.3g %%, longest gap %.3g s",
+                  100 * (double)missing / (double)log->record.rows,
+                  log->screened ? (double)s->longest_hole * log->record.dt : r->largest_gap);
+    return missing > 0;
+}
+
+/* The joint estimate is not of one record alone. */
+static bool find_short(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    (void)channel, (void)detail;
+    return !log->settings.summarise;
+}
+
+static bool find_resolution(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const double step = log->result[channel].resolution;
+    const imk_unit unit = unit_for(log, channel, step);
+    if (step > 0)
+        imki_text_add(detail, "step %.3g %s", step / unit.scale, unit.text);
+    return true;
+}
+
+static bool find_validity(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    if (isfinite(r->valid_from))
+        imki_text_add(detail, "from %.3g s to %.3g s", r->valid_from, r->valid_to);
+    else
+        imki_text_put(detail, "nowhere");
+    return true;
+}
+
+static bool find_lines(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    for (int k = 0; k < r->sinusoid_count && k < 3; k++) {
+        const imk_unit unit = unit_for(log, channel, r->sinusoid[k].amplitude);
+        imki_text_add(detail, "%s%.4g Hz of %.3g %s", k ? ", " : "", r->sinusoid[k].frequency,
+                      r->sinusoid[k].amplitude / unit.scale, unit.text);
+    }
+    imki_text_put(detail, r->sinusoid_count > 3 ? ", more" : "");
+    return true;
+}
+
+static bool find_resonance(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_identification *r = &log->result[channel];
+    if (r->resonance_count > 0)
+        imki_text_add(detail, "%.3g Hz, Q %.3g%s", r->resonance[0].frequency, r->resonance[0].q,
+                      r->resonance_count > 1 ? ", more" : "");
+    return true;
+}
+
+static bool find_filter(const imk_identify_log *log, size_t channel, imki_text *detail)
+{
+    const imk_low_pass filter = log->result[channel].filter;
+    imki_text_add(detail, "%.3g Hz, ", filter.bandwidth);
+    if (filter.damping > 0)
+        imki_text_add(detail, "second order, damping %.2g", filter.damping);
+    else
+        imki_text_put(detail, "first order");
+    return true;
+}
+
+/* What is looked for, and what it means. */
+static const struct concern {
+    unsigned bit;    /* IMK_VERDICT_…, which must hold; 0: any */
+    assessment find; /* NULL: there is no more to it */
+    unsigned screen; /* IMK_SCREEN_… bit by which it is taken out; 0: nothing is */
+    imk_finding_level level;
+    const char *code, *text, *kept; /* kept: when it was not taken out */
+} concerns[] = {
+    {0, find_outliers, IMK_SCREEN_OUTLIERS, IMK_FINDING_NOTE, "outliers",
+     "outliers, left out of the estimate", "outliers, kept"},
+    {0, find_stuck, IMK_SCREEN_STUCK, IMK_FINDING_NOTE, "stuck",
+     "one value repeated longer than the noise allows, left out", "one value repeated, kept"},
+    {0, find_saturated, IMK_SCREEN_SATURATED, IMK_FINDING_NOTE, "at_limit",
+     "samples at the end of the range, left out", "samples at the end of the range, kept"},
+    {0, find_warm_up, IMK_SCREEN_WARM_UP, IMK_FINDING_NOTE, "warm_up_removed",
+     "a warm-up at the start, subtracted", "a warm-up at the start, kept"},
+    {0, find_temperature, IMK_SCREEN_TEMPERATURE, IMK_FINDING_NOTE, "temperature",
+     "the readings follow the temperature; subtracted",
+     "the readings follow the temperature; kept"},
+    {0, find_steps, 0, IMK_FINDING_WARNING, "steps",
+     "the level jumps: the sensor was touched, or its range or filter was changed; the slow terms "
+     "take it for noise",
+     NULL},
+    {0, find_missing, 0, IMK_FINDING_NOTE, "missing",
+     "samples that are not there; the estimate is that of what is there, and its intervals are as "
+     "wide as that makes them",
+     NULL},
+    {IMK_VERDICT_SHORT, find_short, 0, IMK_FINDING_WARNING, "short",
+     "the record is too short for the slowest terms: they are bounded, not measured; log for "
+     "longer",
+     NULL},
+    {IMK_VERDICT_COARSE, find_resolution, 0, IMK_FINDING_WARNING, "coarse",
+     "the output step is larger than the noise: the white noise is doubtful; log with more digits "
+     "or a smaller range",
+     NULL},
+    {IMK_VERDICT_SATURATED, NULL, 0, IMK_FINDING_WARNING, "saturated",
+     "samples stick at an extreme value: the range is too small or the sensor was moved", NULL},
+    {IMK_VERDICT_FROZEN, NULL, 0, IMK_FINDING_WARNING, "frozen",
+     "long runs of one value: samples are repeated, so the true sample rate is lower than the "
+     "log's",
+     NULL},
+    {IMK_VERDICT_WARM_UP, NULL, 0, IMK_FINDING_WARNING, "warm_up",
+     "the start drifts unlike the rest: switch on earlier, or leave the first minutes out", NULL},
+    {IMK_VERDICT_MISFIT, find_validity, 0, IMK_FINDING_WARNING, "misfit",
+     "the model explains the record only over these averaging times; the log holds something else "
+     "as well (vibration, filtering, another process)",
+     NULL},
+    {IMK_VERDICT_LINES, find_lines, 0, IMK_FINDING_NOTE, "lines",
+     "spectral lines, from vibration or interference, are modelled apart as sinusoids", NULL},
+    {IMK_VERDICT_RESONANCE, find_resonance, 0, IMK_FINDING_NOTE, "resonance",
+     "a resonance of the structure or the sensor is modelled apart", NULL},
+    {IMK_VERDICT_FILTERED, find_filter, 0, IMK_FINDING_NOTE, "filtered",
+     "the output is low-pass filtered within the band; the filter is in the model", NULL},
+};
+
+/* The channels on which it holds, with what was found on each in parentheses. */
+static void assess_concern(imk_verdict *v, const imk_identify_log *log, const struct concern *about)
+{
+    imki_text list = {.bytes = NULL};
+    for (size_t c = 0; c < log->record.count; c++) {
+        imki_text detail = {.bytes = NULL};
+        imki_text_put(&detail, "");
+        if ((log->result[c].verdict & about->bit) == about->bit &&
+            (!about->find || about->find(log, c, &detail))) {
+            imki_text_add(&list, "%s%s", list.size > 0 ? ", " : "",
+                          imk_even_record_column(&log->record, c)->name);
+            if (detail.size > 0)
+                imki_text_add(&list, " (%s)", detail.bytes);
+        }
+        list.failed = list.failed || detail.failed;
+        free(detail.bytes);
+    }
+    const bool kept = about->screen && !(log->settings.take_out & about->screen);
+    if (list.size > 0)
+        imki_text_add(&list, ": %s.", kept ? about->kept : about->text);
+    imki_verdict_list(v, about->level, about->code, "", &list, "");
+}
+
+/* ---- the record as a whole ------------------------------------------------------------------- */
+
+/* The unit in which the file's numbers would be gravity. */
+static const char *likely_unit(double magnitude, double scale)
+{
+    static const char *const names[] = {"m/s^2", "g", "mg", "ug", "Gal", "mGal"};
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+        const double as = magnitude / scale * imk_unit_of(names[k]).scale;
+        if (as > gravity_least && as < gravity_most)
+            return names[k];
+    }
+    return NULL;
+}
+
+/* |mean specific force| of a triad at rest is gravity; anything else is a wrong unit, most often.
+ */
+static void assess_gravity(imk_verdict *v, const imk_identify_log *log)
+{
+    double square = 0, scale = 0;
+    int axes = 0;
+    for (size_t c = 0; c < log->record.count; c++) {
+        const imk_log_column *column = imk_even_record_column(&log->record, c);
+        if (imk_channel_kind_of(column) != IMK_CHANNEL_ACCEL || column->axis > 2)
+            continue;
+        square += log->result[c].mean * log->result[c].mean;
+        scale = column->unit.scale;
+        axes++;
+    }
+    const double magnitude = sqrt(square);
+    if (axes != 3 || (magnitude > gravity_least && magnitude < gravity_most))
+        return;
+    const char *unit = likely_unit(magnitude, scale);
+    if (unit)
+        imki_verdict_add(v, IMK_FINDING_WARNING, "gravity",
+                         "|accel| is %.4g m/s^2 at rest: the numbers look like %s; write %s into "
+                         "the header, or add --accel-unit %s where it has none.",
+                         magnitude, unit, unit, unit);
+    else
+        imki_verdict_add(v, IMK_FINDING_WARNING, "gravity",
+                         "|accel| is %.4g m/s^2 at rest, not gravity (9.78 to 9.83), and no usual "
+                         "unit makes it so: was gravity removed, or did the sensor move?",
+                         magnitude);
+}
+
+/* Where the five terms alone do not explain the log, and what shapes it there instead. */
+static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
+{
+    imki_text list = {.bytes = NULL};
+    for (size_t c = 0; c < log->record.count; c++) {
+        const imk_identification *r = &log->result[c];
+        if (r->five_terms_from <= 1.5 * log->record.dt)
+            continue;
+        const struct {
+            bool is;
+            const char *name;
+        } causes[] = {{r->filter.bandwidth > 0, "output filter"},
+                      {r->resonance_count > 0, "resonances"},
+                      {r->sinusoid_count > 0, "lines"},
+                      {r->gauss_markov_count > 0, "Gauss-Markov noise"}};
+        bool any = false;
+        imki_text_add(&list, "%s%s from %.3g s (", list.size > 0 ? "; " : "",
+                      imk_even_record_column(&log->record, c)->name, r->five_terms_from);
+        for (size_t k = 0; k < sizeof causes / sizeof causes[0]; k++)
+            if (causes[k].is) {
+                imki_text_add(&list, "%s%s", any ? ", " : "", causes[k].name);
+                any = true;
+            }
+        imki_text_put(&list, any ? ")" : "cause not known)");
+    }
+    imki_verdict_list(
+        v, IMK_FINDING_NOTE, "five_terms",
+        "white noise, bias instability, random walk, ramp and quantization alone hold "
+        "only from some averaging time on; below it what is named shapes the log, "
+        "and is in the model: ",
+        &list, ".");
+}
+
+static void assess_length(imk_verdict *v, const imk_identify_log *log)
+{
+    const imk_even_record *record = &log->record;
+    const imki_words length = imki_duration(record->dt * (double)record->rows);
+    double from = 0, to = (double)INFINITY;
+    for (size_t c = 0; c < record->count; c++)
+        if (isfinite(log->result[c].valid_from)) {
+            from = fmax(from, log->result[c].valid_from);
+            to = fmin(to, log->result[c].valid_to);
+        }
+    if (from > 0)
+        imki_verdict_add(v, imk_verdict_warns(v) ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, "length",
+                         "%s at %.6g Hz: the model speaks for averaging times from %.3g s to %.3g "
+                         "s.",
+                         length.text, 1 / record->dt, from, to);
+    else
+        imki_verdict_add(v, IMK_FINDING_NOTE, "length", "%s at %.6g Hz.", length.text,
+                         1 / record->dt);
+}
+
+/* What the job itself came across; its warnings are not part of the verdict. How a curve is fitted
+ * is all that is known of it. */
+static void add_findings(imk_verdict *v, const imk_identify_log *log)
+{
+    char text[900];
+    for (size_t k = 0; k < log->findings.count; k++) {
+        const imk_finding *f = &log->findings.item[k];
+        const bool misfit = strncmp(f->code, "curve_misfit", 12) == 0;
+        if (f->level >= IMK_FINDING_WARNING)
+            continue;
+        imk_finding_text(f, text, sizeof text);
+        if (misfit)
+            imki_verdict_add(v, IMK_FINDING_WARNING, "misfit", "%s", text);
+        else
+            imki_verdict_add(v, f->level, f->level == IMK_FINDING_GOOD ? "curve" : f->code, "%s",
+                             text);
+    }
+}
+
+imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label, imk_result *result)
+{
+    imk_verdict v = {.result = result, .label = label};
+    add_findings(&v, log);
+    if (log->origin == IMK_IDENTIFY_CURVE)
+        return v;
+    assess_gravity(&v, log);
+    if (!log->screened)
+        imki_verdict_add(&v, IMK_FINDING_NOTE, "not_screened",
+                         "the log is longer than what is held in memory: outliers, steps, the "
+                         "warm-up and the temperature were not looked for.");
+    for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
+        if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
+            assess_concern(&v, log, &concerns[k]);
+    assess_five_terms(&v, log);
+    assess_length(&v, log);
+    if (log->record.bridged > 0)
+        imki_verdict_add(&v, IMK_FINDING_NOTE, "bridged",
+                         "%zu of %zu samples were bridged by straight lines.", log->record.bridged,
+                         log->record.rows);
+    if (!imk_verdict_warns(&v))
+        imki_verdict_add(&v, IMK_FINDING_GOOD, "good", "Nothing speaks against this record.");
+    return v;
+}
