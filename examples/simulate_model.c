@@ -3,43 +3,24 @@
  *
  *     example_simulate_model tactical log.csv
  *
- * The samples come in blocks, so a log of any length needs little memory. */
+ * The rows go to the log as they are made, so one of any length needs little memory. */
 #include "imukit/io.h"
-#include "imukit/simulate.h"
+#include "imukit/jobs.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { RATE = 100, ROWS = 600 * RATE, BLOCK = 4096, CHANNELS_MAX = 2 * IMK_AXES_MAX };
-
-static int fail(const imk_error *error, const char *source)
+static imk_status simulate(const imk_model *model, const char *path, imk_error *error)
 {
-    char text[512];
-    imk_error_text(error, source, text, sizeof text);
-    fprintf(stderr, "%s\n", text);
-    return EXIT_FAILURE;
-}
-
-/* Time, then the channels in the simulator's order: gyro axes, then accelerometer axes. */
-static size_t describe_columns(const imk_model *model, imk_log_column *column)
-{
-    static const char *const unit[] = {"rad/s", "m/s^2"};
-    const int axes[] = {model->gyro.present ? model->gyro.axis_count : 0,
-                        model->accel.present ? model->accel.axis_count : 0};
-    size_t count = 0;
-    column[count++] = (imk_log_column){
-        .name = "time", .quantity = IMK_QUANTITY_TIME, .axis = -1, .unit = imk_unit_of("s")};
-    for (int kind = 0; kind < 2; kind++) {
-        for (int axis = 0; axis < axes[kind]; axis++) {
-            imk_log_column *c = &column[count++];
-            c->quantity = kind == 0 ? IMK_QUANTITY_ANGULAR_RATE : IMK_QUANTITY_SPECIFIC_FORCE;
-            c->axis = axis;
-            snprintf(c->name, sizeof c->name, "%s_%c", kind == 0 ? "gyro" : "accel",
-                     axis < 3 ? 'x' + axis : '0' + axis);
-            c->unit = imk_unit_of(unit[kind]);
-        }
-    }
-    return count;
+    imk_simulate_log_settings settings = imk_simulate_log_default();
+    settings.simulation.rate = 100;
+    settings.simulation.seed = 1;
+    settings.rows = 60000;
+    imk_log_sink log = {.path = path};
+    const imk_record_sink sink = imk_log_sink_of(&log);
+    const imk_status status =
+        imk_simulate_log_run(model, &settings, &sink, "simulating", NULL, error);
+    return imk_log_sink_end(&log, status, error);
 }
 
 int main(int argc, char **argv)
@@ -50,43 +31,15 @@ int main(int argc, char **argv)
     }
     static imk_model model; /* large: keep it off the stack */
     imk_error error;
-    if (imk_model_open(argv[1], &model, NULL, &error) != IMK_OK)
-        return fail(&error, NULL);
-
-    imk_simulation simulation = imk_simulation_default();
-    simulation.rate = RATE;
-    simulation.seed = 1;
-
-    /* The simulator lives in memory of ours. */
-    size_t size = (imk_simulator_size(&model, &simulation) + 63) / 64 * 64;
-    void *memory = aligned_alloc(64, size);
-    imk_simulator *simulator = NULL;
-    if (!memory)
+    imk_status status = imk_model_open(argv[1], &model, NULL, &error);
+    if (status == IMK_OK)
+        status = simulate(&model, argv[2], &error);
+    if (status != IMK_OK) {
+        char text[512];
+        imk_error_text(&error, NULL, text, sizeof text);
+        fprintf(stderr, "%s\n", text);
         return EXIT_FAILURE;
-    if (imk_simulator_start(memory, size, &model, &simulation, &simulator, &error) != IMK_OK)
-        return fail(&error, argv[1]);
-
-    static imk_log_column column[1 + CHANNELS_MAX];
-    static double data[1 + CHANNELS_MAX][BLOCK];
-    double *block[1 + CHANNELS_MAX];
-    for (size_t i = 0; i < 1 + CHANNELS_MAX; i++)
-        block[i] = data[i];
-    size_t columns = describe_columns(&model, column);
-    imk_log_writer *writer = NULL;
-    if (imk_log_create(argv[2], columns, column, IMK_LOG_SHORTEST, NULL, ROWS, &writer, &error) !=
-        IMK_OK)
-        return fail(&error, argv[2]);
-    for (size_t row = 0; row < ROWS; row += BLOCK) {
-        size_t count = ROWS - row < BLOCK ? ROWS - row : BLOCK;
-        for (size_t i = 0; i < count; i++)
-            data[0][i] = (double)(row + i) / RATE;
-        imk_simulator_next(simulator, count, block + 1, NULL);
-        imk_log_write(writer, count, (const double *const *)block, NULL);
     }
-    /* An error of any write is kept until here; the file appears complete or not at all. */
-    if (imk_log_commit(writer, &error) != IMK_OK)
-        return fail(&error, argv[2]);
-    free(memory);
-    printf("%d rows of %zu columns in %s\n", ROWS, columns, argv[2]);
-    return EXIT_SUCCESS;
+    printf("%s: ten minutes of %s\n", argv[2], model.name);
+    return 0;
 }

@@ -97,8 +97,9 @@ def stale(files, deep):
         whole = "\0".join([*flags, texts.all_of(file)]).encode()
         key = hashlib.sha256(version + rules + whole).hexdigest()
         if not (PASSED / key).exists():
-            # clang 14 takes va_start for an unknown function in all files of a process but the first.
-            alone = file.name if "va_start" in texts.text[file] else ""
+            # clang 14 takes va_start and va_copy for unknown functions in all files of a process but
+            # the first.
+            alone = file.name if re.search(r"\bva_(start|copy)\b", texts.text[file]) else ""
             found.setdefault((alone, *flags), []).append((file, key))
     return found
 

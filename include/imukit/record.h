@@ -100,7 +100,8 @@ typedef struct imk_array_source {
  *                units
  *  @param rate   [Hz]; 0: from a column named time
  *  @param memory what the source is about, until it is not used any more
- *  @return IMK_ERROR_COLUMN (too many, or a name twice), IMK_ERROR_RATE_MISSING, IMK_ERROR_MEMORY
+ *  @return IMK_ERROR_COLUMN (too many, or a name twice), _ARGUMENT (no array), _RATE_MISSING,
+ *          _MEMORY
  */
 IMK_API imk_status imk_array_source_make(size_t column_count, const char *const *names,
                                          const double *const *data, size_t rows, double rate,

@@ -132,6 +132,8 @@ imk_status imk_array_source_make(size_t column_count, const char *const *names,
         for (size_t k = 0; k < c; k++)
             if (strcmp(names[c], names[k]) == 0)
                 return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL, "a name once");
+        if (!data[c])
+            return imk_error_set(error, IMK_ERROR_ARGUMENT, names[c], NULL, "an array");
         made.column[c] = imk_record_column(names[c]);
         made.data[c] = data[c];
         if (made.column[c].quantity == IMK_QUANTITY_TIME)

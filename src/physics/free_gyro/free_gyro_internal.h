@@ -71,6 +71,6 @@ void imki_free_gyro_full(imki_free_gyro_state *state, const imki_free_gyro_drive
 void imki_free_gyro_slow(imki_free_gyro_state *state, const imki_free_gyro_drive *drive);
 
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
-void imki_free_gyro_reduce(const imk_free_gyro *design, imk_triad *triad);
+void imki_free_gyro_reduce(const imk_free_gyro *design, imk_triad *gyro);
 
 #endif

@@ -33,6 +33,6 @@ void imki_suspended_gradient(const imki_suspended_ball *ball, const double weak[
 void imki_suspended_start(const imk_suspended_rotor *design, double axis[3]);
 
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
-void imki_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_triad *triad);
+void imki_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_triad *gyro);
 
 #endif

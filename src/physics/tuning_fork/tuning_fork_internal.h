@@ -189,6 +189,6 @@ void imki_fork_observe(const void *place, double *signals);
 double imki_fork_step_length(const void *place, const imk_physics_settings *settings);
 
 /* The error model of a valid design, into a triad that imki_reduction_begin() gave. */
-void imki_tuning_fork_reduce(const imk_tuning_fork *design, imk_triad *triad);
+void imki_tuning_fork_reduce(const imk_tuning_fork *design, imk_triad *gyro);
 
 #endif
