@@ -3,7 +3,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include "campaign/campaign_run.h"
 #include "command.h"
-#include "json_output.h"
 #include "memory_guard.h"
 
 #include "imukit/output_file.h"
@@ -163,7 +162,6 @@ int main(int argc, char **argv)
 {
     catch_signals();
     memory_guard();
-    json_begin();
     campaign_begin(&argc, &argv);
     return campaign_end(obey(argc, argv));
 }

@@ -2,12 +2,13 @@
 /* A noise model from a table of Allan deviations. */
 #include "imukit/identify_curve.h"
 
+#include "identify_log_internal.h"
+
 #include "jobs/allan/allan_curve_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
 
-#include "imukit/allan_fit.h"
 #include "imukit/distributions.h"
 #include "imukit/samples.h"
 
@@ -99,13 +100,7 @@ static void store(imk_identification *result, const imk_allan_fit *fit, const do
                   const used_rows *used)
 {
     result->mean = result->deviation = (double)NAN; /* not in a table */
-    memcpy(result->term, fit->term, sizeof result->term);
-    memcpy(result->correlation, fit->correlation, sizeof result->correlation);
-    result->gauss_markov_count = fit->gauss_markov_count;
-    for (int k = 0; k < fit->gauss_markov_count; k++) {
-        result->gauss_markov[k].sigma = fit->gauss_markov[k].sigma;
-        result->gauss_markov[k].correlation_time = fit->gauss_markov[k].correlation_time;
-    }
+    imki_store_fit(result, fit);
     double least = deviation[0];
     for (size_t k = 1; k < used->count; k++)
         least = fmin(least, deviation[k]);
