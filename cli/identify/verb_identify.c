@@ -130,7 +130,7 @@ const verb identify_verb = {
 void identify_warn(const imk_verdict *verdict)
 {
     (void)command_unless_memory(verdict->message ? IMK_OK : IMK_ERROR_MEMORY);
-    for (size_t k = 0; k < verdict->count; k++)
+    for (size_t k = 0; verdict->message && k < verdict->count; k++)
         if (verdict->message[k].level == IMK_FINDING_WARNING)
             command_warn(verdict->message[k].code, "%s", verdict->message[k].text);
 }

@@ -145,7 +145,7 @@ static imk_status fit_channel(imk_identify_log *log, size_t channel,
                               imki_arena *scratch)
 {
     const double *data = imk_even_record_data(&log->record, channel);
-    double deviations[IMK_ALLAN_FIT_FACTORS_MAX], variances[IMK_ALLAN_FIT_FACTORS_MAX];
+    double deviations[IMK_ALLAN_FIT_FACTORS_MAX] = {0}, variances[IMK_ALLAN_FIT_FACTORS_MAX];
     for (size_t k = 0; k < used->count; k++) {
         deviations[k] = data[used->row[k]];
         variances[k] = deviations[k] * deviations[k];
@@ -181,7 +181,7 @@ static imk_status fit_all(imk_identify_log *log, const imk_record_source *source
                           const imk_identify_curve_settings *s, const imk_job *job,
                           imk_error *error)
 {
-    used_rows used;
+    used_rows used = {.count = 0};
     imk_status status = imki_record_load(source, job, &log->record.log, error);
     if (status == IMK_OK)
         status = choose(log, s, &used, error);
