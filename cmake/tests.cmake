@@ -58,7 +58,7 @@ target_compile_options(imukit-tests PRIVATE ${imukit_seldom_run})
 if(TARGET imukit-command)
   add_dependencies(imukit-tests imukit-command)
   target_compile_definitions(imukit-tests PRIVATE IMUKIT_COMMAND="$<TARGET_FILE:imukit-command>")
-  pkg_check_modules(jansson REQUIRED IMPORTED_TARGET jansson) # reads what the command prints
+  pkg_check_modules(jansson REQUIRED IMPORTED_TARGET jansson) # reads what --json prints
   target_link_libraries(imukit-tests PRIVATE PkgConfig::jansson)
 endif()
 

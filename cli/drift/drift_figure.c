@@ -2,8 +2,6 @@
 /* Drift as a picture: how the error grows, and which term makes how much of it at which time. */
 #include "drift_parts.h"
 
-#include "imukit/figure_file.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

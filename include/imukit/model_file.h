@@ -8,6 +8,7 @@
 #define IMUKIT_MODEL_FILE_H
 
 #include "imukit/model.h"
+#include "imukit/result.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,6 +59,10 @@ IMK_API imk_status imk_model_print_json(const imk_model *model, const imk_docume
  *  name that is no file is IMK_ERROR_NAME_UNKNOWN with the nearest names in error.expected. */
 IMK_API imk_status imk_model_open(const char *name, imk_model *model, imk_document **document,
                                   imk_error *error);
+
+/** A value that is JSON already, an object: it is shown like the rest. Its keys are copied.
+ *  @return false: it is none; null is added */
+IMK_API bool imk_result_json(imk_result *result, const char *key, const char *text);
 
 #ifdef __cplusplus
 }

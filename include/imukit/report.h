@@ -96,39 +96,6 @@ typedef struct imk_animation {
 IMK_API imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t *size,
                                      imk_error *error);
 
-/** A self-contained HTML page being built: styles and drawings are inside, nothing is fetched,
- * every text is escaped. Functions accept the NULL of a failed imk_page_create(), which
- * imk_page_write() then reports. */
-typedef struct imk_page imk_page;
-
-/** Start a page; NULL when memory is exhausted, which every function below allows. */
-IMK_API imk_page *imk_page_create(const char *title, const char *subtitle);
-/** A heading, escaped. */
-IMK_API void imk_page_heading(imk_page *page, const char *text);
-/** A paragraph of plain text (escaped). */
-IMK_API void imk_page_text(imk_page *page, const char *text);
-/** A coloured box: 0 good, 1 note, 2 warning. */
-IMK_API void imk_page_verdict(imk_page *page, int level, const char *text);
-/** A table of rows x columns texts, the first row the header. */
-IMK_API void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *const *cells);
-/** A figure, drawn into the page. Of one without a point to draw a note says what is missing; any
- *  other failure becomes that of imk_page_write(). */
-IMK_API void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption);
-/** An animation, drawn into the page. */
-IMK_API void imk_page_animation(imk_page *page, const imk_animation *animation,
-                                const char *caption);
-/** On paper, and in a PDF, what follows begins a new sheet; nothing on the screen. */
-IMK_API void imk_page_break(imk_page *page);
-/** Preformatted text, such as a model file. */
-IMK_API void imk_page_code(imk_page *page, const char *text);
-/** The page as text obtained from malloc(); frees the page.
- *  @return as imk_page_write(), but for files */
-IMK_API imk_status imk_page_take(imk_page *page, char **text, size_t *size, imk_error *error);
-/** Write the page and free it; NULL path only frees.
- *  @return IMK_ERROR_MEMORY, IMK_ERROR_OPEN, IMK_ERROR_WRITE, and why a figure was not drawn, as of
- *          imk_figure_svg(): then nothing is written */
-IMK_API imk_status imk_page_write(imk_page *page, const char *path, imk_error *error);
-
 #ifdef __cplusplus
 }
 #endif

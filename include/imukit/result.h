@@ -55,9 +55,6 @@ IMK_API void imk_result_quantity(imk_result *result, const char *key, double val
 /** An array of numbers. */
 IMK_API void imk_result_numbers(imk_result *result, const char *key, size_t count,
                                 const double *values);
-/** A value that is JSON already, an object: it is shown like the rest. Its keys are copied.
- *  @return false: it is none; null is added */
-IMK_API bool imk_result_json(imk_result *result, const char *key, const char *text);
 /** The text at a path of the data, "model.gyro.noise.gauss_markov[1].sigma"; NULL: none is there.
  */
 IMK_API const char *imk_result_find(const imk_result *result, const char *path);

@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A self-contained HTML page: styles and drawings inside, nothing fetched, every text escaped. */
 #include "markup_internal.h"
-
-#include "imukit/output_file.h"
-#include "imukit/report.h"
+#include "page_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* The page grows in memory; a failed allocation is remembered and reported at the end, so that
  * callers need no check after every paragraph. */
-struct imk_page {
+struct imki_page {
     imki_text text;
     int figures;
     imk_error failure; /* of the first drawing that failed */
@@ -45,7 +43,7 @@ static const char style[] =
     "figure,table,tr,pre,.verdict{break-inside:avoid}.table{overflow:visible}"
     "pre{white-space:pre-wrap}th,td{padding:.2rem .5rem}.sheet{break-after:page}}\n";
 
-static void element(imk_page *page, const char *open, const char *text, const char *close)
+static void element(imki_page *page, const char *open, const char *text, const char *close)
 {
     if (!page)
         return;
@@ -54,9 +52,9 @@ static void element(imk_page *page, const char *open, const char *text, const ch
     imki_text_put(&page->text, close);
 }
 
-imk_page *imk_page_create(const char *title, const char *subtitle)
+imki_page *imki_page_create(const char *title, const char *subtitle)
 {
-    imk_page *page = calloc(1, sizeof *page);
+    imki_page *page = calloc(1, sizeof *page);
     if (!page)
         return NULL;
     element(page,
@@ -69,24 +67,24 @@ imk_page *imk_page_create(const char *title, const char *subtitle)
     return page;
 }
 
-void imk_page_heading(imk_page *page, const char *text)
+void imki_page_heading(imki_page *page, const char *text)
 {
     element(page, "<h2>", text, "</h2>\n");
 }
 
-void imk_page_text(imk_page *page, const char *text)
+void imki_page_text(imki_page *page, const char *text)
 {
     element(page, "<p>", text, "</p>\n");
 }
 
-void imk_page_verdict(imk_page *page, int level, const char *text)
+void imki_page_verdict(imki_page *page, int level, const char *text)
 {
     static const char *const open[] = {"<p class=\"verdict good\">", "<p class=\"verdict note\">",
                                        "<p class=\"verdict warning\">"};
     element(page, open[level < 0 ? 0 : level > 2 ? 2 : level], text, "</p>\n");
 }
 
-void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *const *cells)
+void imki_page_table(imki_page *page, size_t rows, size_t columns, const char *const *cells)
 {
     if (!page)
         return;
@@ -101,19 +99,19 @@ void imk_page_table(imk_page *page, size_t rows, size_t columns, const char *con
     imki_text_put(&page->text, "</table></div>\n");
 }
 
-void imk_page_break(imk_page *page)
+void imki_page_break(imki_page *page)
 {
     element(page, "<div class=\"sheet\">", "", "</div>\n");
 }
 
-void imk_page_code(imk_page *page, const char *text)
+void imki_page_code(imki_page *page, const char *text)
 {
     element(page, "<pre>", text, "</pre>\n");
 }
 
 /* A drawing of ours, where identifiers are made unique, since several drawings share the page. No
  * text of a caller can hold one of these openings: its quotes are escaped. */
-static void put_svg(imk_page *page, const char *svg)
+static void put_svg(imki_page *page, const char *svg)
 {
     static const char *const openings[] = {" id=\"", " clip-path=\"url(#", "href=\"#"};
     page->figures++;
@@ -131,13 +129,13 @@ static void put_svg(imk_page *page, const char *svg)
     }
 }
 
-static void fail(imk_page *page, const imk_error *error)
+static void fail(imki_page *page, const imk_error *error)
 {
     if (page->failure.status == IMK_OK)
         page->failure = *error;
 }
 
-void imk_page_figure(imk_page *page, const imk_figure *figure, const char *caption)
+void imki_page_figure(imki_page *page, const imk_figure *figure, const char *caption)
 {
     if (!page)
         return;
@@ -160,7 +158,7 @@ void imk_page_figure(imk_page *page, const imk_figure *figure, const char *capti
     free(svg);
 }
 
-void imk_page_animation(imk_page *page, const imk_animation *animation, const char *caption)
+void imki_page_animation(imki_page *page, const imk_animation *animation, const char *caption)
 {
     char *svg = NULL;
     size_t size;
@@ -182,7 +180,7 @@ void imk_page_animation(imk_page *page, const imk_animation *animation, const ch
     free(svg);
 }
 
-imk_status imk_page_take(imk_page *page, char **text, size_t *size, imk_error *error)
+imk_status imki_page_take(imki_page *page, char **text, size_t *size, imk_error *error)
 {
     if (!page)
         return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
@@ -200,23 +198,5 @@ imk_status imk_page_take(imk_page *page, char **text, size_t *size, imk_error *e
         free(page->text.bytes);
     }
     free(page);
-    return status;
-}
-
-imk_status imk_page_write(imk_page *page, const char *path, imk_error *error)
-{
-    char *text = NULL;
-    size_t size = 0;
-    imk_status status = imk_page_take(page, &text, &size, error);
-    imk_output_file *file;
-    if (!path)
-        status = IMK_OK;
-    else if (status == IMK_OK)
-        status = imk_output_file_open(path, &file, error);
-    if (path && status == IMK_OK) {
-        imk_output_file_write(file, text, size);
-        status = imk_output_file_commit(file, error);
-    }
-    free(text);
     return status;
 }

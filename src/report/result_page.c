@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The display of a result as a page. */
+#include "page_internal.h"
 #include "result_internal.h"
 
-static void put_table(imk_page *page, const imk_table *table, imki_arena *scratch)
+#include <stdlib.h>
+
+static void put_table(imki_page *page, const imk_table *table, imki_arena *scratch)
 {
     const size_t count = table->rows * table->columns;
     const char **cells = imki_arena_take(scratch, (count + 1) * sizeof *cells);
@@ -12,35 +15,35 @@ static void put_table(imk_page *page, const imk_table *table, imki_arena *scratc
         cells[k] = c < row->count ? row->cells[c] : "";
     }
     if (cells && count > 0)
-        imk_page_table(page, table->rows, table->columns, cells);
+        imki_page_table(page, table->rows, table->columns, cells);
 }
 
-static void put_block(imk_page *page, const imki_block *block, imki_arena *scratch)
+static void put_block(imki_page *page, const imki_block *block, imki_arena *scratch)
 {
     switch (block->kind) {
     case IMKI_BLOCK_HEADING:
-        imk_page_heading(page, block->text);
+        imki_page_heading(page, block->text);
         break;
     case IMKI_BLOCK_LINE:
-        imk_page_text(page, block->text);
+        imki_page_text(page, block->text);
         break;
     case IMKI_BLOCK_FINDING:
-        imk_page_verdict(page, block->level, block->text);
+        imki_page_verdict(page, block->level, block->text);
         break;
     case IMKI_BLOCK_CODE:
-        imk_page_code(page, block->text);
+        imki_page_code(page, block->text);
         break;
     case IMKI_BLOCK_BREAK:
-        imk_page_break(page);
+        imki_page_break(page);
         break;
     case IMKI_BLOCK_TABLE:
         put_table(page, &block->table, scratch);
         break;
     case IMKI_BLOCK_FIGURE:
-        imk_page_figure(page, &block->figure.figure, block->text);
+        imki_page_figure(page, &block->figure.figure, block->text);
         break;
     case IMKI_BLOCK_ANIMATION:
-        imk_page_animation(page, &block->animation, block->text);
+        imki_page_animation(page, &block->animation, block->text);
         break;
     }
 }
@@ -50,13 +53,14 @@ imk_status imk_result_to_page(const imk_result *result, char **text, size_t *siz
     if (!result || result->arena.failed)
         return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
     imki_arena scratch = {.allocator = result->arena.allocator};
-    imk_page *page = imk_page_create(result->title, result->subtitle);
+    imki_page *page = imki_page_create(result->title, result->subtitle);
     for (const imki_block *b = result->first; b; b = b->next)
         if (b->audience & IMK_FOR_PAGE)
             put_block(page, b, &scratch);
     imki_arena_free(&scratch);
-    if (!scratch.failed)
-        return imk_page_take(page, text, size, error);
-    (void)imk_page_write(page, NULL, NULL);
+    const imk_status status = imki_page_take(page, text, size, error);
+    if (status != IMK_OK || !scratch.failed)
+        return status;
+    free(*text);
     return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
 }

@@ -2,6 +2,7 @@
 /* One result as JSON, text and a page; and memory that fails anywhere. */
 #include "check.h"
 
+#include "imukit/model_file.h"
 #include "imukit/result.h"
 
 #include <math.h>

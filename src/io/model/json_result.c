@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* JSON that is there already, such as that of a model, as data of a result; and what stands in it.
- */
-#include "result_internal.h"
+/* JSON that is there already, such as that of a model, as data of a result. */
+#include "document_internal.h"
 
-#include "io/model/document_internal.h"
+#include "report/result_internal.h"
 
 #include "imukit/decimal.h"
+#include "imukit/model_file.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -68,21 +68,4 @@ bool imk_result_json(imk_result *result, const char *key, const char *text)
     add_node(result, key, document, 0);
     imk_document_free(document);
     return true;
-}
-
-const char *imk_result_find(const imk_result *result, const char *path)
-{
-    const imki_data *at = result ? &result->root : NULL;
-    while (at && *path) {
-        const bool element = *path == '[';
-        size_t index = element ? strtoul(path + 1, NULL, 10) : 0;
-        const size_t length = element ? strcspn(path, "]") + 1 : strcspn(path, ".[");
-        at = at->first; /* of a text there is none */
-        while (at && (element ? index-- > 0
-                              : !at->key || strncmp(at->key, path, length) != 0 || at->key[length]))
-            at = at->next;
-        path += length;
-        path += *path == '.';
-    }
-    return at && at->kind == IMKI_DATA_TEXT ? at->value.text : NULL;
 }
