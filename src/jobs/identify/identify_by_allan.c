@@ -8,9 +8,8 @@
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 
-#include "imukit/allan_fit.h"
-
 #include <math.h>
+#include <string.h>
 
 /* What the spectrum found stays. */
 static imk_allan_fit_settings settings_of(const imk_identify_log_settings *s,
@@ -31,19 +30,15 @@ static imk_allan_fit_settings settings_of(const imk_identify_log_settings *s,
     return settings;
 }
 
-static void store(imk_identification *r, const imk_allan_fit *fit, double from)
+void imki_store_fit(imk_identification *r, const imk_allan_fit *fit)
 {
-    for (int term = 0; term < IMK_NOISE_TERMS; term++) {
-        r->term[term] = fit->term[term];
-        for (int other = 0; other < IMK_NOISE_TERMS; other++)
-            r->correlation[term][other] = fit->correlation[term][other];
-    }
+    memcpy(r->term, fit->term, sizeof r->term);
+    memcpy(r->correlation, fit->correlation, sizeof r->correlation);
     r->gauss_markov_count = fit->gauss_markov_count;
     for (int k = 0; k < fit->gauss_markov_count; k++) {
         r->gauss_markov[k].sigma = fit->gauss_markov[k].sigma;
         r->gauss_markov[k].correlation_time = fit->gauss_markov[k].correlation_time;
     }
-    r->valid_from = fmax(r->valid_from, from);
 }
 
 static imk_status fit_channel(imk_identify_log *log, size_t channel, const imk_job *job,
@@ -73,7 +68,8 @@ static imk_status fit_channel(imk_identify_log *log, size_t channel, const imk_j
     if (workspace && fit)
         status = imk_allan_fit_table(&settings, &table, fit, workspace, size, NULL);
     if (status == IMK_OK) {
-        store(r, fit, curve->tau[fit->first]);
+        imki_store_fit(r, fit);
+        r->valid_from = fmax(r->valid_from, curve->tau[fit->first]);
         imki_find(&log->findings, IMK_FINDING_NOTE, "allan_fit", name,
                   IMKI_NUMBERS(curve->tau[fit->first], curve->tau[count - 1], fit->chi_square,
                                (double)fit->degrees, fit->probability));

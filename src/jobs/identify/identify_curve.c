@@ -2,12 +2,13 @@
 /* A noise model from a table of Allan deviations. */
 #include "imukit/identify_curve.h"
 
+#include "identify_log_internal.h"
+
 #include "jobs/allan/allan_curve_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
 
-#include "imukit/allan_fit.h"
 #include "imukit/distributions.h"
 #include "imukit/samples.h"
 
@@ -99,13 +100,7 @@ static void store(imk_identification *result, const imk_allan_fit *fit, const do
                   const used_rows *used)
 {
     result->mean = result->deviation = (double)NAN; /* not in a table */
-    memcpy(result->term, fit->term, sizeof result->term);
-    memcpy(result->correlation, fit->correlation, sizeof result->correlation);
-    result->gauss_markov_count = fit->gauss_markov_count;
-    for (int k = 0; k < fit->gauss_markov_count; k++) {
-        result->gauss_markov[k].sigma = fit->gauss_markov[k].sigma;
-        result->gauss_markov[k].correlation_time = fit->gauss_markov[k].correlation_time;
-    }
+    imki_store_fit(result, fit);
     double least = deviation[0];
     for (size_t k = 1; k < used->count; k++)
         least = fmin(least, deviation[k]);
@@ -150,8 +145,7 @@ static imk_status fit_channel(imk_identify_log *log, size_t channel,
                               imki_arena *scratch)
 {
     const double *data = imk_even_record_data(&log->record, channel);
-    double deviations[IMK_ALLAN_FIT_FACTORS_MAX] = {0};
-    double variances[IMK_ALLAN_FIT_FACTORS_MAX] = {0};
+    double deviations[IMK_ALLAN_FIT_FACTORS_MAX] = {0}, variances[IMK_ALLAN_FIT_FACTORS_MAX];
     for (size_t k = 0; k < used->count; k++) {
         deviations[k] = data[used->row[k]];
         variances[k] = deviations[k] * deviations[k];
@@ -187,7 +181,7 @@ static imk_status fit_all(imk_identify_log *log, const imk_record_source *source
                           const imk_identify_curve_settings *s, const imk_job *job,
                           imk_error *error)
 {
-    used_rows used = {0};
+    used_rows used = {.count = 0};
     imk_status status = imki_record_load(source, job, &log->record.log, error);
     if (status == IMK_OK)
         status = choose(log, s, &used, error);

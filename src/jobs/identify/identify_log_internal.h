@@ -3,6 +3,7 @@
 #ifndef IMUKI_IDENTIFY_LOG_INTERNAL_H
 #define IMUKI_IDENTIFY_LOG_INTERNAL_H
 
+#include "imukit/allan_fit.h"
 #include "imukit/identify_log.h"
 
 /* Settings of a channel's estimate; with a summary to be filled where it is wanted.
@@ -28,5 +29,7 @@ void imki_round_model(imk_model *model);
 /* Replace the terms by those of a generalised least-squares fit to the Allan deviations, with the
  * lines, resonances and filter found before. */
 imk_status imki_identify_by_allan(imk_identify_log *log, const imk_job *job, imk_error *error);
+/* The terms of such a fit. */
+void imki_store_fit(imk_identification *result, const imk_allan_fit *fit);
 
 #endif
