@@ -13,7 +13,8 @@ enum { STRETCHES = 256 };
 static int check(const bench *b)
 {
     const calibrate_options *o = b->options;
-    if (b->log_count != 1 || b->repeatability || b->log[0].procedure != IMK_PROCEDURE_FERRARIS)
+    if (b->found->count != 1 || b->found->settings.repeatability ||
+        b->found->record[0].procedure != IMK_PROCEDURE_FERRARIS)
         return command_misused("--estimator closed-form: this is for one log of --procedure "
                                "ferraris; the others, and several logs together, are solved by "
                                "maximum likelihood");
@@ -41,21 +42,21 @@ static void set_nominal(const imk_ferraris_triad *from, imk_triad *to)
 static int find(bench *b, imk_ferraris_stretch *stretch, size_t *count)
 {
     imk_error error;
-    bench_log *log = &b->log[0];
+    bench_log *log = &b->found->record[0];
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_FERRARIS, &log->record, &log->settings);
     void *workspace = command_memory(NULL, size);
-    imk_status status = imk_ferraris_stretches(&log->record, &log->settings, &b->calibration->model,
-                                               b->calibration->gravity, workspace, size, STRETCHES,
-                                               stretch, count, &error);
+    imk_status status = imk_ferraris_stretches(
+        &log->record, &log->settings, &b->found->calibration->model, b->found->calibration->gravity,
+        workspace, size, STRETCHES, stretch, count, &error);
     free(workspace);
     if (status == IMK_OK && *count > STRETCHES)
         return command_failed("%s: these are more than %d holds and turns", log->path, STRETCHES);
     /* The angle is as good as the placements before and after the turn. */
     if (status == IMK_OK)
         status = imk_ferraris_closed_form(
-            &log->record, *count, stretch, b->calibration->gravity, log->settings.turn_angle,
-            sqrt(2.0) * log->settings.placement_sigma, b->ferraris, &error);
+            &log->record, *count, stretch, b->found->calibration->gravity, log->settings.turn_angle,
+            sqrt(2.0) * log->settings.placement_sigma, b->found->ferraris, &error);
     return status == IMK_OK ? -1 : bench_observe_failed(b, log, &error);
 }
 
@@ -79,14 +80,14 @@ static void state(imk_calibration_result *r, int sensor, int term, int elements)
 /* As a result of the estimator: sigmas to first order, without correlations. */
 static void fill_result(bench *b)
 {
-    imk_calibration_result *r = b->result = command_zeroed(sizeof *r);
-    r->model = b->calibration->model;
+    imk_calibration_result *r = b->found->result = command_zeroed(sizeof *r);
+    r->model = b->found->calibration->model;
     imk_triad *triad[2] = {&r->model.gyro, &r->model.accel};
-    const imk_ferraris_triad *solved[2] = {&b->ferraris->gyro, &b->ferraris->accel};
+    const imk_ferraris_triad *solved[2] = {&b->found->ferraris->gyro, &b->found->ferraris->accel};
     for (int sensor = 0; sensor < 2; sensor++)
-        if (b->nominal[sensor])
+        if (b->found->nominal[sensor])
             set_nominal(solved[sensor], triad[sensor]);
-    imk_ferraris_to_model(b->ferraris, &r->model);
+    imk_ferraris_to_model(b->found->ferraris, &r->model);
     for (int sensor = 1; sensor >= 0; sensor--) {
         state(r, sensor, IMK_MODEL_BIAS, 1);
         state(r, sensor, IMK_MODEL_SCALE_FACTOR, 1);
@@ -106,7 +107,7 @@ int bench_closed_form(bench *b)
     imk_ferraris_stretch stretch[STRETCHES];
     size_t count = 0;
     int code = check(b);
-    b->ferraris = command_zeroed(sizeof *b->ferraris);
+    b->found->ferraris = command_zeroed(sizeof *b->found->ferraris);
     if (code < 0)
         code = find(b, stretch, &count);
     if (code < 0)

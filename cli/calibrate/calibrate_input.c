@@ -34,33 +34,10 @@ static void drop_rows(bench_log *b, int time)
                      b->path, b->dropped);
 }
 
-double bench_time(const imk_test_record *record, size_t row)
-{
-    return record->time ? record->time[row] : (double)row * record->dt;
-}
-
-static bool is_missing(const imk_test_record *record, size_t row)
-{
-    bool missing = record->temperature && !isfinite(record->temperature[row]);
-    for (int sensor = 0; sensor < 2; sensor++)
-        for (int axis = 0; axis < record->axis_count[sensor]; axis++)
-            missing = missing || !isfinite(record->reading[sensor][axis][row]);
-    return missing;
-}
-
-size_t bench_rows_missing(const imk_test_record *record, size_t *first)
-{
-    size_t rows = 0;
-    for (size_t row = 0; row < record->count; row++)
-        if (is_missing(record, row) && rows++ == 0)
-            *first = row;
-    return rows;
-}
-
 static void tell_missing(const bench_log *log)
 {
     size_t first;
-    const size_t rows = bench_rows_missing(&log->record, &first);
+    const size_t rows = imk_test_record_missing(&log->record, &first);
     if (rows > 0)
         command_warn("not_finite",
                      "%s: in %zu of %zu rows a reading or the temperature is no finite number, or "
@@ -89,8 +66,8 @@ static int take_axes(bench_log *b, int sensor)
         if (axis != axes)
             return command_failed("%s has %s_%c but no %s_%c: calibration needs the axes one after "
                                   "the other; name the columns with --columns",
-                                  b->path, sensor_keys[sensor], axis_letter(axis),
-                                  sensor_keys[sensor], axis_letter(axes));
+                                  b->path, sensor_keys[sensor], imk_axis_letter(axis),
+                                  sensor_keys[sensor], imk_axis_letter(axes));
         const bool counts = in_counts(&b->log.column[column]);
         if (axes > 0 && counts != record->counts[sensor])
             return command_failed("%s: some %s columns are in counts and some are not", b->path,

@@ -47,7 +47,7 @@ static int digits_for(double value, double uncertainty)
 static void round_parameter(imk_model *model, imk_model_parameter parameter)
 {
     double *sigma = NULL, *value = imk_model_parameter_at(model, parameter, &sigma);
-    const char *unit = parameter_file_unit(parameter);
+    const char *unit = imk_parameter_file_unit(parameter);
     if (!value)
         return;
     *value = rounded(*value, digits_for(*value, *sigma), unit);
@@ -116,18 +116,19 @@ static void state_interval(const bench *b, imk_model *model, int sensor, int ter
 {
     const imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
     const imk_model_parameter first = {(uint8_t)sensor, (uint8_t)term, 0, 0};
-    const char *unit = parameter_file_unit(first);
+    const char *unit = imk_parameter_file_unit(first);
     imk_interval interval = {.instance = 0};
     if (!interval_key(first, interval.key, sizeof interval.key))
         return;
     for (int axis = 0; axis < triad->axis_count; axis++) {
         imk_model_parameter p = first;
         p.axis = (uint8_t)axis;
-        const int found = bench_find(b, p);
+        const int found = imk_calibrate_find(b->found, p);
         if (found < 0)
             return;
-        const double half = imk_calibration_half_width(b->result, found, 0.95);
-        const double low = b->result->value[found] - half, high = b->result->value[found] + half;
+        const double half = imk_calibration_half_width(b->found->result, found, 0.95);
+        const double low = b->found->result->value[found] - half,
+                     high = b->found->result->value[found] + half;
         if (!isfinite(half))
             return;
         interval.lower.value[axis] = rounded(low, digits_for(low, half / 2), unit);
@@ -138,48 +139,50 @@ static void state_interval(const bench *b, imk_model *model, int sensor, int ter
 
 static bool estimated(const bench *b, int sensor)
 {
-    for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
-        if (b->result->parameter[p].sensor == sensor)
+    for (size_t p = 0; b->found->result && p < b->found->result->parameter_count; p++)
+        if (b->found->result->parameter[p].sensor == sensor)
             return true;
-    return b->runs && b->runs->axis_count[sensor] > 0;
+    return b->found->runs && b->found->runs->axis_count[sensor] > 0;
 }
 
 /* Names of the logs, and how they were used. */
 static void describe(const bench *b, imk_evidence *evidence)
 {
     growing_list logs = {0}, names = {0};
-    for (size_t k = 0; k < b->log_count; k++)
-        list_add_item(&logs, "%s", b->log[k].record.name);
+    for (size_t k = 0; k < b->found->count; k++)
+        list_add_item(&logs, "%s", b->found->record[k].record.name);
     imk_utf8_clean(logs.text, evidence->source, sizeof evidence->source);
     list_free(&logs);
-    if (b->runs) {
+    if (b->found->runs) {
         snprintf(evidence->method, sizeof evidence->method,
-                 "imukit %s calibrate: repeatability of %zu runs", IMK_VERSION, b->run_count);
+                 "imukit %s calibrate: repeatability of %zu runs", IMK_VERSION,
+                 b->found->run_count);
         return;
     }
-    if (b->ferraris) {
+    if (b->found->ferraris) {
         snprintf(evidence->method, sizeof evidence->method,
                  "imukit %s calibrate: ferraris, closed form, gravity %.6g m/s^2", IMK_VERSION,
-                 b->calibration->gravity);
+                 b->found->calibration->gravity);
         return;
     }
-    for (size_t k = 0; k < b->log_count; k++) {
-        const char *name = imk_procedure_name(b->log[k].procedure);
+    for (size_t k = 0; k < b->found->count; k++) {
+        const char *name = imk_procedure_name(b->found->record[k].procedure);
         if (!names.text || !strstr(names.text, name))
             list_add_item(&names, "%s", name);
     }
     snprintf(evidence->method, sizeof evidence->method,
              "imukit %s calibrate: %s, maximum likelihood, %zu observations, %zu turns, gravity "
              "%.6g m/s^2",
-             IMK_VERSION, names.text, b->calibration->observation_count, b->calibration->turn_count,
-             b->calibration->gravity);
+             IMK_VERSION, names.text, b->found->calibration->observation_count,
+             b->found->calibration->turn_count, b->found->calibration->gravity);
     list_free(&names);
 }
 
 static void name_model(const bench *b, imk_model *model)
 {
     if (b->options->name || !model->name[0] || !b->options->into)
-        command_model_name(b->options->name, b->log[0].path, model->name, sizeof model->name);
+        command_model_name(b->options->name, b->found->record[0].path, model->name,
+                           sizeof model->name);
 }
 
 /* What temperature does besides the polynomials that were solved for. */
@@ -189,11 +192,11 @@ static void apply_thermal(const bench *b, imk_model *model)
     static const char *const rate[2] = {"deg/h/(K/min)", "mg/(K/min)"};
     imk_triad *triad[2] = {&model->gyro, &model->accel};
     imk_error error;
-    for (size_t k = 0; k < b->log_count; k++) {
-        if (!b->log[k].thermal)
+    for (size_t k = 0; k < b->found->count; k++) {
+        if (!b->found->record[k].thermal)
             continue;
-        if (imk_thermal_apply(b->log[k].thermal, false, model, &error) != IMK_OK)
-            (void)command_error(&error, b->log[k].path);
+        if (imk_thermal_apply(b->found->record[k].thermal, false, model, &error) != IMK_OK)
+            (void)command_error(&error, b->found->record[k].path);
         for (int sensor = 0; sensor < 2; sensor++) {
             round_axes(&triad[sensor]->bias.hysteresis, width[sensor]);
             round_axes(&triad[sensor]->bias.temperature_rate, rate[sensor]);
@@ -203,20 +206,20 @@ static void apply_thermal(const bench *b, imk_model *model)
 
 void bench_make_model(bench *b)
 {
-    imk_model *model = &b->model;
+    imk_model *model = &b->found->model;
     imk_evidence *evidence[2] = {&model->gyro_evidence, &model->accel_evidence};
-    *model = b->result ? b->result->model : b->calibration->model;
-    if (b->runs)
-        imk_repeatability_to_model(b->runs, model);
+    *model = b->found->result ? b->found->result->model : b->found->calibration->model;
+    if (b->found->runs)
+        imk_repeatability_to_model(b->found->runs, model);
     apply_thermal(b, model);
-    for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
-        round_parameter(model, b->result->parameter[p]);
+    for (size_t p = 0; b->found->result && p < b->found->result->parameter_count; p++)
+        round_parameter(model, b->found->result->parameter[p]);
     for (int sensor = 0; sensor < 2; sensor++) {
         if (!estimated(b, sensor))
             continue;
-        for (int term = 0; b->result && term < IMK_MODEL_TERMS; term++)
+        for (int term = 0; b->found->result && term < IMK_MODEL_TERMS; term++)
             state_interval(b, model, sensor, term);
-        if (b->runs)
+        if (b->found->runs)
             round_repeatability(model, sensor);
         describe(b, evidence[sensor]);
     }
@@ -228,8 +231,8 @@ int bench_write_model(bench *b)
     imk_error error;
     const calibrate_options *o = b->options;
     if (o->into)
-        model_print_changes(o->into, &b->before, &b->model, b->document);
-    if (o->output && imk_model_write(o->output, &b->model, b->document, &error) != IMK_OK)
+        model_print_changes(o->into, &b->before, &b->found->model, b->document);
+    if (o->output && imk_model_write(o->output, &b->found->model, b->document, &error) != IMK_OK)
         return command_error(&error, NULL);
     return -1;
 }

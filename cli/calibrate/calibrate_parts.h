@@ -8,12 +8,9 @@
 #include "shell/show.h"
 
 #include "imukit/earth.h"
-#include "imukit/ferraris.h"
 #include "imukit/model_file.h"
 #include "imukit/motion_file.h"
-#include "imukit/procedure.h"
-#include "imukit/repeatability.h"
-#include "imukit/thermal.h"
+#include "imukit/show.h"
 
 typedef struct calibrate_options {
     log_input log;
@@ -31,75 +28,25 @@ typedef struct calibrate_options {
     bool no_earth, plan, anyway, poses, json, strict;
 } calibrate_options;
 
-enum { BENCH_DOUBTS_MAX = 16, BENCH_REFERENCES = 9 };
-
-/* One log. */
-typedef struct bench_log {
-    const char *path;
-    imk_log log; /* owns the columns */
-    imk_test_record record;
-    size_t dropped; /* rows without a time that increases */
-    int *section;
-    const char **section_name;
-    double *reference;    /* BENCH_REFERENCES columns: rate, force, angular acceleration */
-    double motion_offset; /* the log shows at t what the programme says at t less this [s] */
-    imk_procedure procedure;
-    imk_procedure_settings settings;
-    imk_procedure_findings findings;
-    imk_static_findings stationary; /* window 0: not looked at */
-    size_t interval_count;
-    imk_static_interval *interval;
-    double *activity; /* per sample; NULL: not asked for */
-    size_t doubt_count;
-    imk_doubt_finding doubt[BENCH_DOUBTS_MAX];
-    imk_thermal_findings *thermal; /* of that procedure */
-} bench_log;
-
-/* A sentence of the verdict, worst last. */
-typedef enum calibrate_level {
-    LEVEL_GOOD = 0,
-    LEVEL_NOTE,
-    LEVEL_WARNING,
-    LEVEL_USELESS
-} calibrate_level;
-typedef struct calibrate_sentence {
-    calibrate_level level;
-    char code[40];
-    char text[700];
-} calibrate_sentence;
-enum { CALIBRATE_SENTENCES_MAX = 48 };
+typedef imk_calibrate_record bench_log;
 
 typedef struct bench {
     const calibrate_options *options;
-    size_t log_count;
-    bench_log *log;
-    bool repeatability; /* the logs are power cycles, nothing is solved */
-    bool place_known;
+    imk_calibrate_log *found;
     imk_geodetic place;
     imk_motion_file *motion;
     imk_document *document; /* of --into */
-    bool nominal[2];        /* sensitivities were found, not given */
-    imk_calibration *calibration;
-    imk_calibration_result *result;
-    imk_ferraris *ferraris; /* of --estimator closed-form */
-    imk_repeatability_result *runs;
-    size_t run_count;
-    size_t doubt_count;
-    imk_doubt_finding doubt[BENCH_DOUBTS_MAX]; /* of the solution */
-    size_t sentence_count;
-    calibrate_sentence sentence[CALIBRATE_SENTENCES_MAX];
-    imk_model before, model; /* known before; as written */
+    imk_model before;       /* known before */
 } bench;
+
+static const char *const sensor_keys[2] = {"gyro", "accel"};
+static const char *const sensor_titles[2] = {"gyro", "accelerometer"};
 
 /* All return -1 or the exit code, the message printed, where nothing else is said. */
 
 /* calibrate_input.c: a log with its columns as a record. */
 int bench_load(bench *b, bench_log *log);
 void bench_log_free(bench_log *log);
-/* When a row was taken [s]. */
-double bench_time(const imk_test_record *record, size_t row);
-/* Rows with a reading or a temperature that is no number. @param first  set when there are some */
-size_t bench_rows_missing(const imk_test_record *record, size_t *first);
 /* calibrate_reference.c: what the unit was exposed to, from columns or from --motion. */
 int bench_reference(bench *b, bench_log *log);
 
@@ -128,57 +75,12 @@ int bench_compare_models(bench *b);
 /* calibrate_plan.c: --plan, the operand being a model. @return the exit code */
 int bench_plan(bench *b);
 
-/* calibrate_advice.c: the poses that would tell most, as a list of angles behind `before`; "" where
- * they are not known. */
-void bench_advise(const bench *b, const bench_log *log, const char *before, char *text,
-                  size_t size);
-
-/* calibrate_failures.c: why a log could not be used, or the problem not be solved. */
+/* verb_calibrate.c: why a log could not be used, or the problem not be solved. */
 int bench_observe_failed(const bench *b, const bench_log *log, const imk_error *error);
 int bench_solve_failed(const bench *b, const imk_error *error);
-
-/* calibrate_doubts.c: doubts as sentences. */
-calibrate_sentence doubt_sentence(const bench *b, const bench_log *log,
-                                  const imk_doubt_finding *doubt);
-/* Is it worth a look in this log? Some are only where holds are looked for. */
-bool doubt_matters(const bench_log *log, const imk_doubt_finding *doubt);
-/* Take away the doubts whether holds can be found where sections name them: the procedure counts
- * the faces. */
-void doubts_of_named_holds(bench_log *log);
-/* Sentences on logs and solution; warnings also go to standard error. */
-void bench_judge(bench *b);
 
 /* calibrate_model.c: fill b->model; write it to -o. */
 void bench_make_model(bench *b);
 int bench_write_model(bench *b);
-
-/* calibrate_units.c: words and units in which sensors and parameters are shown and written. Gyros
- * come first. */
-extern const char *const sensor_keys[2], *const sensor_titles[2], *const sensor_units[2];
-char axis_letter(int axis); /* x, y, z, 3 … 7 */
-imk_unit parameter_unit(imk_model_parameter parameter, double magnitude);
-/* As in the model file, whatever the size. */
-const char *parameter_file_unit(imk_model_parameter parameter);
-/* "scale factor", "misalignment towards y": without sensor and axis. */
-void parameter_title(imk_model_parameter parameter, char *text, size_t size);
-/* Index of a parameter of the solution, or -1. */
-int bench_find(const bench *b, imk_model_parameter parameter);
-
-/* calibrate_show.c: all of it as a result. @return is there a figure? */
-bool bench_show(const bench *b, imk_result *result);
-/* calibrate_words.c */
-calibrate_level bench_level(const bench *b);
-/* "Good: …", "Usable with care …": the verdict in one sentence. */
-void bench_verdict(const bench *b, char *text, size_t size);
-/* On frame and gravity, what was left out and what is correlated. */
-void bench_show_remarks(const bench *b, imk_result *result);
-/* calibrate_tables.c */
-void bench_show_parameters(const bench *b, int sensor, imk_result *result);
-void bench_show_runs(const bench *b, int sensor, imk_result *result);
-void bench_show_thermal(const bench_log *log, int sensor, bool brief, imk_result *result);
-void bench_show_fit(const bench *b, imk_result *result);
-void bench_show_poses(const bench *b, imk_result *result);
-/* calibrate_figure.c. @return is there something to draw? */
-bool bench_show_figure(const bench *b, imk_result *result);
 
 #endif

@@ -46,7 +46,7 @@ static int parse_wish(plan *p, const char *text, size_t length)
         double sigma, unused;
         size_t numbers;
         imk_error error;
-        const char *unit = parameter_file_unit(parameter[k]);
+        const char *unit = imk_parameter_file_unit(parameter[k]);
         if (imk_quantity_parse(value, value + strlen(value), imk_unit_of(unit).dimension, 1, &sigma,
                                &unused, &numbers, NULL, &error) != IMK_OK ||
             !(sigma > 0))
@@ -79,7 +79,7 @@ static void put_motion(growing_list *t, const plan *p, const imk_motion_script *
 {
     list_add(t, "imukit_motion: 1\nname: %s programme\n",
              imk_procedure_name(p->settings.procedure));
-    if (p->b->place_known)
+    if (p->b->found->settings.place_known)
         list_add(t, "start: {latitude: %.9g deg, longitude: %.9g deg, height: %.9g m}\n",
                  p->b->place.latitude / degree, p->b->place.longitude / degree, p->b->place.height);
     list_add(t, "steps:\n");
@@ -190,7 +190,7 @@ static void show_wishes(const plan *p, imk_result *result)
     imk_table_row(table, "wanted (1 sigma)\tunit\twish\texpected\t");
     for (const imk_plan_wish *w = p->wish; w < p->wish + p->settings.wish_count; w++) {
         char name[IMK_MODEL_PARAMETER_NAME];
-        const imk_unit unit = imk_unit_of(parameter_file_unit(w->parameter));
+        const imk_unit unit = imk_unit_of(imk_parameter_file_unit(w->parameter));
         if (imk_model_parameter_name(w->parameter, name) != IMK_OK)
             continue;
         imk_table_row(table, "%s\t%s\t%.3g", name, unit.text, w->sigma / unit.scale);
@@ -231,7 +231,7 @@ static void show_next(const plan *p, imk_result *result)
 {
     const calibrate_options *o = p->b->options;
     const imk_procedure procedure = p->settings.procedure;
-    const char *model = p->b->log[0].path;
+    const char *model = p->b->found->record[0].path;
     const bool wants_motion = procedure >= IMK_PROCEDURE_RATE_TABLE;
     if (procedure == IMK_PROCEDURE_CENTRIFUGE)
         imk_result_line(result, "These are the levels to set; a motion file has no arm to swing "
@@ -260,7 +260,7 @@ static void show_data(const plan *p, imk_result *result)
 {
     static const char *const actions[] = {"hold", "rate", "force", "soak"};
     imk_result_object(result, "inputs");
-    imk_result_text(result, "model", p->b->log[0].path);
+    imk_result_text(result, "model", p->b->found->record[0].path);
     imk_result_text(result, "procedure", imk_procedure_name(p->settings.procedure));
     imk_result_end(result);
     imk_result_object(result, "result");
@@ -315,7 +315,7 @@ static void show(const plan *p, imk_result *result)
 static int make(plan *p)
 {
     imk_error error;
-    imk_calibration *c = p->b->calibration;
+    imk_calibration *c = p->b->found->calibration;
     const size_t room = p->settings.steps_maximum;
     p->step = command_zeroed((room + 1) * sizeof *p->step);
     c->observation = command_zeroed((room + 1) * sizeof *c->observation);
@@ -329,7 +329,7 @@ static int make(plan *p)
     if (status == IMK_ERROR_KEY_MISSING && strstr(error.field, "noise"))
         return command_failed("%s states no noise, from which to tell how long to measure: imukit "
                               "identify finds it in a log at rest",
-                              p->b->log[0].path);
+                              p->b->found->record[0].path);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
 }
 
@@ -338,24 +338,24 @@ static int set_up(plan *p)
     bench *b = p->b;
     const calibrate_options *o = b->options;
     imk_document *unused = NULL;
-    if (b->log_count != 1)
+    if (b->found->count != 1)
         return command_misused("--plan takes one MODEL, of the unit that will be tested");
     int code = bench_choose(b);
-    if (code < 0 && b->repeatability)
+    if (code < 0 && b->found->settings.repeatability)
         code = command_misused("--plan: repeatability needs no programme: as many power cycles as "
                                "you can afford, ten or more");
     if (code < 0)
-        code = command_model(b->log[0].path, &b->calibration->model, &unused);
+        code = command_model(b->found->record[0].path, &b->found->calibration->model, &unused);
     imk_document_free(unused);
     if (code >= 0)
         return code;
-    p->settings = imk_plan_default(b->log[0].procedure);
-    p->settings.nonlinear = b->log[0].settings.nonlinear;
-    p->settings.cross_products = b->log[0].settings.cross_products;
-    p->settings.g_sensitivity = b->log[0].settings.g_sensitivity;
-    p->settings.placement_sigma = b->log[0].settings.placement_sigma;
-    p->settings.fixture_sigma = b->log[0].settings.fixture_sigma;
-    p->settings.turn_angle = b->log[0].settings.turn_angle;
+    p->settings = imk_plan_default(b->found->record[0].procedure);
+    p->settings.nonlinear = b->found->record[0].settings.nonlinear;
+    p->settings.cross_products = b->found->record[0].settings.cross_products;
+    p->settings.g_sensitivity = b->found->record[0].settings.g_sensitivity;
+    p->settings.placement_sigma = b->found->record[0].settings.placement_sigma;
+    p->settings.fixture_sigma = b->found->record[0].settings.fixture_sigma;
+    p->settings.turn_angle = b->found->record[0].settings.turn_angle;
     if (!isnan(o->soak))
         p->settings.soak = o->soak;
     if (o->temperature_order.given)

@@ -70,7 +70,7 @@ static int check_counts(const bench *b, int sensor, bool counts)
         return -1;
     return command_misused("--%s-%s is for readings in counts, and those of %s have a unit",
                            sensor_keys[sensor], o->sensitivity[sensor] ? "sensitivity" : "zero",
-                           b->log[0].path);
+                           b->found->record[0].path);
 }
 
 /* Axes of the logs; a model that is given must have them. */
@@ -80,16 +80,16 @@ static int match_axes(bench *b, imk_model *model, bool given)
     for (int sensor = 0; sensor < 2; sensor++) {
         int axes = 0;
         bool counts = false;
-        for (size_t k = 0; k < b->log_count; k++) {
-            const imk_test_record *record = &b->log[k].record;
+        for (size_t k = 0; k < b->found->count; k++) {
+            const imk_test_record *record = &b->found->record[k].record;
             const int here = record->axis_count[sensor];
             if (here > 0 && axes > 0 && here != axes)
-                return command_failed("%s has %d %s axes and the others have %d", b->log[k].path,
-                                      here, sensor_titles[sensor], axes);
+                return command_failed("%s has %d %s axes and the others have %d",
+                                      b->found->record[k].path, here, sensor_titles[sensor], axes);
             if (here > 0 && axes > 0 && counts != record->counts[sensor])
                 return command_failed("%s: its %s readings are in counts and those of other logs "
                                       "are not, or the reverse",
-                                      b->log[k].path, sensor_titles[sensor]);
+                                      b->found->record[k].path, sensor_titles[sensor]);
             axes = here > 0 ? here : axes;
             counts = here > 0 ? record->counts[sensor] : counts;
         }
@@ -107,7 +107,7 @@ static int match_axes(bench *b, imk_model *model, bool given)
             for (int i = 3; i < axes; i++)
                 triad[sensor]->direction[i][i % 3] = 1;
         }
-        b->nominal[sensor] = counts && triad[sensor]->sensitivity.value[0] == 0;
+        b->found->nominal[sensor] = counts && triad[sensor]->sensitivity.value[0] == 0;
     }
     return -1;
 }
@@ -115,7 +115,7 @@ static int match_axes(bench *b, imk_model *model, bool given)
 int bench_known_before(bench *b)
 {
     const calibrate_options *o = b->options;
-    imk_model *model = &b->calibration->model;
+    imk_model *model = &b->found->calibration->model;
     const char *given = o->into ? o->into : o->model;
     int code = given ? command_model(given, model, o->into ? &b->document : NULL) : -1;
     if (code < 0 && given && model->residual_of[0])
@@ -135,12 +135,12 @@ int bench_known_before(bench *b)
 static int set_place(bench *b)
 {
     const calibrate_options *o = b->options;
-    imk_calibration *c = b->calibration;
+    imk_calibration *c = b->found->calibration;
     int code = o->position ? place_parse(o->position, &b->place) : -1;
     if (code >= 0)
         return code;
-    b->place_known = o->position != NULL;
-    if (b->place_known) {
+    b->found->settings.place_known = o->position != NULL;
+    if (b->found->settings.place_known) {
         c->latitude = b->place.latitude;
         c->gravity = imk_normal_gravity(b->place.latitude, b->place.height);
     }
@@ -160,16 +160,16 @@ static int set_place(bench *b)
 static void warn_of_gravity(const bench *b)
 {
     bool needed = false;
-    for (size_t k = 0; k < b->log_count; k++)
-        needed = needed || (b->log[k].record.axis_count[1] > 0 &&
-                            b->log[k].procedure < IMK_PROCEDURE_RATE_TABLE);
-    if (needed && !b->place_known && isnan(b->options->gravity))
+    for (size_t k = 0; k < b->found->count; k++)
+        needed = needed || (b->found->record[k].record.axis_count[1] > 0 &&
+                            b->found->record[k].procedure < IMK_PROCEDURE_RATE_TABLE);
+    if (needed && !b->found->settings.place_known && isnan(b->found->settings.gravity))
         command_warn("gravity",
                      "the place is not known: gravity is taken as %.5f m/s^2, that of 45 deg and "
                      "sea level, and differs from it by up to 0.3 %%, which goes into the scale "
                      "factors; add --position \"48.1 deg, 11.6 deg, 520 m\" or --gravity "
                      "9.80780m/s^2",
-                     b->calibration->gravity);
+                     b->found->calibration->gravity);
 }
 
 /* ---- procedures ------------------------------------------------------------------------------ */
@@ -182,13 +182,13 @@ static int procedure_of(const char *name, size_t length, bench *b, size_t log)
     for (int p = 0; p < IMK_PROCEDURES; p++) {
         names[p] = imk_procedure_name((imk_procedure)p);
         if (strcmp(names[p], given) == 0) {
-            b->log[log].procedure = (imk_procedure)p;
+            b->found->record[log].procedure = (imk_procedure)p;
             return -1;
         }
     }
     names[IMK_PROCEDURES] = "repeatability";
     if (strcmp(given, "repeatability") == 0) {
-        b->repeatability = true;
+        b->found->settings.repeatability = true;
         return -1;
     }
     const char *nearest = command_nearest(given, IMK_PROCEDURES + 1, names);
@@ -210,11 +210,11 @@ static int assign_procedures(bench *b)
                                "calibrate --help");
     for (const char *c = text; *c; c++)
         count += *c == ',';
-    if (count != 1 && count != b->log_count)
+    if (count != 1 && count != b->found->count)
         return command_misused("--procedure %s: %zu procedures for %zu log%s; give one for all, or "
                                "one for each",
-                               text, count, b->log_count, b->log_count == 1 ? "" : "s");
-    for (size_t k = 0; k < b->log_count; k++) {
+                               text, count, b->found->count, b->found->count == 1 ? "" : "s");
+    for (size_t k = 0; k < b->found->count; k++) {
         const size_t length = strcspn(text, ",");
         int code = procedure_of(text, length, b, k);
         if (code >= 0)
@@ -222,7 +222,7 @@ static int assign_procedures(bench *b)
         if (count > 1)
             text += length + 1;
     }
-    if (b->repeatability && count > 1)
+    if (b->found->settings.repeatability && count > 1)
         return command_misused("--procedure: repeatability compares all logs, each of one power "
                                "cycle; it cannot stand beside another procedure");
     return -1;
@@ -243,7 +243,7 @@ static int settle(const bench *b, bench_log *log)
     set_if(&s.stationary.minimum, o->minimum);
     set_if(&s.minimum, o->minimum);
     set_if(&s.placement_sigma, o->placement);
-    if (b->calibration->frame != IMK_FRAME_REFERENCE && bench_is_known(log->procedure))
+    if (b->found->calibration->frame != IMK_FRAME_REFERENCE && bench_is_known(log->procedure))
         s.fixture_sigma = loose_mounting;
     set_if(&s.fixture_sigma, o->mounting);
     set_if(&s.turn_angle, o->turn_angle);
@@ -265,17 +265,17 @@ static bool knows_force(imk_procedure procedure)
 static int choose_frame(bench *b)
 {
     bool known = false, force = false, gravity = false;
-    for (size_t k = 0; k < b->log_count; k++) {
-        known = known || bench_is_known(b->log[k].procedure);
-        force = force || knows_force(b->log[k].procedure);
-        gravity = gravity || b->log[k].procedure == IMK_PROCEDURE_MULTIPOSITION;
+    for (size_t k = 0; k < b->found->count; k++) {
+        known = known || bench_is_known(b->found->record[k].procedure);
+        force = force || knows_force(b->found->record[k].procedure);
+        gravity = gravity || b->found->record[k].procedure == IMK_PROCEDURE_MULTIPOSITION;
     }
     /* A table for the gyros and poses for the accelerometers: the poses fix the frame. */
     const bool reference = known && (force || !gravity);
-    b->calibration->frame = b->options->frame >= 0 ? (imk_triad_frame)b->options->frame
-                            : reference            ? IMK_FRAME_REFERENCE
-                                                   : IMK_FRAME_UPPER;
-    if (!known && b->calibration->frame == IMK_FRAME_REFERENCE)
+    b->found->calibration->frame = b->options->frame >= 0 ? (imk_triad_frame)b->options->frame
+                                   : reference            ? IMK_FRAME_REFERENCE
+                                                          : IMK_FRAME_UPPER;
+    if (!known && b->found->calibration->frame == IMK_FRAME_REFERENCE)
         return command_misused("--frame reference: gravity alone does not tell how the triad "
                                "stands in the housing; add a log of sixposition, ferraris, tumble "
                                "or rate-table, or choose upper-triangular, lower-triangular or "
@@ -288,8 +288,8 @@ static int check_used(const bench *b)
 {
     const calibrate_options *o = b->options;
     bool referenced = false, ferraris = false, thermal = false;
-    for (size_t k = 0; k < b->log_count && !b->repeatability; k++) {
-        const imk_procedure p = b->log[k].procedure;
+    for (size_t k = 0; k < b->found->count && !b->found->settings.repeatability; k++) {
+        const imk_procedure p = b->found->record[k].procedure;
         ferraris = ferraris || p == IMK_PROCEDURE_FERRARIS;
         thermal = thermal || p == IMK_PROCEDURE_THERMAL;
         referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
@@ -314,8 +314,8 @@ static int check_used(const bench *b)
 
 int bench_choose(bench *b)
 {
-    imk_calibration_default(b->calibration);
-    b->calibration->robust = b->options->robust == 0;
+    imk_calibration_default(b->found->calibration);
+    b->found->calibration->robust = b->options->robust == 0;
     int code = assign_procedures(b);
     if (code < 0)
         code = check_used(b);
@@ -323,8 +323,8 @@ int bench_choose(bench *b)
         code = set_place(b);
     if (code < 0)
         code = choose_frame(b);
-    for (size_t k = 0; code < 0 && k < b->log_count; k++)
-        code = settle(b, &b->log[k]);
+    for (size_t k = 0; code < 0 && k < b->found->count; k++)
+        code = settle(b, &b->found->record[k]);
     return code;
 }
 
@@ -333,22 +333,39 @@ int bench_prepare(bench *b)
     int code = bench_choose(b);
     if (code < 0 && b->options->motion) {
         imk_error error;
-        const imk_geodetic *place = b->place_known ? &b->place : NULL;
+        const imk_geodetic *place = b->found->settings.place_known ? &b->place : NULL;
         if (imk_motion_read(b->options->motion, NULL, place, 1, &b->motion, &error) != IMK_OK)
             code = command_error(&error, b->options->motion);
     }
-    for (size_t k = 0; code < 0 && k < b->log_count; k++) {
-        code = bench_load(b, &b->log[k]);
+    for (size_t k = 0; code < 0 && k < b->found->count; k++) {
+        code = bench_load(b, &b->found->record[k]);
         if (code < 0)
-            code = bench_reference(b, &b->log[k]);
+            code = bench_reference(b, &b->found->record[k]);
     }
     if (code < 0)
         code = bench_known_before(b);
-    if (code < 0 && !b->repeatability)
+    if (code < 0 && !b->found->settings.repeatability)
         warn_of_gravity(b);
     if (code < 0 && b->options->estimate)
         code = bench_free_terms(b);
     return code;
+}
+
+/* Take away the doubts whether holds can be found where sections name them: the procedure counts
+ * the faces. */
+static void doubts_of_named_holds(bench_log *log)
+{
+    enum { FACES = 6 };
+    if ((log->procedure != IMK_PROCEDURE_SIXPOSITION && log->procedure != IMK_PROCEDURE_FERRARIS) ||
+        !log->record.section || log->record.section_count < FACES)
+        return;
+    size_t kept = 0;
+    for (size_t i = 0; i < log->doubt_count; i++)
+        if (log->doubt[i].kind != IMK_DOUBT_NEVER_STATIC &&
+            log->doubt[i].kind != IMK_DOUBT_NEVER_MOVES &&
+            log->doubt[i].kind != IMK_DOUBT_FEW_POSES)
+            log->doubt[kept++] = log->doubt[i];
+    log->doubt_count = kept;
 }
 
 /* ---- logs ------------------------------------------------------------------------------------ */
@@ -358,7 +375,7 @@ static int detect(const bench *b, bench_log *log)
 {
     enum { INTERVALS = 256 };
     imk_error error;
-    const imk_model *model = &b->calibration->model;
+    const imk_model *model = &b->found->calibration->model;
     const size_t size = imk_static_workspace_size(&log->record, &log->settings.stationary);
     void *workspace = command_memory(NULL, size);
     imk_status status;
@@ -374,9 +391,9 @@ static int detect(const bench *b, bench_log *log)
     }
     free(workspace);
     if (status == IMK_OK) {
-        log->doubt_count =
-            imk_record_doubts(&log->record, &log->stationary, log->interval_count, log->interval,
-                              b->calibration->gravity, model, BENCH_DOUBTS_MAX, log->doubt);
+        log->doubt_count = imk_record_doubts(&log->record, &log->stationary, log->interval_count,
+                                             log->interval, b->found->calibration->gravity, model,
+                                             IMK_CALIBRATE_DOUBTS_MAX, log->doubt);
         doubts_of_named_holds(log);
         return -1;
     }
@@ -412,8 +429,9 @@ static int look_at_temperature(const bench *b, bench_log *log)
     log->thermal = command_zeroed(sizeof *log->thermal);
     settings.reference_temperature = log->settings.reference_temperature;
     settings.order = log->settings.temperature_order > 0 ? log->settings.temperature_order : -1;
-    const imk_status status = imk_thermal_analyse(&log->record, &settings, &b->calibration->model,
-                                                  workspace, size, log->thermal, &error);
+    const imk_status status =
+        imk_thermal_analyse(&log->record, &settings, &b->found->calibration->model, workspace, size,
+                            log->thermal, &error);
     free(workspace);
     if (status == IMK_OK)
         return -1;
@@ -426,7 +444,7 @@ static int look_at_temperature(const bench *b, bench_log *log)
 int bench_observe(bench *b, bench_log *log)
 {
     imk_error error;
-    imk_calibration *c = b->calibration;
+    imk_calibration *c = b->found->calibration;
     int code = detect(b, log);
     if (code >= 0)
         return code;
@@ -452,9 +470,9 @@ int bench_observe(bench *b, bench_log *log)
  * as well. */
 static void shorten_nominal(bench *b)
 {
-    imk_triad *triad[2] = {&b->calibration->model.gyro, &b->calibration->model.accel};
+    imk_triad *triad[2] = {&b->found->calibration->model.gyro, &b->found->calibration->model.accel};
     for (int sensor = 0; sensor < 2; sensor++)
-        for (int i = 0; b->nominal[sensor] && i < triad[sensor]->axis_count; i++) {
+        for (int i = 0; b->found->nominal[sensor] && i < triad[sensor]->axis_count; i++) {
             double *s = &triad[sensor]->sensitivity.value[i];
             double *zero = &triad[sensor]->zero_offset.value[i];
             if (*s == 0 || !isfinite(*s))
@@ -469,17 +487,18 @@ int bench_solve(bench *b)
 {
     imk_error error;
     shorten_nominal(b);
-    const size_t size = imk_calibration_workspace_size(b->calibration);
+    const size_t size = imk_calibration_workspace_size(b->found->calibration);
     void *workspace = command_memory(NULL, size);
-    b->result = command_memory(NULL, sizeof *b->result);
+    b->found->result = command_memory(NULL, sizeof *b->found->result);
     const imk_status status =
-        imk_calibration_solve(b->calibration, workspace, size, b->result, &error);
+        imk_calibration_solve(b->found->calibration, workspace, size, b->found->result, &error);
     free(workspace);
     if (status == IMK_OK) {
-        b->doubt_count = imk_solution_doubts(b->calibration, b->result, BENCH_DOUBTS_MAX, b->doubt);
+        b->found->doubt_count = imk_solution_doubts(b->found->calibration, b->found->result,
+                                                    IMK_CALIBRATE_DOUBTS_MAX, b->found->doubt);
         return -1;
     }
-    free(b->result);
-    b->result = NULL;
+    free(b->found->result);
+    b->found->result = NULL;
     return bench_solve_failed(b, &error);
 }

@@ -20,7 +20,7 @@ static double *reference_column(bench_log *log, int column)
 {
     const size_t rows = log->record.count;
     if (!log->reference)
-        log->reference = command_zeroed(BENCH_REFERENCES * rows * sizeof *log->reference);
+        log->reference = command_zeroed(IMK_CALIBRATE_REFERENCES * rows * sizeof *log->reference);
     return log->reference + (size_t)column * rows;
 }
 
@@ -92,11 +92,11 @@ static bool has_reference(const bench_log *log)
 /* ---- programme ------------------------------------------------------------------------------- */
 
 static void fill_from_recorded(const imk_recorded_motion *motion, bench_log *log,
-                               double *const column[BENCH_REFERENCES])
+                               double *const column[IMK_CALIBRATE_REFERENCES])
 {
     for (size_t row = 0; row < log->record.count; row++) {
-        const double place =
-            floor((bench_time(&log->record, row) - log->motion_offset) * motion->rate + 0.5);
+        const double place = floor(
+            (imk_test_record_time(&log->record, row) - log->motion_offset) * motion->rate + 0.5);
         const bool inside = place >= 0 && place < (double)motion->count;
         const size_t k = inside ? (size_t)place : 0;
         for (int i = 0; i < 3; i++) {
@@ -112,24 +112,24 @@ static void fill_from_recorded(const imk_recorded_motion *motion, bench_log *log
 
 /* Means over stretches without gap: sample k covers the sample interval that ends at its time. */
 static void fill_from_trajectory(const imk_trajectory *trajectory, bench_log *log,
-                                 double *const column[BENCH_REFERENCES])
+                                 double *const column[IMK_CALIBRATE_REFERENCES])
 {
     const imk_test_record *record = &log->record;
     const imk_random random = imk_random_seeded(0);
     double *boundary = command_memory(NULL, (record->count + 1) * sizeof *boundary);
     for (size_t begin = 0, end; begin < record->count; begin = end) {
-        double now = bench_time(record, begin);
+        double now = imk_test_record_time(record, begin);
         boundary[0] = now - record->dt - log->motion_offset;
         boundary[1] = now - log->motion_offset;
         for (end = begin + 1; end < record->count; end++) {
-            const double next = bench_time(record, end);
+            const double next = imk_test_record_time(record, end);
             if (imk_step_is_gap(next - now, record->dt))
                 break;
             now = next;
             boundary[end - begin + 1] = now - log->motion_offset;
         }
-        double *at[BENCH_REFERENCES];
-        for (int i = 0; i < BENCH_REFERENCES; i++)
+        double *at[IMK_CALIBRATE_REFERENCES];
+        for (int i = 0; i < IMK_CALIBRATE_REFERENCES; i++)
             at[i] = column[i] + begin;
         imk_trajectory_means(trajectory, random.kernel, end - begin, boundary, at, at + 6, at + 3);
     }
@@ -138,8 +138,8 @@ static void fill_from_trajectory(const imk_trajectory *trajectory, bench_log *lo
 
 static void fill_from_motion(const bench *b, bench_log *log)
 {
-    double *column[BENCH_REFERENCES];
-    for (int i = 0; i < BENCH_REFERENCES; i++)
+    double *column[IMK_CALIBRATE_REFERENCES];
+    for (int i = 0; i < IMK_CALIBRATE_REFERENCES; i++)
         column[i] = reference_column(log, i);
     for (int i = 0; i < 3; i++) {
         log->record.reference_rate[i] = column[i];

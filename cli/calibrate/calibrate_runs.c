@@ -21,54 +21,57 @@ static int take_runs(bench *b, const bench_log *log, imk_static_interval *run)
     imk_error error;
     size_t count = 0;
     const calibrate_options *o = b->options;
-    const size_t room = IMK_RUNS_MAX - b->run_count;
+    const size_t room = IMK_RUNS_MAX - b->found->run_count;
     const imk_status status = imk_repeatability_runs(
         &log->record, isnan(o->trim) ? usual_trim : o->trim, isnan(o->settle) ? 0 : o->settle,
-        isnan(o->minimum) ? usual_minimum : o->minimum, room, run + b->run_count, &count, &error);
+        isnan(o->minimum) ? usual_minimum : o->minimum, room, run + b->found->run_count, &count,
+        &error);
     if (status != IMK_OK)
         return command_error(&error, log->path);
     if (count > room)
         return command_failed("these are more than %d runs", IMK_RUNS_MAX);
-    b->run_count += count;
+    b->found->run_count += count;
     return -1;
 }
 
 static int compare_holds(bench *b, const imk_static_interval *run)
 {
     imk_error error;
-    const bool counts[2] = {b->log[0].record.counts[0], b->log[0].record.counts[1]};
-    const double attitude = isnan(b->options->placement) ? 0 : b->options->placement;
-    if (b->run_count < 2)
+    const bool counts[2] = {b->found->record[0].record.counts[0],
+                            b->found->record[0].record.counts[1]};
+    const double attitude = isnan(b->found->settings.placement) ? 0 : b->found->settings.placement;
+    if (b->found->run_count < 2)
         return command_failed("%zu run: at least two are needed, better ten; give a log for each "
                               "power cycle, or one log with a column of texts that names the runs "
                               "(--section NAME)",
-                              b->run_count);
-    if (imk_repeatability_of_holds(&b->calibration->model, counts, b->run_count, run, attitude,
-                                   0.95, b->runs, &error) == IMK_OK)
+                              b->found->run_count);
+    if (imk_repeatability_of_holds(&b->found->calibration->model, counts, b->found->run_count, run,
+                                   attitude, 0.95, b->found->runs, &error) == IMK_OK)
         return -1;
-    return error.status == IMK_ERROR_UNIT_MISSING ? bench_observe_failed(b, &b->log[0], &error)
-                                                  : command_error(&error, NULL);
+    return error.status == IMK_ERROR_UNIT_MISSING
+               ? bench_observe_failed(b, &b->found->record[0], &error)
+               : command_error(&error, NULL);
 }
 
 int bench_compare_runs(bench *b)
 {
     imk_static_interval *run = command_memory(NULL, IMK_RUNS_MAX * sizeof *run);
     int code = -1;
-    b->runs = command_zeroed(sizeof *b->runs);
-    for (size_t k = 0; code < 0 && k < b->log_count; k++)
-        code = take_runs(b, &b->log[k], run);
+    b->found->runs = command_zeroed(sizeof *b->found->runs);
+    for (size_t k = 0; code < 0 && k < b->found->count; k++)
+        code = take_runs(b, &b->found->record[k], run);
     if (code < 0)
         code = compare_holds(b, run);
     free(run);
     if (code >= 0)
         return code;
     /* Biases differ by some milli-g, which is as many milliradians; hardly by more. */
-    if (b->runs->attitude > 10e-3 && isnan(b->options->placement))
+    if (b->found->runs->attitude > 10e-3 && isnan(b->found->settings.placement))
         command_warn("attitude",
                      "the forces of the runs differ by up to %.3g mrad: was the unit moved? What a "
                      "change of attitude does to accelerometers looks like a change of bias; keep "
                      "it fixed, or state how well it is put back with --placement 0.1deg",
-                     b->runs->attitude * 1e3);
+                     b->found->runs->attitude * 1e3);
     return -1;
 }
 
@@ -84,8 +87,8 @@ bool bench_has_run_models(const bench *b)
 {
     if (!b->options->procedure || strcmp(b->options->procedure, "repeatability") != 0)
         return false;
-    for (size_t k = 0; k < b->log_count; k++)
-        if (is_model(b->log[k].path))
+    for (size_t k = 0; k < b->found->count; k++)
+        if (is_model(b->found->record[k].path))
             return true;
     return false;
 }
@@ -178,7 +181,7 @@ static int check_alike(const char *path, const imk_model *model, const char *fir
 
 static int load_model(bench *b, size_t index, imk_model *first, imk_calibration_result *r)
 {
-    bench_log *log = &b->log[index];
+    bench_log *log = &b->found->record[index];
     imk_model *model = index == 0 ? first : &r->model;
     if (!is_model(log->path))
         return command_misused("--procedure repeatability: %s is a log and others are models: "
@@ -194,32 +197,33 @@ static int load_model(bench *b, size_t index, imk_model *first, imk_calibration_
         return command_failed("%s states no uncertainty of bias or scale factor: give the models "
                               "that imukit calibrate wrote, one of each run",
                               log->path);
-    return check_alike(log->path, model, b->log[0].path, first);
+    return check_alike(log->path, model, b->found->record[0].path, first);
 }
 
 static int compare_models(bench *b, const imk_calibration_result *const *run)
 {
     imk_error error;
     size_t found = 0;
-    if (b->log_count < 2)
+    if (b->found->count < 2)
         return command_failed("1 run: at least two are needed, better ten; give the model of each "
                               "power cycle");
-    if (imk_repeatability_of_calibrations(b->log_count, run, 0.95, b->runs, &error) != IMK_OK)
+    if (imk_repeatability_of_calibrations(b->found->count, run, 0.95, b->found->runs, &error) !=
+        IMK_OK)
         return command_error(&error, NULL);
     for (int sensor = 0; sensor < 2; sensor++)
-        found += b->runs->axis_count[sensor] > 0;
+        found += b->found->runs->axis_count[sensor] > 0;
     if (found == 0)
         return command_failed("no bias and no scale factor is stated with its uncertainty by all "
                               "of these models");
-    b->run_count = b->log_count;
+    b->found->run_count = b->found->count;
     return -1;
 }
 
 /* The axes of the first model, as those of a log: what --into is checked against. */
 static void take_axes(bench *b, const imk_model *first)
 {
-    for (size_t k = 0; k < b->log_count; k++) {
-        imk_test_record *record = &b->log[k].record;
+    for (size_t k = 0; k < b->found->count; k++) {
+        imk_test_record *record = &b->found->record[k].record;
         record->axis_count[0] = first->gyro.present ? first->gyro.axis_count : 0;
         record->axis_count[1] = first->accel.present ? first->accel.axis_count : 0;
     }
@@ -227,12 +231,12 @@ static void take_axes(bench *b, const imk_model *first)
 
 int bench_compare_models(bench *b)
 {
-    imk_calibration_result *result = command_zeroed(b->log_count * sizeof *result);
+    imk_calibration_result *result = command_zeroed(b->found->count * sizeof *result);
     const imk_calibration_result *run[IMK_TEST_RECORDS_MAX];
     imk_model *first = command_zeroed(sizeof *first);
-    b->runs = command_zeroed(sizeof *b->runs);
+    b->found->runs = command_zeroed(sizeof *b->found->runs);
     int code = bench_choose(b);
-    for (size_t k = 0; code < 0 && k < b->log_count; k++) {
+    for (size_t k = 0; code < 0 && k < b->found->count; k++) {
         run[k] = &result[k];
         code = load_model(b, k, first, &result[k]);
     }

@@ -85,7 +85,7 @@ static bool names_term(const char *item, const char *path)
 
 static bool frame_leaves(const bench *b, int axis, int element)
 {
-    switch (b->calibration->frame) {
+    switch (b->found->calibration->frame) {
     case IMK_FRAME_UPPER:
         return element > axis;
     case IMK_FRAME_LOWER:
@@ -114,7 +114,7 @@ static void collect(parameter_list *list, imk_model_parameter parameter)
 /* All numbers of a term; polynomials as high as --temperature-order, or 3. */
 static void collect_term(const bench *b, int sensor, int term, parameter_list *list)
 {
-    imk_model *model = &b->calibration->model;
+    imk_model *model = &b->found->calibration->model;
     const imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
     const bool powers = term == IMK_MODEL_BIAS_TEMPERATURE || term == IMK_MODEL_SCALE_TEMPERATURE;
     const bool pairs = term == IMK_MODEL_MISALIGNMENT || term == IMK_MODEL_CROSS_AXIS;
@@ -137,7 +137,7 @@ static int collect_item(const bench *b, const char *option_name, const char *ite
     static const char *const sensors[2] = {"gyro.", "accel."};
     imk_model_parameter single;
     if (imk_model_parameter_parse(item, &single) == IMK_OK) {
-        if (!imk_model_parameter_at(&b->calibration->model, single, NULL))
+        if (!imk_model_parameter_at(&b->found->calibration->model, single, NULL))
             return command_misused("--%s %s: there is no such axis", option_name, item);
         collect(list, single);
         return -1;
@@ -145,7 +145,7 @@ static int collect_item(const bench *b, const char *option_name, const char *ite
     bool found = false;
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_triad *triad =
-            sensor == 0 ? &b->calibration->model.gyro : &b->calibration->model.accel;
+            sensor == 0 ? &b->found->calibration->model.gyro : &b->found->calibration->model.accel;
         const size_t length = strlen(sensors[sensor]);
         const bool stated = strncmp(item, sensors[sensor], length) == 0;
         const bool other = strncmp(item, sensors[1 - sensor], strlen(sensors[1 - sensor])) == 0;
@@ -183,9 +183,11 @@ int bench_list_terms(const bench *b, const char *option_name, const char *item, 
 static bool temperature_range(const bench *b, double *low, double *high)
 {
     *low = HUGE_VAL, *high = -HUGE_VAL;
-    for (size_t k = 0; k < b->log_count; k++)
-        for (size_t row = 0; b->log[k].record.temperature && row < b->log[k].record.count; row++) {
-            const double now = b->log[k].record.temperature[row];
+    for (size_t k = 0; k < b->found->count; k++)
+        for (size_t row = 0;
+             b->found->record[k].record.temperature && row < b->found->record[k].record.count;
+             row++) {
+            const double now = b->found->record[k].record.temperature[row];
             *low = now < *low ? now : *low;
             *high = now > *high ? now : *high;
         }
@@ -195,7 +197,7 @@ static bool temperature_range(const bench *b, double *low, double *high)
 /* Room in the model for a power of the temperature. */
 static int make_room(bench *b, imk_model_parameter p)
 {
-    imk_model *model = &b->calibration->model;
+    imk_model *model = &b->found->calibration->model;
     imk_triad *triad = p.sensor == 0 ? &model->gyro : &model->accel;
     imk_temperature_polynomial *polynomial = p.term == IMK_MODEL_BIAS_TEMPERATURE
                                                  ? &triad->bias.temperature
@@ -233,7 +235,7 @@ int bench_free_terms(bench *b)
         code = command_misused("--estimate: no term is named");
     for (size_t k = 0; code < 0 && k < count; k++) {
         code = make_room(b, parameter[k]);
-        (void)imk_calibration_free(b->calibration, parameter[k].sensor, parameter[k].term,
+        (void)imk_calibration_free(b->found->calibration, parameter[k].sensor, parameter[k].term,
                                    parameter[k].axis, parameter[k].element);
     }
     return code;

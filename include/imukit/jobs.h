@@ -8,6 +8,7 @@
 
 #include "imukit/allan_log.h"
 #include "imukit/allocator.h"
+#include "imukit/calibrate_log.h"
 #include "imukit/channel_units.h"
 #include "imukit/even_record.h"
 #include "imukit/identify_curve.h"

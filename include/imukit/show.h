@@ -6,6 +6,7 @@
 #define IMUKIT_SHOW_RESULTS_H
 
 #include "imukit/allan_log.h"
+#include "imukit/calibrate_log.h"
 #include "imukit/identify_several.h"
 #include "imukit/record_plan.h"
 #include "imukit/result.h"
@@ -61,6 +62,27 @@ IMK_API void imk_show_identify_log(const imk_identify_shown *shown, imk_result *
 IMK_API void imk_show_identify_several(const imk_identify_several *several,
                                        const imk_identify_shown *joint,
                                        const imk_identify_shown *records, imk_result *result);
+/** @} */
+
+/** @name Calibrations
+ *  @{ */
+/** Doubts, findings over temperature and warnings as sentences; FAILURE: of no use.
+ *  @param before  `count` messages on the way here */
+IMK_API imk_verdict imk_calibrate_verdict(const imk_calibrate_log *log, size_t count,
+                                          const imk_message *before, imk_result *result);
+/** The worst there is; good when there is nothing. */
+IMK_API imk_finding_level imk_verdict_level(const imk_verdict *verdict);
+/** Parameters, fit, remarks, verdict and a figure. @param poses  also on the terminal */
+IMK_API void imk_show_calibrate_log(const imk_calibrate_log *log, const imk_verdict *verdict,
+                                    bool poses, imk_result *result);
+/** Why a record could not be used: its doubts say more than the error.
+ *  @return length of the text; 0: nothing is to be said beyond the error */
+IMK_API size_t imk_calibrate_record_failure(const imk_calibrate_log *log,
+                                            const imk_calibrate_record *record,
+                                            const imk_error *error, char *text, size_t size);
+/** Why nothing was solved, likewise. */
+IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *log, const imk_error *error,
+                                     char *text, size_t size);
 /** @} */
 
 /** What records of several lengths tell, how long they must be, and, of a curve, a figure. */

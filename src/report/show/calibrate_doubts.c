@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Doubts as sentences: what was found, what is expected, and the option or the action that mends
  * it; and what doubts, the findings over temperature and the warnings add up to. */
-#include "calibrate_parts.h"
-#include "shell/growing_list.h"
+#include "calibrate_show_internal.h"
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A factor counts as seen when it is met to this part: placement and scale factors are well below,
@@ -15,13 +16,19 @@ static const double factor_tolerance = 0.12;
 /* Residuals this far above the noise are not a trembling hand: the model is another one. */
 static const double residual_alarm = 100;
 
-static calibrate_sentence say(calibrate_level level, const char *code, const char *format, ...)
+/* A sentence of the verdict. */
+typedef struct calibrate_sentence {
+    imk_finding_level level;
+    const char *code;
+    char text[700];
+} calibrate_sentence;
+
+static calibrate_sentence say(imk_finding_level level, const char *code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-static calibrate_sentence say(calibrate_level level, const char *code, const char *format, ...)
+static calibrate_sentence say(imk_finding_level level, const char *code, const char *format, ...)
 {
-    calibrate_sentence sentence = {.level = level};
-    snprintf(sentence.code, sizeof sentence.code, "%s", code);
+    calibrate_sentence sentence = {.level = level, .code = code};
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(sentence.text, sizeof sentence.text, format, arguments);
@@ -37,7 +44,7 @@ static bool is_near(double value, double due)
 /* ---- on a log -------------------------------------------------------------------------------- */
 
 /* Worth a look only where holds are looked for. */
-bool doubt_matters(const bench_log *log, const imk_doubt_finding *doubt)
+static bool doubt_matters(const imk_calibrate_record *log, const imk_doubt_finding *doubt)
 {
     const bool looks_for_holds = log->procedure == IMK_PROCEDURE_MULTIPOSITION;
     const bool takes_holds = looks_for_holds || log->procedure == IMK_PROCEDURE_SIXPOSITION;
@@ -55,14 +62,15 @@ bool doubt_matters(const bench_log *log, const imk_doubt_finding *doubt)
 }
 
 /* As the header states it; "": it does not. */
-static const char *unit_of_column(const bench_log *log, int sensor)
+static const char *unit_of_column(const imk_calibrate_record *log, int sensor)
 {
     const imk_quantity kinds[2] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
     const int column = imk_log_find(&log->log, kinds[sensor], 0);
     return column >= 0 ? log->log.column[column].unit.text : "";
 }
 
-static calibrate_sentence gravity_unit(const bench *b, const bench_log *log, double force)
+static calibrate_sentence gravity_unit(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                       double force)
 {
     /* |force| as it comes out where the column is in the second unit and read in the first. */
     static const struct {
@@ -77,42 +85,42 @@ static calibrate_sentence gravity_unit(const bench *b, const bench_log *log, dou
         if (!is_near(ratio, units[k].ratio) || strcmp(found, units[k].unit) == 0)
             continue;
         if (strcmp(units[k].unit, "ft/s^2") == 0)
-            return say(LEVEL_USELESS, "gravity_unit",
+            return say(IMK_FINDING_FAILURE, "gravity_unit",
                        "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: the columns "
                        "look like ft/s^2; multiply them by 0.3048",
                        force, b->calibration->gravity);
-        return say(LEVEL_USELESS, "gravity_unit",
+        return say(IMK_FINDING_FAILURE, "gravity_unit",
                    "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: the columns look "
                    "like %s, not %s; %s %s",
                    force, b->calibration->gravity, units[k].unit, found[0] ? found : "m/s^2",
                    found[0] ? "correct the header to" : "add --accel-unit", units[k].unit);
     }
     return say(
-        LEVEL_USELESS, "gravity_unit",
+        IMK_FINDING_FAILURE, "gravity_unit",
         "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: no usual unit explains it; "
         "check the unit of the accelerometer columns, or give raw counts with --accel-sensitivity",
         force, b->calibration->gravity);
 }
 
-static calibrate_sentence rate_unit(const bench_log *log, double ratio)
+static calibrate_sentence rate_unit(const imk_calibrate_record *log, double ratio)
 {
     const double degrees = 57.29577951308232;
     const char *unit = is_near(ratio, degrees)       ? "deg/s"
                        : is_near(ratio, 1 / degrees) ? "rad/s"
                                                      : NULL;
     if (!unit)
-        return say(LEVEL_USELESS, "rate_unit",
+        return say(IMK_FINDING_FAILURE, "rate_unit",
                    "the gyros turn %.4g times as far as the accelerometers saw the unit turned: "
                    "check the unit of the gyro columns, and of the times",
                    ratio);
-    return say(LEVEL_USELESS, "rate_unit",
+    return say(IMK_FINDING_FAILURE, "rate_unit",
                "the gyros turn %.4g times as far as the accelerometers saw the unit turned: the "
                "columns look like %s; %s %s",
                ratio, unit, unit_of_column(log, 0)[0] ? "correct the header to" : "add --gyro-unit",
                unit);
 }
 
-static calibrate_sentence time_unit(const bench_log *log, double factor)
+static calibrate_sentence time_unit(const imk_calibrate_record *log, double factor)
 {
     const char *unit = is_near(factor, 1e3)   ? "ms"
                        : is_near(factor, 1e6) ? "us"
@@ -120,34 +128,34 @@ static calibrate_sentence time_unit(const bench_log *log, double factor)
                                               : NULL;
     const double rate = factor / log->record.dt;
     if (!unit)
-        return say(LEVEL_USELESS, "time_unit",
+        return say(IMK_FINDING_FAILURE, "time_unit",
                    "the times are about %.3g times too long for what the gyros turned: check the "
                    "unit of the time column",
                    factor);
-    return say(LEVEL_USELESS, "time_unit",
+    return say(IMK_FINDING_FAILURE, "time_unit",
                "the samples are %.4g s apart, far too long for what the gyros turned: the times "
                "look like %s; add --time-unit %s, or correct the header (then the rate is %.4g Hz)",
                log->record.dt, unit, unit, rate);
 }
 
-static calibrate_sentence few_poses(const bench *b, const bench_log *log,
+static calibrate_sentence few_poses(const imk_calibrate_log *b, const imk_calibrate_record *log,
                                     const imk_doubt_finding *d)
 {
     char poses[160];
-    bench_advise(b, log, "; most would tell ", poses, sizeof poses);
-    return say(b->result ? LEVEL_WARNING : LEVEL_USELESS, "few_poses",
+    imki_calibrate_poses(b, log, "; most would tell ", poses, sizeof poses);
+    return say(b->result ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE, "few_poses",
                "%g poses are there, %g or more are needed: hold the unit still for some seconds "
                "with each of its six faces down, and on edges and corners between%s",
                d->value, d->limit, poses);
 }
 
-static calibrate_sentence one_plane(const bench *b, const bench_log *log,
+static calibrate_sentence one_plane(const imk_calibrate_log *b, const imk_calibrate_record *log,
                                     const imk_doubt_finding *d)
 {
     char poses[160];
-    bench_advise(b, log, "; most would tell ", poses, sizeof poses);
-    const calibrate_level level = b->result ? LEVEL_WARNING : LEVEL_USELESS;
-    const char axis = axis_letter(d->axis);
+    imki_calibrate_poses(b, log, "; most would tell ", poses, sizeof poses);
+    const imk_finding_level level = b->result ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE;
+    const char axis = imk_axis_letter(d->axis);
     if (d->axis < 0)
         return say(level, "one_plane", "the poses all lie in one plane: add some far out of it%s",
                    poses);
@@ -158,7 +166,7 @@ static calibrate_sentence one_plane(const bench *b, const bench_log *log,
 }
 
 /* Whole numbers in the unit of the file, of some size: counts, whatever the header says. */
-static bool is_whole(const bench_log *log, int sensor)
+static bool is_whole(const imk_calibrate_record *log, int sensor)
 {
     enum { LOOKED_AT = 4096 };
     const imk_quantity kinds[2] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
@@ -177,21 +185,22 @@ static bool is_whole(const bench_log *log, int sensor)
     return largest > 20;
 }
 
-static calibrate_sentence never_static(const bench *b, const bench_log *log)
+static calibrate_sentence never_static(const imk_calibrate_log *b, const imk_calibrate_record *log)
 {
     for (int sensor = 1; sensor >= 0; sensor--)
         if (!log->record.counts[sensor] && is_whole(log, sensor))
-            return say(LEVEL_USELESS, "counts",
+            return say(IMK_FINDING_FAILURE, "counts",
                        "no rest is found, and the %s readings are whole numbers: if they are "
                        "counts, not %s, write [count] into the header (or give --%s-unit count)",
-                       sensor_titles[sensor], unit_of_column(log, sensor), sensor_keys[sensor]);
-    if (!isnan(b->options->minimum))
-        return say(LEVEL_USELESS, "never_static",
+                       imki_sensor_titles[sensor], unit_of_column(log, sensor),
+                       imki_sensor_keys[sensor]);
+    if (!isnan(b->settings.minimum))
+        return say(IMK_FINDING_FAILURE, "never_static",
                    "the unit never stands still for %.4g s, which --minimum asks for: shorten it, "
                    "or rest longer in each pose",
-                   b->options->minimum);
+                   b->settings.minimum);
     return say(
-        LEVEL_USELESS, "never_static",
+        IMK_FINDING_FAILURE, "never_static",
         "the unit never stands still for long enough: %.2g %% of the log does, by windows of %.2g "
         "s; put it down for 3 s or more in each pose (a hand is not still). If it did rest at the "
         "beginning, add --initial-rest 10s, so that its noise is learnt there",
@@ -200,42 +209,43 @@ static calibrate_sentence never_static(const bench *b, const bench_log *log)
 
 static calibrate_sentence swapped(const imk_doubt_finding *d)
 {
-    const char *sensor = d->sensor >= 0 ? sensor_keys[d->sensor] : "gyro";
+    const char *sensor = d->sensor >= 0 ? imki_sensor_keys[d->sensor] : "gyro";
     if (d->axis < 0 || d->other < 0)
-        return say(LEVEL_USELESS, "swapped_axes",
+        return say(IMK_FINDING_FAILURE, "swapped_axes",
                    "the axes of gyros and accelerometers are in different orders: the turns of the "
                    "gyros do not lead from one attitude of the accelerometers to the next; put the "
                    "columns in order with --columns, so that x, y, z mean the same for both");
-    return say(LEVEL_USELESS, "swapped_axes",
+    return say(IMK_FINDING_FAILURE, "swapped_axes",
                "%s_%c and %s_%c look exchanged%s: only then do the turns of the gyros lead from "
                "one attitude of the accelerometers to the next; exchange the two names, in the "
                "header or by --columns",
-               sensor, axis_letter(d->axis), sensor, axis_letter(d->other),
+               sensor, imk_axis_letter(d->axis), sensor, imk_axis_letter(d->other),
                d->sensor >= 0 ? "" : " (or those of the accelerometers), and signs are changed");
 }
 
 static calibrate_sentence left_handed(const imk_doubt_finding *d)
 {
     if (d->axis < 0)
-        return say(LEVEL_USELESS, "left_handed",
+        return say(IMK_FINDING_FAILURE, "left_handed",
                    "the gyros turn the wrong way round against the accelerometers, all three: "
                    "change the sign of all gyro columns");
     const char *sensor = d->sensor == 1 ? "accel" : "gyro";
-    return say(LEVEL_USELESS, "left_handed",
+    return say(IMK_FINDING_FAILURE, "left_handed",
                "%s_%c has the wrong sign against the others: the axes are mirrored (left-handed), "
                "and the turns of the gyros lead from one attitude of the accelerometers to the "
                "next only with its sign changed; change it in the log",
-               sensor, axis_letter(d->axis));
+               sensor, imk_axis_letter(d->axis));
 }
 
-static calibrate_sentence on_log(const bench *b, const bench_log *log, const imk_doubt_finding *d)
+static calibrate_sentence on_log(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                 const imk_doubt_finding *d)
 {
-    const char *sensor = d->sensor >= 0 ? sensor_titles[d->sensor] : "sensor";
+    const char *sensor = d->sensor >= 0 ? imki_sensor_titles[d->sensor] : "sensor";
     switch (d->kind) {
     case IMK_DOUBT_NEVER_STATIC:
         return never_static(b, log);
     case IMK_DOUBT_NEVER_MOVES:
-        return say(LEVEL_USELESS, "never_moves",
+        return say(IMK_FINDING_FAILURE, "never_moves",
                    "the unit stands still all the time, in one pose: turn it to others, each for "
                    "some seconds; a log at rest is for imukit identify");
     case IMK_DOUBT_FEW_POSES:
@@ -247,17 +257,18 @@ static calibrate_sentence on_log(const bench *b, const bench_log *log, const imk
     case IMK_DOUBT_RATE_UNIT:
         return rate_unit(log, d->value);
     case IMK_DOUBT_SATURATED:
-        return say(LEVEL_WARNING, "saturated",
+        return say(IMK_FINDING_WARNING, "saturated",
                    "%s %c is at the end of its range in %.3g %% of the log; the %s it spoils are "
                    "left out: choose a larger range in the device, or %s",
-                   sensor, axis_letter(d->axis), 100 * d->value, d->sensor == 0 ? "turns" : "poses",
+                   sensor, imk_axis_letter(d->axis), 100 * d->value,
+                   d->sensor == 0 ? "turns" : "poses",
                    d->sensor == 0 ? "turn more slowly" : "poses without this axis along gravity");
     case IMK_DOUBT_COUNTS:
-        return say(LEVEL_USELESS, "counts",
+        return say(IMK_FINDING_FAILURE, "counts",
                    "the %s readings are whole numbers, and at rest no usual unit makes gravity of "
                    "them: they look like counts; write [count] into the header (or add --%s-unit "
                    "count) and, if you know it, --%s-sensitivity",
-                   sensor, sensor_keys[d->sensor > 0], sensor_keys[d->sensor > 0]);
+                   sensor, imki_sensor_keys[d->sensor > 0], imki_sensor_keys[d->sensor > 0]);
     case IMK_DOUBT_SWAPPED_AXES:
         return swapped(d);
     case IMK_DOUBT_LEFT_HANDED:
@@ -265,16 +276,16 @@ static calibrate_sentence on_log(const bench *b, const bench_log *log, const imk
     case IMK_DOUBT_TIME_UNIT:
         return time_unit(log, d->value);
     default:
-        return say(LEVEL_USELESS, "stuck",
+        return say(IMK_FINDING_FAILURE, "stuck",
                    "%s %c never changes its reading: the axis is dead, or its column is not what "
                    "it is called",
-                   sensor, axis_letter(d->axis));
+                   sensor, imk_axis_letter(d->axis));
     }
 }
 
 /* ---- on the solution ------------------------------------------------------------------------- */
 
-static calibrate_sentence correlated(const bench *b, double correlation)
+static calibrate_sentence correlated(const imk_calibrate_log *b, double correlation)
 {
     char one[IMK_MODEL_PARAMETER_NAME] = "?", other[IMK_MODEL_PARAMETER_NAME] = "?";
     const imk_calibration_result *r = b->result;
@@ -282,24 +293,24 @@ static calibrate_sentence correlated(const bench *b, double correlation)
         if (r->weakest_parameter[k] >= 0)
             (void)imk_model_parameter_name(r->parameter[r->weakest_parameter[k]],
                                            k == 0 ? one : other);
-    return say(LEVEL_WARNING, "correlated",
+    return say(IMK_FINDING_WARNING, "correlated",
                "%s and %s are hardly told apart (correlation %.4f): what one has too much the "
                "other has too little; their sum is known better than each. More differing poses or "
                "turns tell them apart, or leave one out",
                one, other, correlation);
 }
 
-static calibrate_sentence on_solution(const bench *b, const imk_doubt_finding *d)
+static calibrate_sentence on_solution(const imk_calibrate_log *b, const imk_doubt_finding *d)
 {
     switch (d->kind) {
     case IMK_DOUBT_RESIDUALS:
         if (sqrt(d->value) > residual_alarm)
-            return say(LEVEL_WARNING, "residuals",
+            return say(IMK_FINDING_WARNING, "residuals",
                        "the residuals are %.3g times what the noise within the holds explains: the "
                        "model does not describe this log. Check the signs and order of the axes, "
                        "labels, and that the log is of the procedure named",
                        sqrt(d->value));
-        return say(LEVEL_NOTE, "residuals",
+        return say(IMK_FINDING_NOTE, "residuals",
                    "the residuals are %.3g times what the noise within the holds explains "
                    "(chi-square per degree of freedom %.3g): the table, the hand or the sensor "
                    "does more than the model says; all 1 sigma are widened by it",
@@ -307,7 +318,7 @@ static calibrate_sentence on_solution(const bench *b, const imk_doubt_finding *d
     case IMK_DOUBT_CORRELATED:
         return correlated(b, d->value);
     default:
-        return say(LEVEL_WARNING, "outliers",
+        return say(IMK_FINDING_WARNING, "outliers",
                    "%.3g %% of the observations do not fit the others and are left out; --poses "
                    "lists them. More than a few say that the unit moved during the holds, or that "
                    "a unit or label is wrong",
@@ -315,8 +326,9 @@ static calibrate_sentence on_solution(const bench *b, const imk_doubt_finding *d
     }
 }
 
-calibrate_sentence doubt_sentence(const bench *b, const bench_log *log,
-                                  const imk_doubt_finding *doubt)
+static calibrate_sentence doubt_sentence(const imk_calibrate_log *b,
+                                         const imk_calibrate_record *log,
+                                         const imk_doubt_finding *doubt)
 {
     const bool of_solution = doubt->kind == IMK_DOUBT_RESIDUALS ||
                              doubt->kind == IMK_DOUBT_CORRELATED ||
@@ -329,33 +341,30 @@ calibrate_sentence doubt_sentence(const bench *b, const bench_log *log,
     imk_doubt_finding found = *doubt;
     if (found.kind == IMK_DOUBT_GRAVITY_UNIT)
         found.value *= b->calibration->gravity;
-    return on_log(b, &b->log[0], &found);
+    return on_log(b, &b->record[0], &found);
 }
 
-void doubts_of_named_holds(bench_log *log)
+bool imki_calibrate_useless(const imk_calibrate_log *b, const imk_calibrate_record *log, char *text,
+                            size_t size)
 {
-    enum { FACES = 6 };
-    if ((log->procedure != IMK_PROCEDURE_SIXPOSITION && log->procedure != IMK_PROCEDURE_FERRARIS) ||
-        !log->record.section || log->record.section_count < FACES)
-        return;
-    size_t kept = 0;
-    for (size_t i = 0; i < log->doubt_count; i++)
-        if (log->doubt[i].kind != IMK_DOUBT_NEVER_STATIC &&
-            log->doubt[i].kind != IMK_DOUBT_NEVER_MOVES &&
-            log->doubt[i].kind != IMK_DOUBT_FEW_POSES)
-            log->doubt[kept++] = log->doubt[i];
-    log->doubt_count = kept;
+    for (size_t k = 0; k < log->doubt_count; k++) {
+        const calibrate_sentence sentence = doubt_sentence(b, log, &log->doubt[k]);
+        if (!doubt_matters(log, &log->doubt[k]) || sentence.level != IMK_FINDING_FAILURE)
+            continue;
+        snprintf(text, size, "%s: %s", log->path, sentence.text);
+        return true;
+    }
+    return false;
 }
 
 /* ---- all of them ----------------------------------------------------------------------------- */
 
-static void add(bench *b, calibrate_sentence sentence)
+static void add(imk_verdict *v, calibrate_sentence sentence)
 {
-    if (b->sentence_count < CALIBRATE_SENTENCES_MAX)
-        b->sentence[b->sentence_count++] = sentence;
+    imki_verdict_add(v, sentence.level, sentence.code, "%s", sentence.text);
 }
 
-static void add_thermal(bench *b, const bench_log *log)
+static void add_thermal(imk_verdict *v, const imk_calibrate_record *log)
 {
     const imk_thermal_findings *f = log->thermal;
     for (int sensor = 0; f && sensor < 2; sensor++)
@@ -364,22 +373,23 @@ static void add_thermal(bench *b, const bench_log *log)
             if (a->single_valued || !(a->gap_largest > 0))
                 continue;
             const imk_unit unit =
-                imk_unit_readable(imk_unit_of(sensor_units[sensor]).dimension, a->gap_largest);
-            add(b,
-                say(LEVEL_WARNING, "hysteresis",
+                imk_unit_readable(imk_unit_of(imki_sensor_units[sensor]).dimension, a->gap_largest);
+            add(v,
+                say(IMK_FINDING_WARNING, "hysteresis",
                     "%s: %s %c reads differently while warming and while cooling, by up to %.3g "
                     "%s: no polynomial of the temperature can follow it; what compensation leaves "
                     "is %.3g %s rms",
-                    log->path, sensor_titles[sensor], axis_letter(i), a->gap_largest / unit.scale,
-                    unit.text, a->rms_compensated / unit.scale, unit.text));
+                    log->path, imki_sensor_titles[sensor], imk_axis_letter(i),
+                    a->gap_largest / unit.scale, unit.text, a->rms_compensated / unit.scale,
+                    unit.text));
         }
     if (f && !f->both_directions)
-        add(b, say(LEVEL_NOTE, "one_direction",
+        add(v, say(IMK_FINDING_NOTE, "one_direction",
                    "%s: the temperature went one way only, so hysteresis may be there unseen: "
                    "sweep up and down",
                    log->path));
     if (f && f->accel_shared)
-        add(b, say(LEVEL_NOTE, "one_pose",
+        add(v, say(IMK_FINDING_NOTE, "one_pose",
                    "%s: in one pose the bias of accelerometers over temperature cannot be told "
                    "from that of their scale factor: the coefficients hold for this pose; sweep in "
                    "several to tell them apart",
@@ -399,58 +409,55 @@ static void term_of(imk_model_parameter parameter, char term[IMK_MODEL_PARAMETER
 }
 
 /* Terms a procedure would have estimated and the log does not determine, on some axes at least. */
-static void add_undetermined(bench *b, const bench_log *log)
+static void add_undetermined(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                             imk_verdict *v)
 {
     const imk_procedure_findings *f = &log->findings;
-    growing_list names = {0};
+    imki_text names = {0};
     char term[IMK_MODEL_PARAMETER_NAME];
     for (size_t k = 0; k < f->undetermined_count && k < IMK_UNDETERMINED_MAX; k++) {
         term_of(f->undetermined[k], term);
-        if (bench_find(b, f->undetermined[k]) < 0 && !(names.text && strstr(names.text, term)))
-            list_add_item(&names, "%s", term);
+        if (imk_calibrate_find(b, f->undetermined[k]) < 0 &&
+            !(names.bytes && strstr(names.bytes, term)))
+            imki_list_item(&names, "%s", term);
     }
-    if (names.text)
-        add(b, say(LEVEL_NOTE, "undetermined",
+    if (names.bytes)
+        add(v, say(IMK_FINDING_NOTE, "undetermined",
                    "%s does not determine %s (on all axes): left as before. Inputs along other "
                    "axes, or more levels, would",
-                   log->path, names.text));
-    list_free(&names);
+                   log->path, names.bytes));
+    free(names.bytes);
 }
 
 /* What a log showed already need not be said of the solution again, nor of each axis. */
-static bool is_said(const bench *b, const char *code)
+static bool is_said(const imk_verdict *v, const char *code)
 {
-    for (size_t k = 0; k < b->sentence_count; k++)
-        if (strcmp(b->sentence[k].code, code) == 0)
+    for (size_t k = 0; k < v->count; k++)
+        if (strcmp(v->message[k].code, code) == 0)
             return true;
     return false;
 }
 
-void bench_judge(bench *b)
+imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
+                                  const imk_message *before, imk_result *result)
 {
-    /* What was warned of on the way here belongs to the verdict too. */
-    for (size_t k = 0; k < command_warning_count(); k++) {
-        const command_warning *warning = command_warning_get(k);
-        add(b, say(LEVEL_WARNING, warning->code, "%s", warning->message));
-    }
-    const size_t said = b->sentence_count;
-    for (size_t k = 0; k < b->log_count; k++) {
-        const bench_log *log = &b->log[k];
+    imk_verdict v = {.result = result};
+    for (size_t k = 0; k < count; k++)
+        imki_verdict_add(&v, before[k].level, before[k].code, "%s", before[k].text);
+    for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++) {
         for (size_t d = 0; d < log->doubt_count; d++) {
             if (!doubt_matters(log, &log->doubt[d]))
                 continue;
             const calibrate_sentence plain = doubt_sentence(b, log, &log->doubt[d]);
-            add(b, say(plain.level, plain.code, "%.150s: %.540s", log->path, plain.text));
+            add(&v, say(plain.level, plain.code, "%.150s: %.540s", log->path, plain.text));
         }
-        add_undetermined(b, log);
-        add_thermal(b, log);
+        add_undetermined(b, log, &v);
+        add_thermal(&v, log);
     }
     for (size_t d = 0; d < b->doubt_count; d++) {
         const calibrate_sentence sentence = doubt_sentence(b, NULL, &b->doubt[d]);
-        if (!is_said(b, sentence.code))
-            add(b, sentence);
+        if (!is_said(&v, sentence.code))
+            add(&v, sentence);
     }
-    for (size_t k = said; k < b->sentence_count; k++)
-        if (b->sentence[k].level >= LEVEL_WARNING)
-            command_warn(b->sentence[k].code, "%s", b->sentence[k].text);
+    return v;
 }

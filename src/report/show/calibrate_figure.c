@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Residuals of each pose, and for each log where it was found to stand still. */
-#include "calibrate_parts.h"
-
-#include "imukit/figure_file.h"
+#include "calibrate_show_internal.h"
 
 #include <math.h>
 
@@ -31,7 +29,7 @@ static void add_curve(drawing *d, const char *label, imk_curve_style style, int 
     imk_figure_curve(d->figure, &(imk_curve){.label = label, .style = style, .color = color}, 1);
 }
 
-static void show_residuals(const bench *b, int sensor, drawing *d)
+static void show_residuals(const imk_calibrate_log *b, int sensor, drawing *d)
 {
     static const imk_panel panels[2] = {
         {.title = "gyro residuals", .x_label = "observation", .y_label = "residual [deg/s]"},
@@ -56,7 +54,7 @@ static void show_residuals(const bench *b, int sensor, drawing *d)
 }
 
 /* The worst of every stretch of samples, so that no short motion is lost; the intervals found. */
-static void show_activity(const bench_log *log, drawing *d)
+static void show_activity(const imk_calibrate_record *log, drawing *d)
 {
     const imk_test_record *record = &log->record;
     const size_t rows = record->count, every = rows / POINTS_MAX + 1;
@@ -73,29 +71,29 @@ static void show_activity(const bench_log *log, drawing *d)
         double most = 0;
         for (size_t k = row; k < row + every && k < rows; k++)
             most = log->activity[k] > most ? log->activity[k] : most;
-        end = bench_time(record, row);
+        end = imk_test_record_time(record, row);
         top = most > top && isfinite(most) ? most : top;
         imk_figure_point(d->figure, end, most > 0 ? most : (double)NAN /* not looked at */);
     }
     add_curve(d, "threshold", IMK_CURVE_DASHES, 1);
-    imk_figure_point(d->figure, bench_time(record, 0), 1);
+    imk_figure_point(d->figure, imk_test_record_time(record, 0), 1);
     imk_figure_point(d->figure, end, 1);
     for (size_t k = 0; k < log->interval_count && k < REGIONS_MAX; k++)
-        imk_figure_region(d->figure,
-                          &(imk_region){.label = "",
-                                        .color = 2,
-                                        .x_low = bench_time(record, log->interval[k].begin),
-                                        .x_high = bench_time(record, log->interval[k].end - 1),
-                                        .y_low = 0.03,
-                                        .y_high = top});
+        imk_figure_region(
+            d->figure,
+            &(imk_region){.label = "",
+                          .color = 2,
+                          .x_low = imk_test_record_time(record, log->interval[k].begin),
+                          .x_high = imk_test_record_time(record, log->interval[k].end - 1),
+                          .y_low = 0.03,
+                          .y_high = top});
 }
 
-bool bench_show_figure(const bench *b, imk_result *result)
+void imki_calibrate_figure(const imk_calibrate_log *b, imk_result *result)
 {
     drawing d = {.result = result};
     for (int sensor = 1; sensor >= 0 && b->result; sensor--)
         show_residuals(b, sensor, &d);
-    for (size_t k = 0; k < b->log_count; k++)
-        show_activity(&b->log[k], &d);
-    return d.panels > 0;
+    for (size_t k = 0; k < b->count; k++)
+        show_activity(&b->record[k], &d);
 }

@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* In words: the verdict, and what a person should know beside the tables: frame, gravity, what was
  * left out, what is correlated. */
-#include "calibrate_parts.h"
-#include "shell/growing_list.h"
+#include "calibrate_show_internal.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const double degree = 0.017453292519943295;
 
 /* ---- verdict --------------------------------------------------------------------------------- */
 
-calibrate_level bench_level(const bench *b)
+imk_finding_level imk_verdict_level(const imk_verdict *v)
 {
-    calibrate_level level = LEVEL_GOOD;
-    for (size_t k = 0; k < b->sentence_count; k++)
-        level = b->sentence[k].level > level ? b->sentence[k].level : level;
+    imk_finding_level level = IMK_FINDING_GOOD;
+    for (size_t k = 0; k < v->count; k++)
+        level = v->message[k].level > level ? v->message[k].level : level;
     return level;
 }
 
 /* Worst 1 sigma of a term of a sensor; 0 when it was not estimated. */
-static double worst(const bench *b, int sensor, int term)
+static double worst(const imk_calibrate_log *b, int sensor, int term)
 {
     double most = 0;
     for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
@@ -27,7 +30,7 @@ static double worst(const bench *b, int sensor, int term)
 }
 
 /* "accelerometer bias to 0.05 mg, scale factor to 65 ppm, misalignment to 0.02 mrad" */
-static void describe_precision(const bench *b, growing_list *list)
+static void describe_precision(const imk_calibrate_log *b, imki_text *list)
 {
     static const int terms[3] = {IMK_MODEL_BIAS, IMK_MODEL_SCALE_FACTOR, IMK_MODEL_MISALIGNMENT};
     static const char *const names[3] = {"bias", "scale factor", "misalignment"};
@@ -38,47 +41,67 @@ static void describe_precision(const bench *b, growing_list *list)
             if (!(sigma > 0))
                 continue;
             const imk_model_parameter p = {(uint8_t)sensor, (uint8_t)terms[t], 0, 1};
-            const imk_unit unit = parameter_unit(p, sigma);
+            const imk_unit unit = imk_parameter_unit(p, sigma);
             char number[40];
             imk_readable_value(sigma / unit.scale, sigma / unit.scale, 2, number, sizeof number);
-            list_add(list, "%s%s%s%s to %s %s",
-                     !first           ? ", "
-                     : list->size > 0 ? "; "
-                                      : "",
-                     first ? sensor_titles[sensor] : "", first ? " " : "", names[t], number,
-                     unit.text);
+            imki_text_add(list, "%s%s%s%s to %s %s",
+                          !first           ? ", "
+                          : list->size > 0 ? "; "
+                                           : "",
+                          first ? imki_sensor_titles[sensor] : "", first ? " " : "", names[t],
+                          number, unit.text);
             first = false;
         }
     }
 }
 
-void bench_verdict(const bench *b, char *text, size_t size)
+void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *v, char *text,
+                            size_t size)
 {
-    growing_list precision = {0};
+    imki_text precision = {0};
     describe_precision(b, &precision);
-    const char *known = precision.text, *behind = known ? ", 1 sigma of the worst axis" : "";
-    const calibrate_level level = bench_level(b);
+    const char *known = precision.bytes, *behind = known ? ", 1 sigma of the worst axis" : "";
+    const imk_finding_level level = imk_verdict_level(v);
     size_t warnings = 0, bad = 0;
-    for (size_t k = b->sentence_count; k-- > 0;) {
-        warnings += b->sentence[k].level == LEVEL_WARNING;
-        bad = b->sentence[k].level == LEVEL_USELESS ? k : bad;
+    for (size_t k = v->count; k-- > 0;) {
+        warnings += v->message[k].level == IMK_FINDING_WARNING;
+        bad = v->message[k].level == IMK_FINDING_FAILURE ? k : bad;
     }
-    if (level == LEVEL_USELESS)
-        snprintf(text, size, "Not usable: %s.", b->sentence[bad].text);
-    else if (level == LEVEL_WARNING)
+    if (level == IMK_FINDING_FAILURE)
+        snprintf(text, size, "Not usable: %s.", v->message[bad].text);
+    else if (level == IMK_FINDING_WARNING)
         snprintf(text, size, "Usable with care (%zu warning%s): %s%s.", warnings,
                  warnings == 1 ? "" : "s", known ? known : "see below", behind);
     else
         snprintf(text, size, "Good: %s%s.", known ? known : "nothing speaks against these logs",
                  behind);
-    list_free(&precision);
+    free(precision.bytes);
+}
+
+static double whole_degrees(double angle)
+{
+    return floor(angle / degree + 0.5) + 0.0;
+}
+
+void imki_calibrate_poses(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                          const char *before, char *text, size_t size)
+{
+    imk_pose_advice advice[IMK_CALIBRATE_POSES];
+    text[0] = '\0';
+    if (imk_calibrate_advise(b, log, NULL, advice))
+        snprintf(text, size,
+                 "%sroll %.0f pitch %.0f deg, roll %.0f pitch %.0f deg and roll %.0f pitch %.0f "
+                 "deg",
+                 before, whole_degrees(advice[0].roll), whole_degrees(advice[0].pitch),
+                 whole_degrees(advice[1].roll), whole_degrees(advice[1].pitch),
+                 whole_degrees(advice[2].roll), whole_degrees(advice[2].pitch));
 }
 
 /* ---- remarks --------------------------------------------------------------------------------- */
 
 enum { LISTED_MAX = 6 };
 
-static bool is_free(const bench *b, int term)
+static bool is_free(const imk_calibrate_log *b, int term)
 {
     for (size_t p = 0; p < b->result->parameter_count; p++)
         if (b->result->parameter[p].term == term)
@@ -86,7 +109,7 @@ static bool is_free(const bench *b, int term)
     return false;
 }
 
-static void show_frame(const bench *b, imk_result *result)
+static void show_frame(const imk_calibrate_log *b, imk_result *result)
 {
     static const char *const meaning[] = {
         "the z accelerometer senses along body z, the y accelerometer in the plane of y and z",
@@ -101,42 +124,42 @@ static void show_frame(const bench *b, imk_result *result)
                             : " Gravity does not tell how that stands in the housing.");
 }
 
-static void show_gravity(const bench *b, imk_result *result)
+static void show_gravity(const imk_calibrate_log *b, imk_result *result)
 {
     bool used = false;
-    for (size_t k = 0; k < b->log_count; k++)
-        used = used || (b->log[k].procedure < IMK_PROCEDURE_RATE_TABLE &&
-                        b->log[k].record.axis_count[1] > 0);
+    for (size_t k = 0; k < b->count; k++)
+        used = used || (b->record[k].procedure < IMK_PROCEDURE_RATE_TABLE &&
+                        b->record[k].record.axis_count[1] > 0);
     if (used)
         imk_result_line(result, "Gravity %.5f m/s^2 (%s).", b->calibration->gravity,
-                        !isnan(b->options->gravity) ? "given"
-                        : b->place_known            ? "WGS84 at the place given"
-                                         : "WGS84 at 45 deg and sea level: the place is not known");
+                        !isnan(b->settings.gravity) ? "given"
+                        : b->settings.place_known
+                            ? "WGS84 at the place given"
+                            : "WGS84 at 45 deg and sea level: the place is not known");
 }
 
 /* How the unit stands on its fixtures. */
-static void show_fixtures(const bench *b, imk_result *result)
+static void show_fixtures(const imk_calibrate_log *b, imk_result *result)
 {
-    static const double degree = 0.017453292519943295;
-    growing_list list = {0};
+    imki_text list = {0};
     for (size_t k = 0; k < b->calibration->fixture_count; k++) {
         const double *angle = b->result->fixture[k];
         if (b->calibration->fixture_sigma[k] > 0)
-            list_add(&list, "%s%.3f %.3f %.3f deg about x, y, z", list.size > 0 ? "; " : "",
-                     angle[0] / degree, angle[1] / degree, angle[2] / degree);
+            imki_text_add(&list, "%s%.3f %.3f %.3f deg about x, y, z", list.size > 0 ? "; " : "",
+                          angle[0] / degree, angle[1] / degree, angle[2] / degree);
     }
     if (list.size > 0)
-        imk_result_line(result, "Mounting: %s.", list.text);
-    list_free(&list);
+        imk_result_line(result, "Mounting: %s.", list.bytes);
+    free(list.bytes);
 }
 
 /* Observations and turns without weight, by time. */
-static void show_refused(const bench *b, imk_result *result)
+static void show_refused(const imk_calibrate_log *b, imk_result *result)
 {
     const imk_calibration *c = b->calibration;
     const size_t total = b->result->observations_refused + b->result->turns_refused;
     size_t listed = 0;
-    growing_list list = {0};
+    imki_text list = {0};
     for (size_t k = 0; k < c->observation_count + c->turn_count && listed < LISTED_MAX; k++) {
         const bool is_turn = k >= c->observation_count;
         const size_t i = is_turn ? k - c->observation_count : k;
@@ -146,20 +169,20 @@ static void show_refused(const bench *b, imk_result *result)
             c->record[c->observation[is_turn ? (size_t)c->turn[i].from : i].record];
         if (weight > 0)
             continue;
-        list_add_item(&list, "%s at %.2f s%s%s", is_turn ? "the turn" : "the observation",
-                      bench_time(record, begin), b->log_count > 1 ? " of " : "",
-                      b->log_count > 1 ? record->name : "");
+        imki_list_item(&list, "%s at %.2f s%s%s", is_turn ? "the turn" : "the observation",
+                       imk_test_record_time(record, begin), b->count > 1 ? " of " : "",
+                       b->count > 1 ? record->name : "");
         listed++;
     }
     if (total > listed)
-        list_add(&list, " and %zu more", total - listed);
+        imki_text_add(&list, " and %zu more", total - listed);
     if (total > 0)
-        imk_result_line(result, "Left out, because they do not fit the others: %s.", list.text);
-    list_free(&list);
+        imk_result_line(result, "Left out, because they do not fit the others: %s.", list.bytes);
+    free(list.bytes);
 }
 
 /* The first pairs that are correlated above 0.9. */
-static void show_correlated(const bench *b, imk_result *result)
+static void show_correlated(const imk_calibrate_log *b, imk_result *result)
 {
     const imk_calibration_result *r = b->result;
     const size_t n = r->parameter_count;
@@ -175,7 +198,7 @@ static void show_correlated(const bench *b, imk_result *result)
         }
 }
 
-void bench_show_remarks(const bench *b, imk_result *result)
+void imki_calibrate_remarks(const imk_calibrate_log *b, imk_result *result)
 {
     if (!b->result)
         return;
@@ -187,13 +210,13 @@ void bench_show_remarks(const bench *b, imk_result *result)
                                 "in it, nor the Earth's rotation.");
     show_fixtures(b, result);
     show_refused(b, result);
-    for (size_t k = 0; k < b->log_count; k++) { /* a reference that never holds still may lead */
-        const imk_procedure_findings *f = &b->log[k].findings;
+    for (size_t k = 0; k < b->count; k++) { /* a reference that never holds still may lead */
+        const imk_procedure_findings *f = &b->record[k].findings;
         if (f->lag_sigma > 0)
             imk_result_line(result,
                             "%s: the readings come %.4g ± %.2g ms after the reference, which was "
                             "allowed for.",
-                            b->log[k].path, f->lag * 1e3, f->lag_sigma * 1e3);
+                            b->record[k].path, f->lag * 1e3, f->lag_sigma * 1e3);
     }
     show_correlated(b, result);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The calibration as a result: data for programs, text and a page for people. */
-#include "calibrate_parts.h"
-#include "shell/growing_list.h"
+#include "calibrate_show_internal.h"
+
+#include <stdlib.h>
 
 /* ---- data ------------------------------------------------------------------------------------ */
 
@@ -56,7 +57,7 @@ static void show_fit(const imk_calibration_result *r, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_observations(const bench *b, imk_result *result)
+static void show_observations(const imk_calibrate_log *b, imk_result *result)
 {
     const imk_calibration *c = b->calibration;
     imk_result_array(result, "poses");
@@ -65,7 +66,7 @@ static void show_observations(const bench *b, imk_result *result)
         const imk_test_record *record = c->record[o->record];
         imk_result_object(result, NULL);
         imk_result_text(result, "log", record->name);
-        imk_result_quantity(result, "begin", bench_time(record, o->begin), "s");
+        imk_result_quantity(result, "begin", imk_test_record_time(record, o->begin), "s");
         imk_result_quantity(result, "length", (double)(o->end - o->begin) * record->dt, "s");
         imk_result_numbers(result, "force", 3,
                            o->knowledge == IMK_INPUT_GRAVITY ? o->vertical : o->force);
@@ -96,7 +97,7 @@ static void show_repeatability(const char *key, int axes, const imk_repeatabilit
     imk_result_end(result);
 }
 
-static void show_runs(const bench *b, imk_result *result)
+static void show_runs(const imk_calibrate_log *b, imk_result *result)
 {
     if (!b->runs) {
         imk_result_null(result, "repeatability");
@@ -105,8 +106,8 @@ static void show_runs(const bench *b, imk_result *result)
     imk_result_object(result, "repeatability");
     for (int sensor = 0; sensor < 2; sensor++) {
         const int axes = b->runs->axis_count[sensor];
-        imk_result_object(result, sensor_keys[sensor]);
-        show_repeatability("bias", axes, b->runs->bias[sensor], sensor_units[sensor], result);
+        imk_result_object(result, imki_sensor_keys[sensor]);
+        show_repeatability("bias", axes, b->runs->bias[sensor], imki_sensor_units[sensor], result);
         show_repeatability("scale_factor", axes, b->runs->scale_factor[sensor], "1", result);
         imk_result_end(result);
     }
@@ -124,7 +125,7 @@ static void show_matrix(const char *key, const double *m, imk_result *result)
 }
 
 /* The matrices of ferraris.h, in the unit of the readings. */
-static void show_closed_form(const bench *b, imk_result *result)
+static void show_closed_form(const imk_calibrate_log *b, imk_result *result)
 {
     if (!b->ferraris) {
         imk_result_null(result, "closed_form");
@@ -133,13 +134,13 @@ static void show_closed_form(const bench *b, imk_result *result)
     imk_result_object(result, "closed_form");
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_ferraris_triad *t = sensor == 0 ? &b->ferraris->gyro : &b->ferraris->accel;
-        const bool counts = b->log[0].record.counts[sensor];
-        imk_result_object(result, sensor_keys[sensor]);
+        const bool counts = b->record[0].record.counts[sensor];
+        imk_result_object(result, imki_sensor_keys[sensor]);
         imk_result_numbers(result, "scale", 3, t->scale);
         show_matrix("axes", t->axes[0], result);
         imk_result_numbers(result, "bias", 3, t->bias);
-        imk_result_text(result, "reading_unit", counts ? "count" : sensor_units[sensor]);
-        imk_result_text(result, "input_unit", sensor_units[sensor]);
+        imk_result_text(result, "reading_unit", counts ? "count" : imki_sensor_units[sensor]);
+        imk_result_text(result, "input_unit", imki_sensor_units[sensor]);
         imk_result_end(result);
     }
     show_matrix("g_sensitivity", b->ferraris->g_sensitivity[0], result);
@@ -181,24 +182,24 @@ static void show_thermal(const imk_thermal_findings *f, imk_result *result)
     imk_result_quantity(result, "minimum", f->minimum, "K");
     imk_result_quantity(result, "maximum", f->maximum, "K");
     for (int sensor = 0; sensor < 2; sensor++) {
-        imk_result_array(result, sensor_keys[sensor]);
+        imk_result_array(result, imki_sensor_keys[sensor]);
         for (int axis = 0; axis < f->axis_count[sensor]; axis++)
-            show_thermal_axis(f, &f->axis[sensor][axis], sensor_units[sensor], result);
+            show_thermal_axis(f, &f->axis[sensor][axis], imki_sensor_units[sensor], result);
         imk_result_end(result);
     }
     imk_result_end(result);
 }
 
-static const char *procedure_name(const bench *b, const bench_log *log)
+static const char *procedure_name(const imk_calibrate_log *b, const imk_calibrate_record *log)
 {
     return b->runs ? "repeatability" : imk_procedure_name(log->procedure);
 }
 
-static void show_inputs(const bench *b, imk_result *result)
+static void show_inputs(const imk_calibrate_log *b, imk_result *result)
 {
     imk_result_object(result, "inputs");
     imk_result_array(result, "logs");
-    for (const bench_log *log = b->log; log < b->log + b->log_count; log++) {
+    for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++) {
         imk_result_object(result, NULL);
         imk_result_text(result, "log", log->path);
         imk_result_text(result, "procedure", procedure_name(b, log));
@@ -215,15 +216,16 @@ static void show_inputs(const bench *b, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_data(const bench *b, const char *verdict, imk_result *result)
+static void show_data(const imk_calibrate_log *b, const imk_verdict *v, const char *verdict,
+                      imk_result *result)
 {
     static const char *const levels[] = {"good", "note", "warning", "useless"};
     show_inputs(b, result);
     imk_result_object(result, "result");
     imk_result_text(result, "verdict", verdict);
-    imk_result_text(result, "level", levels[bench_level(b)]);
+    imk_result_text(result, "level", levels[imk_verdict_level(v)]);
     imk_result_array(result, "sentences");
-    for (const calibrate_sentence *s = b->sentence; s < b->sentence + b->sentence_count; s++) {
+    for (const imk_message *s = v->message; s < v->message + v->count; s++) {
         imk_result_object(result, NULL);
         imk_result_text(result, "level", levels[s->level]);
         imk_result_text(result, "code", s->code);
@@ -242,40 +244,41 @@ static void show_data(const bench *b, const char *verdict, imk_result *result)
 
 /* ---- display --------------------------------------------------------------------------------- */
 
-static void show_title(const bench *b, imk_result *result)
+static void show_title(const imk_calibrate_log *b, imk_result *result)
 {
-    growing_list logs = {0};
-    for (const bench_log *log = b->log; log < b->log + b->log_count; log++)
-        list_add_item(&logs, "%s (%s)", log->record.name, procedure_name(b, log));
-    imk_result_title(result, "Calibration of an inertial sensor", "%s", logs.text);
-    list_free(&logs);
+    imki_text logs = {0};
+    for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++)
+        imki_list_item(&logs, "%s (%s)", log->record.name, procedure_name(b, log));
+    imk_result_title(result, "Calibration of an inertial sensor", "%s", logs.bytes);
+    free(logs.bytes);
 }
 
-static void show_verdict(const bench *b, const char *verdict, imk_result *result)
+static void show_verdict(const imk_calibrate_log *b, const imk_verdict *v, const char *verdict,
+                         imk_result *result)
 {
     static const int boxes[] = {0, 1, 2, 2};
     imk_result_heading(result, "Verdict");
-    imk_result_finding(result, boxes[bench_level(b)], verdict);
-    for (const calibrate_sentence *s = b->sentence; s < b->sentence + b->sentence_count; s++)
+    imk_result_finding(result, boxes[imk_verdict_level(v)], verdict);
+    for (const imk_message *s = v->message; s < v->message + v->count; s++)
         imk_result_finding(result, boxes[s->level], s->text);
     imk_result_heading(result, b->runs ? "From run to run" : "Parameters");
 }
 
-static void show_temperature(const bench *b, bool brief, imk_result *result)
+static void show_temperature(const imk_calibrate_log *b, bool brief, imk_result *result)
 {
     bool begun = brief;
-    for (const bench_log *log = b->log; log < b->log + b->log_count; log++)
+    for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++)
         for (int sensor = 1; sensor >= 0; sensor--) {
             if (!begun && log->thermal && log->thermal->axis_count[sensor] > 0) {
                 imk_result_heading(result, "Over temperature");
                 begun = true;
             }
-            bench_show_thermal(log, sensor, brief, result);
+            imki_thermal_table(log, sensor, brief, result);
         }
 }
 
 /* How the threshold came about, and the intervals. */
-static void show_holds(const bench_log *log, imk_result *result)
+static void show_holds(const imk_calibrate_record *log, imk_result *result)
 {
     const imk_static_findings *f = &log->stationary;
     if (f->window > 0)
@@ -289,56 +292,36 @@ static void show_holds(const bench_log *log, imk_result *result)
             f->saturated, f->not_finite);
 }
 
-/* The rest of the page. @return is there a figure? */
-static bool show_evidence(const bench *b, imk_result *result)
+/* The rest of the page. */
+static void show_evidence(const imk_calibrate_log *b, imk_result *result)
 {
-    bool drawn = false;
     imk_result_for(result, IMK_FOR_PAGE);
     if (b->result && !b->ferraris) {
-        drawn = bench_show_figure(b, result);
+        imki_calibrate_figure(b, result);
         imk_result_heading(result, "Observations");
     }
-    for (const bench_log *log = b->log; log < b->log + b->log_count; log++)
+    for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++)
         show_holds(log, result);
     if (b->result && !b->ferraris)
-        bench_show_poses(b, result);
-    show_model(result, "Model file", &b->model);
-    show_origin(result);
-    return drawn;
+        imki_pose_table(b, result);
 }
 
-static void show_next(const bench *b, imk_result *result)
-{
-    const calibrate_options *o = b->options;
-    if (o->report)
-        imk_result_line(result, "Report: %s", o->report);
-    if (bench_level(b) == LEVEL_USELESS && !o->anyway)
-        return;
-    if (!o->output)
-        imk_result_line(result, "Next: add -o model.yaml to keep the model, --report report.html "
-                                "for a page");
-    else if (b->runs)
-        imk_result_line(result, "Model: %s\nNext: imukit grade %s", o->output, o->output);
-    else
-        imk_result_line(result, "Model: %s\nNext: imukit compensate LOG %s -o clean.csv", o->output,
-                        o->output);
-}
-
-bool bench_show(const bench *b, imk_result *result)
+void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bool poses,
+                            imk_result *result)
 {
     char verdict[900];
     const bool fitted = b->result && !b->ferraris;
-    bench_verdict(b, verdict, sizeof verdict);
-    show_data(b, verdict, result);
+    imki_calibrate_summary(b, v, verdict, sizeof verdict);
+    show_data(b, v, verdict, result);
     show_title(b, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    show_verdict(b, verdict, result);
+    show_verdict(b, v, verdict, result);
     imk_result_for(result, IMK_FOR_BOTH);
     for (int sensor = 1; sensor >= 0; sensor--)
         if (b->runs)
-            bench_show_runs(b, sensor, result);
+            imki_runs_table(b, sensor, result);
         else
-            bench_show_parameters(b, sensor, result);
+            imki_parameter_table(b, sensor, result);
     imk_result_for(result, IMK_FOR_PAGE);
     if (b->result)
         imk_result_line(result, "Values with 1 sigma; below each the interval that holds the true "
@@ -346,24 +329,23 @@ bool bench_show(const bench *b, imk_result *result)
                                 "the residuals show beyond the noise taken into account). A "
                                 "response \"misalignment, y\" is how much of the y component the "
                                 "axis sees.");
-    bench_show_remarks(b, result);
+    imki_calibrate_remarks(b, result);
     show_temperature(b, false, result);
     if (fitted)
         imk_result_heading(result, "Fit");
     imk_result_for(result, IMK_FOR_TERMINAL);
     show_temperature(b, true, result);
-    if (fitted && b->options->poses)
-        bench_show_poses(b, result);
+    if (fitted && poses)
+        imki_pose_table(b, result);
     imk_result_for(result, IMK_FOR_BOTH);
     if (fitted)
-        bench_show_fit(b, result);
-    const bool drawn = show_evidence(b, result);
+        imki_fit_table(b, result);
+    show_evidence(b, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
-    bench_show_remarks(b, result);
-    for (const calibrate_sentence *s = b->sentence; s < b->sentence + b->sentence_count; s++)
-        if (s->level == LEVEL_NOTE)
+    imki_calibrate_remarks(b, result);
+    for (const imk_message *s = v->message; s < v->message + v->count; s++)
+        if (s->level == IMK_FINDING_NOTE)
             imk_result_line(result, "%s.", s->text);
     imk_result_line(result, "%s", verdict);
-    show_next(b, result);
-    return drawn;
+    imk_result_for(result, IMK_FOR_BOTH);
 }

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Units and titles of sensors and of the numbers of a model. */
-#include "calibrate_parts.h"
+/* Units and titles of the numbers of a model, and rows of a test. */
+#include "calibrate_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-const char *const sensor_keys[2] = {"gyro", "accel"};
-const char *const sensor_titles[2] = {"gyro", "accelerometer"};
-const char *const sensor_units[2] = {"rad/s", "m/s^2"};
-
-char axis_letter(int axis)
+char imk_axis_letter(int axis)
 {
     return axis < 0 ? '?' : axis < 3 ? "xyz"[axis] : (char)('0' + axis);
 }
@@ -55,15 +52,15 @@ static bool is_power(imk_model_parameter parameter)
            parameter.term == IMK_MODEL_SCALE_TEMPERATURE;
 }
 
-const char *parameter_file_unit(imk_model_parameter parameter)
+const char *imk_parameter_file_unit(imk_model_parameter parameter)
 {
     const char *unit = words[parameter.term].unit[parameter.sensor];
     return is_power(parameter) ? power_unit(unit, parameter.element + 1) : unit;
 }
 
-imk_unit parameter_unit(imk_model_parameter parameter, double magnitude)
+imk_unit imk_parameter_unit(imk_model_parameter parameter, double magnitude)
 {
-    const imk_unit unit = imk_unit_of(parameter_file_unit(parameter));
+    const imk_unit unit = imk_unit_of(imk_parameter_file_unit(parameter));
     if (parameter.term == IMK_MODEL_BIAS)
         return imk_unit_readable(unit.dimension, magnitude);
     if (parameter.term == IMK_MODEL_SCALE_FACTOR && magnitude >= 0.01)
@@ -71,7 +68,7 @@ imk_unit parameter_unit(imk_model_parameter parameter, double magnitude)
     return unit;
 }
 
-void parameter_title(imk_model_parameter parameter, char *text, size_t size)
+void imk_parameter_title(imk_model_parameter parameter, char *text, size_t size)
 {
     static const char *const components[3] = {"x", "y", "z"};
     static const char *const products[3] = {"Kip", "Kio", "Kpo"};
@@ -101,10 +98,46 @@ void parameter_title(imk_model_parameter parameter, char *text, size_t size)
     }
 }
 
-int bench_find(const bench *b, imk_model_parameter parameter)
+int imk_calibrate_find(const imk_calibrate_log *b, imk_model_parameter parameter)
 {
     for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
         if (memcmp(&b->result->parameter[p], &parameter, sizeof parameter) == 0)
             return (int)p;
     return -1;
+}
+
+double imk_test_record_time(const imk_test_record *record, size_t row)
+{
+    return record->time ? record->time[row] : (double)row * record->dt;
+}
+
+static bool is_missing(const imk_test_record *record, size_t row)
+{
+    bool missing = record->temperature && !isfinite(record->temperature[row]);
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int axis = 0; axis < record->axis_count[sensor]; axis++)
+            missing = missing || !isfinite(record->reading[sensor][axis][row]);
+    return missing;
+}
+
+size_t imk_test_record_missing(const imk_test_record *record, size_t *first)
+{
+    size_t rows = 0;
+    for (size_t row = 0; row < record->count; row++)
+        if (is_missing(record, row) && rows++ == 0)
+            *first = row;
+    return rows;
+}
+
+static const uint32_t settings_cookie = 0x43414C31; /* "CAL1" */
+
+imk_calibrate_log_settings imk_calibrate_log_default(void)
+{
+    const double none = (double)NAN;
+    return (imk_calibrate_log_settings){.cookie = settings_cookie,
+                                        .gravity = none,
+                                        .placement = none,
+                                        .minimum = none,
+                                        .trim = none,
+                                        .settle = none};
 }

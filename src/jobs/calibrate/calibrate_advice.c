@@ -1,24 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which poses are missing: those that would tell most about the accelerometers, given the rests
  * that were found in the log. */
-#include "calibrate_parts.h"
+#include "calibrate_internal.h"
 
-#include "imukit/calibration_plan.h"
+#include "jobs/arena_internal.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-enum { POSES = 3 };
-
-static const double degree = 0.017453292519943295;
 
 /* What a mean at rest is worth [m/s^2]; only what poses are worth against one another matters. */
 static const double pose_sigma = 1e-3;
 
 /* The rests as observations of gravity; false for a log whose accelerometers are no triad, or whose
  * readings no unit is known of. */
-static bool observe_rests(const bench *b, const bench_log *log, imk_calibration *c)
+static bool observe_rests(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                          imk_calibration *c)
 {
     const double gravity = b->calibration->gravity;
     if (log->record.axis_count[1] != 3 || log->record.counts[1] || log->interval_count == 0)
@@ -53,43 +48,37 @@ static void free_accelerometers(imk_calibration *c)
     }
 }
 
-static bool find_poses(imk_calibration *c, imk_pose_advice advice[POSES])
+static bool find_poses(imk_calibration *c, imki_arena *arena, imk_pose_advice *advice)
 {
     imk_error error;
     static const imk_test_record none = {.name = ""};
     c->record[0] = &none;
     c->record_count = 1;
     const size_t size = imk_next_pose_workspace_size(c);
-    void *workspace = command_memory(NULL, size);
-    const bool found =
-        imk_next_pose(c, pose_sigma, workspace, size, POSES, advice, &error) == IMK_OK;
-    free(workspace);
+    void *workspace = imki_arena_take(arena, size);
+    return workspace && imk_next_pose(c, pose_sigma, workspace, size, IMK_CALIBRATE_POSES, advice,
+                                      &error) == IMK_OK;
+}
+
+bool imk_calibrate_advise(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                          const imk_allocator *allocator,
+                          imk_pose_advice advice[IMK_CALIBRATE_POSES])
+{
+    imki_arena arena = {.blocks = NULL};
+    if (allocator)
+        arena.allocator = *allocator;
+    bool found = false;
+    const size_t room = log->interval_count + IMK_CALIBRATE_POSES;
+    imk_calibration *c = imki_arena_take(&arena, sizeof *c);
+    imk_observation *observation = imki_arena_take(&arena, room * sizeof *observation);
+    if (c && observation) {
+        imk_calibration_default(c);
+        c->gravity = b->calibration->gravity;
+        c->observation_capacity = room;
+        c->observation = observation;
+        free_accelerometers(c);
+        found = observe_rests(b, log, c) && find_poses(c, &arena, advice);
+    }
+    imki_arena_free(&arena);
     return found;
-}
-
-static double whole_degrees(double angle)
-{
-    return floor(angle / degree + 0.5) + 0.0;
-}
-
-void bench_advise(const bench *b, const bench_log *log, const char *before, char *text, size_t size)
-{
-    imk_pose_advice advice[POSES];
-    imk_calibration *c = command_zeroed(sizeof *c);
-    imk_calibration_default(c);
-    c->gravity = b->calibration->gravity;
-    c->observation_capacity = log->interval_count + POSES;
-    c->observation = command_zeroed(c->observation_capacity * sizeof *c->observation);
-    free_accelerometers(c);
-    const bool found = observe_rests(b, log, c) && find_poses(c, advice);
-    free(c->observation);
-    free(c);
-    text[0] = '\0';
-    if (found)
-        snprintf(text, size,
-                 "%sroll %.0f pitch %.0f deg, roll %.0f pitch %.0f deg and roll %.0f pitch %.0f "
-                 "deg",
-                 before, whole_degrees(advice[0].roll), whole_degrees(advice[0].pitch),
-                 whole_degrees(advice[1].roll), whole_degrees(advice[1].pitch),
-                 whole_degrees(advice[2].roll), whole_degrees(advice[2].pitch));
 }

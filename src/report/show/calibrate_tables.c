@@ -2,7 +2,7 @@
 /* What was found as tables: parameters by axis with 1 sigma and 95 % interval, the fit of each
  * group of observations, the poses, runs compared, and what temperature does. On the terminal an
  * empty line follows each; nothing is shown where there is nothing to say. */
-#include "calibrate_parts.h"
+#include "calibrate_show_internal.h"
 
 #include <math.h>
 
@@ -19,7 +19,7 @@ static imk_table *begin_axes(const char *title, int axes, imk_result *result)
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table, "%s\tunit", title);
     for (int axis = 0; axis < axes; axis++)
-        imk_table_add(table, "%c", axis_letter(axis));
+        imk_table_add(table, "%c", imk_axis_letter(axis));
     return table;
 }
 
@@ -34,7 +34,8 @@ static void add_value(imk_table *table, double value, double sigma, int digits)
 /* ---- parameters ------------------------------------------------------------------------------ */
 
 /* One row of values and one of intervals for a number on every axis. */
-static void add_parameter(imk_table *table, const bench *b, imk_model_parameter parameter, int axes)
+static void add_parameter(imk_table *table, const imk_calibrate_log *b,
+                          imk_model_parameter parameter, int axes)
 {
     const imk_calibration_result *r = b->result;
     double magnitude = 0;
@@ -42,7 +43,7 @@ static void add_parameter(imk_table *table, const bench *b, imk_model_parameter 
     bool any = false;
     for (int axis = 0; axis < axes; axis++) {
         parameter.axis = (uint8_t)axis;
-        found[axis] = bench_find(b, parameter);
+        found[axis] = imk_calibrate_find(b, parameter);
         if (found[axis] < 0)
             continue;
         any = true;
@@ -50,9 +51,9 @@ static void add_parameter(imk_table *table, const bench *b, imk_model_parameter 
     }
     if (!any)
         return;
-    const imk_unit unit = parameter_unit(parameter, magnitude);
+    const imk_unit unit = imk_parameter_unit(parameter, magnitude);
     char title[80], lower[NUMBER], upper[NUMBER];
-    parameter_title(parameter, title, sizeof title);
+    imk_parameter_title(parameter, title, sizeof title);
     imk_table_row(table, "%s\t%s", title, unit.text);
     for (int axis = 0; axis < axes; axis++)
         if (found[axis] < 0)
@@ -75,17 +76,18 @@ static void add_parameter(imk_table *table, const bench *b, imk_model_parameter 
 }
 
 /* Readings in counts: what they make of a unit of input, and what they are without any. */
-static void add_counts(imk_table *table, const bench *b, int sensor, const imk_triad *triad)
+static void add_counts(imk_table *table, const imk_calibrate_log *b, int sensor,
+                       const imk_triad *triad)
 {
     static const int terms[2] = {IMK_MODEL_SCALE_FACTOR, IMK_MODEL_BIAS};
     for (int row = 0; row < 2 && triad->sensitivity.value[0] != 0; row++) {
         if (row == 0)
-            imk_table_row(table, "counts per unit\tcount/(%s)", sensor_units[sensor]);
+            imk_table_row(table, "counts per unit\tcount/(%s)", imki_sensor_units[sensor]);
         else
             imk_table_row(table, "counts at zero input\tcount");
         for (int axis = 0; axis < triad->axis_count; axis++) {
             const imk_model_parameter p = {(uint8_t)sensor, (uint8_t)terms[row], (uint8_t)axis, 0};
-            const int found = bench_find(b, p);
+            const int found = imk_calibrate_find(b, p);
             const double s = triad->sensitivity.value[axis];
             const double value =
                 row == 0 ? s * (1 + triad->scale_factor.fixed.value[axis])
@@ -100,7 +102,7 @@ static void add_counts(imk_table *table, const bench *b, int sensor, const imk_t
     }
 }
 
-void bench_show_parameters(const bench *b, int sensor, imk_result *result)
+void imki_parameter_table(const imk_calibrate_log *b, int sensor, imk_result *result)
 {
     bool any = false;
     for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
@@ -110,7 +112,7 @@ void bench_show_parameters(const bench *b, int sensor, imk_result *result)
     const imk_model *model = &b->result->model;
     const imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
     const int axes = triad->present ? triad->axis_count : 0;
-    imk_table *table = begin_axes(sensor_titles[sensor], axes, result);
+    imk_table *table = begin_axes(imki_sensor_titles[sensor], axes, result);
     for (int term = 0; term < IMK_MODEL_TERMS; term++)
         for (int element = 0; element < imk_model_term_elements(sensor, term); element++) {
             const imk_model_parameter p = {(uint8_t)sensor, (uint8_t)term, 0, (uint8_t)element};
@@ -122,7 +124,7 @@ void bench_show_parameters(const bench *b, int sensor, imk_result *result)
 
 /* ---- fit ------------------------------------------------------------------------------------- */
 
-void bench_show_fit(const bench *b, imk_result *result)
+void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
 {
     static const char *const names[IMK_GROUPS] = {"gyro readings", "accelerometer readings",
                                                   "turns between poses"};
@@ -168,9 +170,9 @@ static void add_finite(imk_table *table, const char *format, double value)
         imk_table_add(table, "%s", "");
 }
 
-void bench_show_poses(const bench *b, imk_result *result)
+void imki_pose_table(const imk_calibrate_log *b, imk_result *result)
 {
-    const bool several = b->log_count > 1;
+    const bool several = b->count > 1;
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table,
                   "%s\tfrom [s]\tlength [s]\tforce along\t[degC]\taccel [mg]\tgyro [deg/s]\t"
@@ -182,7 +184,8 @@ void bench_show_poses(const bench *b, imk_result *result)
         const double *up = o->knowledge == IMK_INPUT_GRAVITY ? o->vertical : o->force;
         const double norm = sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
         imk_table_row(table, "%.30s\t%.2f\t%.2f", several ? record->name : "",
-                      bench_time(record, o->begin), (double)(o->end - o->begin) * record->dt);
+                      imk_test_record_time(record, o->begin),
+                      (double)(o->end - o->begin) * record->dt);
         if (norm > 0)
             imk_table_add(table, "%+.3f %+.3f %+.3f", up[0] / norm, up[1] / norm, up[2] / norm);
         else
@@ -228,13 +231,13 @@ static void add_runs(imk_table *table, const imk_repeatability *runs, const char
         imk_table_add(table, "%.3g", r->within / unit.scale);
 }
 
-void bench_show_runs(const bench *b, int sensor, imk_result *result)
+void imki_runs_table(const imk_calibrate_log *b, int sensor, imk_result *result)
 {
     const int axes = b->runs->axis_count[sensor];
     if (axes == 0)
         return;
-    imk_table *table = begin_axes(sensor_titles[sensor], axes, result);
-    add_runs(table, b->runs->bias[sensor], "bias", sensor_units[sensor], axes);
+    imk_table *table = begin_axes(imki_sensor_titles[sensor], axes, result);
+    add_runs(table, b->runs->bias[sensor], "bias", imki_sensor_units[sensor], axes);
     add_runs(table, b->runs->scale_factor[sensor], "scale factor", "1", axes);
     imk_result_gap(result);
 }
@@ -271,7 +274,7 @@ static void add_loop(imk_table *table, const imk_thermal_findings *f, int sensor
     }
 }
 
-void bench_show_thermal(const bench_log *log, int sensor, bool brief, imk_result *result)
+void imki_thermal_table(const imk_calibrate_record *log, int sensor, bool brief, imk_result *result)
 {
     static const char *const rms[4] = {"scatter before", "after the polynomial",
                                        "after compensation", "after all of it"};
@@ -282,8 +285,8 @@ void bench_show_thermal(const bench_log *log, int sensor, bool brief, imk_result
     if (axes == 0)
         return;
     imk_table *table = begin_axes(titles[sensor], axes, result);
-    const imk_unit unit =
-        imk_unit_readable(imk_unit_of(sensor_units[sensor]).dimension, f->axis[sensor][0].scatter);
+    const imk_unit unit = imk_unit_readable(imk_unit_of(imki_sensor_units[sensor]).dimension,
+                                            f->axis[sensor][0].scatter);
     imk_table_row(table, "order of the polynomial\t");
     for (int i = 0; i < axes; i++)
         imk_table_add(table, "%d", f->axis[sensor][i].order);

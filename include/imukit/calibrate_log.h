@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file calibrate_log.h
+ *  The job of `imukit calibrate`: logs of bench tests, each of a procedure, and what they say of
+ *  the unit together. */
+#ifndef IMUKIT_CALIBRATE_LOG_H
+#define IMUKIT_CALIBRATE_LOG_H
+
+#include "imukit/calibration_plan.h"
+#include "imukit/ferraris.h"
+#include "imukit/job.h"
+#include "imukit/procedure.h"
+#include "imukit/record.h"
+#include "imukit/repeatability.h"
+#include "imukit/thermal.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { IMK_CALIBRATE_DOUBTS_MAX = 16, IMK_CALIBRATE_REFERENCES = 9, IMK_CALIBRATE_POSES = 3 };
+
+/** What is asked; NaN: not given. Start from imk_calibrate_log_default(). */
+typedef struct imk_calibrate_log_settings {
+    uint32_t cookie;
+    double gravity;      /**< [m/s^2] */
+    double placement;    /**< 1 sigma of a placement on a face [rad] */
+    double minimum;      /**< shortest rest, step or run [s] */
+    double trim, settle; /**< left out at both ends; at the beginning besides [s] */
+    bool place_known;    /**< the calibration's gravity is that of a place */
+    bool model_given;    /**< known before are the axes of a model */
+    bool repeatability;  /**< the records are power cycles, nothing is solved */
+    bool terms_named;    /**< what is estimated is free in the calibration already */
+    bool activity;       /**< say of each sample whether it stands still */
+} imk_calibrate_log_settings;
+
+IMK_API imk_calibrate_log_settings imk_calibrate_log_default(void);
+
+/** One log. */
+typedef struct imk_calibrate_record {
+    const char *path; /**< what it is called */
+    imk_log log;      /**< owns the columns */
+    imk_test_record record;
+    size_t dropped; /**< rows without a time that increases */
+    int *section;
+    const char **section_name;
+    double *reference; /**< IMK_CALIBRATE_REFERENCES columns: rate, force, angular acceleration */
+    double motion_offset; /**< the log shows at t what the programme says at t less this [s] */
+    imk_procedure procedure;
+    imk_procedure_settings settings;
+    imk_procedure_findings findings;
+    imk_static_findings stationary; /**< window 0: not looked at */
+    size_t interval_count;
+    imk_static_interval *interval;
+    double *activity; /**< per sample; NULL: not asked for */
+    size_t doubt_count;
+    imk_doubt_finding doubt[IMK_CALIBRATE_DOUBTS_MAX];
+    imk_thermal_findings *thermal; /**< of that procedure */
+} imk_calibrate_record;
+
+/** What was found. */
+typedef struct imk_calibrate_log {
+    imk_calibrate_log_settings settings;
+    size_t count;
+    imk_calibrate_record *record;
+    bool nominal[2]; /**< sensitivities were found, not given: gyro, accel */
+    imk_calibration *calibration;
+    imk_calibration_result *result;
+    imk_ferraris *ferraris; /**< of the closed form */
+    imk_repeatability_result *runs;
+    size_t run_count;
+    size_t doubt_count;
+    imk_doubt_finding doubt[IMK_CALIBRATE_DOUBTS_MAX]; /**< of the solution */
+    imk_model model;                                   /**< to be written */
+} imk_calibrate_log;
+
+/** Index of a parameter of the solution, or -1. */
+IMK_API int imk_calibrate_find(const imk_calibrate_log *log, imk_model_parameter parameter);
+
+/** The poses that would tell most about the accelerometers, given the rests that were found.
+ *  @return false where they are not known, or memory is exhausted */
+IMK_API bool imk_calibrate_advise(const imk_calibrate_log *log, const imk_calibrate_record *record,
+                                  const imk_allocator *allocator,
+                                  imk_pose_advice advice[IMK_CALIBRATE_POSES]);
+
+/** @name Records of tests
+ *  @{ */
+/** When a row was taken [s]. */
+IMK_API double imk_test_record_time(const imk_test_record *record, size_t row);
+/** Rows with a reading or a temperature that is no number. @param first  set when there are some */
+IMK_API size_t imk_test_record_missing(const imk_test_record *record, size_t *first);
+/** @} */
+
+/** @name Words and units
+ *  In which sensors and parameters are shown and written.
+ *  @{ */
+/** x, y, z, 3 … 7; ? below 0 */
+IMK_API char imk_axis_letter(int axis);
+/** The unit a person reads a number of this size in. */
+IMK_API imk_unit imk_parameter_unit(imk_model_parameter parameter, double magnitude);
+/** As in the model file, whatever the size. */
+IMK_API const char *imk_parameter_file_unit(imk_model_parameter parameter);
+/** "scale factor error", "misalignment, y": without sensor and axis. */
+IMK_API void imk_parameter_title(imk_model_parameter parameter, char *text, size_t size);
+/** @} */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

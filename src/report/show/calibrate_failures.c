@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Why nothing came out: what was found in the log, what is needed, what to do. A doubt about the
+ * log, where there is one that explains it, says more than the procedure that stumbled. */
+#include "calibrate_show_internal.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Where the message goes. */
+typedef struct message {
+    char *text;
+    size_t size;
+} message;
+
+static size_t say(const message *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static size_t say(const message *to, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(to->text, to->size, format, arguments);
+    va_end(arguments);
+    return length > 0 ? (size_t)length : 0;
+}
+
+/* Only rows with a temperature above 0 K count. */
+static size_t few_temperatures(const message *to, const imk_calibrate_record *log,
+                               const imk_error *error)
+{
+    size_t cold = 0, none = 0;
+    for (size_t row = 0; row < log->record.count; row++) {
+        const double temperature = log->record.temperature[row];
+        cold += temperature <= 0;
+        none += !isfinite(temperature);
+    }
+    if ((double)(log->record.count - cold - none) >= error->limit)
+        return 0;
+    return say(to,
+               "%s: of %zu rows the temperature is 0 K or less in %zu and no number in "
+               "%zu; at least %g need one: check the column temperature and its unit "
+               "(--temperature-unit)",
+               log->path, log->record.count, cold, none, error->limit);
+}
+
+static size_t too_short(const message *to, const imk_calibrate_record *log, const imk_error *error)
+{
+    static const char *const things[] = {"hold", "turn", "step"};
+    static const char *const many[] = {"holds", "turns", "steps of constant reference"};
+    const char *name = imk_procedure_name(log->procedure);
+    const char *due = error->expected;
+    for (size_t k = 0; k < 3; k++)
+        if (strcmp(error->field, things[k]) == 0)
+            return say(to, "%s: %g of at least %g %s were found for %s%s%s", log->path,
+                       error->value, error->limit, many[k], name, due[0] ? ": " : "", due);
+    if (strcmp(error->field, "temperature") == 0)
+        return say(to,
+                   "%s: the temperature varies by %.3g K; at least %.3g K are needed to "
+                   "see what it does",
+                   log->path, error->value, error->limit);
+    if (log->procedure == IMK_PROCEDURE_THERMAL && log->record.temperature)
+        return few_temperatures(to, log, error);
+    return 0;
+}
+
+static size_t key_missing(const message *to, const imk_calibrate_record *log,
+                          const imk_error *error)
+{
+    const char *name = imk_procedure_name(log->procedure);
+    if (strncmp(error->field, "reference", 9) == 0)
+        return say(to,
+                   "%s: %s needs to know what the unit was exposed to%s%s: add --motion "
+                   "PROGRAMME, or columns such as reference_rate_z [deg/s] and "
+                   "reference_force_x [g] to the log",
+                   log->path, name, error->expected[0] ? "; " : "", error->expected);
+    if (strcmp(error->field, "temperature") == 0)
+        return say(to, "%s has no column temperature [degC], which %s needs", log->path, name);
+    if (strcmp(error->field, "section") == 0)
+        return say(to,
+                   "%s: %s needs a column of texts that names the sections: add "
+                   "--section NAME",
+                   log->path, name);
+    return say(to, "%s: %s needs %s", log->path, name,
+               error->expected[0] ? error->expected : error->field);
+}
+
+static size_t unit_missing(const message *to, const imk_calibrate_log *b,
+                           const imk_calibrate_record *log, const imk_error *error)
+{
+    const int sensor = strncmp(error->field, "gyro", 4) == 0 ? 0 : 1;
+    return say(
+        to,
+        "%s: the %s readings are counts, and %s does not tell how many make a unit: add "
+        "--%s-sensitivity \"%s\" from the data sheet, or --model MODEL of an earlier calibration",
+        log->path, imki_sensor_titles[sensor],
+        b->settings.repeatability ? "repeatability" : imk_procedure_name(log->procedure),
+        imki_sensor_keys[sensor], sensor == 0 ? "4778 count/(rad/s)" : "415 count/(m/s^2)");
+}
+
+/* Columns without a single number, or rows. */
+static size_t not_finite(const message *to, const imk_calibrate_record *log)
+{
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int axis = 0; axis < log->record.axis_count[sensor]; axis++) {
+            size_t row = 0;
+            while (row < log->record.count && !isfinite(log->record.reading[sensor][axis][row]))
+                row++;
+            if (row == log->record.count)
+                return say(to,
+                           "%s: %s_%c is never a number: nothing can be estimated from "
+                           "it; look into the log, or name the columns with --columns",
+                           log->path, imki_sensor_keys[sensor], imk_axis_letter(axis));
+        }
+    size_t first;
+    const size_t missing = imk_test_record_missing(&log->record, &first);
+    if (missing > 0)
+        return say(to,
+                   "%s: %.3g %% of its rows have an empty cell, or one that is no "
+                   "number, in a gyro or accelerometer column, and no stretch between "
+                   "them is long enough: log all sensors at one rate, or leave a sensor "
+                   "out by --columns (- skips a column)",
+                   log->path, 100 * (double)missing / (double)log->record.count);
+    return 0;
+}
+
+/* Readings that do not do what the reference does. */
+static size_t not_following(const message *to, const imk_calibrate_record *log,
+                            const imk_error *error)
+{
+    const bool of_axis = error->index >= 0 &&
+                         (strcmp(error->field, "gyro") == 0 || strcmp(error->field, "accel") == 0);
+    if (!of_axis)
+        return 0;
+    return say(to,
+               "%s: %s_%c changes by %.3g times what the reference changes by, where 1 "
+               "is due: check the unit, the signs and the order of the axes, and that "
+               "the log and the programme are of the same test and begin together "
+               "(--motion-offset auto)",
+               log->path, error->field, imk_axis_letter(error->index), error->value);
+}
+
+size_t imk_calibrate_record_failure(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                    const imk_error *error, char *text, size_t size)
+{
+    const message place = {text, size}, *to = &place;
+    if (imki_calibrate_useless(b, log, text, size))
+        return strlen(text);
+    switch (error->status) {
+    case IMK_ERROR_TOO_SHORT:
+        return too_short(to, log, error);
+    case IMK_ERROR_KEY_MISSING:
+        return key_missing(to, log, error);
+    case IMK_ERROR_UNIT_MISSING:
+        return unit_missing(to, b, log, error);
+    case IMK_ERROR_NOT_FINITE:
+        return not_finite(to, log);
+    case IMK_ERROR_CONFLICT:
+        return not_following(to, log, error);
+    default:
+        return 0;
+    }
+}
+
+/* ---- solution -------------------------------------------------------------------------------- */
+
+/* What would determine a parameter. */
+static const char *remedy_for(const imk_model_parameter *parameter)
+{
+    switch (parameter->term) {
+    case IMK_MODEL_BIAS:
+        return "hold the unit with this axis both up and down";
+    case IMK_MODEL_SCALE_FACTOR:
+        return parameter->sensor == 0 ? "turn the unit about this axis, by 90 deg or more"
+                                      : "hold the unit with this axis both up and down";
+    case IMK_MODEL_MISALIGNMENT:
+    case IMK_MODEL_CROSS_AXIS:
+        return parameter->sensor == 0
+                   ? "turn the unit about the other axis too"
+                   : "hold the unit in poses between the axes too, such as on its edges";
+    case IMK_MODEL_G_SENSITIVITY:
+    case IMK_MODEL_G2_SENSITIVITY:
+        return "hold the unit in more attitudes, each axis up and down, or leave it out: --without "
+               "g_sensitivity,g2_sensitivity";
+    case IMK_MODEL_LEVER_ARM:
+        return "turn the unit fast about two axes at least";
+    case IMK_MODEL_BIAS_TEMPERATURE:
+    case IMK_MODEL_SCALE_TEMPERATURE:
+    case IMK_MODEL_TEMPERATURE_RATE:
+        return "sweep the temperature wider, or lower --temperature-order";
+    default:
+        return "apply more levels of it, of both signs, or leave it out: --without nonlinearity";
+    }
+}
+
+static size_t undetermined(const message *to, const imk_calibrate_log *b, const imk_error *error)
+{
+    imk_model_parameter parameter;
+    char poses[160] = "";
+    if (imk_model_parameter_parse(error->field, &parameter) != IMK_OK)
+        return 0;
+    const imk_triad *triad =
+        parameter.sensor == 0 ? &b->calibration->model.gyro : &b->calibration->model.accel;
+    if (triad->axis_count > 3 && !b->settings.model_given)
+        return say(to,
+                   "the log has %d %s axes, and where they point is not known: add "
+                   "--model MODEL that says so, as %s.direction",
+                   triad->axis_count, imki_sensor_titles[parameter.sensor],
+                   imki_sensor_keys[parameter.sensor]);
+    if (b->count == 1 && b->record[0].procedure == IMK_PROCEDURE_MULTIPOSITION)
+        imki_calibrate_poses(b, &b->record[0], "; of further poses most would tell ", poses,
+                             sizeof poses);
+    return say(to, "the logs do not determine %s: %s%s", error->field, remedy_for(&parameter),
+               poses);
+}
+
+size_t imk_calibrate_failure(const imk_calibrate_log *b, const imk_error *error, char *text,
+                             size_t size)
+{
+    const message place = {text, size}, *to = &place;
+    for (size_t k = 0; k < b->count; k++)
+        if (imki_calibrate_useless(b, &b->record[k], text, size))
+            return strlen(text);
+    switch (error->status) {
+    case IMK_ERROR_SINGULAR:
+        return undetermined(to, b, error);
+    case IMK_ERROR_UNIT_MISSING:
+        return unit_missing(to, b, &b->record[0], error);
+    case IMK_ERROR_TOO_SHORT:
+        return say(to,
+                   "%g observations%s%s are too few, %g are needed: add poses or turns "
+                   "that differ from those there are",
+                   error->value, error->field[0] ? " of " : "", error->field, error->limit);
+    case IMK_ERROR_NO_CONVERGENCE:
+        return say(to, "no set of parameters fits the logs: the estimate does not settle. "
+                       "Check units (--accel-unit, --gyro-unit), --gravity, and that each "
+                       "log is of the procedure named");
+    case IMK_ERROR_NOT_FINITE:
+        return say(to,
+                   "a reading that is no number came into the estimate%s%s: nothing is "
+                   "estimated from it",
+                   error->field[0] ? ", in " : "", error->field);
+    case IMK_ERROR_CONFLICT:
+        if (strcmp(error->field, "frame") == 0)
+            return say(to, "--frame %s contradicts what is estimated: %s",
+                       imk_triad_frame_name(b->calibration->frame),
+                       error->expected[0] ? error->expected : "name another frame, or other terms");
+        return 0;
+    default:
+        return 0;
+    }
+}
