@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit navigate: a log -> where the unit went, or what it drifts when it went nowhere. */
 #include "navigate_parts.h"
+#include "shell/job_progress.h"
+#include "shell/show.h"
+
+#include "imukit/show.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const option navigate_option_table[] = {
     {"position", 'p', OPTION_TEXT, "POSITION", NULL, NULL,
@@ -98,61 +103,77 @@ const verb navigate_verb = {
                 offsetof(navigate_options, log)}},
     .run = run};
 
-static bool is_known(const imk_axes *axes, int count)
+static int show(const imk_navigate_log *n, const navigate_options *o, const char *path)
 {
-    for (int i = 0; i < count; i++)
-        if (axes->value[i] != 0.0)
-            return true;
-    return false;
-}
-
-/* What a model knows is for imukit compensate. */
-static void warn_of_model(const navigation *n)
-{
-    if (!n->has_model || n->model->residual_of[0])
-        return;
-    const imk_triad *triad[2] = {&n->model->gyro, &n->model->accel};
-    for (int sensor = 0; sensor < 2; sensor++)
-        if (is_known(&triad[sensor]->bias.fixed, triad[sensor]->axis_count) ||
-            is_known(&triad[sensor]->scale_factor.fixed, triad[sensor]->axis_count)) {
-            command_warn("compensate_first",
-                         "%s knows fixed errors of the %ss: the log is taken for one from which "
-                         "they are gone already (imukit compensate)",
-                         n->options->model, sensor == 0 ? "gyro" : "accelerometer");
-            return;
-        }
-}
-
-static int show(const navigation *n)
-{
-    const navigate_options *o = n->options;
-    const bool warned = command_warning_count() > 0;
-    const int code = o->output ? navigate_write_track(n, o->output) : -1;
-    if (code >= 0)
-        return code;
-    imk_result *result = show_begin("navigate");
-    navigate_show(n, warned, result);
-    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
-                    o->strict && warned ? EXIT_FAILED : EXIT_DONE);
-}
-
-static int navigate(navigation *n)
-{
-    int code = navigate_parse(n);
-    if (code < 0)
-        code = navigate_load(n);
-    if (code >= 0)
-        return code;
-    code = navigate_check(n);
-    if (code < 0)
-        code = navigate_align(n);
-    if (code < 0) {
-        warn_of_model(n);
-        code = navigate_run(n);
+    if (o->output) {
+        imk_error error;
+        imk_log_sink log = {.path = o->output, .fixed = true};
+        const imk_record_sink sink = imk_log_sink_of(&log);
+        const imk_status status = imk_navigate_log_track(n, &sink, &error);
+        if (imk_log_sink_end(&log, status, &error) != IMK_OK)
+            return command_error(&error, NULL);
     }
+    imk_result *result = show_begin("navigate");
+    imk_show_navigate_log(n, path, result);
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    if (!o->model)
+        imk_result_line(result, "Next: add --model MODEL for the error that the sensors' model "
+                                "predicts (imukit identify, imukit devices)");
+    imk_result_for(result, IMK_FOR_PAGE);
+    show_origin(result);
+    return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
+                    o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE);
+}
+
+/* Failures that are not of the log alone. */
+static int tell(const imk_navigate_log *n, const navigate_options *o, const char *path,
+                imk_status status, const imk_error *error)
+{
+    static const struct {
+        const char *code;
+        bool named; /* begins with the path */
+    } sentences[] = {
+        {"no_sensor_column", true}, {"align_whole", true}, {"pole", false}, {"rest_short", false}};
+    const imk_findings none = {.count = 0}, *findings = n ? &n->findings : &none;
+    const imk_finding *failure = status != IMK_OK ? imk_findings_failure(findings) : NULL;
+    char text[400];
+    if (!failure)
+        return log_input_tell(path, findings, status, error);
+    log_input_tell(path, findings, IMK_OK, error);
+    imk_finding_text(failure, text, sizeof text);
+    if (strcmp(failure->code, "no_gravity_unit") == 0)
+        return command_misused("--standard-gravity: no accelerometer column of %s is in g, mg or "
+                               "ug",
+                               path);
+    for (size_t i = 0; i < sizeof sentences / sizeof sentences[0]; i++)
+        if (strcmp(failure->code, sentences[i].code) == 0)
+            return sentences[i].named ? command_failed("%s %s", path, text)
+                                      : command_failed("%s", text);
+    const bool of_model = strcmp(failure->code, "model_axes") == 0;
+    return command_failed("%s: %s", of_model ? o->model : path, text);
+}
+
+static int navigate(const navigate_options *o, const char *path,
+                    const imk_navigate_log_settings *settings)
+{
+    imk_log_reader *reader;
+    int code = log_input_check(&o->log);
     if (code < 0)
-        code = show(n);
-    navigate_free(n);
+        code = log_input_open(&o->log, path, false, &reader);
+    if (code >= 0)
+        return code;
+    imk_navigate_log *n;
+    imk_error error;
+    job_progress shown = job_progress_begin(path);
+    const imk_job job = job_progress_job(&shown, NULL);
+    const imk_record_source source = imk_log_source(reader);
+    const imk_status status = imk_navigate_log_run(&source, settings, &job, &n, &error);
+    job_progress_end(&shown);
+    imk_log_close(reader);
+    code = tell(n, o, path, status, &error);
+    if (code < 0)
+        code = show(n, o, path);
+    imk_navigate_log_free(n);
     return code;
 }
 
@@ -172,13 +193,11 @@ static int run(int count, char **words)
         code = command_check_plot(o.plot);
     if (code >= 0)
         return code;
+    imk_navigate_log_settings settings = imk_navigate_log_default();
     imk_model *model = command_memory(NULL, sizeof *model);
-    navigation *n = command_zeroed(sizeof *n);
-    n->options = &o;
-    n->path = operands[0];
-    n->model = model;
-    code = navigate(n);
+    code = navigate_parse(&o, model, &settings);
+    if (code < 0)
+        code = navigate(&o, operands[0], &settings);
     free(model);
-    free(n);
     return code;
 }

@@ -8,6 +8,7 @@
 #include "imukit/allan_log.h"
 #include "imukit/calibrate_log.h"
 #include "imukit/identify_several.h"
+#include "imukit/navigate_log.h"
 #include "imukit/record_plan.h"
 #include "imukit/result.h"
 #include "imukit/spectrum_log.h"
@@ -22,6 +23,9 @@ IMK_API void imk_show_allan_log(const imk_allan_log *allan, const char *name, im
 /** Densities, lines and parameters: a table for each kind of sensor, a figure. */
 IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char *name,
                                    imk_result *result);
+
+/** Attitude at the start, the track and its end, and a figure. */
+IMK_API void imk_show_navigate_log(const imk_navigate_log *n, const char *name, imk_result *result);
 
 /** @name What was identified
  *  @{ */

@@ -3,7 +3,9 @@
  *
  * In braces stands the place of a number of the finding and how it is written: {0} a count, {1g} as
  * %g, {2.1f} as %.1f, {0s} an s unless the count is one, {0a} the name of an Allan statistic, {0t}
- * the text of a status. {name} is the name. */
+ * the text of a status. {name} is the name; {other} what stands behind a tab in it. Between {2?}
+ * and
+ * {?} stands what is told where number 2 is not 0, behind {2!} what is told where it is. */
 #include "imukit/allan.h"
 #include "imukit/job.h"
 
@@ -116,6 +118,51 @@ static const struct message {
     {"misfit", "{name}: the four noise terms do not explain the spectrum (misfit {0.1f}, worst at "
                "{1.3g} Hz: {2.2f} of the fit); an output filter, a resonance or a correlated noise "
                "is there: see imukit identify, or fit a part with --from and --to"},
+    /* navigate_log.c, navigate_align.c, navigate_run.c */
+    {"column_of_counts", "{name} is in counts: imukit compensate makes rates and forces of them"},
+    {"no_sensor_column", "has no column {name}: navigation needs three gyros and three "
+                         "accelerometers"},
+    {"no_gravity_unit", "no accelerometer column is in g, mg or ug"},
+    {"align_empty", "no sample falls into --align {0.6g}s: its rows are {1.6g} s apart; align for "
+                    "longer, or correct --rate or the times"},
+    {"align_whole", "is {0.6g} s long: nothing is left after --align {1.6g}s"},
+    {"compensate_first", "{name} knows fixed errors of the {0?}accelerometer{0!}gyro{?}s: the log "
+                         "is taken for one from which they are gone already (imukit compensate)"},
+    {"no_gravity", "at rest the accelerometers read {0.4g} of gravity: their unit, {name}, is "
+                   "{1?}likely to be {other}{1!}wrong, or gravity is not in them, or the unit does "
+                   "not stand still"},
+    {"standard_gravity", "at rest the accelerometers read {0.6f} of gravity, as if g stood for "
+                         "9.780327 m/s^2 in this log: add --standard-gravity \"9.780327 m/s^2\" "
+                         "if it does"},
+    {"earth_rate", "at rest the gyros read {0.3g} times the Earth's rotation: {1?}their unit, "
+                   "{name}, may be {other}; or {2?}a bias; imukit compensate takes it out{2!}north "
+                   "cannot be found from that; take out the bias (imukit compensate) or add "
+                   "--heading"},
+    {"axes", "the angle between force and rotation is that of latitude {0.1f} deg, not of {1.1f} "
+             "deg: {2?}the sign of the latitude is wrong, or that of all gyros or all "
+             "accelerometers{2!}the axes are others than forward-right-down (--axes), or a bias is "
+             "large"},
+    {"start_acceleration",
+     "in the attitude given the log begins with an acceleration of {0.3g} m/s^2: {1?}the "
+     "accelerometers' unit, {name}, is likely to be {other}{1!}the attitude, --axes or the unit of "
+     "the accelerometers is wrong, or it moves from the first row on"},
+    {"pole", "within 1 deg of a pole there is no north to align to: give --attitude"},
+    {"align_short", "--align {0.6g}s is too short to find an attitude; minutes are due"},
+    {"rest_short", "--align {0.6g}s is too short to learn what rest looks like: {1g} s are due"},
+    {"model_axes", "navigation needs three gyros and three accelerometers"},
+    {"navigation_failed", "{0t}"},
+    {"updates_refused", "{0} of {1} updates do not fit what the model allows and were refused, "
+                        "first at {2.1f} s: the unit moved then, or the model is too good for it"},
+    {"steady_motion", "{0.4g} s look like standing, but begin with a velocity that is not 0: taken "
+                      "for smooth motion and not used"},
+    {"updates_lost", "the last {0} updates were all refused: the estimate is lost{1?}, or the unit "
+                     "moved smoothly ever since"},
+    {"no_stop", "no standstill was {0?}found{0!}due before the end of the log{?}: there was no "
+                "update"},
+    {"model_too_good", "innovations are {0.1f} times as large as the model says (squared: {1.1f}): "
+                       "its predictions are too good"},
+    {"left_the_earth", "by {0.3f} s the estimate has left the Earth's surroundings: a reading "
+                       "before is absurd, or its unit wrong"},
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 
@@ -156,16 +203,24 @@ static void put_number(writing *w, double number, const char *how, size_t length
 
 static void put_message(writing *w, const char *message, const imk_finding *finding)
 {
+    const size_t first = strcspn(finding->name, "\t");
+    bool told = true;
     for (const char *c = message; *c;) {
         const size_t plain = strcspn(c, "{");
-        put(w, c, plain);
+        if (told)
+            put(w, c, plain);
         c += plain;
         if (!*c)
             return;
         const size_t length = strcspn(c, "}");
-        if (strncmp(c, "{name}", 6) == 0)
-            put(w, finding->name, strlen(finding->name));
-        else
+        const char how = c[length - 1];
+        if (how == '?' || how == '!')
+            told = length == 2 || (finding->number[c[1] - '0'] != 0) == (how == '?');
+        else if (told && strncmp(c, "{name}", 6) == 0)
+            put(w, finding->name, first);
+        else if (told && strncmp(c, "{other}", 7) == 0)
+            put(w, finding->name + first + 1, strlen(finding->name + first + 1));
+        else if (told)
             put_number(w, finding->number[c[1] - '0'], c + 2, length - 2);
         c += length + 1;
     }

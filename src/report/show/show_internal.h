@@ -33,4 +33,8 @@ size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t
 void imki_show_estimate(imk_result *result, const char *key, const imk_estimate *estimate,
                         double scale, const char *unit);
 
+bool imki_warned(const imk_findings *findings);
+/* The warnings, as findings of the page. */
+void imki_show_warnings(const imk_findings *findings, imk_result *result);
+
 #endif

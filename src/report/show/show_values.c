@@ -76,3 +76,21 @@ void imki_show_estimate(imk_result *result, const char *key, const imk_estimate 
     imk_result_quantity(result, "upper", estimate->upper / scale, unit);
     imk_result_end(result);
 }
+
+bool imki_warned(const imk_findings *findings)
+{
+    for (size_t i = 0; i < findings->count; i++)
+        if (findings->item[i].level == IMK_FINDING_WARNING)
+            return true;
+    return false;
+}
+
+void imki_show_warnings(const imk_findings *findings, imk_result *result)
+{
+    char text[400];
+    for (size_t i = 0; i < findings->count; i++)
+        if (findings->item[i].level == IMK_FINDING_WARNING) {
+            imk_finding_text(&findings->item[i], text, sizeof text);
+            imk_result_finding(result, 2, text);
+        }
+}

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The attitude at the start: found, or given; and whether what the sensors read at rest can be
+ * gravity and the Earth's rotation. */
+#include "imukit/samples.h"
+#include "navigate_log_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double degree = 0.017453292519943295;
+
+static imk_vector3 mean_of_rows(const imk_navigate_log *n, int sensor, size_t rows)
+{
+    imk_vector3 sum = {{0}};
+    for (size_t row = 0; row < rows; row++)
+        for (int i = 0; i < 3; i++)
+            sum.v[i] += n->reading[3 * sensor + i][row];
+    return imk_vector3_scale(sum, 1.0 / (double)rows);
+}
+
+/* Mean reading of the time of alignment. */
+static imk_vector3 mean_reading(const imk_navigate_log *n, int sensor)
+{
+    return mean_of_rows(n, sensor, n->first);
+}
+
+/* The unit, unlike its own, in which the numbers of a column would be gravity, or the Earth's
+ * rotation, within a tolerance; NULL: none. @param ratio  to that, in its own unit */
+static const char *likely_unit(const imk_log_column *column, double ratio, double tolerance)
+{
+    enum { UNITS = 6 };
+    static const char *const lists[4][UNITS] = {
+        {"rad/s", "deg/s", "deg/h", "mrad/s", "mdeg/s", "urad/s"},
+        {"rad", "deg", "arcsec", "mrad", "mdeg", "urad"},
+        {"m/s^2", "g", "mg", "ug", "mm/s^2", "cm/s^2"},
+        {"m/s", "g*s", "mg*s", "ug*s", "mm/s", "cm/s"}};
+    const int sensor = column->quantity == IMK_QUANTITY_SPECIFIC_FORCE;
+    const char *const *units = lists[2 * sensor + column->increment];
+    for (int k = 0; k < UNITS; k++) {
+        const double scale = imk_unit_of(units[k]).scale / column->unit.scale;
+        if (fabs(ratio * scale - 1.0) < tolerance && strcmp(units[k], column->unit.text) != 0)
+            return units[k];
+    }
+    return NULL;
+}
+
+static const imk_log_column *first_column(const imk_navigate_log *n, imk_quantity quantity)
+{
+    return &n->record.log.column[imk_log_find(&n->record.log, quantity, 0)];
+}
+
+/* A finding with the unit of a column and the one it is likely to be, if any. */
+static void names_of_units(const imk_log_column *column, const char *likely, char text[96])
+{
+    snprintf(text, 96, "%s\t%s", column->unit.text, likely ? likely : "");
+}
+
+/* Of the force at rest to gravity. */
+static double gravity_ratio(const imk_navigate_log *n)
+{
+    const imk_geodetic *place = &n->settings.place;
+    return imk_vector3_norm(mean_reading(n, 1)) /
+           imk_normal_gravity(place->latitude, place->height);
+}
+
+static imk_status check_force(imk_navigate_log *n, imk_error *error)
+{
+    const double tolerance = 0.05, ratio = gravity_ratio(n);
+    if (fabs(ratio - 1.0) <= tolerance)
+        return IMK_OK;
+    const imk_log_column *column = first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
+    const char *unit = likely_unit(column, ratio, tolerance);
+    char names[96];
+    names_of_units(column, unit, names);
+    return imki_fail(&n->findings, error, IMK_ERROR_UNIT_UNKNOWN, "no_gravity", names,
+                     IMKI_NUMBERS(ratio, unit != NULL));
+}
+
+/* g means 9.780327 m/s^2, gravity at the equator, to some makers: a ratio of 1.0026905. */
+static void check_gravity_unit(imk_navigate_log *n)
+{
+    const double ratio = gravity_ratio(n);
+    const imk_log_column *column = first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
+    if (fabs(ratio - 9.80665 / 9.780327) < 1e-4 && strchr(column->unit.text, 'g') != NULL)
+        imki_find(&n->findings, IMK_FINDING_WARNING, "standard_gravity", NULL, IMKI_NUMBERS(ratio));
+}
+
+/* 1 sigma of a gyro's bias as the model has it, worst axis. */
+static double bias_size(const imk_navigate_log *n)
+{
+    const imk_model *model = n->settings.model;
+    double worst = 0.0;
+    for (int i = 0; i < 3 && model; i++)
+        worst = fmax(worst, hypot(model->gyro.bias.repeatability.value[i],
+                                  model->gyro.noise.bias_instability.value[i]));
+    return worst;
+}
+
+/* The angle between force and rotation is that of the place: 90 deg + latitude. */
+static void check_rotation(imk_navigate_log *n)
+{
+    const imk_vector3 rate = mean_reading(n, 0), force = mean_reading(n, 1);
+    const double ratio = imk_vector3_norm(rate) / IMK_EARTH_RATE;
+    const double sine =
+        -imk_vector3_dot(rate, force) / (imk_vector3_norm(rate) * imk_vector3_norm(force));
+    const double latitude = asin(fmin(1.0, fmax(-1.0, -sine)));
+    const double tolerance = 0.1 + 3.0 * bias_size(n) / IMK_EARTH_RATE;
+    if (!(fabs(ratio - 1.0) <= tolerance)) {
+        const imk_log_column *column = first_column(n, IMK_QUANTITY_ANGULAR_RATE);
+        const char *unit = likely_unit(column, ratio, 0.1);
+        char names[96];
+        names_of_units(column, unit, names);
+        imki_find(&n->findings, IMK_FINDING_WARNING, "earth_rate", names,
+                  IMKI_NUMBERS(ratio, unit != NULL, n->settings.heading_given));
+        return;
+    }
+    /* Of the angle 3 deg are a bias of 0.8 deg/h, or an accelerometer's of 50 mg. */
+    const double doubt = 3.0 * degree + 3.0 * bias_size(n) / IMK_EARTH_RATE;
+    const double place = n->settings.place.latitude;
+    const bool opposite = fabs(latitude + place) < doubt && fabs(latitude) > doubt;
+    if (opposite || fabs(latitude - place) > doubt)
+        imki_find(&n->findings, IMK_FINDING_WARNING, "axes", NULL,
+                  IMKI_NUMBERS(latitude / degree, place / degree, opposite));
+}
+
+/* In a given attitude the force of the first second, less gravity, is an acceleration. */
+static void check_start(imk_navigate_log *n)
+{
+    const imk_navigate_log_settings *o = &n->settings;
+    const double g = imk_normal_gravity(o->place.latitude, o->place.height), tolerance = 0.05;
+    const size_t second = n->record.dt < 1.0 ? imk_samples_in(1.0, n->record.dt) : 1;
+    const imk_vector3 force = mean_of_rows(n, 1, second < n->record.rows ? second : n->record.rows);
+    imk_vector3 acceleration = imk_matrix3_apply(
+        imk_matrix3_from_euler(o->attitude[0], o->attitude[1], o->attitude[2]), force);
+    acceleration.v[2] += g;
+    if (imk_vector3_norm(acceleration) <= tolerance * g)
+        return;
+    const imk_log_column *column = first_column(n, IMK_QUANTITY_SPECIFIC_FORCE);
+    const char *unit = likely_unit(column, imk_vector3_norm(force) / g, tolerance);
+    char names[96];
+    names_of_units(column, unit, names);
+    imki_find(&n->findings, IMK_FINDING_WARNING, "start_acceleration", names,
+              IMKI_NUMBERS(imk_vector3_norm(acceleration), unit != NULL));
+}
+
+imk_status imki_navigate_check(imk_navigate_log *n, imk_error *error)
+{
+    if (!imki_navigate_aligns(n)) {
+        check_start(n);
+        return IMK_OK;
+    }
+    const imk_status status = check_force(n, error);
+    if (status == IMK_OK) {
+        check_gravity_unit(n);
+        check_rotation(n);
+    }
+    return status;
+}
+
+/* Angles known to sigma: those of roll and pitch are about axes turned by the heading. */
+static void given_attitude(imk_navigate_log *n)
+{
+    memcpy(n->attitude, n->settings.attitude, sizeof n->attitude);
+    memcpy(n->attitude_sigma, n->settings.attitude_sigma, sizeof n->attitude_sigma);
+    const imk_matrix3 c_nb = imk_matrix3_from_euler(n->attitude[0], n->attitude[1], n->attitude[2]);
+    n->start = imk_navigation_state_ned(n->record.dt * (double)n->first, n->settings.place,
+                                        (imk_vector3){{0}}, c_nb);
+    n->attitude[0] = remainder(n->attitude[0], 360.0 * degree);
+    n->attitude[2] = remainder(n->attitude[2], 360.0 * degree);
+    const double c = cos(n->attitude[2]), s = sin(n->attitude[2]);
+    const double roll = n->attitude_sigma[0], pitch = n->attitude_sigma[1];
+    n->attitude_sigma[0] = hypot(c * roll, s * pitch);
+    n->attitude_sigma[1] = hypot(s * roll, c * pitch);
+}
+
+/* Gravity's turn in inertial axes is lost in biases larger than the Earth's rotation, and the tilt
+ * with it: of 20 deg that they turn in the time it is off by 14. The mean force asks no gyro. */
+static imk_alignment_method chosen_method(const imk_navigate_log *n)
+{
+    const double coarse = 1.5 * IMK_EARTH_RATE;
+    if (n->settings.method_given)
+        return n->settings.method;
+    return imk_vector3_norm(mean_reading(n, 0)) > coarse ? IMK_ALIGNMENT_MEANS
+                                                         : IMK_ALIGNMENT_INERTIAL;
+}
+
+static imk_status self_align(imk_navigate_log *n, imki_arena *scratch, imk_error *error)
+{
+    const double dt = n->record.dt;
+    imk_alignment_settings settings = imk_alignment_default();
+    imk_alignment *alignment;
+    settings.method = n->method;
+    settings.place = n->settings.place;
+    settings.duration = dt * (double)n->first;
+    settings.model = n->settings.model;
+    const size_t size = imk_alignment_size(&settings);
+    void *memory = imki_arena_take(scratch, size);
+    if (!memory)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imk_status status = imk_alignment_start(memory, size, &settings, &alignment, error);
+    for (size_t row = 0; row < n->first && status == IMK_OK; row++)
+        imk_alignment_add(alignment, dt, imki_navigate_increment(n, 0, row),
+                          imki_navigate_increment(n, 1, row), NULL);
+    if (status == IMK_OK)
+        status = imk_alignment_finish(alignment, &n->alignment, error);
+    if (status == IMK_ERROR_CONFLICT)
+        return imki_fail(&n->findings, error, status, "pole", NULL, 0, NULL);
+    /* Fewer equations than unknowns leave no covariance. */
+    bool known = true;
+    for (int i = 0; i < 3; i++)
+        known = known && n->alignment.covariance[i][i] >= 0.0 &&
+                isfinite(n->alignment.covariance[i][i]);
+    if (status == IMK_ERROR_TOO_SHORT || (status == IMK_OK && !known))
+        return imki_fail(&n->findings, error, IMK_ERROR_TOO_SHORT, "align_short", NULL,
+                         IMKI_NUMBERS(n->settings.align));
+    return status;
+}
+
+/* The heading is known, from elsewhere; roll and pitch stay. */
+static void turn_to_heading(imk_navigate_log *n)
+{
+    n->attitude[2] = remainder(n->settings.attitude[2], 360.0 * degree);
+    const imk_matrix3 c_nb = imk_matrix3_from_euler(n->attitude[0], n->attitude[1], n->attitude[2]);
+    n->start = imk_navigation_state_ned(n->start.time, n->settings.place, (imk_vector3){{0}}, c_nb);
+    for (int i = 0; i < 3; i++)
+        n->alignment.covariance[2][i] = n->alignment.covariance[i][2] = 0.0;
+    n->attitude_sigma[2] = n->settings.attitude_sigma[2];
+    n->alignment.covariance[2][2] = n->settings.attitude_sigma[2] * n->settings.attitude_sigma[2];
+    n->alignment.state = n->start;
+}
+
+imk_status imki_navigate_align(imk_navigate_log *n, imki_arena *scratch, imk_error *error)
+{
+    if (!imki_navigate_aligns(n)) {
+        given_attitude(n);
+        return IMK_OK;
+    }
+    n->method = chosen_method(n);
+    const imk_status status = self_align(n, scratch, error);
+    if (status != IMK_OK)
+        return status;
+    n->start = n->alignment.state;
+    n->attitude[0] = n->alignment.roll;
+    n->attitude[1] = n->alignment.pitch;
+    n->attitude[2] = n->alignment.yaw;
+    for (int i = 0; i < 3; i++)
+        n->attitude_sigma[i] = sqrt(n->alignment.covariance[i][i]);
+    if (n->settings.heading_given)
+        turn_to_heading(n);
+    return IMK_OK;
+}

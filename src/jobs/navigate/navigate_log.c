@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Navigation by a record: what is asked, what its columns are, and the steps. */
+#include "imukit/samples.h"
+#include "navigate_log_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+static const uint32_t settings_cookie = 0x4e415631; /* "NAV1" */
+static const double standard_gravity = 9.80665;
+
+imk_navigate_log_settings imk_navigate_log_default(void)
+{
+    return (imk_navigate_log_settings){.cookie = settings_cookie,
+                                       .align = 300,
+                                       .method = IMK_ALIGNMENT_INERTIAL,
+                                       .still_velocity = 0.01,
+                                       .hold_height = true,
+                                       .samples = 3,
+                                       .interval = 1,
+                                       .standard_gravity = standard_gravity};
+}
+
+void imk_navigate_log_free(imk_navigate_log *result)
+{
+    if (!result)
+        return;
+    const imk_allocator allocator = result->record.log.allocator;
+    imki_resize(&allocator, result->track[0], 0);
+    imk_even_record_free(&result->record);
+    imki_resize(&allocator, result, 0);
+}
+
+/* The first setting that is none, or NULL. */
+static const char *wrong_setting(const imk_navigate_log_settings *s)
+{
+    const bool timetable = s->stops == IMK_STOPS_TIMETABLE;
+    if (!(s->align >= 1 || s->align == 0))
+        return "align";
+    if (s->stops != IMK_STOPS_NONE && !s->model)
+        return "model";
+    if (s->stops == IMK_STOPS_FOUND && s->align == 0)
+        return "stops";
+    if (timetable && !(s->stop_length > 0 && s->stop_length <= s->stop_period))
+        return "stop_length";
+    if (!(s->still_velocity > 0))
+        return "still_velocity";
+    if (!(s->still_rotation >= 0))
+        return "still_rotation";
+    if (!(s->interval > 0))
+        return "interval";
+    return s->standard_gravity > 9.7 && s->standard_gravity < 9.9 ? NULL : "standard_gravity";
+}
+
+/* ---- columns --------------------------------------------------------------------------------- */
+
+/* Is one of the units in a product g, or a multiple of it (mg, ug)? */
+static bool has_gravity_unit(const char *text)
+{
+    while (*text) {
+        const char *start = text;
+        while ((*text >= 'a' && *text <= 'z') || (*text >= 'A' && *text <= 'Z') ||
+               (unsigned char)*text >= 0x80)
+            text++;
+        const size_t length = (size_t)(text - start);
+        if (length > 0 && length < 8 && text[-1] == 'g' &&
+            (length == 1 || *start == 'm' || *start == 'u' || (unsigned char)*start >= 0x80))
+            return true;
+        text += text == start;
+    }
+    return false;
+}
+
+/* g of the log's maker instead of 9.80665 m/s^2. */
+static imk_status scale_gravity(imk_navigate_log *n, imk_error *error)
+{
+    const double factor = n->settings.standard_gravity / standard_gravity;
+    bool any = false;
+    if (factor == 1.0)
+        return IMK_OK;
+    for (size_t k = 0; k < n->record.count; k++) {
+        const imk_log_column *column = imk_even_record_column(&n->record, k);
+        if (column->quantity != IMK_QUANTITY_SPECIFIC_FORCE || !has_gravity_unit(column->unit.text))
+            continue;
+        any = true;
+        double *data = imk_even_record_data(&n->record, k);
+        for (size_t row = 0; row < n->record.rows; row++)
+            data[row] *= factor;
+    }
+    return any ? IMK_OK
+               : imki_fail(&n->findings, error, IMK_ERROR_UNIT_UNKNOWN, "no_gravity_unit", NULL, 0,
+                           NULL);
+}
+
+/* The six channels there must be, and no others of their kinds. */
+static imk_status find_channels(imk_navigate_log *n, imk_error *error)
+{
+    static const char *const sensors[2] = {"gyro", "accel"};
+    for (size_t k = 0; k < n->record.count; k++) {
+        const imk_log_column *column = imk_even_record_column(&n->record, k);
+        const bool gyro = column->quantity == IMK_QUANTITY_ANGULAR_RATE;
+        if (imk_dimension_equal(column->unit.dimension, imk_unit_of("count").dimension))
+            return imki_fail(&n->findings, error, IMK_ERROR_COLUMN, "column_of_counts",
+                             column->name, 0, NULL);
+        if (column->quantity == IMK_QUANTITY_OTHER || column->axis > 2)
+            continue;
+        n->reading[(gyro ? 0 : 3) + column->axis] = imk_even_record_data(&n->record, k);
+    }
+    for (int k = 0; k < 6; k++) {
+        char name[48];
+        imk_axis_name(sensors[k / 3], k % 3, name);
+        if (!n->reading[k])
+            return imki_fail(&n->findings, error, IMK_ERROR_COLUMN, "no_sensor_column", name, 0,
+                             NULL);
+    }
+    return IMK_OK;
+}
+
+imk_status imki_navigate_channels(imk_navigate_log *n, imk_error *error)
+{
+    const imk_log *log = &n->record.log;
+    const double align = n->settings.align, dt = n->record.dt;
+    const int time = imk_log_find(log, IMK_QUANTITY_TIME, -1);
+    if (time >= 0 && n->record.rows == log->rows && isfinite(log->data[time][0]))
+        n->first_time = log->data[time][0];
+    imk_status status = find_channels(n, error);
+    if (status == IMK_OK)
+        status = scale_gravity(n, error);
+    if (status != IMK_OK || !(align > 0))
+        return status;
+    n->first = imk_samples_in(align, dt);
+    if (n->first == 0)
+        return imki_fail(&n->findings, error, IMK_ERROR_TOO_SHORT, "align_empty", NULL,
+                         IMKI_NUMBERS(align, dt));
+    if (n->first + 1 > n->record.rows)
+        return imki_fail(&n->findings, error, IMK_ERROR_TOO_SHORT, "align_whole", NULL,
+                         IMKI_NUMBERS(dt * (double)n->record.rows, align));
+    return IMK_OK;
+}
+
+/* ---- all ------------------------------------------------------------------------------------- */
+
+static bool is_known(const imk_axes *axes, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (axes->value[i] != 0.0)
+            return true;
+    return false;
+}
+
+/* What a model knows is taken out before. */
+static void warn_of_model(imk_navigate_log *n)
+{
+    const imk_model *model = n->settings.model;
+    if (!model || model->residual_of[0])
+        return;
+    const imk_triad *triad[2] = {&model->gyro, &model->accel};
+    for (int sensor = 0; sensor < 2; sensor++)
+        if (is_known(&triad[sensor]->bias.fixed, triad[sensor]->axis_count) ||
+            is_known(&triad[sensor]->scale_factor.fixed, triad[sensor]->axis_count)) {
+            imki_find(&n->findings, IMK_FINDING_WARNING, "compensate_first", n->settings.model_name,
+                      IMKI_NUMBERS(sensor));
+            return;
+        }
+}
+
+static imk_status navigate(imk_navigate_log *n, const imk_job *job, imk_error *error)
+{
+    imki_arena scratch = {.allocator = job->allocator};
+    imk_status status = imki_navigate_channels(n, error);
+    if (status == IMK_OK)
+        status = imki_navigate_check(n, error);
+    if (status == IMK_OK)
+        status = imki_navigate_align(n, &scratch, error);
+    if (status == IMK_OK) {
+        warn_of_model(n);
+        status = imki_navigate_follow(n, job, &scratch, error);
+    }
+    imki_arena_free(&scratch);
+    return status;
+}
+
+imk_status imk_navigate_log_run(const imk_record_source *source,
+                                const imk_navigate_log_settings *settings, const imk_job *job,
+                                imk_navigate_log **result, imk_error *error)
+{
+    const imk_job alone = {.memory = 0};
+    job = job ? job : &alone;
+    *result = NULL;
+    if (settings->cookie != settings_cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
+                             "imk_navigate_log_default()");
+    const char *wrong = wrong_setting(settings);
+    if (wrong)
+        return imk_error_set(error, IMK_ERROR_RANGE, wrong, NULL, NULL);
+    imk_navigate_log *made = imki_resize(&job->allocator, NULL, sizeof *made);
+    if (!made)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    memset(made, 0, sizeof *made);
+    made->settings = *settings;
+    *result = made;
+    const imk_status status =
+        imk_even_record_load(source, settings->gaps, job, &made->record, &made->findings, error);
+    made->record.log.allocator = job->allocator;
+    return status == IMK_OK ? navigate(made, job, error) : status;
+}
