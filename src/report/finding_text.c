@@ -116,6 +116,18 @@ static const struct message {
     {"misfit", "{name}: the four noise terms do not explain the spectrum (misfit {0.1f}, worst at "
                "{1.3g} Hz: {2.2f} of the fit); an output filter, a resonance or a correlated noise "
                "is there: see imukit identify, or fit a part with --from and --to"},
+    /* calibrate */
+    {"stretches", "these are more than {0} holds and turns"},
+    {"many_runs", "these are more than {0} runs"},
+    {"few_runs", "{0} run: at least two are needed, better ten; give a log for each power cycle, "
+                 "or one log with a column of texts that names the runs (--section NAME)"},
+    {"one_model", "1 run: at least two are needed, better ten; give the model of each power cycle"},
+    {"no_uncertainty", "no bias and no scale factor is stated with its uncertainty by all of these "
+                       "models"},
+    {"attitude", "the forces of the runs differ by up to {0.3g} mrad: was the unit moved? What a "
+                 "change of attitude does to accelerometers looks like a change of bias; keep it "
+                 "fixed, or state how well it is put back with --placement 0.1deg"},
+    {"temperature_left_out", "{name}: what else temperature does is left out: {0t}"},
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 
