@@ -201,7 +201,4 @@ void bench_log_free(bench_log *log)
     free(log->section);
     free(log->section_name);
     free(log->reference);
-    free(log->interval);
-    free(log->activity);
-    free(log->thermal);
 }

@@ -54,11 +54,6 @@ int bench_reference(bench *b, bench_log *log);
 int bench_choose(bench *b); /* procedures, place and frame */
 int bench_known_before(bench *b);
 int bench_prepare(bench *b);
-int bench_observe(bench *b, bench_log *log);
-int bench_solve(bench *b);
-bool bench_is_known(imk_procedure procedure); /* what the unit is exposed to is known */
-/* calibrate_closed_form.c: --estimator closed-form, in the place of the last two. */
-int bench_closed_form(bench *b);
 /* calibrate_terms.c: --estimate and --with, --without. */
 int bench_free_terms(bench *b);
 /* Append the numbers that a name means to a list; messages speak of the option. */
@@ -66,21 +61,15 @@ int bench_list_terms(const bench *b, const char *option_name, const char *item, 
                      imk_model_parameter *parameter, size_t *count);
 int bench_switch_terms(const calibrate_options *o, imk_procedure procedure,
                        imk_procedure_settings *settings);
-/* calibrate_runs.c: --procedure repeatability, of logs or of models, each the calibration of a
- * run. */
-int bench_compare_runs(bench *b);
+/* calibrate_runs.c: --procedure repeatability, of models, each the calibration of a run. */
 bool bench_has_run_models(const bench *b);
 int bench_compare_models(bench *b);
 
 /* calibrate_plan.c: --plan, the operand being a model. @return the exit code */
 int bench_plan(bench *b);
 
-/* verb_calibrate.c: why a log could not be used, or the problem not be solved. */
-int bench_observe_failed(const bench *b, const bench_log *log, const imk_error *error);
-int bench_solve_failed(const bench *b, const imk_error *error);
-
-/* calibrate_model.c: fill b->model; write it to -o. */
-void bench_make_model(bench *b);
-int bench_write_model(bench *b);
+/* calibrate_ending.c: warnings, and why the job failed; then the model and what is shown. */
+int bench_done(const bench *b, imk_status status, const imk_error *error);
+int bench_show(bench *b);
 
 #endif

@@ -8,17 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Room for this many observations and turns at first; as many again while that is too little. */
-enum { CAPACITY = 1024, CAPACITY_MAX = 1 << 20 };
-
 /* Where the accelerometers' own axes are the frame, those of a table are others: the mounting of
  * the unit is then estimated, from nothing known within this [rad]. */
 static const double loose_mounting = 0.1;
-
-bool bench_is_known(imk_procedure procedure)
-{
-    return procedure != IMK_PROCEDURE_MULTIPOSITION && procedure != IMK_PROCEDURE_THERMAL;
-}
 
 /* ---- what is known before -------------------------------------------------------------------- */
 
@@ -243,7 +235,8 @@ static int settle(const bench *b, bench_log *log)
     set_if(&s.stationary.minimum, o->minimum);
     set_if(&s.minimum, o->minimum);
     set_if(&s.placement_sigma, o->placement);
-    if (b->found->calibration->frame != IMK_FRAME_REFERENCE && bench_is_known(log->procedure))
+    if (b->found->calibration->frame != IMK_FRAME_REFERENCE &&
+        imk_procedure_is_known(log->procedure))
         s.fixture_sigma = loose_mounting;
     set_if(&s.fixture_sigma, o->mounting);
     set_if(&s.turn_angle, o->turn_angle);
@@ -258,7 +251,7 @@ static int settle(const bench *b, bench_log *log)
 /* Forces on the accelerometers are known, and with them how the triad stands in the housing. */
 static bool knows_force(imk_procedure procedure)
 {
-    return bench_is_known(procedure) && procedure != IMK_PROCEDURE_RATE_TABLE &&
+    return imk_procedure_is_known(procedure) && procedure != IMK_PROCEDURE_RATE_TABLE &&
            procedure != IMK_PROCEDURE_SPIN;
 }
 
@@ -266,7 +259,7 @@ static int choose_frame(bench *b)
 {
     bool known = false, force = false, gravity = false;
     for (size_t k = 0; k < b->found->count; k++) {
-        known = known || bench_is_known(b->found->record[k].procedure);
+        known = known || imk_procedure_is_known(b->found->record[k].procedure);
         force = force || knows_force(b->found->record[k].procedure);
         gravity = gravity || b->found->record[k].procedure == IMK_PROCEDURE_MULTIPOSITION;
     }
@@ -349,156 +342,4 @@ int bench_prepare(bench *b)
     if (code < 0 && b->options->estimate)
         code = bench_free_terms(b);
     return code;
-}
-
-/* Take away the doubts whether holds can be found where sections name them: the procedure counts
- * the faces. */
-static void doubts_of_named_holds(bench_log *log)
-{
-    enum { FACES = 6 };
-    if ((log->procedure != IMK_PROCEDURE_SIXPOSITION && log->procedure != IMK_PROCEDURE_FERRARIS) ||
-        !log->record.section || log->record.section_count < FACES)
-        return;
-    size_t kept = 0;
-    for (size_t i = 0; i < log->doubt_count; i++)
-        if (log->doubt[i].kind != IMK_DOUBT_NEVER_STATIC &&
-            log->doubt[i].kind != IMK_DOUBT_NEVER_MOVES &&
-            log->doubt[i].kind != IMK_DOUBT_FEW_POSES)
-            log->doubt[kept++] = log->doubt[i];
-    log->doubt_count = kept;
-}
-
-/* ---- logs ------------------------------------------------------------------------------------ */
-
-/* Where it stands still: for the doubts, the table of poses and the plot. */
-static int detect(const bench *b, bench_log *log)
-{
-    enum { INTERVALS = 256 };
-    imk_error error;
-    const imk_model *model = &b->found->calibration->model;
-    const size_t size = imk_static_workspace_size(&log->record, &log->settings.stationary);
-    void *workspace = command_memory(NULL, size);
-    imk_status status;
-    if (b->options->plot || b->options->report)
-        log->activity = command_memory(NULL, log->record.count * sizeof *log->activity);
-    for (size_t capacity = INTERVALS;; capacity = log->interval_count) {
-        log->interval = command_memory(log->interval, capacity * sizeof *log->interval);
-        status = imk_static_detect(&log->record, &log->settings.stationary, model, workspace, size,
-                                   log->interval, capacity, &log->interval_count, log->activity,
-                                   &log->stationary, &error);
-        if (status != IMK_OK || log->interval_count <= capacity)
-            break;
-    }
-    free(workspace);
-    if (status == IMK_OK) {
-        log->doubt_count = imk_record_doubts(&log->record, &log->stationary, log->interval_count,
-                                             log->interval, b->found->calibration->gravity, model,
-                                             IMK_CALIBRATE_DOUBTS_MAX, log->doubt);
-        doubts_of_named_holds(log);
-        return -1;
-    }
-    /* A log too short for holds may still do for a table. */
-    log->interval_count = 0;
-    log->stationary.window = 0;
-    free(log->activity);
-    log->activity = NULL;
-    return bench_is_known(log->procedure) ? -1 : bench_observe_failed(b, log, &error);
-}
-
-static void grow(imk_calibration *c)
-{
-    const size_t capacity = c->observation_capacity > 0 ? 2 * c->observation_capacity : CAPACITY;
-    c->observation = command_memory(c->observation, capacity * sizeof *c->observation);
-    c->turn = command_memory(c->turn, capacity * sizeof *c->turn);
-    c->observation_capacity = c->turn_capacity = capacity;
-}
-
-static bool wants_room(imk_status status, const imk_error *error, const imk_calibration *c)
-{
-    return status == IMK_ERROR_WORKSPACE && strcmp(error->field, "workspace") != 0 &&
-           c->observation_capacity < CAPACITY_MAX;
-}
-
-/* The findings of the thermal procedure, for the table; the problem has been given its part. */
-static int look_at_temperature(const bench *b, bench_log *log)
-{
-    imk_error error;
-    imk_thermal_settings settings = imk_thermal_default();
-    const size_t size = imk_thermal_workspace_size();
-    void *workspace = command_memory(NULL, size);
-    log->thermal = command_zeroed(sizeof *log->thermal);
-    settings.reference_temperature = log->settings.reference_temperature;
-    settings.order = log->settings.temperature_order > 0 ? log->settings.temperature_order : -1;
-    const imk_status status =
-        imk_thermal_analyse(&log->record, &settings, &b->found->calibration->model, workspace, size,
-                            log->thermal, &error);
-    free(workspace);
-    if (status == IMK_OK)
-        return -1;
-    /* Several poses: nothing can be said about each by itself. */
-    free(log->thermal);
-    log->thermal = NULL;
-    return status == IMK_ERROR_CONFLICT ? -1 : bench_observe_failed(b, log, &error);
-}
-
-int bench_observe(bench *b, bench_log *log)
-{
-    imk_error error;
-    imk_calibration *c = b->found->calibration;
-    int code = detect(b, log);
-    if (code >= 0)
-        return code;
-    const size_t size = imk_procedure_workspace_size(log->procedure, &log->record, &log->settings);
-    void *workspace = command_memory(NULL, size);
-    if (!c->observation)
-        grow(c);
-    imk_status status;
-    while (wants_room(status = imk_procedure_observe(log->procedure, c, &log->record,
-                                                     &log->settings, b->options->estimate != NULL,
-                                                     workspace, size, &log->findings, &error),
-                      &error, c))
-        grow(c);
-    free(workspace);
-    if (status != IMK_OK)
-        return bench_observe_failed(b, log, &error);
-    return log->procedure == IMK_PROCEDURE_THERMAL ? look_at_temperature(b, log) : -1;
-}
-
-/* ---- solution -------------------------------------------------------------------------------- */
-
-/* Sensitivities that were found are names for what the parameters are relative to: short ones do
- * as well. */
-static void shorten_nominal(bench *b)
-{
-    imk_triad *triad[2] = {&b->found->calibration->model.gyro, &b->found->calibration->model.accel};
-    for (int sensor = 0; sensor < 2; sensor++)
-        for (int i = 0; b->found->nominal[sensor] && i < triad[sensor]->axis_count; i++) {
-            double *s = &triad[sensor]->sensitivity.value[i];
-            double *zero = &triad[sensor]->zero_offset.value[i];
-            if (*s == 0 || !isfinite(*s))
-                continue;
-            const double step = pow(10, floor(log10(fabs(*s))) - 3);
-            *s = step < 1 ? floor(*s / step + 0.5) / (1 / step) : floor(*s / step + 0.5) * step;
-            *zero = floor(*zero + 0.5);
-        }
-}
-
-int bench_solve(bench *b)
-{
-    imk_error error;
-    shorten_nominal(b);
-    const size_t size = imk_calibration_workspace_size(b->found->calibration);
-    void *workspace = command_memory(NULL, size);
-    b->found->result = command_memory(NULL, sizeof *b->found->result);
-    const imk_status status =
-        imk_calibration_solve(b->found->calibration, workspace, size, b->found->result, &error);
-    free(workspace);
-    if (status == IMK_OK) {
-        b->found->doubt_count = imk_solution_doubts(b->found->calibration, b->found->result,
-                                                    IMK_CALIBRATE_DOUBTS_MAX, b->found->doubt);
-        return -1;
-    }
-    free(b->found->result);
-    b->found->result = NULL;
-    return bench_solve_failed(b, &error);
 }

@@ -174,117 +174,30 @@ const verb calibrate_verb = {
                 offsetof(calibrate_options, log)}},
     .run = run};
 
-int bench_observe_failed(const bench *b, const bench_log *log, const imk_error *error)
-{
-    char text[1000];
-    if (imk_calibrate_record_failure(b->found, log, error, text, sizeof text) > 0)
-        return command_failed("%s", text);
-    return command_error(error, log->path);
-}
-
-int bench_solve_failed(const bench *b, const imk_error *error)
-{
-    char text[1000];
-    if (imk_calibrate_failure(b->found, error, text, sizeof text) > 0)
-        return command_failed("%s", text);
-    return command_error(error, NULL);
-}
-
-static void show_next(const bench *b, bool useless, imk_result *result)
+static int check_closed_form(const bench *b)
 {
     const calibrate_options *o = b->options;
-    if (o->report)
-        imk_result_line(result, "Report: %s", o->report);
-    if (useless && !o->anyway)
-        return;
-    if (!o->output)
-        imk_result_line(result, "Next: add -o model.yaml to keep the model, --report report.html "
-                                "for a page");
-    else if (b->found->runs)
-        imk_result_line(result, "Model: %s\nNext: imukit grade %s", o->output, o->output);
-    else
-        imk_result_line(result, "Model: %s\nNext: imukit compensate LOG %s -o clean.csv", o->output,
-                        o->output);
-}
-
-/* What was warned of on the way here belongs to the verdict, and what that warns of is told too. */
-static imk_verdict judge(const bench *b, imk_result *result)
-{
-    const size_t count = command_warning_count();
-    imk_message *before = command_memory(NULL, (count + 1) * sizeof *before);
-    for (size_t k = 0; k < count; k++) {
-        const command_warning *warning = command_warning_get(k);
-        before[k] = (imk_message){IMK_FINDING_WARNING, warning->code, warning->message};
-    }
-    const imk_verdict v = imk_calibrate_verdict(b->found, count, before, result);
-    free(before);
-    for (size_t k = count; k < v.count; k++)
-        if (v.message[k].level >= IMK_FINDING_WARNING)
-            command_warn(v.message[k].code, "%s", v.message[k].text);
-    return v;
-}
-
-static int show(bench *b)
-{
-    const calibrate_options *o = b->options;
-    imk_result *result = show_begin("calibrate");
-    const imk_verdict verdict = judge(b, result);
-    const bool useless = imk_verdict_level(&verdict) == IMK_FINDING_FAILURE;
-    const bool writes = !useless || o->anyway;
-    const int end = (useless && !o->anyway) || (o->strict && command_warning_count() > 0)
-                        ? EXIT_FAILED
-                        : EXIT_DONE;
-    int code = -1;
-    if (writes)
-        code = bench_write_model(b);
-    else if (o->output)
-        command_note("%s is not written (--anyway would)", o->output);
-    if (code >= 0) {
-        imk_result_free(result);
-        return code;
-    }
-    imk_show_calibrate_log(b->found, &verdict, o->poses, result);
-    imk_result_for(result, IMK_FOR_PAGE);
-    show_model(result, "Model file", &b->found->model);
-    show_origin(result);
-    imk_result_for(result, IMK_FOR_TERMINAL);
-    show_next(b, useless, result);
-    const bool drawn = imk_result_figure_get(result, IMK_FOR_PAGE, 0);
-    const show_options options = {.report = o->report,
-                                  .plot = o->plot,
-                                  .json = o->json,
-                                  .lacking = drawn ? NULL : "observations to draw"};
-    return show_end(result, &options, end);
-}
-
-static int observe_and_solve(bench *b)
-{
-    int code = -1;
-    for (size_t k = 0; code < 0 && k < b->found->count; k++)
-        code = bench_observe(b, &b->found->record[k]);
-    return code < 0 ? bench_solve(b) : code;
+    if (b->found->count != 1 || b->found->settings.repeatability ||
+        b->found->record[0].procedure != IMK_PROCEDURE_FERRARIS)
+        return command_misused("--estimator closed-form: this is for one log of --procedure "
+                               "ferraris; the others, and several logs together, are solved by "
+                               "maximum likelihood");
+    if (o->estimate || o->with || o->without)
+        return command_misused("--estimator closed-form: what it finds is fixed; leave --estimate, "
+                               "--with and --without out");
+    return -1;
 }
 
 /* Solve, or compare runs. */
 static int find_result(bench *b)
 {
+    imk_error error;
     if (bench_has_run_models(b))
         return bench_compare_models(b);
-    const int code = bench_prepare(b);
-    if (code >= 0)
-        return code;
-    if (b->found->settings.repeatability)
-        return bench_compare_runs(b);
-    return b->options->estimator != 0 ? bench_closed_form(b) : observe_and_solve(b);
-}
-
-static int calibrate(bench *b)
-{
-    const int code = find_result(b);
-    if (code >= 0)
-        return code;
-    bench_make_model(b);
-    return show(b);
+    int code = bench_prepare(b);
+    if (code < 0 && b->options->estimator != 0 && !b->found->settings.repeatability)
+        code = check_closed_form(b);
+    return code >= 0 ? code : bench_done(b, imk_calibrate_log_run(b->found, &error), &error);
 }
 
 static int check(const calibrate_options *o)
@@ -303,16 +216,9 @@ static void free_bench(bench *b)
 {
     for (size_t k = 0; k < b->found->count; k++)
         bench_log_free(&b->found->record[k]);
-    free(b->found->calibration->observation);
-    free(b->found->calibration->turn);
     imk_motion_file_free(b->motion);
     imk_document_free(b->document);
-    free(b->found->calibration);
-    free(b->found->result);
-    free(b->found->ferraris);
-    free(b->found->runs);
-    free(b->found->record);
-    free(b->found);
+    imk_calibrate_log_free(b->found);
     free(b);
 }
 
@@ -340,23 +246,26 @@ static int run(int count, char **words)
         return code;
     bench *b = command_zeroed(sizeof *b);
     b->options = &o;
-    b->found = command_zeroed(sizeof *b->found);
-    b->found->settings = imk_calibrate_log_default();
-    b->found->settings.gravity = o.gravity;
-    b->found->settings.placement = o.placement;
-    b->found->settings.minimum = o.minimum;
-    b->found->settings.trim = o.trim;
-    b->found->settings.settle = o.settle;
-    b->found->settings.model_given = o.model || o.into;
-    b->found->settings.terms_named = o.estimate != NULL;
-    b->found->settings.activity = o.plot || o.report;
-    while (b->found->count < IMK_TEST_RECORDS_MAX && paths[b->found->count])
-        b->found->count++;
-    b->found->record = command_zeroed(b->found->count * sizeof *b->found->record);
-    b->found->calibration = command_zeroed(sizeof *b->found->calibration);
+    imk_calibrate_log_settings settings = imk_calibrate_log_default();
+    settings.gravity = o.gravity;
+    settings.placement = o.placement;
+    settings.minimum = o.minimum;
+    settings.trim = o.trim;
+    settings.settle = o.settle;
+    settings.model_given = o.model || o.into;
+    settings.terms_named = o.estimate != NULL;
+    settings.closed_form = o.estimator != 0;
+    settings.activity = o.plot || o.report;
+    size_t logs = 0;
+    while (logs < IMK_TEST_RECORDS_MAX && paths[logs])
+        logs++;
+    (void)command_unless_memory(imk_calibrate_log_create(logs, &settings, NULL, &b->found, NULL));
     for (size_t k = 0; k < b->found->count; k++)
         b->found->record[k].path = paths[k];
-    code = o.plan ? bench_plan(b) : calibrate(b);
+    if (o.plan)
+        code = bench_plan(b);
+    else if ((code = find_result(b)) < 0)
+        code = bench_show(b);
     free_bench(b);
     return code;
 }

@@ -30,6 +30,7 @@ typedef struct imk_calibrate_log_settings {
     bool model_given;    /**< known before are the axes of a model */
     bool repeatability;  /**< the records are power cycles, nothing is solved */
     bool terms_named;    /**< what is estimated is free in the calibration already */
+    bool closed_form;    /**< a ferraris session is solved without iteration */
     bool activity;       /**< say of each sample whether it stands still */
 } imk_calibrate_log_settings;
 
@@ -70,8 +71,41 @@ typedef struct imk_calibrate_log {
     size_t run_count;
     size_t doubt_count;
     imk_doubt_finding doubt[IMK_CALIBRATE_DOUBTS_MAX]; /**< of the solution */
-    imk_model model;                                   /**< to be written */
+    imk_model model;                                   /**< to be written; its name stays */
+    imk_findings findings;
+    size_t failed; /**< number of the record that could not be used; count: all of them together */
+    imk_job job;
+    struct imki_arena *memory;
 } imk_calibrate_log;
+
+/** An empty one: the records, and the calibration with what is known before, are the caller's to
+ *  fill.
+ *  @param job  NULL: as if all zeros
+ *  @return IMK_ERROR_RANGE (0 records, or more than IMK_TEST_RECORDS_MAX), _MEMORY */
+IMK_API imk_status imk_calibrate_log_create(size_t count,
+                                            const imk_calibrate_log_settings *settings,
+                                            const imk_job *job, imk_calibrate_log **log,
+                                            imk_error *error);
+/** Free it; what the caller filled in stays the caller's. */
+IMK_API void imk_calibrate_log_free(imk_calibrate_log *log);
+
+/** Observe each record by its procedure, solve all together, make the model.
+ *  @return as imk_procedure_observe(), imk_calibration_solve(), imk_ferraris_closed_form(),
+ *          imk_repeatability_of_holds(); then log->failed says of what */
+IMK_API imk_status imk_calibrate_log_run(imk_calibrate_log *log, imk_error *error);
+
+/** Bias and scale factor of a model with their sigmas, as the calibration of a run; of counts by
+ *  the sensitivities and zeros of the first one, since each may have found its own. */
+IMK_API void imk_calibration_of_model(const imk_model *model, const imk_model *first,
+                                      imk_calibration_result *result);
+/** Compare runs, the calibration of each given, and make the model.
+ *  @return with a finding, IMK_ERROR_TOO_SHORT, _EMPTY; as imk_repeatability_of_calibrations() */
+IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *log,
+                                             const imk_calibration_result *const *run,
+                                             imk_error *error);
+
+/** What the unit is exposed to is known. */
+IMK_API bool imk_procedure_is_known(imk_procedure procedure);
 
 /** Index of a parameter of the solution, or -1. */
 IMK_API int imk_calibrate_find(const imk_calibrate_log *log, imk_model_parameter parameter);

@@ -79,12 +79,8 @@ IMK_API imk_finding_level imk_verdict_level(const imk_verdict *verdict);
 /** Parameters, fit, remarks, verdict and a figure. @param poses  also on the terminal */
 IMK_API void imk_show_calibrate_log(const imk_calibrate_log *log, const imk_verdict *verdict,
                                     bool poses, imk_result *result);
-/** Why a record could not be used: its doubts say more than the error.
- *  @return length of the text; 0: nothing is to be said beyond the error */
-IMK_API size_t imk_calibrate_record_failure(const imk_calibrate_log *log,
-                                            const imk_calibrate_record *record,
-                                            const imk_error *error, char *text, size_t size);
-/** Why nothing was solved, likewise. */
+/** Why imk_calibrate_log_run() failed, with the name of the record: doubts about it say more than
+ *  the error. @return length of the text; 0: nothing is to be said beyond the error */
 IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *log, const imk_error *error,
                                      char *text, size_t size);
 /** @} */

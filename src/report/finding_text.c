@@ -163,6 +163,18 @@ static const struct message {
                        "its predictions are too good"},
     {"left_the_earth", "by {0.3f} s the estimate has left the Earth's surroundings: a reading "
                        "before is absurd, or its unit wrong"},
+    /* calibrate */
+    {"stretches", "these are more than {0} holds and turns"},
+    {"many_runs", "these are more than {0} runs"},
+    {"few_runs", "{0} run: at least two are needed, better ten; give a log for each power cycle, "
+                 "or one log with a column of texts that names the runs (--section NAME)"},
+    {"one_model", "1 run: at least two are needed, better ten; give the model of each power cycle"},
+    {"no_uncertainty", "no bias and no scale factor is stated with its uncertainty by all of these "
+                       "models"},
+    {"attitude", "the forces of the runs differ by up to {0.3g} mrad: was the unit moved? What a "
+                 "change of attitude does to accelerometers looks like a change of bias; keep it "
+                 "fixed, or state how well it is put back with --placement 0.1deg"},
+    {"temperature_left_out", "{name}: what else temperature does is left out: {0t}"},
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 

@@ -128,16 +128,3 @@ size_t imk_test_record_missing(const imk_test_record *record, size_t *first)
             *first = row;
     return rows;
 }
-
-static const uint32_t settings_cookie = 0x43414C31; /* "CAL1" */
-
-imk_calibrate_log_settings imk_calibrate_log_default(void)
-{
-    const double none = (double)NAN;
-    return (imk_calibrate_log_settings){.cookie = settings_cookie,
-                                        .gravity = none,
-                                        .placement = none,
-                                        .minimum = none,
-                                        .trim = none,
-                                        .settle = none};
-}

@@ -140,12 +140,11 @@ static size_t not_following(const message *to, const imk_calibrate_record *log,
                log->path, error->field, imk_axis_letter(error->index), error->value);
 }
 
-size_t imk_calibrate_record_failure(const imk_calibrate_log *b, const imk_calibrate_record *log,
-                                    const imk_error *error, char *text, size_t size)
+static size_t of_record(const message *to, const imk_calibrate_log *b,
+                        const imk_calibrate_record *log, const imk_error *error)
 {
-    const message place = {text, size}, *to = &place;
-    if (imki_calibrate_useless(b, log, text, size))
-        return strlen(text);
+    if (imki_calibrate_useless(b, log, to->text, to->size))
+        return strlen(to->text);
     switch (error->status) {
     case IMK_ERROR_TOO_SHORT:
         return too_short(to, log, error);
@@ -214,13 +213,11 @@ static size_t undetermined(const message *to, const imk_calibrate_log *b, const 
                poses);
 }
 
-size_t imk_calibrate_failure(const imk_calibrate_log *b, const imk_error *error, char *text,
-                             size_t size)
+static size_t of_solution(const message *to, const imk_calibrate_log *b, const imk_error *error)
 {
-    const message place = {text, size}, *to = &place;
     for (size_t k = 0; k < b->count; k++)
-        if (imki_calibrate_useless(b, &b->record[k], text, size))
-            return strlen(text);
+        if (imki_calibrate_useless(b, &b->record[k], to->text, to->size))
+            return strlen(to->text);
     switch (error->status) {
     case IMK_ERROR_SINGULAR:
         return undetermined(to, b, error);
@@ -249,4 +246,21 @@ size_t imk_calibrate_failure(const imk_calibrate_log *b, const imk_error *error,
     default:
         return 0;
     }
+}
+
+size_t imk_calibrate_failure(const imk_calibrate_log *b, const imk_error *error, char *text,
+                             size_t size)
+{
+    const message to = {text, size};
+    const imk_finding *finding = imk_findings_failure(&b->findings);
+    const imk_calibrate_record *log = b->failed < b->count ? &b->record[b->failed] : NULL;
+    char found[600];
+    if (finding) {
+        imk_finding_text(finding, found, sizeof found);
+        return say(&to, "%s%s%s", log && !b->runs ? log->path : "", log && !b->runs ? ": " : "",
+                   found);
+    }
+    if (b->settings.repeatability && error->status != IMK_ERROR_UNIT_MISSING)
+        return 0;
+    return log ? of_record(&to, b, log, error) : of_solution(&to, b, error);
 }

@@ -4,14 +4,15 @@
  *
  * Values are rounded to a hundredth of their 1 sigma, in the units of the model file, so that the
  * file can be read by people and says what was computed all the same. */
-#include "calibrate_parts.h"
-#include "shell/growing_list.h"
-#include "shell/model_changes.h"
+#include "calibrate_internal.h"
 
+#include "jobs/job_internal.h"
+
+#include "imukit/decimal.h"
 #include "imukit/utf8.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { SIGMA_DIGITS = 4, DIGITS_MAX = 15 };
@@ -112,7 +113,7 @@ static void put_interval(imk_evidence *evidence, const imk_interval *interval)
 }
 
 /* 95 % interval of a term that was estimated on every axis. */
-static void state_interval(const bench *b, imk_model *model, int sensor, int term)
+static void state_interval(const imk_calibrate_log *b, imk_model *model, int sensor, int term)
 {
     const imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
     const imk_model_parameter first = {(uint8_t)sensor, (uint8_t)term, 0, 0};
@@ -123,12 +124,11 @@ static void state_interval(const bench *b, imk_model *model, int sensor, int ter
     for (int axis = 0; axis < triad->axis_count; axis++) {
         imk_model_parameter p = first;
         p.axis = (uint8_t)axis;
-        const int found = imk_calibrate_find(b->found, p);
+        const int found = imk_calibrate_find(b, p);
         if (found < 0)
             return;
-        const double half = imk_calibration_half_width(b->found->result, found, 0.95);
-        const double low = b->found->result->value[found] - half,
-                     high = b->found->result->value[found] + half;
+        const double half = imk_calibration_half_width(b->result, found, 0.95);
+        const double low = b->result->value[found] - half, high = b->result->value[found] + half;
         if (!isfinite(half))
             return;
         interval.lower.value[axis] = rounded(low, digits_for(low, half / 2), unit);
@@ -137,66 +137,64 @@ static void state_interval(const bench *b, imk_model *model, int sensor, int ter
     put_interval(sensor == 0 ? &model->gyro_evidence : &model->accel_evidence, &interval);
 }
 
-static bool estimated(const bench *b, int sensor)
+static bool estimated(const imk_calibrate_log *b, int sensor)
 {
-    for (size_t p = 0; b->found->result && p < b->found->result->parameter_count; p++)
-        if (b->found->result->parameter[p].sensor == sensor)
+    for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
+        if (b->result->parameter[p].sensor == sensor)
             return true;
-    return b->found->runs && b->found->runs->axis_count[sensor] > 0;
+    return b->runs && b->runs->axis_count[sensor] > 0;
+}
+
+/* Put a text behind ", " unless it is the first. */
+static void add_item(char *list, size_t size, const char *item)
+{
+    const size_t length = strlen(list);
+    snprintf(list + length, size - length, "%s%s", length > 0 ? ", " : "", item);
 }
 
 /* Names of the logs, and how they were used. */
-static void describe(const bench *b, imk_evidence *evidence)
+static void describe(const imk_calibrate_log *b, imk_evidence *evidence)
 {
-    growing_list logs = {0}, names = {0};
-    for (size_t k = 0; k < b->found->count; k++)
-        list_add_item(&logs, "%s", b->found->record[k].record.name);
-    imk_utf8_clean(logs.text, evidence->source, sizeof evidence->source);
-    list_free(&logs);
-    if (b->found->runs) {
+    char logs[8192] = "", names[400] = "";
+    for (size_t k = 0; k < b->count; k++)
+        add_item(logs, sizeof logs, b->record[k].record.name);
+    imk_utf8_clean(logs, evidence->source, sizeof evidence->source);
+    if (b->runs) {
         snprintf(evidence->method, sizeof evidence->method,
-                 "imukit %s calibrate: repeatability of %zu runs", IMK_VERSION,
-                 b->found->run_count);
+                 "imukit %s calibrate: repeatability of %zu runs", IMK_VERSION, b->run_count);
         return;
     }
-    if (b->found->ferraris) {
+    if (b->ferraris) {
         snprintf(evidence->method, sizeof evidence->method,
                  "imukit %s calibrate: ferraris, closed form, gravity %.6g m/s^2", IMK_VERSION,
-                 b->found->calibration->gravity);
+                 b->calibration->gravity);
         return;
     }
-    for (size_t k = 0; k < b->found->count; k++) {
-        const char *name = imk_procedure_name(b->found->record[k].procedure);
-        if (!names.text || !strstr(names.text, name))
-            list_add_item(&names, "%s", name);
+    for (size_t k = 0; k < b->count; k++) {
+        const char *name = imk_procedure_name(b->record[k].procedure);
+        if (!strstr(names, name))
+            add_item(names, sizeof names, name);
     }
     snprintf(evidence->method, sizeof evidence->method,
              "imukit %s calibrate: %s, maximum likelihood, %zu observations, %zu turns, gravity "
              "%.6g m/s^2",
-             IMK_VERSION, names.text, b->found->calibration->observation_count,
-             b->found->calibration->turn_count, b->found->calibration->gravity);
-    list_free(&names);
-}
-
-static void name_model(const bench *b, imk_model *model)
-{
-    if (b->options->name || !model->name[0] || !b->options->into)
-        command_model_name(b->options->name, b->found->record[0].path, model->name,
-                           sizeof model->name);
+             IMK_VERSION, names, b->calibration->observation_count, b->calibration->turn_count,
+             b->calibration->gravity);
 }
 
 /* What temperature does besides the polynomials that were solved for. */
-static void apply_thermal(const bench *b, imk_model *model)
+static void apply_thermal(imk_calibrate_log *b, imk_model *model)
 {
     static const char *const width[2] = {"deg/h", "mg"};
     static const char *const rate[2] = {"deg/h/(K/min)", "mg/(K/min)"};
     imk_triad *triad[2] = {&model->gyro, &model->accel};
-    imk_error error;
-    for (size_t k = 0; k < b->found->count; k++) {
-        if (!b->found->record[k].thermal)
+    for (size_t k = 0; k < b->count; k++) {
+        if (!b->record[k].thermal)
             continue;
-        if (imk_thermal_apply(b->found->record[k].thermal, false, model, &error) != IMK_OK)
-            (void)command_error(&error, b->found->record[k].path);
+        const imk_status status = imk_thermal_apply(b->record[k].thermal, false, model, NULL);
+        if (status != IMK_OK)
+            imki_find(&b->findings, IMK_FINDING_WARNING, "temperature_left_out", b->record[k].path,
+                      IMKI_NUMBERS(status));
         for (int sensor = 0; sensor < 2; sensor++) {
             round_axes(&triad[sensor]->bias.hysteresis, width[sensor]);
             round_axes(&triad[sensor]->bias.temperature_rate, rate[sensor]);
@@ -204,35 +202,23 @@ static void apply_thermal(const bench *b, imk_model *model)
     }
 }
 
-void bench_make_model(bench *b)
+void imki_calibrate_model(imk_calibrate_log *b)
 {
-    imk_model *model = &b->found->model;
+    imk_model *model = &b->model;
     imk_evidence *evidence[2] = {&model->gyro_evidence, &model->accel_evidence};
-    *model = b->found->result ? b->found->result->model : b->found->calibration->model;
-    if (b->found->runs)
-        imk_repeatability_to_model(b->found->runs, model);
+    *model = b->result ? b->result->model : b->calibration->model;
+    if (b->runs)
+        imk_repeatability_to_model(b->runs, model);
     apply_thermal(b, model);
-    for (size_t p = 0; b->found->result && p < b->found->result->parameter_count; p++)
-        round_parameter(model, b->found->result->parameter[p]);
+    for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
+        round_parameter(model, b->result->parameter[p]);
     for (int sensor = 0; sensor < 2; sensor++) {
         if (!estimated(b, sensor))
             continue;
-        for (int term = 0; b->found->result && term < IMK_MODEL_TERMS; term++)
+        for (int term = 0; b->result && term < IMK_MODEL_TERMS; term++)
             state_interval(b, model, sensor, term);
-        if (b->found->runs)
+        if (b->runs)
             round_repeatability(model, sensor);
         describe(b, evidence[sensor]);
     }
-    name_model(b, model);
-}
-
-int bench_write_model(bench *b)
-{
-    imk_error error;
-    const calibrate_options *o = b->options;
-    if (o->into)
-        model_print_changes(o->into, &b->before, &b->found->model, b->document);
-    if (o->output && imk_model_write(o->output, &b->found->model, b->document, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return -1;
 }

@@ -2,27 +2,15 @@
 /* --estimator closed-form: a Ferraris session solved without iteration, by the matrices other tools
  * publish. The figures are shown as those of the estimator are; the matrices themselves are in the
  * JSON output. */
-#include "calibrate_parts.h"
+#include "calibrate_internal.h"
+
+#include "jobs/job_internal.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { STRETCHES = 256 };
-
-static int check(const bench *b)
-{
-    const calibrate_options *o = b->options;
-    if (b->found->count != 1 || b->found->settings.repeatability ||
-        b->found->record[0].procedure != IMK_PROCEDURE_FERRARIS)
-        return command_misused("--estimator closed-form: this is for one log of --procedure "
-                               "ferraris; the others, and several logs together, are solved by "
-                               "maximum likelihood");
-    if (o->estimate || o->with || o->without)
-        return command_misused("--estimator closed-form: what it finds is fixed; leave --estimate, "
-                               "--with and --without out");
-    return -1;
-}
 
 static double three_digits(double value)
 {
@@ -39,25 +27,29 @@ static void set_nominal(const imk_ferraris_triad *from, imk_triad *to)
         to->sensitivity.value[i] = (from->axes[i][i] < 0 ? -1 : 1) * three_digits(mean);
 }
 
-static int find(bench *b, imk_ferraris_stretch *stretch, size_t *count)
+static imk_status find(imk_calibrate_log *b, imk_ferraris_stretch *stretch, size_t *count,
+                       imk_error *error)
 {
-    imk_error error;
-    bench_log *log = &b->found->record[0];
+    imk_calibrate_record *log = &b->record[0];
+    const double gravity = b->calibration->gravity;
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_FERRARIS, &log->record, &log->settings);
-    void *workspace = command_memory(NULL, size);
-    imk_status status = imk_ferraris_stretches(
-        &log->record, &log->settings, &b->found->calibration->model, b->found->calibration->gravity,
-        workspace, size, STRETCHES, stretch, count, &error);
-    free(workspace);
+    void *workspace = imki_resize(&b->job.allocator, NULL, size);
+    if (!workspace)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imk_status status =
+        imk_ferraris_stretches(&log->record, &log->settings, &b->calibration->model, gravity,
+                               workspace, size, STRETCHES, stretch, count, error);
+    imki_resize(&b->job.allocator, workspace, 0);
     if (status == IMK_OK && *count > STRETCHES)
-        return command_failed("%s: these are more than %d holds and turns", log->path, STRETCHES);
+        return imki_fail(&b->findings, error, IMK_ERROR_RANGE, "stretches", NULL,
+                         IMKI_NUMBERS(STRETCHES));
     /* The angle is as good as the placements before and after the turn. */
     if (status == IMK_OK)
         status = imk_ferraris_closed_form(
-            &log->record, *count, stretch, b->found->calibration->gravity, log->settings.turn_angle,
-            sqrt(2.0) * log->settings.placement_sigma, b->found->ferraris, &error);
-    return status == IMK_OK ? -1 : bench_observe_failed(b, log, &error);
+            &log->record, *count, stretch, gravity, log->settings.turn_angle,
+            sqrt(2.0) * log->settings.placement_sigma, b->ferraris, error);
+    return status;
 }
 
 static void state(imk_calibration_result *r, int sensor, int term, int elements)
@@ -78,16 +70,16 @@ static void state(imk_calibration_result *r, int sensor, int term, int elements)
 }
 
 /* As a result of the estimator: sigmas to first order, without correlations. */
-static void fill_result(bench *b)
+static void fill_result(imk_calibrate_log *b)
 {
-    imk_calibration_result *r = b->found->result = command_zeroed(sizeof *r);
-    r->model = b->found->calibration->model;
+    imk_calibration_result *r = b->result;
+    r->model = b->calibration->model;
     imk_triad *triad[2] = {&r->model.gyro, &r->model.accel};
-    const imk_ferraris_triad *solved[2] = {&b->found->ferraris->gyro, &b->found->ferraris->accel};
+    const imk_ferraris_triad *solved[2] = {&b->ferraris->gyro, &b->ferraris->accel};
     for (int sensor = 0; sensor < 2; sensor++)
-        if (b->found->nominal[sensor])
+        if (b->nominal[sensor])
             set_nominal(solved[sensor], triad[sensor]);
-    imk_ferraris_to_model(b->found->ferraris, &r->model);
+    imk_ferraris_to_model(b->ferraris, &r->model);
     for (int sensor = 1; sensor >= 0; sensor--) {
         state(r, sensor, IMK_MODEL_BIAS, 1);
         state(r, sensor, IMK_MODEL_SCALE_FACTOR, 1);
@@ -102,15 +94,19 @@ static void fill_result(bench *b)
     snprintf(r->model.accel_evidence.frame, sizeof r->model.accel_evidence.frame, "%s", frame);
 }
 
-int bench_closed_form(bench *b)
+imk_status imki_closed_form(imk_calibrate_log *b, imk_error *error)
 {
     imk_ferraris_stretch stretch[STRETCHES];
     size_t count = 0;
-    int code = check(b);
-    b->found->ferraris = command_zeroed(sizeof *b->found->ferraris);
-    if (code < 0)
-        code = find(b, stretch, &count);
-    if (code < 0)
-        fill_result(b);
-    return code;
+    imk_calibration_result *result = imki_arena_take(b->memory, sizeof *result);
+    b->ferraris = imki_arena_take(b->memory, sizeof *b->ferraris);
+    if (!b->ferraris || !result)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    b->failed = 0;
+    const imk_status status = find(b, stretch, &count, error);
+    if (status != IMK_OK)
+        return status;
+    b->result = result;
+    fill_result(b);
+    return IMK_OK;
 }

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What came out, or why nothing did: messages, the model file, what is shown. */
+#include "calibrate_parts.h"
+#include "shell/model_changes.h"
+
+#include <stdlib.h>
+
+int bench_done(const bench *b, imk_status status, const imk_error *error)
+{
+    const imk_calibrate_log *found = b->found;
+    char text[1000];
+    for (size_t k = 0; k < found->findings.count; k++)
+        if (found->findings.item[k].level == IMK_FINDING_WARNING) {
+            imk_finding_text(&found->findings.item[k], text, sizeof text);
+            command_warn(found->findings.item[k].code, "%s", text);
+        }
+    if (command_unless_memory(status) == IMK_OK)
+        return -1;
+    if (imk_calibrate_failure(found, error, text, sizeof text) > 0)
+        return command_failed("%s", text);
+    return command_error(error,
+                         found->failed < found->count ? found->record[found->failed].path : NULL);
+}
+
+static void show_next(const bench *b, bool useless, imk_result *result)
+{
+    const calibrate_options *o = b->options;
+    if (o->report)
+        imk_result_line(result, "Report: %s", o->report);
+    if (useless && !o->anyway)
+        return;
+    if (!o->output)
+        imk_result_line(result, "Next: add -o model.yaml to keep the model, --report report.html "
+                                "for a page");
+    else if (b->found->runs)
+        imk_result_line(result, "Model: %s\nNext: imukit grade %s", o->output, o->output);
+    else
+        imk_result_line(result, "Model: %s\nNext: imukit compensate LOG %s -o clean.csv", o->output,
+                        o->output);
+}
+
+/* What was warned of on the way here belongs to the verdict, and what that warns of is told too. */
+static imk_verdict judge(const bench *b, imk_result *result)
+{
+    const size_t count = command_warning_count();
+    imk_message *before = command_memory(NULL, (count + 1) * sizeof *before);
+    for (size_t k = 0; k < count; k++) {
+        const command_warning *warning = command_warning_get(k);
+        before[k] = (imk_message){IMK_FINDING_WARNING, warning->code, warning->message};
+    }
+    const imk_verdict v = imk_calibrate_verdict(b->found, count, before, result);
+    free(before);
+    for (size_t k = count; k < v.count; k++)
+        if (v.message[k].level >= IMK_FINDING_WARNING)
+            command_warn(v.message[k].code, "%s", v.message[k].text);
+    return v;
+}
+
+static int write_model(bench *b)
+{
+    imk_error error;
+    const calibrate_options *o = b->options;
+    const imk_model *model = &b->found->model;
+    if (o->into)
+        model_print_changes(o->into, &b->before, model, b->document);
+    if (o->output && imk_model_write(o->output, model, b->document, &error) != IMK_OK)
+        return command_error(&error, NULL);
+    return -1;
+}
+
+int bench_show(bench *b)
+{
+    const calibrate_options *o = b->options;
+    imk_model *model = &b->found->model;
+    if (o->name || !model->name[0] || !o->into)
+        command_model_name(o->name, b->found->record[0].path, model->name, sizeof model->name);
+    imk_result *result = show_begin("calibrate");
+    const imk_verdict verdict = judge(b, result);
+    const bool useless = imk_verdict_level(&verdict) == IMK_FINDING_FAILURE;
+    const bool writes = !useless || o->anyway;
+    const int end = (useless && !o->anyway) || (o->strict && command_warning_count() > 0)
+                        ? EXIT_FAILED
+                        : EXIT_DONE;
+    int code = -1;
+    if (writes)
+        code = write_model(b);
+    else if (o->output)
+        command_note("%s is not written (--anyway would)", o->output);
+    if (code >= 0) {
+        imk_result_free(result);
+        return code;
+    }
+    imk_show_calibrate_log(b->found, &verdict, o->poses, result);
+    imk_result_for(result, IMK_FOR_PAGE);
+    show_model(result, "Model file", &b->found->model);
+    show_origin(result);
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    show_next(b, useless, result);
+    const bool drawn = imk_result_figure_get(result, IMK_FOR_PAGE, 0);
+    const show_options options = {.report = o->report,
+                                  .plot = o->plot,
+                                  .json = o->json,
+                                  .lacking = drawn ? NULL : "observations to draw"};
+    return show_end(result, &options, end);
+}
