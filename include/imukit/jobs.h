@@ -15,6 +15,7 @@
 #include "imukit/identify_log.h"
 #include "imukit/identify_several.h"
 #include "imukit/job.h"
+#include "imukit/physics_log.h"
 #include "imukit/readable.h"
 #include "imukit/record.h"
 #include "imukit/record_plan.h"

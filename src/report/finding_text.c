@@ -4,9 +4,11 @@
  * In braces stands the place of a number of the finding and how it is written: {0} a count, {1g} as
  * %g, {2.1f} as %.1f, {0s} an s unless the count is one, {0a} the name of an Allan statistic, {0t}
  * the text of a status, {0k} gyro or accel, {0p} gyros or accelerometers, {0q} rate or specific
- * force. {name} is the name; {record} and {model} are what these are called. */
+ * force, {0u} a quantity of the unit that is the name. {name} is the name; {record} and {model} are
+ * what these are called. */
 #include "imukit/allan.h"
 #include "imukit/job.h"
+#include "imukit/units.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -163,6 +165,15 @@ static const struct message {
                      "after the sample before it"},
     {"compensate:gaps",
      "gaps and steps back in time: {0} (first: row {1}); each begins a new stretch"},
+    /* physics_log.c, physics_warnings.c */
+    {"output_not_finite", "the output is not finite after {0g} s"},
+    {"range", "the input of {0u} is beyond the range of {2u}"},
+    {"physics:saturated", "the output ends saturated, at {1u}; the input is {0u}"},
+    {"dead_band", "the input of {0u} is within the dead band of {3u}: the output does not follow "
+                  "it"},
+    {"not_followed", "the output ends at {1u}, the input is {0u}"},
+    {"physics:temperature", "{0.4g} degC is outside the temperatures of this design, {1.4g} to "
+                            "{2.4g} degC"},
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 
@@ -186,6 +197,15 @@ static const char *sensor_word(double sensor, char how)
            : how == 'p' ? (sensor == 0 ? "gyros" : "accelerometers")
            : how == 'q' ? (sensor == 0 ? "rate" : "specific force")
                         : NULL;
+}
+
+/* In a unit that suits its size, of the dimension of one that is named. */
+static void put_quantity(writing *w, double number, const char *si)
+{
+    const imk_unit unit = imk_unit_readable(imk_unit_of(si).dimension, number);
+    char text[80];
+    snprintf(text, sizeof text, "%.5g %s", number / unit.scale, unit.text);
+    put(w, text, strlen(text));
 }
 
 /* A number as what stands behind its place says. */
@@ -237,7 +257,9 @@ static void put_message(writing *w, const char *message, const imk_finding *find
         if (!*c)
             return;
         const size_t length = strcspn(c, "}");
-        if (!put_name(w, c, finding))
+        if (strncmp(c + 2, "u}", 2) == 0)
+            put_quantity(w, finding->number[c[1] - '0'], finding->name);
+        else if (!put_name(w, c, finding))
             put_number(w, finding->number[c[1] - '0'], c + 2, length - 2);
         c += length + 1;
     }
