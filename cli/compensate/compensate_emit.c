@@ -3,6 +3,8 @@
 #include "compensate_parts.h"
 #include "shell/growing_list.h"
 
+#include "imukit/show.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,7 +26,7 @@ static const char *const arithmetics[3] = {"float", "double", "fixed"};
 static const char *const motions[2] = {"rate", "force"}, *const units[2] = {"rad/s", "m/s^2"};
 
 /* The terms that the code leaves in although compensate takes them out of a log. */
-static void warn_of_terms(const imk_firmware_keys *left_in)
+static void warn_of_terms(const imk_term_keys *left_in)
 {
     static const char *const needs_time[] = {"accel.lever_arm", "temperature_rate", "warm_up"};
     for (int i = 0; i < left_in->count; i++)
@@ -85,7 +87,7 @@ static int emit(const compensate_options *o, const char *model_name, const imk_m
                 const imk_model *whole, imk_firmware *plan)
 {
     imk_error error;
-    imk_firmware_keys taken_out, left_in;
+    imk_term_keys taken_out, left_in;
     imk_firmware_settings settings = imk_firmware_default();
     imk_firmware_file_settings files = imk_firmware_file_default();
     char name[IMK_FIRMWARE_NAME_MAX];
@@ -114,8 +116,8 @@ static int emit(const compensate_options *o, const char *model_name, const imk_m
     imk_result_text(result, "arithmetic", arithmetics[plan->arithmetic]);
     imk_result_count(result, "iterations", plan->iterations);
     show_cost(plan, result);
-    compensate_show_keys("taken_out", "Taken out", &taken_out, result);
-    compensate_show_keys("left_in", "Left in", &left_in, result);
+    imk_show_terms("taken_out", "Taken out", &taken_out, result);
+    imk_show_terms("left_in", "Left in", &left_in, result);
     imk_result_end(result);
     show_summary(o->emission.directory, name, plan, result);
     return compensate_end(o, result);
@@ -138,11 +140,7 @@ int compensate_emit(const compensate_options *o, const char *const *operands)
         return code;
     imk_model *models = command_memory(NULL, 2 * sizeof *models);
     imk_firmware *plan = command_memory(NULL, sizeof *plan);
-    code = command_model(operands[0], &models[1], NULL);
-    if (code < 0) {
-        models[0] = models[1];
-        code = compensate_select(o, &models[0]);
-    }
+    code = compensate_models(o, operands[0], &models[1], &models[0]);
     if (code < 0)
         code = emit(o, operands[0], &models[0], &models[1], plan);
     free(models);

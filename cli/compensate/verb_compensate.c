@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit compensate: log + model -> log without the errors the model describes. Rows are corrected
- * as they are read; the memory does not depend on the length of the log. */
+/* imukit compensate: log + model -> log without the errors the model describes. */
 #include "compensate_parts.h"
+#include "log/log_units.h"
+#include "shell/job_progress.h"
+
+#include "imukit/show.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,57 +82,112 @@ const verb compensate_verb = {
                 offsetof(compensate_options, log)}},
     .run = run};
 
-/* What can be said before the log is read. */
-static int check_model(const compensate_options *o, const compensation *c)
+int compensate_models(const compensate_options *o, const char *name, imk_model *whole,
+                      imk_model *terms)
 {
-    char term[64];
-    const bool needs = compensate_temperature_term(&c->model, term, sizeof term);
-    if (needs && c->columns.temperature < 0 && isnan(o->temperature))
-        return command_failed("%s depends on temperature (%s) and %s has no temperature column: "
-                              "add --temperature 25degC",
-                              c->name, term, c->log);
-    if (needs && isnan(o->temperature)) {
-        const imk_log_column *column =
-            imk_log_column_get(c->reader, (size_t)c->columns.temperature);
-        if (imk_dimension_equal(column->unit.dimension, imk_unit_of("count").dimension))
-            return command_failed("%s depends on temperature (%s), which %s has in counts only: "
-                                  "add --temperature 25degC",
-                                  c->name, term, c->log);
+    int code = command_model(name, whole, NULL);
+    if (code >= 0)
+        return code;
+    *terms = *whole;
+    code = term_selection_apply(&o->terms, terms);
+    imk_compensation_model(whole, terms);
+    return code;
+}
+
+int compensate_end(const compensate_options *o, imk_result *result)
+{
+    const int code = o->strict && command_warning_count() > 0 ? EXIT_FAILED : EXIT_DONE;
+    if (!o->json)
+        show_aside(result);
+    return show_end(result, &(show_options){.json = o->json, .quiet = true}, code);
+}
+
+/* Numbers are turned round by --axes, which counts, with their zero offset, are not made for. */
+static int check_axes(const compensate_options *o, const imk_model *model,
+                      const imk_record_source *source)
+{
+    const imk_dimension counts = imk_unit_of("count").dimension;
+    for (size_t k = 0; k < source->column_count && o->log.axes; k++) {
+        const imk_log_column *column = &source->columns[k];
+        const imk_triad *triad = column->quantity == IMK_QUANTITY_ANGULAR_RATE     ? &model->gyro
+                                 : column->quantity == IMK_QUANTITY_SPECIFIC_FORCE ? &model->accel
+                                                                                   : NULL;
+        if (triad && triad->present && triad->sensitivity.value[0] != 0 &&
+            imk_dimension_equal(column->unit.dimension, counts))
+            return command_misused("--axes turns numbers round, and counts have a zero offset: "
+                                   "compensate first, then imukit convert --axes");
     }
-    if (c->model.residual_of[0])
-        command_warn("residual", "%s is what is left after compensating with %s: do that first",
-                     c->name, c->model.residual_of);
-    if (compensate_taken_out(&c->model).count == 0)
-        command_warn("nothing", "%s has no deterministic term%s: there is nothing to take out",
-                     c->name, o->terms.only || o->terms.without ? " of those selected" : "");
     return -1;
 }
 
-static int compensate(const compensate_options *o, compensation *c)
+static int set_up(const compensate_options *o, const imk_model *terms,
+                  imk_compensate_log_settings *settings)
+{
+    *settings = imk_compensate_log_default();
+    if (o->terms.only || o->terms.without)
+        settings->terms = terms;
+    settings->temperature = o->temperature;
+    settings->temperature_time = o->temperature_time;
+    settings->powered_for = o->powered_for;
+    settings->rate_limit = o->rate_limit;
+    settings->force_limit = o->force_limit;
+    settings->flags = o->flags;
+    imk_unit gyro = imk_unit_of("rad/s"), accel = imk_unit_of("m/s^2");
+    int code = log_unit_asked("to-gyro-unit", o->to_gyro_unit, &gyro);
+    if (code < 0)
+        code = log_unit_asked("to-accel-unit", o->to_accel_unit, &accel);
+    if (o->to_gyro_unit)
+        settings->gyro_unit = gyro;
+    if (o->to_accel_unit)
+        settings->accel_unit = accel;
+    return code;
+}
+
+/* What went wrong with the model or with what is written; the rest is the log's. */
+static int tell(const char *const *operands, const imk_compensate_log *log, imk_status status,
+                const imk_error *error)
+{
+    const imk_findings none = {.count = 0};
+    const imk_finding *failure = log ? imk_findings_failure(&log->findings) : NULL;
+    if (failure && strcmp(failure->code, "model_refused") == 0)
+        return command_error(error, operands[1]);
+    if (failure && strcmp(failure->code, "not_written") == 0)
+        return command_error(error, NULL);
+    return log_input_tell_model(operands[0], operands[1], log ? &log->findings : &none, status,
+                                error);
+}
+
+static int compensate(const compensate_options *o, const char *const *operands,
+                      imk_log_reader *reader, const imk_model *whole,
+                      const imk_compensate_log_settings *settings)
 {
     imk_error error;
-    imk_log_settings settings = log_input_settings(&o->log);
-    int code = command_model(c->name, &c->whole, NULL);
+    imk_log_sink written = {.path = o->output ? o->output : "-",
+                            .fixed = o->decimals.given,
+                            .decimals = (int)o->decimals.value};
+    const imk_record_source source = imk_log_source(reader);
+    const imk_record_sink sink = imk_log_sink_of(&written);
+    int code = check_axes(o, settings->terms ? settings->terms : whole, &source);
     if (code >= 0)
         return code;
-    c->model = c->whole;
-    code = compensate_select(o, &c->model);
-    if (code >= 0)
-        return code;
-    if (imk_log_open(c->log, &settings, &c->reader, &error) != IMK_OK)
-        return command_log_error(&error, c->log);
-    code = compensate_match(o, c->reader, c->log, c->name, &c->model, &c->columns);
-    if (code < 0)
-        code = check_model(o, c);
-    if (code < 0)
-        code = compensate_stream(o, c);
+    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
+    const imk_executor executor = imk_thread_pool_executor(pool);
+    job_progress shown = job_progress_begin(operands[0]);
+    const imk_job job = job_progress_job(&shown, &executor);
+    imk_compensate_log *log;
+    const imk_status status =
+        imk_compensate_log_run(&source, whole, settings, &sink, &job, &log, &error);
+    job_progress_end(&shown);
+    imk_thread_pool_destroy(pool);
+    const imk_status ended = imk_log_sink_end(&written, status, &error);
+    code = status == IMK_OK && ended != IMK_OK ? command_error(&error, NULL)
+                                               : tell(operands, log, ended, &error);
     if (code < 0) {
         imk_result *result = show_begin("compensate");
-        compensate_warn(&c->counts);
-        compensate_show(c, result);
+        imk_show_compensate_log(log, operands[0], operands[1], result);
         code = compensate_end(o, result);
     }
-    imk_log_close(c->reader);
+    imk_compensate_log_free(log);
     return code;
 }
 
@@ -160,10 +218,17 @@ static int run(int count, char **words)
         return compensate_emit(&o, operands);
     if (!operands[1])
         return command_misused("an operand is missing: imukit compensate LOG MODEL");
-    compensation *c = command_zeroed(sizeof *c);
-    c->log = operands[0];
-    c->name = operands[1];
-    code = compensate(&o, c);
-    free(c);
+    imk_log_reader *reader = NULL;
+    imk_compensate_log_settings settings;
+    imk_model *models = command_memory(NULL, 2 * sizeof *models);
+    code = compensate_models(&o, operands[1], &models[0], &models[1]);
+    if (code < 0)
+        code = set_up(&o, &models[1], &settings);
+    if (code < 0)
+        code = log_input_open(&o.log, operands[0], false, &reader);
+    if (code < 0)
+        code = compensate(&o, operands, reader, &models[0], &settings);
+    imk_log_close(reader);
+    free(models);
     return code;
 }

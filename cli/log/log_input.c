@@ -4,6 +4,7 @@
 
 #include "shell/job_progress.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 const option log_input_options[LOG_INPUT_OPTIONS] = {
@@ -65,24 +66,41 @@ int log_input_open(const log_input *input, const char *path, bool again, imk_log
     return -1;
 }
 
-int log_input_tell(const char *path, const imk_findings *findings, imk_status status,
-                   const imk_error *error)
+/* In memory that is to be freed. */
+static char *message_of(const imk_finding *finding, const char *path, const char *model)
 {
-    char text[900];
+    const size_t size = imk_finding_message(finding, path, model, NULL, 0) + 1;
+    char *text = command_memory(NULL, size);
+    imk_finding_message(finding, path, model, text, size);
+    return text;
+}
+
+int log_input_tell_model(const char *path, const char *model, const imk_findings *findings,
+                         imk_status status, const imk_error *error)
+{
     const imk_finding *failure = status != IMK_OK ? imk_findings_failure(findings) : NULL;
     for (size_t i = 0; i < findings->count; i++) {
         const imk_finding *f = &findings->item[i];
         if (f->level != IMK_FINDING_WARNING)
             continue;
-        imk_finding_text(f, text, sizeof text);
-        command_warn(f->code, "%s", text);
+        char *text = message_of(f, path, model);
+        command_warn(imk_finding_code(f), "%s", text);
+        free(text);
     }
     if (status == IMK_OK)
         return -1;
     if (!failure)
         return command_log_error(error, path);
-    imk_finding_text(failure, text, sizeof text);
-    return command_failed("%s: %s", path, text);
+    char *text = message_of(failure, path, model);
+    const int code = command_failed("%s", text);
+    free(text);
+    return code;
+}
+
+int log_input_tell(const char *path, const imk_findings *findings, imk_status status,
+                   const imk_error *error)
+{
+    return log_input_tell_model(path, "the model", findings, status, error);
 }
 
 int log_input_load(const log_input *input, const char *path, log_channels *channels)

@@ -44,13 +44,13 @@ enum { VALUE_SIZE = 120 };
 
 void physics_show_design(const physics *p, imk_result *result)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table, "parameter\tvalue\t");
     for (size_t i = 0; i < instrument->field_count; i++) {
         const imk_design_field *field = &instrument->fields[i];
         char value[VALUE_SIZE] = "";
-        (void)imk_design_field_text(field, p->file.design, 6, value, sizeof value);
+        (void)imk_design_field_text(field, p->settings.design, 6, value, sizeof value);
         imk_table_row(table, "%s\t%s\t%s", field->path, value, field->help);
     }
 }
@@ -84,10 +84,10 @@ static void field_data(const imk_design_field *field, const void *design, imk_re
 
 void physics_design_data(const physics *p, imk_result *result)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     imk_result_object(result, "design");
     for (size_t i = 0; i < instrument->field_count; i++)
-        field_data(&instrument->fields[i], p->file.design, result);
+        field_data(&instrument->fields[i], p->settings.design, result);
     imk_result_end(result);
 }
 
@@ -102,7 +102,7 @@ static void show_signals(const char *title, size_t count, const imk_signal *sign
 
 void physics_show_overview(const physics *p, imk_result *result)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     const bool named = p->file.name[0];
     imk_result_line(result, IMK_BOLD "%s" IMK_PLAIN "%s%s\nDefault design: %s\n", physics_name(p),
                     named ? ": " : "", named ? instrument->title : "", instrument->source);

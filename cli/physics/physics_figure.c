@@ -38,7 +38,7 @@ static void begin_panel(imk_figure_builder *figure, const char *title, const cha
 
 /* ---- a run ----------------------------------------------------------------------------------- */
 
-static void add_curves(const physics_run *run, const double *x, const double *output,
+static void add_curves(const imk_physics_log *run, const double *x, const double *output,
                        imk_curve_style style, bool with_input, imk_figure_builder *figure)
 {
     imk_curve curve = {with_input ? "output" : "", style, 0, run->points, x, output, NULL, NULL};
@@ -51,9 +51,9 @@ static void add_curves(const physics_run *run, const double *x, const double *ou
 
 /* Against the input, output 0 is a curve of response, with its dead band, when the sine is slow, an
  * ellipse when the instrument lags behind. */
-void physics_show_run_figure(const physics *p, const physics_run *run, imk_result *result)
+void physics_show_run_figure(const physics *p, const imk_physics_log *run, imk_result *result)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     char x[PHYSICS_LABEL], y[PHYSICS_LABEL], title[PHYSICS_LABEL + 200];
     imk_figure_builder *figure = imk_result_figure(
         result, physics_name(p), 2,
@@ -65,13 +65,13 @@ void physics_show_run_figure(const physics *p, const physics_run *run, imk_resul
         const imk_panel panel = {.title = title,
                                  .x_label = "time [s]",
                                  .y_label =
-                                     label(y, signal->name, physics_output_unit(p, run, i).text)};
+                                     label(y, signal->name, imk_physics_output_unit(run, i).text)};
         imk_figure_panel(figure, &panel);
         add_curves(run, run->time, run->curve[i], IMK_CURVE_LINE, i == 0, figure);
     }
-    if (p->input.is_sine) {
+    if (p->settings.input.frequency > 0) {
         begin_panel(figure, "Output against input", "input", "output",
-                    physics_output_unit(p, run, 0).text);
+                    imk_physics_output_unit(run, 0).text);
         add_curves(run, run->input, run->curve[0], IMK_CURVE_POINTS, true, figure);
     }
 }
@@ -79,11 +79,11 @@ void physics_show_run_figure(const physics *p, const physics_run *run, imk_resul
 /* ---- views ----------------------------------------------------------------------------------- */
 
 /* The view's own input, unless another was asked for. */
-static physics_input input_of(const physics *p, const imk_view *view)
+static imk_physics_input input_of(const physics *p, const imk_view *view)
 {
-    physics_input input = p->input;
+    imk_physics_input input = p->settings.input;
     if (!p->options->rate && !p->options->acceleration) {
-        const bool gyro = p->file.instrument->sensor == IMK_GYRO;
+        const bool gyro = p->settings.instrument->sensor == IMK_GYRO;
         (gyro ? input.exposure.angular_rate : input.exposure.specific_force)[0] = view->input;
     }
     return input;
@@ -93,22 +93,22 @@ static physics_input input_of(const physics *p, const imk_view *view)
 static int record(const physics *p, const imk_view *view, size_t points, uint64_t stride,
                   double *data)
 {
-    const imk_instrument *instrument = p->file.instrument;
-    imk_physics_settings settings = p->settings;
+    const imk_instrument *instrument = p->settings.instrument;
+    imk_physics_settings settings = p->settings.physics;
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], inside[IMK_INSTRUMENT_SIGNALS_MAX];
     void *state;
-    const physics_input input = input_of(p, view);
+    const imk_physics_input input = input_of(p, view);
     settings.rate = view->rate;
     int code = physics_start(p, &settings, &state);
     if (code >= 0)
         return code;
     const uint64_t settle = (uint64_t)floor(view->settle * view->rate + 0.5);
     for (uint64_t k = 0; k < settle; k++) {
-        const imk_exposure e = physics_input_at(&input, view->rate, k);
+        const imk_exposure e = imk_physics_input_at(&input, view->rate, k);
         instrument->step(state, &e, outputs);
     }
     for (uint64_t k = 0; k < points * stride; k++) {
-        const imk_exposure e = physics_input_at(&input, view->rate, settle + k);
+        const imk_exposure e = imk_physics_input_at(&input, view->rate, settle + k);
         instrument->step(state, &e, outputs);
         if ((k + 1) % stride != 0)
             continue;
@@ -153,7 +153,7 @@ static void label_view(const imk_instrument *instrument, const char *x_unit, phy
 /* With the duration and rate that were asked for. @return -1 or the exit code; free the data */
 static int make_view(const physics *p, size_t index, physics_view *v)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     imk_view *view = &v->view;
     *v = (physics_view){.view = instrument->views[index]};
     if (!isnan(p->options->view_duration))
@@ -209,7 +209,7 @@ static void add_panel(const physics *p, const physics_view *v, imk_figure_builde
     const imk_panel panel = {.title = view->title, .x_label = v->x_label, .y_label = v->y_label};
     imk_figure_panel(figure, &panel);
     for (int c = 0; c < view->curve_count; c++) {
-        const char *signal = p->file.instrument->signals[view->y[c]].name;
+        const char *signal = p->settings.instrument->signals[view->y[c]].name;
         const imk_curve curve = {.label = view->curve_count > 1 ? label(name, signal, "1") : "",
                                  .style = view->points ? IMK_CURVE_POINTS : IMK_CURVE_LINE,
                                  .color = c,
@@ -257,7 +257,7 @@ static bool begins_alike(const char *title, const char *text)
 /* The view that --view names. @return -1 or the exit code */
 static int find_view(const physics *p, size_t *index)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     const char *text = p->options->view;
     char *end;
     const unsigned long number = strtoul(text, &end, 10);
@@ -281,7 +281,7 @@ static int find_view(const physics *p, size_t *index)
  * this design has not. */
 void physics_show_views(const physics *p, imk_result *result)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     if (instrument->view_count > 0)
         imk_result_heading(result, "Inside the instrument");
     for (size_t i = 0; i < instrument->view_count; i++) {
@@ -303,7 +303,7 @@ void physics_show_views(const physics *p, imk_result *result)
 
 int physics_show_view_figure(const physics *p, imk_result *result)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     const bool one = p->options->view != NULL;
     size_t first = 0, kept = 0;
     if (instrument->view_count == 0)
@@ -332,7 +332,7 @@ int physics_show_view_figure(const physics *p, imk_result *result)
 /* Of the view asked for, else of the first that can move. */
 static int choose_moving(const physics *p, size_t *index)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     const imk_view *views = instrument->views;
     *index = 0;
     const int code = p->options->view ? find_view(p, index) : -1;
@@ -402,11 +402,11 @@ bool physics_show_laboratory_figure(const physics *p, const physics_laboratory *
     if (r->point_count == 0 && r->response_count == 0)
         return false;
     imk_figure_builder *figure = imk_result_figure(
-        result, p->file.instrument->title, 2,
+        result, p->settings.instrument->title, 2,
         "The rate table shows output less input, bars of two standard deviations; the response is "
         "the gain for a sine.");
     if (r->point_count > 0)
-        add_table(r, p->file.instrument->sensor == IMK_GYRO, figure);
+        add_table(r, p->settings.instrument->sensor == IMK_GYRO, figure);
     if (r->response_count > 0)
         add_response(r, figure);
     return true;

@@ -1,18 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an instrument is exposed to, from the options. The exposure is held over a sample, so a sine
- * a sin(2 pi f t) is given as its mean over the sample from t to t + h:
- *
- *     a (cos(2 pi f t) - cos(2 pi f (t + h)))/(2 pi f h)
- *
- * with the cosines of elementary.h, so that a log has the same bytes on every machine. */
+/* What an instrument is exposed to, from the options. */
 #include "physics_parts.h"
-
-#include "imukit/elementary.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* As the steps of a motion script; hotter than this nothing is solid. */
 static const double largest_motion = 1e6; /* [rad/s], [m/s^2] */
@@ -48,15 +39,15 @@ static int read_vector(const char *name, const char *text, const char *unit, con
     return -1;
 }
 
-static int check(const physics_options *o, const physics_input *input)
+static int check(const physics_options *o)
 {
-    const bool moves = o->rate || o->acceleration;
-    if (input->is_sine && !moves)
+    const bool is_sine = !isnan(o->sine), moves = o->rate || o->acceleration;
+    if (is_sine && !moves)
         return command_misused("--sine is the frequency of the rate or acceleration given: add "
                                "--rate or --acceleration");
-    if (input->is_sine && !(o->sine > 0))
+    if (is_sine && !(o->sine > 0))
         return command_misused("--sine: expected a frequency above 0");
-    if (input->is_sine && !(o->sine <= 0.25 * o->output_rate))
+    if (is_sine && !(o->sine <= 0.25 * o->output_rate))
         return command_misused("--sine %g Hz: the input is held over a sample of %g s, at least "
                                "four of which make a cycle; add --output-rate %gHz or more",
                                o->sine, 1 / o->output_rate, 4 * o->sine);
@@ -70,15 +61,14 @@ static int check(const physics_options *o, const physics_input *input)
     return -1;
 }
 
-int physics_input_make(const physics_options *o, physics_input *input)
+int physics_input_make(const physics_options *o, imk_physics_input *input)
 {
-    *input = (physics_input){.exposure = imk_exposure_default(),
-                             .is_sine = !isnan(o->sine),
-                             .frequency = o->sine,
-                             .temperature_rate = o->temperature_rate};
+    *input = (imk_physics_input){.exposure = imk_exposure_default(),
+                                 .frequency = isnan(o->sine) ? 0 : o->sine,
+                                 .temperature_rate = o->temperature_rate};
     input->exposure.temperature = o->temperature;
     input->exposure.temperature_rate = o->temperature_rate;
-    int code = check(o, input);
+    int code = check(o);
     if (code < 0 && o->rate)
         code = read_vector("rate", o->rate, "deg/s", "1e6 rad/s, which is 5.7e7 deg/s",
                            input->exposure.angular_rate);
@@ -86,24 +76,4 @@ int physics_input_make(const physics_options *o, physics_input *input)
         code = read_vector("acceleration", o->acceleration, "m/s^2", "1e6 m/s^2, which is 102000 g",
                            input->exposure.specific_force);
     return code;
-}
-
-imk_exposure physics_input_at(const physics_input *input, double rate, uint64_t index)
-{
-    imk_exposure e = input->exposure;
-    const double time = (double)index / rate;
-    e.temperature += input->temperature_rate * (time + 0.5 / rate);
-    if (!input->is_sine)
-        return e;
-    /* whole cycles are taken off, so that the phase is good after any time */
-    const double cycles = fmod(time * input->frequency, 1.0), step = input->frequency / rate;
-    const double begin = 2 * pi * cycles, angle = 2 * pi * step;
-    const double mean = (imk_cos(begin) - imk_cos(begin + angle)) / angle;
-    const double slope = (imk_sin(begin + angle) - imk_sin(begin)) * rate;
-    for (int k = 0; k < 3; k++) {
-        e.angular_acceleration[k] = slope * e.angular_rate[k];
-        e.angular_rate[k] *= mean;
-        e.specific_force[k] *= mean;
-    }
-    return e;
 }

@@ -121,11 +121,11 @@ int physics_laboratory_make(const physics *p, physics_laboratory *laboratory)
 {
     imk_error error = {.status = IMK_OK};
     imk_laboratory settings = imk_laboratory_default();
-    settings.instrument = p->file.instrument;
-    settings.design = p->file.design;
-    settings.physics = p->settings;
-    settings.surroundings.temperature = p->input.exposure.temperature;
-    if (!p->settings.noise)
+    settings.instrument = p->settings.instrument;
+    settings.design = p->settings.design;
+    settings.physics = p->settings.physics;
+    settings.surroundings.temperature = p->settings.input.exposure.temperature;
+    if (!p->settings.physics.noise)
         settings.record = 0;
     const size_t size = imk_laboratory_workspace_size(&settings);
     void *workspace = command_aligned(size);
@@ -137,7 +137,7 @@ int physics_laboratory_make(const physics *p, physics_laboratory *laboratory)
     free(workspace);
     if (status != IMK_OK)
         return physics_refused(p, &error);
-    const int sensor = p->file.instrument->sensor;
+    const int sensor = p->settings.instrument->sensor;
     laboratory->count = imk_laboratory_figures(p->model, sensor, laboratory->computed);
     (void)imk_laboratory_figures(&laboratory->result.model, sensor, laboratory->found);
     return -1;
@@ -201,7 +201,7 @@ static void show_points(const imk_laboratory_result *r, const char *si, imk_resu
 
 void physics_laboratory_data(const physics *p, const physics_laboratory *l, imk_result *result)
 {
-    const char *si = p->file.instrument->sensor == IMK_GYRO ? "rad/s" : "m/s^2";
+    const char *si = p->settings.instrument->sensor == IMK_GYRO ? "rad/s" : "m/s^2";
     const imk_laboratory_result *r = &l->result;
     imk_result_object(result, "experiment");
     imk_result_object(result, "figures");

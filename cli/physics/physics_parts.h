@@ -6,7 +6,7 @@
 #include "shell/show.h"
 
 #include "imukit/distort.h"
-#include "imukit/laboratory.h"
+#include "imukit/physics_log.h"
 
 typedef struct physics_options {
     bool list, show, reduce, sweep, single_axis, no_noise, json;
@@ -19,28 +19,17 @@ typedef struct physics_options {
     const char *output, *signals, *plot, *report, *view, *animate;
 } physics_options;
 
-/* What the instrument is exposed to, against time. */
-typedef struct physics_input {
-    imk_exposure exposure; /* angular rate and specific force are the amplitudes of a sine */
-    bool is_sine;
-    double frequency;        /* [Hz] */
-    double temperature_rate; /* [K/s] */
-} physics_input;
-
 /* An instrument, its design and how to run it. */
 typedef struct physics {
     const physics_options *options;
     const char *source; /* the operand: a file or a name */
     imk_design_file file;
-    imk_physics_settings settings;
-    physics_input input;
+    imk_physics_log_settings settings;
     imk_model *model; /* reduced, one axis */
 } physics;
 
 /* physics_input.c: what the options say. @return -1 or the exit code */
-int physics_input_make(const physics_options *o, physics_input *input);
-/* Exposure of sample `index` at this rate, the mean over it. */
-imk_exposure physics_input_at(const physics_input *input, double rate, uint64_t index);
+int physics_input_make(const physics_options *o, imk_physics_input *input);
 
 /* physics_run.c */
 
@@ -48,30 +37,8 @@ imk_exposure physics_input_at(const physics_input *input, double rate, uint64_t 
 int physics_start(const physics *p, const imk_physics_settings *settings, void **state);
 /* Why an instrument could not be started, in its units and with the options' names. */
 int physics_refused(const physics *p, imk_error *error);
-
-enum { PHYSICS_CURVE_POINTS = 4000 };
-
-/* A run to look at: statistics of the outputs, and means for a picture. */
-typedef struct physics_run {
-    uint64_t samples, stride; /* samples to a point of the picture */
-    double mean[IMK_INSTRUMENT_OUTPUTS_MAX];
-    double deviation[IMK_INSTRUMENT_OUTPUTS_MAX]; /* NaN: of one sample */
-    double last[IMK_INSTRUMENT_OUTPUTS_MAX]; /* at the end: mean of the last 1 % of the samples */
-    size_t points;
-    double *time, *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /* [s], display units;
-                                                         PHYSICS_CURVE_POINTS + 1 each */
-    double *input;                                    /* in the unit of output 0 */
-} physics_run;
-
-/* Run for --duration, write the log and the signals. */
-int physics_run_make(const physics *p, physics_run *run);
-void physics_run_free(physics_run *run);
-/* Unit to show an output in: of the measured input, by its size. */
-imk_unit physics_output_unit(const physics *p, const physics_run *run, size_t output);
-uint64_t physics_samples(const physics_options *o, double rate);
-
-/* physics_warnings.c: what can be known of a run that went wrong quietly. */
-void physics_warn_of_run(const physics *p, const physics_run *run);
+/* Run for --duration, write the log and the signals, warn. @return -1 or the exit code */
+int physics_run_make(const physics *p, imk_physics_log **run);
 
 /* physics_design.c: the list of instruments, one design. */
 void physics_show_list(imk_result *result);
@@ -109,7 +76,7 @@ typedef struct physics_view {
 } physics_view;
 
 /* The outputs of a run against time, and against the input when that is a sine. */
-void physics_show_run_figure(const physics *p, const physics_run *run, imk_result *result);
+void physics_show_run_figure(const physics *p, const imk_physics_log *run, imk_result *result);
 /* Each view that shows something, for a page. */
 void physics_show_views(const physics *p, imk_result *result);
 /* The view that --view names, or all of them in one figure. @return -1 or the exit code */
@@ -126,7 +93,7 @@ int physics_animate(const physics *p, const char *path);
 const char *physics_name(const physics *p);
 /* All there is to show of a run, of the error models (laboratory NULL: not measured), or of the
  * design. @return -1 or the exit code, the message printed */
-int physics_show(const physics *p, const physics_run *r, const physics_laboratory *l,
+int physics_show(const physics *p, const imk_physics_log *r, const physics_laboratory *l,
                  imk_result *result);
 
 #endif

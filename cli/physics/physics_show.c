@@ -6,13 +6,14 @@
 
 const char *physics_name(const physics *p)
 {
-    return p->file.name[0] ? p->file.name : p->file.instrument->title;
+    return p->file.name[0] ? p->file.name : p->settings.instrument->title;
 }
 
 static double internal_step(const physics *p)
 {
-    return p->settings.step > 0 ? fmin(p->settings.step, 1 / p->settings.rate)
-                                : p->file.instrument->step_length(p->file.design, &p->settings);
+    return p->settings.physics.step > 0
+               ? fmin(p->settings.physics.step, 1 / p->settings.physics.rate)
+               : p->settings.instrument->step_length(p->settings.design, &p->settings.physics);
 }
 
 /* ---- data ------------------------------------------------------------------------------------ */
@@ -27,24 +28,24 @@ static void vector_data(const char *key, const double v[3], const char *unit, im
 
 static void settings_data(const physics *p, imk_result *result)
 {
-    const imk_exposure *e = &p->input.exposure;
-    imk_result_text(result, "instrument", p->file.instrument->name);
-    imk_result_quantity(result, "output_rate", p->settings.rate, "Hz");
-    imk_result_text(result, "level", p->settings.level == IMK_LEVEL_FULL ? "full" : "slow");
-    imk_result_flag(result, "noise", p->settings.noise);
-    imk_result_count(result, "seed", (long long)p->settings.seed);
+    const imk_exposure *e = &p->settings.input.exposure;
+    imk_result_text(result, "instrument", p->settings.instrument->name);
+    imk_result_quantity(result, "output_rate", p->settings.physics.rate, "Hz");
+    imk_result_text(result, "level", p->settings.physics.level == IMK_LEVEL_FULL ? "full" : "slow");
+    imk_result_flag(result, "noise", p->settings.physics.noise);
+    imk_result_count(result, "seed", (long long)p->settings.physics.seed);
     vector_data("rate", e->angular_rate, "rad/s", result);
     vector_data("acceleration", e->specific_force, "m/s^2", result);
-    if (p->input.is_sine)
-        imk_result_quantity(result, "sine", p->input.frequency, "Hz");
+    if (p->settings.input.frequency > 0)
+        imk_result_quantity(result, "sine", p->settings.input.frequency, "Hz");
     else
         imk_result_null(result, "sine");
     imk_result_quantity(result, "temperature", e->temperature, "K");
 }
 
-static void run_data(const physics *p, const physics_run *r, imk_result *result)
+static void run_data(const physics *p, const imk_physics_log *r, imk_result *result)
 {
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     imk_result_count(result, "samples", (long long)r->samples);
     imk_result_quantity(result, "internal_step", internal_step(p), "s");
     imk_result_array(result, "outputs");
@@ -60,7 +61,7 @@ static void run_data(const physics *p, const physics_run *r, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_data(const physics *p, const physics_run *r, const physics_laboratory *l,
+static void show_data(const physics *p, const imk_physics_log *r, const physics_laboratory *l,
                       imk_result *result)
 {
     const bool overview = !r && !p->options->reduce && !l;
@@ -71,13 +72,13 @@ static void show_data(const physics *p, const physics_run *r, const physics_labo
     imk_result_end(result);
     imk_result_object(result, "result");
     if (overview) {
-        physics_instrument_data(p->file.instrument, "instrument", result);
+        physics_instrument_data(p->settings.instrument, "instrument", result);
         physics_design_data(p, result);
     }
     if (r)
         run_data(p, r, result);
     else
-        physics_model_data(p->model, p->file.instrument->sensor, result);
+        physics_model_data(p->model, p->settings.instrument->sensor, result);
     if (l)
         physics_laboratory_data(p, l, result);
     imk_result_end(result);
@@ -85,19 +86,20 @@ static void show_data(const physics *p, const physics_run *r, const physics_labo
 
 /* ---- terminal -------------------------------------------------------------------------------- */
 
-static void show_run(const physics *p, const physics_run *r, imk_result *result)
+static void show_run(const physics *p, const imk_physics_log *r, imk_result *result)
 {
     char length[60];
     imk_readable_duration(p->options->duration, length, sizeof length);
     imk_result_line(result, "%s: %llu samples at %g Hz, %s, %s, internal step %.4g s\n",
-                    physics_name(p), (unsigned long long)r->samples, p->settings.rate, length,
-                    p->settings.level == IMK_LEVEL_FULL ? "full dynamics" : "slow map",
+                    physics_name(p), (unsigned long long)r->samples, p->settings.physics.rate,
+                    length,
+                    p->settings.physics.level == IMK_LEVEL_FULL ? "full dynamics" : "slow map",
                     internal_step(p));
     imk_table *table = imk_result_table(result, 0xeu);
     imk_table_row(table, "output\tmean\tstandard deviation\tat the end\tunit");
-    for (size_t i = 0; i < p->file.instrument->output_count; i++) {
-        const imk_unit unit = physics_output_unit(p, r, i);
-        imk_table_row(table, "%s\t%.8g", p->file.instrument->outputs[i].name,
+    for (size_t i = 0; i < p->settings.instrument->output_count; i++) {
+        const imk_unit unit = imk_physics_output_unit(r, i);
+        imk_table_row(table, "%s\t%.8g", p->settings.instrument->outputs[i].name,
                       (r->mean[i] - unit.offset) / unit.scale);
         imk_table_add(table, r->samples > 1 ? "%.5g" : "-", r->deviation[i] / unit.scale);
         imk_table_add(table, "%.8g\t%s", (r->last[i] - unit.offset) / unit.scale,
@@ -110,7 +112,7 @@ static void show_models(const physics *p, const physics_laboratory *l, imk_resul
     const bool reduce = p->options->reduce;
     if (reduce) {
         imk_result_line(result, "Error model by closed forms, one axis");
-        physics_show_model(p->model, p->file.instrument->sensor, result);
+        physics_show_model(p->model, p->settings.instrument->sensor, result);
     }
     if (l) {
         imk_result_line(result, "%sClosed forms against experiments", reduce ? "\n" : "");
@@ -129,16 +131,16 @@ static void show_page(const physics *p, imk_result *result)
     imk_result_heading(result, "Design");
     physics_show_design(p, result);
     imk_result_heading(result, "Reduced error model");
-    physics_show_model(p->model, p->file.instrument->sensor, result);
+    physics_show_model(p->model, p->settings.instrument->sensor, result);
     imk_result_line(result, "From the design by closed forms; one axis, along x.");
     show_model(result, "As a file", p->model);
 }
 
-int physics_show(const physics *p, const physics_run *r, const physics_laboratory *l,
+int physics_show(const physics *p, const imk_physics_log *r, const physics_laboratory *l,
                  imk_result *result)
 {
     const physics_options *o = p->options;
-    const imk_instrument *instrument = p->file.instrument;
+    const imk_instrument *instrument = p->settings.instrument;
     bool drawn = true;
     int code = -1;
     show_data(p, r, l, result);

@@ -188,7 +188,7 @@ static int check_numbers(const physics_options *o)
 
 /* Picture, page, JSON, tables of what was done: without the picture, for want of gnuplot, still the
  * page. @return the exit code */
-static int show(const physics *p, const physics_run *r, const physics_laboratory *l, bool quiet)
+static int show(const physics *p, const imk_physics_log *r, const physics_laboratory *l, bool quiet)
 {
     const physics_options *o = p->options;
     imk_result *result = show_begin("physics");
@@ -206,13 +206,11 @@ static int show(const physics *p, const physics_run *r, const physics_laboratory
 static int do_run(const physics *p)
 {
     const physics_options *o = p->options;
-    physics_run r;
+    imk_physics_log *r;
     int code = physics_run_make(p, &r);
-    if (code < 0) {
-        physics_warn_of_run(p, &r);
-        code = show(p, &r, NULL, !o->output && !o->plot && !o->report && !o->signals);
-    }
-    physics_run_free(&r);
+    if (code < 0)
+        code = show(p, r, NULL, !o->output && !o->plot && !o->report && !o->signals);
+    imk_physics_log_free(r);
     return code;
 }
 
@@ -280,16 +278,20 @@ static int open_design(physics *p)
 
 static int start(const physics_options *o, const char *operand)
 {
-    physics p = {.options = o, .source = operand, .settings = imk_physics_settings_default()};
-    p.settings.level = o->level == 0 ? IMK_LEVEL_FULL : IMK_LEVEL_SLOW;
-    p.settings.rate = o->output_rate;
-    p.settings.step = o->step;
-    p.settings.noise = !o->no_noise;
-    p.settings.seed = o->seed.value;
-    p.settings.run = (uint32_t)o->run.value;
+    physics p = {.options = o, .source = operand, .settings = imk_physics_log_default()};
+    p.settings.physics.level = o->level == 0 ? IMK_LEVEL_FULL : IMK_LEVEL_SLOW;
+    p.settings.physics.rate = o->output_rate;
+    p.settings.physics.step = o->step;
+    p.settings.physics.noise = !o->no_noise;
+    p.settings.physics.seed = o->seed.value;
+    p.settings.physics.run = (uint32_t)o->run.value;
+    p.settings.duration = o->duration;
+    p.settings.signal_rate = o->signal_rate;
     int code = open_design(&p);
+    p.settings.instrument = p.file.instrument;
+    p.settings.design = p.file.design;
     if (code < 0)
-        code = physics_input_make(o, &p.input);
+        code = physics_input_make(o, &p.settings.input);
     if (code < 0) {
         p.model = command_memory(NULL, sizeof *p.model);
         p.file.instrument->reduce(p.file.design, p.model);

@@ -9,6 +9,7 @@
 #ifndef IMUKIT_FIRMWARE_FILE_H
 #define IMUKIT_FIRMWARE_FILE_H
 
+#include "imukit/compensate_log.h"
 #include "imukit/firmware.h"
 
 #ifdef __cplusplus
@@ -31,15 +32,9 @@ IMK_API imk_firmware_file_settings imk_firmware_file_default(void);
 IMK_API void imk_firmware_name(const imk_firmware_file_settings *settings, const imk_model *model,
                                char name[IMK_FIRMWARE_NAME_MAX]);
 
-/** A list of terms, as their keys in the model file ("gyro.bias.fixed"). */
-enum { IMK_FIRMWARE_KEYS_MAX = 64 };
-typedef struct imk_firmware_keys {
-    int count;
-    char key[IMK_FIRMWARE_KEYS_MAX][40];
-} imk_firmware_keys;
 /** What the plan takes out of the readings of a unit, and what it leaves in. */
 IMK_API void imk_firmware_terms(const imk_firmware *firmware, const imk_model *model,
-                                imk_firmware_keys *taken_out, imk_firmware_keys *left_in);
+                                imk_term_keys *taken_out, imk_term_keys *left_in);
 
 /** Write NAME.h, NAME.c and NAME_test.c into a directory, which is made when it is not there. Files
  *  of these names that were not made by this function are not replaced.

@@ -47,7 +47,7 @@ enum { IMK_FINDINGS_MAX = 64, IMK_FINDING_NUMBERS = 6 };
 
 /** Something a job came across. */
 typedef struct imk_finding {
-    const char *code; /**< "jitter"; lives for ever */
+    const char *code; /**< "jitter", "compensate:gaps"; lives for ever */
     imk_finding_level level;
     char name[96];                      /**< the channel it is about, or a word; "" */
     double number[IMK_FINDING_NUMBERS]; /**< what they are says finding_text.c, by code */
@@ -64,6 +64,12 @@ IMK_API const imk_finding *imk_findings_failure(const imk_findings *findings);
 /** The message of a finding, without the name of the record.
  *  @return its length, as snprintf() */
 IMK_API size_t imk_finding_text(const imk_finding *finding, char *text, size_t size);
+/** The message with what the record and the model are called; that of a failure that tells of
+ *  neither begins with the record. @return likewise */
+IMK_API size_t imk_finding_message(const imk_finding *finding, const char *record,
+                                   const char *model, char *text, size_t size);
+/** The code without what tells it from one of that name in other jobs: "gaps". */
+IMK_API const char *imk_finding_code(const imk_finding *finding);
 
 #ifdef __cplusplus
 }

@@ -7,6 +7,7 @@
 
 #include "imukit/allan_log.h"
 #include "imukit/calibrate_log.h"
+#include "imukit/compensate_log.h"
 #include "imukit/identify_several.h"
 #include "imukit/navigate_log.h"
 #include "imukit/record_plan.h"
@@ -26,6 +27,12 @@ IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char 
 
 /** Attitude at the start, the track and its end, and a figure. */
 IMK_API void imk_show_navigate_log(const imk_navigate_log *n, const char *name, imk_result *result);
+/** What was taken out, and what was met on the way. @param model  what the model is called */
+IMK_API void imk_show_compensate_log(const imk_compensate_log *log, const char *name,
+                                     const char *model, imk_result *result);
+/** Terms as an array of the data, and as a line. @param key,label  of these */
+IMK_API void imk_show_terms(const char *key, const char *label, const imk_term_keys *keys,
+                            imk_result *result);
 
 /** @name What was identified
  *  @{ */

@@ -3,11 +3,13 @@
  *
  * In braces stands the place of a number of the finding and how it is written: {0} a count, {1g} as
  * %g, {2.1f} as %.1f, {0s} an s unless the count is one, {0a} the name of an Allan statistic, {0t}
- * the text of a status. {name} is the name; {other} what stands behind a tab in it. Between {2?}
- * and
- * {?} stands what is told where number 2 is not 0, behind {2!} what is told where it is. */
+ * the text of a status, {0k} gyro or accel, {0p} gyros or accelerometers, {0q} rate or specific
+ * force, {0u} a quantity of the unit that is the name. {name} is the name, {other} what stands
+ * behind a tab in it; {record} and {model} are what these are called. Between {2?} and {?} stands
+ * what is told where number 2 is not 0, behind {2!} what is told where it is. */
 #include "imukit/allan.h"
 #include "imukit/job.h"
+#include "imukit/units.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -21,6 +23,8 @@
     "(--plain)? Was it read from a page (--tolerance)? Do not trust the intervals."
 #define PLAN_LENGTH                                                                                \
     "--plan: a record of {0g} s at {1g} Hz has not the 256 to 1e12 samples that are due; "
+
+#define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
 
 static const struct message {
     const char *code, *text;
@@ -175,12 +179,66 @@ static const struct message {
                  "change of attitude does to accelerometers looks like a change of bias; keep it "
                  "fixed, or state how well it is put back with --placement 0.1deg"},
     {"temperature_left_out", "{name}: what else temperature does is left out: {0t}"},
+    /* compensate_columns.c */
+    {"no_counts",
+     "{record}: {name}, but {model} makes counts ({0k}.sensitivity): these are not the "
+     "readings it describes"},
+    {"counts", "{record}: {name} is in counts, but {model} does not say what a count is: add "
+               "{0k}.sensitivity to it"},
+    {"increments_in_counts",
+     "{record}: {name} holds increments in counts; expected counts of {0q}"},
+    {"no_axis", "{record} has no column {name}: {model} describes {0} {1k} axes, which are all "
+                "needed"},
+    {"axes_do_not_match",
+     "{record} has {0} {1k} columns, {model} describes {2}: they cannot be matched; name the log's "
+     "columns with --columns, - for one to skip"},
+    {"no_sensor", "{record} has no gyro and no accel column: name them with --columns"},
+    {"sensor_needed", "{record} has no {0k} columns, which {name} of {model} needs"},
+    {"not_in_model", "{model} describes no {0p}: these columns are copied as they are"},
+    {"no_sensor_in_model", "{model} describes none of the sensors in {record}"},
+    {"no_room_for_flags", "there is no room for a column of flags beside {0} others"},
+    /* compensate_log.c */
+    {"no_temperature", "{model} depends on temperature ({name}) and {record} has no temperature "
+                       "column: add --temperature 25degC"},
+    {"temperature_counts", "{model} depends on temperature ({name}), which {record} has in counts "
+                           "only: add --temperature 25degC"},
+    {"residual", "{model} is what is left after compensating with {name}: do that first"},
+    {"nothing", "{model} has no deterministic term{name}: there is nothing to take out"},
+    {"no_limit", "{model}: {name} is missing, which bounds the correction: state it in the model, "
+                 "or add --rate-limit 500deg/s or --force-limit 10g"},
+    {"model_refused", "{model}: {0t}"},
+    {"not_written", "{0t}"},
+    {"compensate:saturated", "saturated, at or beyond the range of an axis" SAMPLES_FIRST},
+    {"compensate:temperature",
+     "temperature outside the valid range of the model's terms, whose end "
+     "was used" SAMPLES_FIRST},
+    {"compensate:limit", "corrected values beyond the limits up to which the correction is "
+                         "proven" SAMPLES_FIRST},
+    {"compensate:not_finite", "readings that are no finite number, or no temperature yet; what "
+                              "depends on it is nan" SAMPLES_FIRST},
+    {"compensate:acceleration", "angular acceleration for the lever arms not known, or from a "
+                                "saturated rate" SAMPLES_FIRST},
+    {"temperature_held", "no temperature, the last one used: {0} of {1} samples"},
+    {"time_missing", "the time is no finite number" SAMPLES_FIRST "; each is taken for the one "
+                     "after the sample before it"},
+    {"compensate:gaps",
+     "gaps and steps back in time: {0} (first: row {1}); each begins a new stretch"},
+    /* physics_log.c, physics_warnings.c */
+    {"output_not_finite", "the output is not finite after {0g} s"},
+    {"range", "the input of {0u} is beyond the range of {2u}"},
+    {"physics:saturated", "the output ends saturated, at {1u}; the input is {0u}"},
+    {"dead_band", "the input of {0u} is within the dead band of {3u}: the output does not follow "
+                  "it"},
+    {"not_followed", "the output ends at {1u}, the input is {0u}"},
+    {"physics:temperature", "{0.4g} degC is outside the temperatures of this design, {1.4g} to "
+                            "{2.4g} degC"},
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 
 typedef struct writing {
     char *text;
     size_t size, length;
+    const char *record, *model;
 } writing;
 
 static void put(writing *w, const char *text, size_t length)
@@ -190,12 +248,35 @@ static void put(writing *w, const char *text, size_t length)
             w->text[w->length] = text[i];
 }
 
+/* One of two words about a sensor; NULL: `how` asks for none. */
+static const char *sensor_word(double sensor, char how)
+{
+    return how == 'k'   ? (sensor == 0 ? "gyro" : "accel")
+           : how == 'p' ? (sensor == 0 ? "gyros" : "accelerometers")
+           : how == 'q' ? (sensor == 0 ? "rate" : "specific force")
+                        : NULL;
+}
+
+/* In a unit that suits its size, of the dimension of one that is named. */
+static void put_quantity(writing *w, double number, const char *si)
+{
+    const imk_unit unit = imk_unit_readable(imk_unit_of(si).dimension, number);
+    char text[80];
+    snprintf(text, sizeof text, "%.5g %s", number / unit.scale, unit.text);
+    put(w, text, strlen(text));
+}
+
 /* A number as what stands behind its place says. */
 static void put_number(writing *w, double number, const char *how, size_t length)
 {
     char format[16], text[64];
     if (length == 1 && *how == 's') {
         put(w, "s", number == 1 ? 0 : 1);
+        return;
+    }
+    const char *sensor = length == 1 ? sensor_word(number, *how) : NULL;
+    if (sensor) {
+        put(w, sensor, strlen(sensor));
         return;
     }
     if (length == 1 && (*how == 'a' || *how == 't')) {
@@ -213,9 +294,27 @@ static void put_number(writing *w, double number, const char *how, size_t length
     put(w, text, written > 0 ? strlen(text) : 0);
 }
 
-static void put_message(writing *w, const char *message, const imk_finding *finding)
+/* What stands for a place, "{name}" or "{0g}", of `length` characters without its last. */
+static void put_place(writing *w, const char *place, size_t length, const imk_finding *finding)
 {
     const size_t first = strcspn(finding->name, "\t");
+    const char *other = finding->name[first] ? finding->name + first + 1 : "";
+    if (strncmp(place, "{name}", 6) == 0)
+        put(w, finding->name, first);
+    else if (strncmp(place, "{other}", 7) == 0)
+        put(w, other, strlen(other));
+    else if (strncmp(place, "{record}", 8) == 0)
+        put(w, w->record, strlen(w->record));
+    else if (strncmp(place, "{model}", 7) == 0)
+        put(w, w->model, strlen(w->model));
+    else if (strncmp(place + 2, "u}", 2) == 0)
+        put_quantity(w, finding->number[place[1] - '0'], finding->name);
+    else
+        put_number(w, finding->number[place[1] - '0'], place + 2, length - 2);
+}
+
+static void put_message(writing *w, const char *message, const imk_finding *finding)
+{
     bool told = true;
     for (const char *c = message; *c;) {
         const size_t plain = strcspn(c, "{");
@@ -228,27 +327,49 @@ static void put_message(writing *w, const char *message, const imk_finding *find
         const char how = c[length - 1];
         if (how == '?' || how == '!')
             told = length == 2 || (finding->number[c[1] - '0'] != 0) == (how == '?');
-        else if (told && strncmp(c, "{name}", 6) == 0)
-            put(w, finding->name, first);
-        else if (told && strncmp(c, "{other}", 7) == 0)
-            put(w, finding->name + first + 1, strlen(finding->name + first + 1));
         else if (told)
-            put_number(w, finding->number[c[1] - '0'], c + 2, length - 2);
+            put_place(w, c, length, finding);
         c += length + 1;
     }
 }
 
+static const char *message_of(const imk_finding *finding)
+{
+    for (size_t k = 0; k < sizeof messages / sizeof messages[0]; k++)
+        if (strcmp(messages[k].code, finding->code) == 0)
+            return messages[k].text;
+    return finding->code;
+}
+
+static size_t finish(writing *w, const char *message, const imk_finding *finding)
+{
+    put_message(w, message, finding);
+    if (w->size > 0)
+        w->text[w->length < w->size ? w->length : w->size - 1] = '\0';
+    return w->length;
+}
+
 size_t imk_finding_text(const imk_finding *finding, char *text, size_t size)
 {
-    writing w = {text, size, 0};
-    size_t k = 0;
-    while (k < sizeof messages / sizeof messages[0] && strcmp(messages[k].code, finding->code) != 0)
-        k++;
-    if (k < sizeof messages / sizeof messages[0])
-        put_message(&w, messages[k].text, finding);
-    else
-        put(&w, finding->code, strlen(finding->code));
-    if (size > 0)
-        text[w.length < size ? w.length : size - 1] = '\0';
-    return w.length;
+    writing w = {text, size, 0, "the record", "the model"};
+    return finish(&w, message_of(finding), finding);
+}
+
+size_t imk_finding_message(const imk_finding *finding, const char *record, const char *model,
+                           char *text, size_t size)
+{
+    const char *message = message_of(finding);
+    writing w = {text, size, 0, record, model};
+    if (finding->level == IMK_FINDING_FAILURE && !strstr(message, "{record}") &&
+        !strstr(message, "{model}")) {
+        put(&w, record, strlen(record));
+        put(&w, ": ", 2);
+    }
+    return finish(&w, message, finding);
+}
+
+const char *imk_finding_code(const imk_finding *finding)
+{
+    const char *colon = strchr(finding->code, ':');
+    return colon ? colon + 1 : finding->code;
 }

@@ -10,14 +10,14 @@
 
 /* ---- terms ----------------------------------------------------------------------------------- */
 
-static void add_key(imk_firmware_keys *keys, const char *sensor, const char *key)
+static void add_key(imk_term_keys *keys, const char *sensor, const char *key)
 {
     char text[40];
     snprintf(text, sizeof text, "%s.%s", sensor, key);
     for (int i = 0; i < keys->count; i++)
         if (strcmp(keys->key[i], text) == 0)
             return;
-    if (keys->count < IMK_FIRMWARE_KEYS_MAX)
+    if (keys->count < IMK_TERM_KEYS_MAX)
         memcpy(keys->key[keys->count++], text, sizeof text);
 }
 
@@ -60,7 +60,7 @@ static bool is_companion(const char *key)
 }
 
 void imk_firmware_terms(const imk_firmware *firmware, const imk_model *model,
-                        imk_firmware_keys *taken_out, imk_firmware_keys *left_in)
+                        imk_term_keys *taken_out, imk_term_keys *left_in)
 {
     const imk_triad *device[2] = {&firmware->model.gyro, &firmware->model.accel};
     const imk_triad *whole[2] = {&model->gyro, &model->accel};
@@ -87,7 +87,7 @@ void imk_firmware_terms(const imk_firmware *firmware, const imk_model *model,
 /* ---- comment --------------------------------------------------------------------------------- */
 
 /* Keys in lines of the comment. */
-static void print_keys(imki_text *out, const char *label, const imk_firmware_keys *keys)
+static void print_keys(imki_text *out, const char *label, const imk_term_keys *keys)
 {
     size_t column = strlen(label) + 4;
     imki_text_add(out, " * %s:", label);
@@ -196,7 +196,7 @@ static void print_comment(const imki_emission *e)
 {
     static const char *const arithmetics[3] = {"single precision", "double precision",
                                                "32-bit fixed point"};
-    imk_firmware_keys taken_out, left_in;
+    imk_term_keys taken_out, left_in;
     imki_text *out = e->out;
     imki_text_add(out, IMKI_EMIT_MARK ": change the model, not this file. */\n");
     imki_text_add(out, "/* The errors of an inertial sensor, taken out of its readings: ");

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which terms of a model compensation takes out, and which stay in the log: because they were not
- * selected, or because the model knows their size and not their course. */
-#include "compensate_parts.h"
+/* Which terms of a model compensation takes out, and which stay in the record: because they were
+ * not selected, or because the model knows their size and not their course. */
+#include "compensate_internal.h"
 
-#include <string.h>
+#include <stddef.h>
+#include <stdio.h>
 
 typedef enum term_kind { OF_AXES, OF_ROWS, OF_QUADRATIC, OF_POLYNOMIAL } term_kind;
 
@@ -88,13 +89,13 @@ static bool has_noise(const imk_noise *noise, int axis_count)
            noise->sinusoid_count > 0 || noise->resonance_count > 0;
 }
 
-static void add(imk_firmware_keys *list, const char *sensor, const char *name)
+static void add(imk_term_keys *list, const char *sensor, const char *name)
 {
-    if (list->count < IMK_FIRMWARE_KEYS_MAX)
+    if (list->count < IMK_TERM_KEYS_MAX)
         snprintf(list->key[list->count++], sizeof list->key[0], "%s.%s", sensor, name);
 }
 
-static void add_taken_out(imk_firmware_keys *list, const imk_triad *triad, const char *sensor)
+static void add_taken_out(imk_term_keys *list, const imk_triad *triad, const char *sensor)
 {
     if (triad->present && is_skewed(triad))
         add(list, sensor, "direction");
@@ -103,7 +104,7 @@ static void add_taken_out(imk_firmware_keys *list, const imk_triad *triad, const
             add(list, sensor, terms[i].name);
 }
 
-static void add_left_in(imk_firmware_keys *list, const imk_triad *triad, const imk_triad *whole,
+static void add_left_in(imk_term_keys *list, const imk_triad *triad, const imk_triad *whole,
                         const char *sensor)
 {
     if (!triad->present)
@@ -115,17 +116,17 @@ static void add_left_in(imk_firmware_keys *list, const imk_triad *triad, const i
         add(list, sensor, "noise");
 }
 
-imk_firmware_keys compensate_taken_out(const imk_model *model)
+imk_term_keys imki_taken_out(const imk_model *model)
 {
-    imk_firmware_keys list = {0};
+    imk_term_keys list = {0};
     add_taken_out(&list, &model->gyro, "gyro");
     add_taken_out(&list, &model->accel, "accel");
     return list;
 }
 
-imk_firmware_keys compensate_left_in(const imk_model *model, const imk_model *whole)
+imk_term_keys imki_left_in(const imk_model *model, const imk_model *whole)
 {
-    imk_firmware_keys list = {0};
+    imk_term_keys list = {0};
     add_left_in(&list, &model->gyro, &whole->gyro, "gyro");
     add_left_in(&list, &model->accel, &whole->accel, "accel");
     const struct {
@@ -141,20 +142,18 @@ imk_firmware_keys compensate_left_in(const imk_model *model, const imk_model *wh
     return list;
 }
 
-int compensate_select(const compensate_options *o, imk_model *model)
+void imk_compensation_model(const imk_model *whole, imk_model *selected)
 {
-    imk_triad *triads[2] = {&model->gyro, &model->accel};
-    const imk_triad whole[2] = {model->gyro, model->accel};
-    const int code = term_selection_apply(&o->terms, model);
+    imk_triad *triads[2] = {&selected->gyro, &selected->accel};
+    const imk_triad *from[2] = {&whole->gyro, &whole->accel};
     for (int sensor = 0; sensor < 2; sensor++) {
-        triads[sensor]->range = whole[sensor].range;
-        triads[sensor]->resolution = whole[sensor].resolution;
-        triads[sensor]->noise.quantization = whole[sensor].noise.quantization;
+        triads[sensor]->range = from[sensor]->range;
+        triads[sensor]->resolution = from[sensor]->resolution;
+        triads[sensor]->noise.quantization = from[sensor]->noise.quantization;
     }
-    return code;
 }
 
-bool compensate_temperature_term(const imk_model *model, char *name, size_t size)
+bool imki_temperature_term(const imk_model *model, char *name, size_t size)
 {
     const imk_triad *triads[2] = {&model->gyro, &model->accel};
     for (size_t i = 0; i < TERM_COUNT; i++)

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file physics_log.h
+ *  The jobs of `imukit physics`: an instrument from first principles (instrument.h) run into a
+ *  record, looked into, and measured as in a laboratory. */
+#ifndef IMUKIT_PHYSICS_LOG_H
+#define IMUKIT_PHYSICS_LOG_H
+
+#include "imukit/distort.h"
+#include "imukit/job.h"
+#include "imukit/laboratory.h"
+#include "imukit/record.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What the instrument is exposed to, against time. */
+typedef struct imk_physics_input {
+    imk_exposure exposure;   /**< angular rate and specific force: the amplitudes of a sine */
+    double frequency;        /**< [Hz] of the sine; 0: none, they are steady */
+    double temperature_rate; /**< [K/s] */
+} imk_physics_input;
+
+/** Exposure of sample `index` at this rate, the mean over it. */
+IMK_API imk_exposure imk_physics_input_at(const imk_physics_input *input, double rate,
+                                          uint64_t index);
+
+/** An instrument, and what is done with it. Start from imk_physics_log_default(). */
+typedef struct imk_physics_log_settings {
+    uint32_t cookie;
+    const imk_instrument *instrument;
+    const void *design;
+    imk_physics_settings physics; /**< its rate is that of the rows */
+    imk_physics_input input;
+    double duration;    /**< [s] */
+    double signal_rate; /**< of the rows of signals [Hz]; 0: that of the others */
+} imk_physics_log_settings;
+
+/** At rest at 20 degrees, 100 Hz. */
+IMK_API imk_physics_log_settings imk_physics_log_default(void);
+/** Rows of so many hertz in the duration. */
+IMK_API uint64_t imk_physics_rows(const imk_physics_log_settings *settings, double rate);
+
+enum { IMK_PHYSICS_CURVE_POINTS = 4000 };
+
+/** A run: statistics of the outputs, and means for a picture. */
+typedef struct imk_physics_log {
+    imk_physics_log_settings settings;
+    imk_model model;          /**< reduced, one axis */
+    uint64_t samples, stride; /**< samples to a point of the picture */
+    double mean[IMK_INSTRUMENT_OUTPUTS_MAX];
+    double deviation[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< NaN: of one sample */
+    double last[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< at the end: mean of the last 1 % of the samples */
+    size_t points;
+    double *time; /**< [s]; IMK_PHYSICS_CURVE_POINTS + 1, as all of these */
+    double *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< in imk_physics_output_unit() */
+    double *input;                             /**< in that of output 0 */
+    imk_findings findings;
+    imk_allocator allocator; /**< of this */
+} imk_physics_log;
+
+/** Run an instrument for the duration. Row k is at the time (k + 1)/rate: the end of the sample
+ *  whose mean it is. Signals of another rate have a run of their own.
+ *  @param outputs,signals  where rows go; NULL: nowhere
+ *  @param job     NULL: as if all zeros
+ *  @param result  imk_physics_log_free() it, also on failure, where it holds the findings; NULL
+ *                 when even its memory failed
+ *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
+ *          "duration": no sample fits); and with a finding, IMK_ERROR_NOT_FINITE
+ * ("output_not_finite") and what the sinks return ("not_written") */
+IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
+                                       const imk_record_sink *outputs,
+                                       const imk_record_sink *signals, const imk_job *job,
+                                       imk_physics_log **result, imk_error *error);
+IMK_API void imk_physics_log_free(imk_physics_log *result);
+
+/** Unit to show an output in: of the measured input, by its size. */
+IMK_API imk_unit imk_physics_output_unit(const imk_physics_log *log, size_t output);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
