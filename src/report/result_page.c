@@ -58,9 +58,16 @@ imk_status imk_result_to_page(const imk_result *result, char **text, size_t *siz
         if (b->audience & IMK_FOR_PAGE)
             put_block(page, b, &scratch);
     imki_arena_free(&scratch);
-    const imk_status status = imki_page_take(page, text, size, error);
-    if (status != IMK_OK || !scratch.failed)
+    char *made;
+    size_t made_size;
+    const imk_status status = imki_page_take(page, &made, &made_size, error);
+    if (status != IMK_OK)
         return status;
-    free(*text);
-    return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
+    if (scratch.failed) {
+        free(made);
+        return imk_error_set(error, IMK_ERROR_MEMORY, "page", NULL, NULL);
+    }
+    *text = made;
+    *size = made_size;
+    return IMK_OK;
 }
