@@ -261,6 +261,28 @@ static void test_memory(void **state)
     assert_true(fail_at > 3);
 }
 
+/* What renderers need beside the result fails: nothing is handed over, and nothing is freed twice.
+ */
+static void test_memory_of_renderers(void **state)
+{
+    (void)state;
+    const imk_allocator allocator = {failing, NULL};
+    fail_at = 0;
+    imk_result *r = imk_result_create(&allocator);
+    put_display(r);
+    fail_at = calls + 1;
+    char *text = NULL;
+    size_t size = 0;
+    imk_error error;
+    assert_int_equal(imk_result_to_page(r, &text, &size, &error), IMK_ERROR_MEMORY);
+    assert_null(text);
+    fail_at = calls + 1;
+    assert_int_equal(imk_result_to_text(r, NULL, NULL, &text, &size), IMK_ERROR_MEMORY);
+    assert_null(text);
+    imk_result_free(r);
+    assert_int_equal(pieces, 0);
+}
+
 static void test_readable(void **state)
 {
     (void)state;
@@ -280,10 +302,15 @@ static void test_readable(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_json),     cmocka_unit_test(test_text),
-        cmocka_unit_test(test_line),     cmocka_unit_test(test_figure),
-        cmocka_unit_test(test_key),      cmocka_unit_test(test_page),
-        cmocka_unit_test(test_read),     cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_json),
+        cmocka_unit_test(test_text),
+        cmocka_unit_test(test_line),
+        cmocka_unit_test(test_figure),
+        cmocka_unit_test(test_key),
+        cmocka_unit_test(test_page),
+        cmocka_unit_test(test_read),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_memory_of_renderers),
         cmocka_unit_test(test_readable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
