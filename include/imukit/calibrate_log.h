@@ -118,6 +118,26 @@ IMK_API bool imk_calibrate_advise(const imk_calibrate_log *log, const imk_calibr
                                   const imk_allocator *allocator,
                                   imk_pose_advice advice[IMK_CALIBRATE_POSES]);
 
+/** @name Programmes of tests
+ *  @{ */
+typedef struct imk_calibrate_plan {
+    imk_plan_settings settings; /**< with wishes of its own, which say what is expected */
+    imk_plan_step *step;
+    imk_plan_result result;
+    double duration;          /**< of all, with ramps of the temperature of 1 K/min [s] */
+    imk_motion_script script; /**< as a motion; without steps where it is none */
+    imk_error unscripted;     /**< why not; status IMK_OK: it is one, or temperatures */
+    struct imki_arena *memory;
+} imk_calibrate_plan;
+
+/** Plan a test (calibration_plan.h). @param job  NULL: as if all zeros
+ *  @return as imk_plan_make(); IMK_ERROR_MEMORY */
+IMK_API imk_status imk_calibrate_plan_run(imk_calibration *calibration,
+                                          const imk_plan_settings *settings, const imk_job *job,
+                                          imk_calibrate_plan **plan, imk_error *error);
+IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
+/** @} */
+
 /** @name Records of tests
  *  Memory is of the log's allocator.
  *  @{ */
