@@ -194,11 +194,3 @@ int bench_load(bench *b, bench_log *log)
     int code = fill_record(b, log);
     return code < 0 ? check_length(b->options, log) : code;
 }
-
-void bench_log_free(bench_log *log)
-{
-    imk_log_free(&log->log);
-    free(log->section);
-    free(log->section_name);
-    free(log->reference);
-}

@@ -29,6 +29,7 @@ typedef struct calibrate_options {
 } calibrate_options;
 
 typedef imk_calibrate_record bench_log;
+#define bench_log_free imk_calibrate_record_free
 
 typedef struct bench {
     const calibrate_options *options;
@@ -46,7 +47,6 @@ static const char *const sensor_titles[2] = {"gyro", "accelerometer"};
 
 /* calibrate_input.c: a log with its columns as a record. */
 int bench_load(bench *b, bench_log *log);
-void bench_log_free(bench_log *log);
 /* calibrate_reference.c: what the unit was exposed to, from columns or from --motion. */
 int bench_reference(bench *b, bench_log *log);
 

@@ -3,12 +3,7 @@
  * table ran (--motion), as means over the log's samples. */
 #include "calibrate_parts.h"
 
-#include "imukit/random.h"
-#include "imukit/reference_alignment.h"
-#include "imukit/samples.h"
-
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* An offset is searched for so far on both sides, when the log is long enough [s]. */
@@ -16,12 +11,12 @@ static const double largest_shift = 10.0;
 /* Correlation of readings and programme from which on they are taken to be of one motion. */
 static const double followed = 0.5;
 
-static double *reference_column(bench_log *log, int column)
+/* A column of zeros. */
+static const double *nothing(bench_log *log)
 {
-    const size_t rows = log->record.count;
-    if (!log->reference)
-        log->reference = command_zeroed(IMK_CALIBRATE_REFERENCES * rows * sizeof *log->reference);
-    return log->reference + (size_t)column * rows;
+    const double *zeros = imk_calibrate_record_column(log, 0);
+    (void)command_unless_memory(zeros ? IMK_OK : IMK_ERROR_MEMORY);
+    return zeros;
 }
 
 /* ---- columns --------------------------------------------------------------------------------- */
@@ -60,7 +55,7 @@ static int take_vector(bench_log *log, const char *name, const char *unit, const
     if (column[0] < 0 && column[1] < 0 && column[2] < 0)
         return -1;
     for (int k = 0; k < 3; k++)
-        target[k] = column[k] < 0 ? reference_column(log, 0) : log->log.data[column[k]];
+        target[k] = column[k] < 0 ? nothing(log) : log->log.data[column[k]];
     return -1;
 }
 
@@ -79,7 +74,7 @@ static int take_table(const bench *b, bench_log *log)
                                "turns, such as --table-axis z",
                                log->path);
     for (int k = 0; k < 3; k++)
-        log->record.reference_rate[k] = reference_column(log, 0);
+        log->record.reference_rate[k] = nothing(log);
     log->record.reference_rate[b->options->table_axis] = log->log.data[column];
     return -1;
 }
@@ -89,88 +84,14 @@ static bool has_reference(const bench_log *log)
     return log->record.reference_rate[0] || log->record.reference_force[0];
 }
 
-/* ---- programme ------------------------------------------------------------------------------- */
-
-static void fill_from_recorded(const imk_recorded_motion *motion, bench_log *log,
-                               double *const column[IMK_CALIBRATE_REFERENCES])
-{
-    for (size_t row = 0; row < log->record.count; row++) {
-        const double place = floor(
-            (imk_test_record_time(&log->record, row) - log->motion_offset) * motion->rate + 0.5);
-        const bool inside = place >= 0 && place < (double)motion->count;
-        const size_t k = inside ? (size_t)place : 0;
-        for (int i = 0; i < 3; i++) {
-            column[i][row] = inside ? motion->angular_rate[i][k] : (double)NAN;
-            column[3 + i][row] = inside ? motion->specific_force[i][k] : (double)NAN;
-            column[6 + i][row] = !inside ? (double)NAN
-                                 : motion->angular_acceleration[i]
-                                     ? motion->angular_acceleration[i][k]
-                                     : 0;
-        }
-    }
-}
-
-/* Means over stretches without gap: sample k covers the sample interval that ends at its time. */
-static void fill_from_trajectory(const imk_trajectory *trajectory, bench_log *log,
-                                 double *const column[IMK_CALIBRATE_REFERENCES])
-{
-    const imk_test_record *record = &log->record;
-    const imk_random random = imk_random_seeded(0);
-    double *boundary = command_memory(NULL, (record->count + 1) * sizeof *boundary);
-    for (size_t begin = 0, end; begin < record->count; begin = end) {
-        double now = imk_test_record_time(record, begin);
-        boundary[0] = now - record->dt - log->motion_offset;
-        boundary[1] = now - log->motion_offset;
-        for (end = begin + 1; end < record->count; end++) {
-            const double next = imk_test_record_time(record, end);
-            if (imk_step_is_gap(next - now, record->dt))
-                break;
-            now = next;
-            boundary[end - begin + 1] = now - log->motion_offset;
-        }
-        double *at[IMK_CALIBRATE_REFERENCES];
-        for (int i = 0; i < IMK_CALIBRATE_REFERENCES; i++)
-            at[i] = column[i] + begin;
-        imk_trajectory_means(trajectory, random.kernel, end - begin, boundary, at, at + 6, at + 3);
-    }
-    free(boundary);
-}
-
-static void fill_from_motion(const bench *b, bench_log *log)
-{
-    double *column[IMK_CALIBRATE_REFERENCES];
-    for (int i = 0; i < IMK_CALIBRATE_REFERENCES; i++)
-        column[i] = reference_column(log, i);
-    for (int i = 0; i < 3; i++) {
-        log->record.reference_rate[i] = column[i];
-        log->record.reference_force[i] = column[3 + i];
-        log->record.reference_acceleration[i] = column[6 + i];
-    }
-    const imk_motion *motion = imk_motion_file_motion(b->motion);
-    if (motion->trajectory)
-        fill_from_trajectory(motion->trajectory, log, column);
-    else
-        fill_from_recorded(motion->recorded, log, column);
-}
-
-/* Where the log begins in the programme, from the readings. */
-static imk_status search_offset(const bench_log *log, imk_reference_shift *shift, imk_error *error)
-{
-    const double length = (double)log->record.count * log->record.dt;
-    const double most = fmin(largest_shift, length / 4);
-    const size_t size = imk_reference_offset_workspace_size(&log->record, most);
-    void *workspace = command_memory(NULL, size);
-    const imk_status status =
-        imk_reference_offset(&log->record, most, workspace, size, shift, error);
-    free(workspace);
-    return status;
-}
+/* ---- programme ------------------------------------------------------------------------------ */
 
 static int find_offset(bench_log *log)
 {
     imk_error error;
     imk_reference_shift shift;
-    if (search_offset(log, &shift, &error) != IMK_OK)
+    if (command_unless_memory(imk_calibrate_record_shift(log, largest_shift, &shift, &error)) !=
+        IMK_OK)
         return command_error(&error, log->path);
     if (!(shift.correlation > followed))
         return command_failed("%s does not follow the programme at any offset within %.3g s (the "
@@ -192,14 +113,21 @@ static void check_offset(const bench_log *log)
 {
     imk_error error;
     imk_reference_shift shift;
-    if (search_offset(log, &shift, &error) != IMK_OK || !(shift.correlation > followed) ||
-        fabs(shift.offset) < log->record.dt + 5 * shift.sigma)
+    if (command_unless_memory(imk_calibrate_record_shift(log, largest_shift, &shift, &error)) !=
+            IMK_OK ||
+        !(shift.correlation > followed) || fabs(shift.offset) < log->record.dt + 5 * shift.sigma)
         return;
     command_warn("motion_offset",
                  "%s follows the programme best when that begins %.4f s %s in the log than it "
                  "was told (1 sigma %.2g s): give --motion-offset %.4fs, or auto",
                  log->path, fabs(shift.offset), shift.offset > 0 ? "later" : "earlier", shift.sigma,
                  log->motion_offset + shift.offset);
+}
+
+static void expose(const bench *b, bench_log *log)
+{
+    (void)command_unless_memory(
+        imk_calibrate_record_expose(log, imk_motion_file_motion(b->motion), NULL));
 }
 
 static int take_motion(const bench *b, bench_log *log)
@@ -216,14 +144,14 @@ static int take_motion(const bench *b, bench_log *log)
                                    "programme begins, such as 2.5s, or auto",
                                    text);
     }
-    fill_from_motion(b, log);
+    expose(b, log);
     if (!search) {
         check_offset(log);
         return -1;
     }
     const int code = find_offset(log);
     if (code < 0)
-        fill_from_motion(b, log);
+        expose(b, log);
     return code;
 }
 

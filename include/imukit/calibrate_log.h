@@ -8,8 +8,10 @@
 #include "imukit/calibration_plan.h"
 #include "imukit/ferraris.h"
 #include "imukit/job.h"
+#include "imukit/motion.h"
 #include "imukit/procedure.h"
 #include "imukit/record.h"
+#include "imukit/reference_alignment.h"
 #include "imukit/repeatability.h"
 #include "imukit/thermal.h"
 
@@ -116,8 +118,42 @@ IMK_API bool imk_calibrate_advise(const imk_calibrate_log *log, const imk_calibr
                                   const imk_allocator *allocator,
                                   imk_pose_advice advice[IMK_CALIBRATE_POSES]);
 
-/** @name Records of tests
+/** @name Programmes of tests
  *  @{ */
+typedef struct imk_calibrate_plan {
+    imk_plan_settings settings; /**< with wishes of its own, which say what is expected */
+    imk_plan_step *step;
+    imk_plan_result result;
+    double duration;          /**< of all, with ramps of the temperature of 1 K/min [s] */
+    imk_motion_script script; /**< as a motion; without steps where it is none */
+    imk_error unscripted;     /**< why not; status IMK_OK: it is one, or temperatures */
+    struct imki_arena *memory;
+} imk_calibrate_plan;
+
+/** Plan a test (calibration_plan.h). @param job  NULL: as if all zeros
+ *  @return as imk_plan_make(); IMK_ERROR_MEMORY */
+IMK_API imk_status imk_calibrate_plan_run(imk_calibration *calibration,
+                                          const imk_plan_settings *settings, const imk_job *job,
+                                          imk_calibrate_plan **plan, imk_error *error);
+IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
+/** @} */
+
+/** @name Records of tests
+ *  Memory is of the log's allocator.
+ *  @{ */
+/** One of its columns of references, zeros at first: rate, force, angular acceleration, x to z.
+ *  @return NULL when memory is exhausted */
+IMK_API double *imk_calibrate_record_column(imk_calibrate_record *record, int column);
+/** References by a motion that begins at record->motion_offset; NaN outside a recorded one.
+ *  @return IMK_ERROR_MEMORY */
+IMK_API imk_status imk_calibrate_record_expose(imk_calibrate_record *record,
+                                               const imk_motion *motion, imk_error *error);
+/** Where readings follow the references best. @param largest  looked at on both sides [s]; a
+ *  quarter of the log at most @return as imk_reference_offset(); IMK_ERROR_MEMORY */
+IMK_API imk_status imk_calibrate_record_shift(const imk_calibrate_record *record, double largest,
+                                              imk_reference_shift *shift, imk_error *error);
+/** Free columns, sections and references. */
+IMK_API void imk_calibrate_record_free(imk_calibrate_record *record);
 /** When a row was taken [s]. */
 IMK_API double imk_test_record_time(const imk_test_record *record, size_t row);
 /** Rows with a reading or a temperature that is no number. @param first  set when there are some */

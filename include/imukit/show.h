@@ -8,6 +8,7 @@
 #include "imukit/allan_log.h"
 #include "imukit/calibrate_log.h"
 #include "imukit/compensate_log.h"
+#include "imukit/earth.h"
 #include "imukit/identify_several.h"
 #include "imukit/navigate_log.h"
 #include "imukit/record_plan.h"
@@ -86,6 +87,13 @@ IMK_API imk_finding_level imk_verdict_level(const imk_verdict *verdict);
 /** Parameters, fit, remarks, verdict and a figure. @param poses  also on the terminal */
 IMK_API void imk_show_calibrate_log(const imk_calibrate_log *log, const imk_verdict *verdict,
                                     bool poses, imk_result *result);
+/** The steps of a programme, and what is reached. @param model  what the unit's is called */
+IMK_API void imk_show_calibrate_plan(const imk_calibrate_plan *plan, const char *model,
+                                     imk_result *result);
+/** A programme as a motion file, or a temperature file. @param place  NULL: not known
+ *  @param text  obtained from malloc(), the caller's @return IMK_ERROR_MEMORY */
+IMK_API imk_status imk_calibrate_plan_text(const imk_calibrate_plan *plan,
+                                           const imk_geodetic *place, char **text, size_t *size);
 /** Why imk_calibrate_log_run() failed, with the name of the record: doubts about it say more than
  *  the error. @return length of the text; 0: nothing is to be said beyond the error */
 IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *log, const imk_error *error,
