@@ -7,17 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Beyond a tenth of a radian the square of an angle, which the linear theory drops, is a twentieth
- * of it [rad]. */
-static const double largest_angle = 0.1;
-
-drift_validity drift_validity_of(const imk_drift_figures *f)
-{
-    if (!(f->drms <= IMK_DRIFT_DISTANCE_MAX))
-        return DRIFT_LOST;
-    return f->tilt <= largest_angle && f->heading <= largest_angle ? DRIFT_LINEAR : DRIFT_ROUGH;
-}
-
 void *drift_memory(size_t size)
 {
     void *memory = NULL;
@@ -34,7 +23,7 @@ static size_t budget_time(const drift_result *r, const drift_case *one)
         const size_t t = scene->row[k];
         if (scene->want.asked ? fabs(scene->time[t] - scene->want.time) <
                                     fabs(scene->time[chosen] - scene->want.time)
-                              : drift_validity_of(&one->figures[t]) != DRIFT_LOST)
+                              : imk_drift_validity_of(&one->figures[t]) != IMK_DRIFT_LOST)
             chosen = t;
     }
     return chosen;

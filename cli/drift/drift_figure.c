@@ -28,7 +28,7 @@ typedef struct drawing {
 
 static bool is_drawn(const imk_drift_figures *f)
 {
-    return drift_validity_of(f) != DRIFT_LOST;
+    return imk_drift_validity_of(f) != IMK_DRIFT_LOST;
 }
 
 static void begin_panel(const drawing *d, const char *title, const char *y_label, imk_key_place key,

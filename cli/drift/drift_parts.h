@@ -11,6 +11,7 @@
 #include "imukit/campaign.h"
 #include "imukit/drift.h"
 #include "imukit/motion_file.h"
+#include "imukit/readable.h"
 
 typedef struct drift_options {
     double duration, rate, align_time, latitude, height, roll, pitch, yaw;
@@ -21,23 +22,6 @@ typedef struct drift_options {
     const char *want, *shard, *output, *plot, *report;
     term_selection terms;
 } drift_options;
-
-/* ---- drift_wish.c: numbers as a person reads them, and --want ---- */
-
-enum { DRIFT_TEXT = 40 };
-/* Three digits. Each function returns `text`. */
-const char *drift_number(double value, char text[DRIFT_TEXT]);
-const char *drift_in_unit(double value, const imk_unit *unit, char text[DRIFT_TEXT]);
-/* The readable unit of a figure: "m", "km", "m/s", "arcsec", "arcmin", "deg". */
-imk_unit drift_unit_of(imk_drift_wish wish, double value);
-const char *drift_figure_text(imk_drift_wish wish, double value, char text[DRIFT_TEXT]);
-const char *drift_length(double metres, char text[DRIFT_TEXT]);
-const char *drift_angle(double radians, char text[DRIFT_TEXT]);
-const char *drift_speed(double metres_per_second, char text[DRIFT_TEXT]);
-/* "CEP", "R95", …: of a wish. */
-const char *drift_wish_name(imk_drift_wish wish);
-/* SI unit of a wish: "m", "m/s", "rad". */
-const char *drift_wish_unit(imk_drift_wish wish);
 
 /* ---- drift_scene.c ---- */
 
@@ -124,10 +108,6 @@ void *drift_memory(size_t size);
 int drift_analyse(drift_result *result, const imk_executor *executor);
 void drift_result_free(drift_result *result);
 
-/* What a linear answer is worth at one time. */
-typedef enum drift_validity { DRIFT_LINEAR, DRIFT_ROUGH, DRIFT_LOST } drift_validity;
-drift_validity drift_validity_of(const imk_drift_figures *figures);
-
 /* ---- drift_warn.c ---- */
 
 /* Of omitted terms, of errors beyond the linear range, of disagreement with the runs. */
@@ -202,7 +182,7 @@ void drift_show_results(const drift_result *r, const imk_campaign_results *file,
 
 enum { DRIFT_TIME_TEXT = 80 };
 /* "10 min ~", where figures are rough. */
-const char *drift_time(double time, drift_validity validity, char text[DRIFT_TIME_TEXT]);
+const char *drift_time(double time, imk_drift_validity validity, char text[DRIFT_TIME_TEXT]);
 
 /* Growth of one case, two of one model, or several models. */
 void drift_show_growth(const drift_result *r, imk_result *result);

@@ -85,7 +85,7 @@ static void show_case(const drift_result *r, const drift_case *one, imk_result *
         const imk_drift_figures *f = &one->figures[scene->row[k]];
         imk_result_object(result, NULL);
         imk_result_quantity(result, "time", scene->time[scene->row[k]], "s");
-        imk_result_text(result, "validity", validity[drift_validity_of(f)]);
+        imk_result_text(result, "validity", validity[imk_drift_validity_of(f)]);
         show_figures("figures", f, result);
         imk_result_end(result);
     }
@@ -193,7 +193,7 @@ static void show_deciding(const drift_result *r, imk_result *result)
         char text[DRIFT_TIME_TEXT];
         if (one->share_count > 0 && one->share[0].share > 0)
             imk_result_line(result, "%s: after %s %s makes %.0f %% of the variance", one->label,
-                            drift_time(r->scene->time[one->time], DRIFT_LINEAR, text),
+                            drift_time(r->scene->time[one->time], IMK_DRIFT_LINEAR, text),
                             one->analysis->source[one->share[0].source].text,
                             100 * one->share[0].share);
     }
@@ -202,15 +202,15 @@ static void show_deciding(const drift_result *r, imk_result *result)
 /* A wish that can be typed: half of what there is, at a time of the table. */
 static void show_wish(const drift_result *r, imk_result *result)
 {
-    char length[DRIFT_TEXT];
+    char length[IMK_READABLE_SIZE];
     const drift_case *one = drift_last_case(r);
     const imk_drift_figures *f = &one->figures[one->time];
     const double time = r->scene->time[one->time], hours = time / 3600, minutes = time / 60;
     const bool whole_hours = hours == floor(hours), whole_minutes = minutes == floor(minutes);
-    if (!(f->cep > 0) || drift_validity_of(f) == DRIFT_LOST)
+    if (!(f->cep > 0) || imk_drift_validity_of(f) == IMK_DRIFT_LOST)
         return;
     imk_result_line(result, "\nNext: what would halve it?  %s --want \"CEP %s @ %.8g%s\"",
-                    command_line(), drift_length(0.5 * f->cep, length),
+                    command_line(), imk_readable_figure(IMK_WISH_CEP, 0.5 * f->cep, length),
                     whole_hours     ? hours
                     : whole_minutes ? minutes
                                     : time,

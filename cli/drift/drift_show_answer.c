@@ -13,9 +13,9 @@ void drift_show_answer_data(const drift_result *r, const drift_answer *answer, i
     const drift_wished *want = &r->scene->want;
     const imk_drift_analysis *a = drift_last_case(r)->analysis;
     const imk_drift_requirement *need = &answer->requirement;
-    const char *unit = drift_wish_unit(want->figure);
+    const char *unit = imk_drift_wish_unit(want->figure);
     imk_result_object(result, "want");
-    imk_result_text(result, "figure", drift_wish_name(want->figure));
+    imk_result_text(result, "figure", imk_drift_wish_name(want->figure));
     imk_result_quantity(result, "goal", want->goal, unit);
     imk_result_quantity(result, "time", want->time, "s");
     imk_result_quantity(result, "present", need->present, unit);
@@ -57,10 +57,10 @@ static void add_initial(const imk_drift_settings *s, const char *source, double 
                                 : group == 3 ? IMK_WISH_VELOCITY
                                              : IMK_WISH_HEADING;
     double largest = 0;
-    char number[DRIFT_TEXT];
+    char number[IMK_READABLE_SIZE];
     for (int i = group; i < group + 3; i++)
         largest = s->initial_sigma[i] > largest ? s->initial_sigma[i] : largest;
-    list_add(text, "%s", drift_figure_text(kind, largest * factor, number));
+    list_add(text, "%s", imk_readable_figure(kind, largest * factor, number));
 }
 
 /* A source made so many times as large. */
@@ -134,7 +134,7 @@ static void show_devices(const drift_result *r, const drift_answer *answer, bool
     imk_table *table = NULL;
     for (size_t i = answer->candidate_count; i-- > 0;) {
         const drift_candidate *c = &answer->candidate[i];
-        char text[DRIFT_TEXT];
+        char text[IMK_READABLE_SIZE];
         if (!drift_would_do(r, c, presets))
             continue;
         if (!table) {
@@ -149,7 +149,7 @@ static void show_devices(const drift_result *r, const drift_answer *answer, bool
         }
         const double figure = imk_drift_wished(&c->figures, r->scene->want.figure);
         imk_table_row(table, "%s%s\t%s\t%s", c->device->name, c->no_bias ? " *" : "",
-                      drift_in_unit(figure, &r->scene->want.unit, text),
+                      imk_readable_quantity(figure, &r->scene->want.unit, text),
                       presets ? "grade preset" : c->device->grade);
     }
     imk_result_for(result, IMK_FOR_TERMINAL);
@@ -183,10 +183,10 @@ void drift_show_answer(const drift_result *r, const drift_answer *answer, imk_re
     const imk_drift_requirement *need = &answer->requirement;
     const bool met = need->present <= want->goal;
     char title[160], factor[80] = "nothing makes it.";
-    char now[DRIFT_TEXT], goal[DRIFT_TEXT], time[DRIFT_TIME_TEXT];
-    snprintf(title, sizeof title, "Wanted: %s %s after %s", drift_wish_name(want->figure),
-             drift_in_unit(want->goal, &want->unit, goal),
-             drift_time(want->time, DRIFT_LINEAR, time));
+    char now[IMK_READABLE_SIZE], goal[IMK_READABLE_SIZE], time[DRIFT_TIME_TEXT];
+    snprintf(title, sizeof title, "Wanted: %s %s after %s", imk_drift_wish_name(want->figure),
+             imk_readable_quantity(want->goal, &want->unit, goal),
+             drift_time(want->time, IMK_DRIFT_LINEAR, time));
     if (!met)
         snprintf(factor, sizeof factor,
                  "all terms would have to be %.3g times smaller. The least work:", 1 / need->all);
@@ -194,7 +194,7 @@ void drift_show_answer(const drift_result *r, const drift_answer *answer, imk_re
         snprintf(factor, sizeof factor, "all terms may be %.3g times larger.", need->all);
     imk_result_for(result, IMK_FOR_TERMINAL);
     imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: it is %s, %s", title,
-                    met ? "Met" : "Not met", drift_in_unit(need->present, &want->unit, now),
+                    met ? "Met" : "Not met", imk_readable_quantity(need->present, &want->unit, now),
                     factor);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, title);

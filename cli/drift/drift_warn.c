@@ -25,25 +25,25 @@ static void warn_of_omitted(const drift_case *one)
 }
 
 /* The first row of the table that is worth no more than this. */
-static const char *first_time(const drift_result *r, const drift_case *one, drift_validity validity,
-                              char text[DRIFT_TIME_TEXT])
+static const char *first_time(const drift_result *r, const drift_case *one,
+                              imk_drift_validity validity, char text[DRIFT_TIME_TEXT])
 {
     const drift_scene *scene = r->scene;
     for (size_t k = 0; k < scene->row_count; k++)
-        if (drift_validity_of(&one->figures[scene->row[k]]) == validity)
-            return drift_time(scene->time[scene->row[k]], DRIFT_LINEAR, text);
+        if (imk_drift_validity_of(&one->figures[scene->row[k]]) == validity)
+            return drift_time(scene->time[scene->row[k]], IMK_DRIFT_LINEAR, text);
     return NULL;
 }
 
 static void warn_of_range(const drift_result *r, const drift_case *one)
 {
     char text[DRIFT_TIME_TEXT];
-    if (first_time(r, one, DRIFT_LOST, text))
+    if (first_time(r, one, IMK_DRIFT_LOST, text))
         command_warn("no_position",
                      "%s: at %s the error is beyond a tenth of the Earth's radius: no longer a "
                      "position",
                      one->label, text);
-    else if (first_time(r, one, DRIFT_ROUGH, text))
+    else if (first_time(r, one, IMK_DRIFT_ROUGH, text))
         command_warn("nonlinear",
                      "%s: at %s attitude errors exceed 0.1 rad: linear figures are rough from "
                      "there (~)%s",
@@ -88,8 +88,8 @@ static void warn_of_runs(const drift_result *r)
     command_warn("disagreement",
                  "from %s on the runs differ from the covariance by more than %g %% (%s): the "
                  "runs are right, the linear theory leaves something out",
-                 drift_time(r->scene->time[r->scene->row[row]], DRIFT_LINEAR, text),
-                 100 * tolerance, drift_wish_name(wish));
+                 drift_time(r->scene->time[r->scene->row[row]], IMK_DRIFT_LINEAR, text),
+                 100 * tolerance, imk_drift_wish_name(wish));
 }
 
 void drift_warn(const drift_result *r)

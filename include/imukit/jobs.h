@@ -10,6 +10,7 @@
 #include "imukit/allocator.h"
 #include "imukit/channel_units.h"
 #include "imukit/even_record.h"
+#include "imukit/grade_position.h"
 #include "imukit/identify_curve.h"
 #include "imukit/identify_log.h"
 #include "imukit/identify_several.h"

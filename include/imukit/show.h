@@ -6,6 +6,7 @@
 #define IMUKIT_SHOW_RESULTS_H
 
 #include "imukit/allan_log.h"
+#include "imukit/grade_position.h"
 #include "imukit/identify_several.h"
 #include "imukit/navigate_log.h"
 #include "imukit/record_plan.h"
@@ -25,6 +26,24 @@ IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char 
 
 /** Attitude at the start, the track and its end, and a figure. */
 IMK_API void imk_show_navigate_log(const imk_navigate_log *n, const char *name, imk_result *result);
+
+/** Models that are graded, with what each is called. */
+typedef struct imk_graded_several {
+    size_t count;
+    const imk_graded *const *graded;
+    const char *const *name;
+} imk_graded_several;
+/** Maps of models among classes, technologies and applications. */
+typedef enum imk_grade_map {
+    IMK_GRADE_MAP_GYRO = 0, /**< stability of bias against that of scale factor */
+    IMK_GRADE_MAP_ACCEL,
+    IMK_GRADE_MAP_COST, /**< cost against performance */
+    IMK_GRADE_MAPS      /**< all of them */
+} imk_grade_map;
+/** Does a model state enough to stand on a map, or on any of IMK_GRADE_MAPS? */
+IMK_API bool imk_grade_stands(const imk_graded_several *r, imk_grade_map map);
+/** Classes, errors of position and what limits them, and maps. @param map  for the plot */
+IMK_API void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *result);
 
 /** @name What was identified
  *  @{ */

@@ -163,6 +163,9 @@ static const struct message {
                        "its predictions are too good"},
     {"left_the_earth", "by {0.3f} s the estimate has left the Earth's surroundings: a reading "
                        "before is absurd, or its unit wrong"},
+    /* grade_position.c */
+    {"nothing_to_grade", "states no bias repeatability, no bias instability and no uncertainty of "
+                         "the fixed bias: there is nothing to grade"},
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 
