@@ -27,7 +27,7 @@ static bool quantity(const char *begin, const char *end, const char *unit, doubl
            count == 1 && *value > 0 && isfinite(*value);
 }
 
-static int find_figure(const char *text, size_t length, drift_wished *want)
+static int find_figure(const char *text, size_t length, imk_drift_wanted *want)
 {
     char given[32], why[160];
     const char *names[FIGURES];
@@ -46,13 +46,13 @@ static int find_figure(const char *text, size_t length, drift_wished *want)
     return refuse(text, why);
 }
 
-int drift_want_parse(const char *text, drift_wished *want)
+int drift_want_parse(const char *text, imk_drift_wanted *want)
 {
     const char *name = text + strspn(text, " "), *at = strchr(text, '@');
     const size_t length = strcspn(name, " <=@");
     const char *value = name + length + strspn(name + length, " <=");
     char why[160];
-    *want = (drift_wished){.asked = true};
+    *want = (imk_drift_wanted){.asked = true};
     int code = find_figure(name, length, want);
     if (code >= 0)
         return code;

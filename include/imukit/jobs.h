@@ -9,6 +9,7 @@
 #include "imukit/allan_log.h"
 #include "imukit/allocator.h"
 #include "imukit/channel_units.h"
+#include "imukit/drift_models.h"
 #include "imukit/even_record.h"
 #include "imukit/grade_position.h"
 #include "imukit/identify_curve.h"

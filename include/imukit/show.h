@@ -6,6 +6,7 @@
 #define IMUKIT_SHOW_RESULTS_H
 
 #include "imukit/allan_log.h"
+#include "imukit/drift_models.h"
 #include "imukit/grade_position.h"
 #include "imukit/identify_several.h"
 #include "imukit/navigate_log.h"
@@ -84,6 +85,28 @@ IMK_API void imk_show_identify_log(const imk_identify_shown *shown, imk_result *
 IMK_API void imk_show_identify_several(const imk_identify_several *several,
                                        const imk_identify_shown *joint,
                                        const imk_identify_shown *records, imk_result *result);
+/** @} */
+
+/** @name Drift
+ *  @{ */
+/** What makes figures doubtful: terms that are left out, errors beyond the linear range, runs that
+ *  differ. Warnings alone. */
+IMK_API imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result);
+
+/** What stands beside the figures. */
+typedef struct imk_drift_shown {
+    const char *motion; /**< what it is called; NULL: at rest */
+    uint64_t seed;      /**< of the runs */
+    imk_verdict verdict;
+    const imk_result *model; /**< the last model as data called "model", for values of terms; NULL:
+                                  none are told */
+} imk_drift_shown;
+
+/** Growth, budgets, runs, the answer to what is wanted, and figures. */
+IMK_API void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown,
+                            imk_result *result);
+/** Runs alone. @param words  what they are */
+IMK_API void imk_show_drift_runs(const imk_drift_models *r, const char *words, imk_result *result);
 /** @} */
 
 /** What records of several lengths tell, how long they must be, and, of a curve, a figure. */
