@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Monte Carlo of drift: the runs as a campaign, and its statistics. */
+#define _POSIX_C_SOURCE 200809L
 #include "campaign/campaign_run.h"
 #include "drift_parts.h"
+#include "shell/growing_list.h"
+
+#include "imukit/model_file.h"
+#include "imukit/show.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +21,7 @@ static const char *const state_units[IMK_DRIFT_STATES] = {"m",   "m",   "m",   "
 /* ---- runs ---- */
 
 typedef struct crew {
-    const drift_case *one;
+    const imk_drift_case *one;
     imk_drift_settings settings;
     uint64_t seed;
     size_t size; /* of the memory of a thread */
@@ -24,13 +29,19 @@ typedef struct crew {
     void **memory;
 } crew;
 
+static void *thread_memory(size_t size)
+{
+    void *memory = NULL;
+    return posix_memalign(&memory, 64, size) == 0 ? memory : NULL;
+}
+
 /* A thread's memory is made by itself, where it runs. */
 static imk_status compute(void *context, size_t thread, uint64_t first, size_t count,
                           double *values, imk_error *error)
 {
     crew *c = context;
     if (!c->memory[thread])
-        c->memory[thread] = drift_memory(c->size);
+        c->memory[thread] = thread_memory(c->size);
     if (!c->memory[thread])
         return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
     return imk_drift_runs(c->one->model, &c->settings, c->seed, (uint32_t)first, count,
@@ -56,30 +67,24 @@ static int read_shard(const char *text, uint64_t *index, uint64_t *count)
 /* Times of the table, for the runs. */
 static double *row_times(const drift_scene *scene)
 {
-    double *time = command_memory(NULL, scene->row_count * sizeof *time);
-    for (size_t k = 0; k < scene->row_count; k++)
-        time[k] = scene->time[scene->row[k]];
+    const imk_drift_times *t = &scene->times;
+    double *time = command_memory(NULL, t->row_count * sizeof *time);
+    for (size_t k = 0; k < t->row_count; k++)
+        time[k] = t->time[t->row[k]];
     return time;
 }
 
-static void keep_statistics(drift_result *r, size_t rows, uint64_t runs, const double *values)
+static int keep_statistics(imk_drift_models *r, uint64_t runs, const double *values)
 {
-    double *workspace = command_memory(NULL, (runs + 1) * sizeof *workspace);
-    r->run_count = runs;
-    r->found = command_zeroed(rows * sizeof *r->found);
-    r->low = command_zeroed(rows * sizeof *r->low);
-    r->high = command_zeroed(rows * sizeof *r->high);
-    r->used = command_zeroed(rows * sizeof *r->used);
-    for (size_t k = 0; k < rows; k++)
-        r->found[k] =
-            imk_drift_figures_of_runs(runs, rows * IMK_DRIFT_STATES, values + k * IMK_DRIFT_STATES,
-                                      workspace, &r->low[k], &r->high[k], &r->used[k]);
-    free(workspace);
+    imk_error error;
+    return imk_drift_models_take_runs(r, runs, values, &error) == IMK_OK
+               ? -1
+               : command_error(&error, NULL);
 }
 
-static int run_campaign(drift_result *r, crew *c, imk_campaign *campaign)
+static int run_campaign(const drift_options *o, imk_drift_models *r, crew *c,
+                        imk_campaign *campaign)
 {
-    const drift_options *o = r->options;
     uint64_t index = 1, count = 1, first, runs;
     double *values = NULL;
     int code = o->shard ? read_shard(o->shard, &index, &count) : -1;
@@ -95,7 +100,7 @@ static int run_campaign(drift_result *r, crew *c, imk_campaign *campaign)
     const campaign_work work = {IMK_DRIFT_LANES, compute, c, c->threads};
     code = campaign_run(campaign, first, runs, &work, o->output, &values);
     if (code < 0)
-        keep_statistics(r, campaign->time_count, runs, values);
+        code = keep_statistics(r, runs, values);
     free(values);
     for (size_t t = 0; t < c->threads; t++)
         free(c->memory[t]);
@@ -103,26 +108,25 @@ static int run_campaign(drift_result *r, crew *c, imk_campaign *campaign)
     return code;
 }
 
-int drift_runs(drift_result *r)
+int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_models *r)
 {
-    const drift_scene *scene = r->scene;
-    crew c = {.one = drift_last_case(r), .seed = r->options->seed.value};
+    crew c = {.one = &r->cases[r->case_count - 1], .seed = o->seed.value};
     double *time = row_times(scene);
     char *parameters = drift_parameters(scene, &c.one->settings, c.one->model);
     c.settings = c.one->settings;
     c.settings.time = time;
-    c.settings.time_count = scene->row_count;
+    c.settings.time_count = scene->times.row_count;
     c.size = imk_drift_runs_size(c.one->model, &c.settings);
     imk_campaign campaign = {.version = IMK_VERSION,
                              .parameters = parameters,
                              .seed = c.seed,
-                             .run_count = r->options->monte_carlo.value,
-                             .time_count = scene->row_count,
+                             .run_count = o->monte_carlo.value,
+                             .time_count = scene->times.row_count,
                              .time = time,
                              .state_count = IMK_DRIFT_STATES,
                              .state = state_names,
                              .unit = state_units};
-    const int code = run_campaign(r, &c, &campaign);
+    const int code = run_campaign(o, r, &c, &campaign);
     free(time);
     free(parameters);
     return code;
@@ -141,32 +145,82 @@ static int check_results(const imk_campaign_results *results, const char *path)
                                  path);
 }
 
-/* A scene of the times of the file alone, so that tables and figures of runs can be made. */
-static drift_scene scene_of_results(const imk_campaign *c)
+/* The times of the file alone, so that tables and figures of runs can be made. */
+static imk_drift_times times_of_results(const imk_campaign *c)
 {
-    const size_t count = c->time_count;
-    drift_scene scene = {.time_count = count,
-                         .row_count = count,
-                         .time = command_memory(NULL, count * sizeof *scene.time),
-                         .row = command_memory(NULL, count * sizeof *scene.row)};
-    for (size_t k = 0; k < count; k++) {
-        scene.time[k] = c->time[k];
-        scene.row[k] = k;
+    imk_drift_times times = {.count = c->time_count, .row_count = c->time_count};
+    times.time = command_memory(NULL, times.count * sizeof *times.time);
+    times.row = command_memory(NULL, times.count * sizeof *times.row);
+    for (size_t k = 0; k < times.count; k++) {
+        times.time[k] = c->time[k];
+        times.row[k] = k;
     }
-    return scene;
+    return times;
 }
 
-static int show(drift_result *r, const imk_campaign_results *results)
+static void show_inputs(const imk_campaign_results *file, const char *path, imk_result *result)
 {
-    const drift_options *o = r->options;
-    keep_statistics(r, r->scene->row_count, results->runs, results->values);
+    const imk_campaign *c = &file->campaign;
+    imk_result_object(result, "inputs");
+    imk_result_text(result, "results", path);
+    imk_result_text(result, "version", c->version);
+    imk_result_count(result, "seed", (long long)c->seed);
+    imk_result_count(result, "runs", (long long)c->run_count);
+    imk_result_count(result, "first", (long long)file->run[0]);
+    imk_result_count(result, "count", (long long)file->runs);
+    (void)imk_result_json(result, "parameters", c->parameters);
+    imk_result_end(result);
+}
+
+static int show(const imk_drift_models *r, const imk_campaign_results *file, const drift_options *o,
+                const char *path)
+{
+    const imk_campaign *c = &file->campaign;
+    const unsigned long long whole = c->run_count, there = file->runs, first = file->run[0];
+    growing_list words = {0};
     const int code = o->output ? drift_write_csv(r, o->output) : -1;
     if (code >= 0)
         return code;
     imk_result *result = show_begin("drift");
-    drift_show_results(r, results, result);
+    show_inputs(file, path, result);
+    list_add(&words, "%s: %llu", path, there);
+    if (there < whole)
+        list_add(&words, " of %llu runs, from run %llu on", whole, first);
+    else
+        list_add(&words, " runs");
+    list_add(&words, ", seed %llu, imukit %s. In brackets 95 %% intervals.",
+             (unsigned long long)c->seed, c->version);
+    imk_show_drift_runs(r, words.text, result);
+    list_free(&words);
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    if (there < whole)
+        imk_result_line(result,
+                        "\nA part of the campaign; the whole: imukit merge PART.h5... -o WHOLE.h5");
+    imk_result_for(result, IMK_FOR_PAGE);
+    show_origin(result);
     return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
                     EXIT_DONE);
+}
+
+static int show_results(const drift_options *o, const char *path, const imk_campaign_results *file)
+{
+    imk_drift_models *r;
+    imk_error error;
+    imk_drift_models_settings settings = imk_drift_models_default();
+    imk_drift_times times = times_of_results(&file->campaign);
+    memset(&settings.drift, 0, sizeof settings.drift);
+    int code = EXIT_FAILED;
+    if (imk_drift_models_run(0, NULL, NULL, &times, &settings, NULL, &r, &error) == IMK_OK) {
+        r->name[0] = path;
+        code = keep_statistics(r, file->runs, file->values);
+    } else {
+        code = command_error(&error, NULL);
+    }
+    if (code < 0)
+        code = show(r, file, o, path);
+    imk_drift_models_free(r);
+    imk_drift_times_free(&times);
+    return code;
 }
 
 int drift_results(const drift_options *o, const char *path)
@@ -176,17 +230,8 @@ int drift_results(const drift_options *o, const char *path)
     if (imk_campaign_load(path, &results, &error) != IMK_OK)
         return command_error(&error, path);
     int code = check_results(results, path);
-    if (code < 0) {
-        drift_result *r = command_zeroed(sizeof *r);
-        drift_scene scene = scene_of_results(&results->campaign);
-        r->options = o;
-        r->scene = &scene;
-        r->name[0] = path;
-        code = show(r, results);
-        drift_scene_free(&scene);
-        drift_result_free(r);
-        free(r);
-    }
+    if (code < 0)
+        code = show_results(o, path, results);
     imk_campaign_free(results);
     return code;
 }

@@ -25,18 +25,21 @@ static void put_text(imk_output_file *file, const char *text)
 static void put_row(imk_output_file *file, const char *model, const char *source, double time,
                     const imk_drift_figures *figures, const imk_drift_moments *moments)
 {
+    const imk_drift_figures *f = figures;
+    const double value[] = {f->cep,    f->r95,      f->drms,  f->north, f->east,
+                            f->height, f->velocity, f->climb, f->tilt,  f->heading};
     put_text(file, model);
     imk_output_file_print(file, ",%s", source);
     put_number(file, time);
-    for (int i = 0; i < DRIFT_FIGURES; i++)
-        put_number(file, drift_figure(figures, i));
+    for (size_t i = 0; i < sizeof value / sizeof value[0]; i++)
+        put_number(file, value[i]);
     for (int i = 0; i < 2; i++)
         put_number(file, moments ? moments->mean[i] : (double)NAN);
     imk_output_file_print(file, "\n");
 }
 
 /* The total and every source of an analysis at all times. */
-static void put_case(imk_output_file *file, const drift_case *one)
+static void put_case(imk_output_file *file, const imk_drift_case *one)
 {
     const imk_drift_analysis *a = one->analysis;
     for (size_t t = 0; t < a->time_count; t++)
@@ -49,7 +52,7 @@ static void put_case(imk_output_file *file, const drift_case *one)
         }
 }
 
-int drift_write_csv(const drift_result *r, const char *path)
+int drift_write_csv(const imk_drift_models *r, const char *path)
 {
     imk_output_file *file;
     imk_error error;
@@ -60,8 +63,8 @@ int drift_write_csv(const drift_result *r, const char *path)
                                 "mean_north [m],mean_east [m]\n");
     for (size_t c = 0; c < r->case_count; c++)
         put_case(file, &r->cases[c]);
-    for (size_t k = 0; r->found && k < r->scene->row_count; k++) {
-        const double time = r->scene->time[r->scene->row[k]];
+    for (size_t k = 0; r->found && k < r->times->row_count; k++) {
+        const double time = r->times->time[r->times->row[k]];
         put_row(file, r->name[0], "runs", time, &r->found[k], NULL);
         put_row(file, r->name[0], "runs_lower", time, &r->low[k], NULL);
         put_row(file, r->name[0], "runs_upper", time, &r->high[k], NULL);

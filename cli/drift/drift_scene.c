@@ -2,14 +2,11 @@
 /* What is navigated and when to look, from the options. */
 #include "drift_parts.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS_MAX = 64, CURVE_POINTS = 96 };
-
-static const double minute = 60, hour = 3600, day = 86400;
+static const double day = 86400;
 
 /* ---- motion ---- */
 
@@ -100,56 +97,13 @@ static int read_start(const drift_options *o, imk_drift_settings *s)
 
 /* ---- times ---- */
 
-typedef struct times {
+typedef struct stated {
     size_t count;
-    double at[ROWS_MAX];
-} times;
-
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Times are those of samples: the nearest, but not the start. */
-static double on_sample(double time, double rate)
-{
-    const double sample = floor(time * rate + 0.5);
-    return (sample < 1 ? 1 : sample) / rate;
-}
-
-/* In order, none twice. */
-static size_t tidy(double *time, size_t count, double rate)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++)
-        time[i] = on_sample(time[i], rate);
-    qsort(time, count, sizeof *time, compare);
-    for (size_t i = 0; i < count; i++)
-        if (kept == 0 || time[i] > time[kept - 1])
-            time[kept++] = time[i];
-    return kept;
-}
-
-/* Round times up to the duration, as many as a table is easily read with, and the duration. */
-static void usual_times(double duration, times *t)
-{
-    const double coarse[] = {10,       minute,   5 * minute, 10 * minute, 30 * minute,
-                             hour,     2 * hour, 4 * hour,   8 * hour,    12 * hour,
-                             day,      2 * day,  4 * day,    7 * day,     14 * day,
-                             30 * day, 60 * day, 120 * day,  365 * day};
-    const double fine[] = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300};
-    const bool is_short = duration <= 10 * minute;
-    const double *ladder = is_short ? fine : coarse;
-    const size_t steps = is_short ? sizeof fine / sizeof *fine : sizeof coarse / sizeof *coarse;
-    for (size_t i = 0; i < steps; i++)
-        if (ladder[i] < 0.999 * duration && ladder[i] > duration / (is_short ? 200 : 2e4))
-            t->at[t->count++] = ladder[i];
-    t->at[t->count++] = duration;
-}
+    double at[IMK_DRIFT_ROWS_MAX];
+} stated;
 
 /* --times "1min, 10 min, 1h" */
-static int stated_times(const char *text, times *t)
+static int stated_times(const char *text, stated *t)
 {
     const double latest = 1e8; /* [s]: imk_drift_validate() */
     for (const char *begin = text; *begin;) {
@@ -162,8 +116,8 @@ static int stated_times(const char *text, times *t)
             return command_misused("--times \"%s\": \"%.*s\" is no positive time with a unit; "
                                    "write --times \"1min, 10min, 1h\"",
                                    text, (int)length, begin);
-        if (t->count == ROWS_MAX - 2)
-            return command_misused("--times: at most %d times", ROWS_MAX - 2);
+        if (t->count == IMK_DRIFT_ROWS_MAX - 2)
+            return command_misused("--times: at most %d times", IMK_DRIFT_ROWS_MAX - 2);
         t->at[t->count++] = value;
         begin += length;
         begin += *begin == ',';
@@ -196,20 +150,19 @@ static int choose_duration(const drift_options *o, const drift_scene *s, double 
     return -1;
 }
 
-static int choose_rows(const drift_options *o, const drift_scene *s, times *t)
+static int choose_times(const drift_options *o, drift_scene *s)
 {
+    stated rows = {0};
     double duration = 0;
-    int code = o->times ? stated_times(o->times, t) : -1;
-    if (code < 0 && !o->times)
-        code = choose_duration(o, s, &duration);
+    imk_error error;
+    int code = o->times ? stated_times(o->times, &rows) : choose_duration(o, s, &duration);
     if (code >= 0)
         return code;
-    if (!o->times)
-        usual_times(duration, t);
-    if (s->want.asked)
-        t->at[t->count++] = s->want.time;
-    t->count = tidy(t->at, t->count, s->settings.rate);
-    const double length = motion_length(s), last = t->at[t->count - 1];
+    if (imk_drift_times_choose(duration, rows.count, rows.at, s->want.asked ? s->want.time : 0,
+                               s->settings.rate, o->plot || o->report || o->output, NULL, &s->times,
+                               &error) != IMK_OK)
+        return command_error(&error, NULL);
+    const double length = motion_length(s), last = s->times.time[s->times.count - 1];
     if (last > length + 1.5 / s->settings.rate)
         return command_misused("%g s: the motion ends after %g s%s", last, length,
                                imk_motion_file_kind(s->motion) == IMK_MOTION_SCRIPT
@@ -218,37 +171,8 @@ static int choose_rows(const drift_options *o, const drift_scene *s, times *t)
     return -1;
 }
 
-/* For curves also times between: as many in every decade, and close enough for Schuler's period of
- * 84 min. */
-static int fill_times(const drift_options *o, const times *rows, drift_scene *s)
-{
-    const bool curves = o->plot || o->report || o->output;
-    const double first = rows->at[0] < 10 ? rows->at[0] : 10, last = rows->at[rows->count - 1];
-    const double period = 84.4 * minute;
-    const size_t swings = last > period ? (size_t)(8 * last / period) : 0;
-    const size_t linear = swings > 1000 ? 1000 : swings;
-    const size_t room = rows->count + CURVE_POINTS + linear;
-    s->time = command_memory(NULL, room * sizeof *s->time);
-    s->row = command_memory(NULL, (rows->count + 1) * sizeof *s->row);
-    memcpy(s->time, rows->at, rows->count * sizeof *s->time);
-    s->time_count = rows->count;
-    for (size_t i = 0; curves && last > first && i < CURVE_POINTS; i++)
-        s->time[s->time_count++] = first * pow(last / first, (double)i / CURVE_POINTS);
-    for (size_t i = 1; curves && i < linear; i++)
-        s->time[s->time_count++] = last * (double)i / (double)linear;
-    s->time_count = tidy(s->time, s->time_count, s->settings.rate);
-    for (size_t i = 0; i < s->time_count; i++)
-        for (size_t k = 0; k < rows->count; k++)
-            if (s->time[i] == rows->at[k])
-                s->row[s->row_count++] = i;
-    s->settings.time = s->time;
-    s->settings.time_count = s->time_count;
-    return -1;
-}
-
 int drift_scene_open(const drift_options *o, drift_scene *s)
 {
-    times rows = {0};
     *s = (drift_scene){.settings = imk_drift_default()};
     imk_drift_settings *settings = &s->settings;
     if (!isnan(o->latitude))
@@ -271,15 +195,12 @@ int drift_scene_open(const drift_options *o, drift_scene *s)
     if (code < 0 && o->motion)
         code = open_motion(o, s);
     if (code < 0)
-        code = choose_rows(o, s, &rows);
-    if (code < 0)
-        code = fill_times(o, &rows, s);
+        code = choose_times(o, s);
     return code;
 }
 
 void drift_scene_free(drift_scene *s)
 {
     imk_motion_file_free(s->motion);
-    free(s->time);
-    free(s->row);
+    imk_drift_times_free(&s->times);
 }

@@ -1,83 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Figures of drift: their names, the units a person reads them in, and --want "CEP 1 nmi @ 1h", a
- * figure, how large it may be, and when. */
+/* --want "CEP 1 nmi @ 1h": a figure, how large it may be, and when. */
 #include "drift_parts.h"
 
 #include <math.h>
 #include <string.h>
 #include <strings.h>
-
-static const double pi = 3.14159265358979323846;
-
-imk_unit drift_unit_of(imk_drift_wish wish, double value)
-{
-    const double size = fabs(value), degree = pi / 180;
-    if (wish == IMK_WISH_VELOCITY)
-        return imk_unit_of("m/s");
-    if (wish == IMK_WISH_TILT || wish == IMK_WISH_HEADING)
-        return imk_unit_of(size >= degree ? "deg" : size >= degree / 60 ? "arcmin" : "arcsec");
-    return imk_unit_of(size < 1000 ? "m" : "km");
-}
-
-const char *drift_number(double value, char text[DRIFT_TEXT])
-{
-    if (!isfinite(value))
-        snprintf(text, DRIFT_TEXT, "-");
-    else if (value == 0)
-        snprintf(text, DRIFT_TEXT, "0");
-    else if (fabs(value) < 0.001)
-        snprintf(text, DRIFT_TEXT, "%.2g", value);
-    else
-        imk_readable_value(value, 0, 3, text, DRIFT_TEXT);
-    return text;
-}
-
-const char *drift_in_unit(double value, const imk_unit *unit, char text[DRIFT_TEXT])
-{
-    char number[DRIFT_TEXT];
-    drift_number(value / unit->scale, number);
-    if (isfinite(value))
-        snprintf(text, DRIFT_TEXT, "%.24s %.12s", number, unit->text);
-    else
-        snprintf(text, DRIFT_TEXT, "-");
-    return text;
-}
-
-const char *drift_figure_text(imk_drift_wish wish, double value, char text[DRIFT_TEXT])
-{
-    const imk_unit unit = drift_unit_of(wish, value);
-    return drift_in_unit(value, &unit, text);
-}
-
-const char *drift_length(double metres, char text[DRIFT_TEXT])
-{
-    return drift_figure_text(IMK_WISH_CEP, metres, text);
-}
-
-const char *drift_angle(double radians, char text[DRIFT_TEXT])
-{
-    return drift_figure_text(IMK_WISH_HEADING, radians, text);
-}
-
-const char *drift_speed(double metres_per_second, char text[DRIFT_TEXT])
-{
-    return drift_figure_text(IMK_WISH_VELOCITY, metres_per_second, text);
-}
-
-const char *drift_wish_name(imk_drift_wish wish)
-{
-    static const char *const names[] = {"CEP",      "R95",  "DRMS",   "height",
-                                        "velocity", "tilt", "heading"};
-    return names[wish];
-}
-
-const char *drift_wish_unit(imk_drift_wish wish)
-{
-    static const char *const units[] = {"m", "m", "m", "m", "m/s", "rad", "rad"};
-    return units[wish];
-}
-
-/* ---- --want ---- */
 
 enum { FIGURES = IMK_WISH_HEADING + 1 };
 
@@ -100,13 +27,13 @@ static bool quantity(const char *begin, const char *end, const char *unit, doubl
            count == 1 && *value > 0 && isfinite(*value);
 }
 
-static int find_figure(const char *text, size_t length, drift_wished *want)
+static int find_figure(const char *text, size_t length, imk_drift_wanted *want)
 {
     char given[32], why[160];
     const char *names[FIGURES];
     snprintf(given, sizeof given, "%.*s", (int)(length < 30 ? length : 30), text);
     for (int w = 0; w < FIGURES; w++) {
-        names[w] = drift_wish_name((imk_drift_wish)w);
+        names[w] = imk_drift_wish_name((imk_drift_wish)w);
         if (strcasecmp(names[w], given) == 0) {
             want->figure = (imk_drift_wish)w;
             return -1;
@@ -119,13 +46,13 @@ static int find_figure(const char *text, size_t length, drift_wished *want)
     return refuse(text, why);
 }
 
-int drift_want_parse(const char *text, drift_wished *want)
+int drift_want_parse(const char *text, imk_drift_wanted *want)
 {
     const char *name = text + strspn(text, " "), *at = strchr(text, '@');
     const size_t length = strcspn(name, " <=@");
     const char *value = name + length + strspn(name + length, " <=");
     char why[160];
-    *want = (drift_wished){.asked = true};
+    *want = (imk_drift_wanted){.asked = true};
     int code = find_figure(name, length, want);
     if (code >= 0)
         return code;
@@ -133,7 +60,7 @@ int drift_want_parse(const char *text, drift_wished *want)
         return refuse(text, "the time is missing");
     if (value >= at)
         return refuse(text, "how large it may be is missing");
-    const char *unit = drift_wish_unit(want->figure);
+    const char *unit = imk_drift_wish_unit(want->figure);
     if (!quantity(value, at, unit, &want->goal, &want->unit)) {
         snprintf(why, sizeof why, "\"%.*s\" is no positive number with a unit of %s, such as %s",
                  (int)(at - value < 40 ? at - value : 40), value,

@@ -4,7 +4,9 @@
 #include "campaign/campaign_run.h"
 #include "drift_parts.h"
 
+#include "imukit/model_file.h"
 #include "imukit/names.h"
+#include "imukit/show.h"
 #include "imukit/thread_pool.h"
 
 #include <math.h>
@@ -99,7 +101,7 @@ const verb drift_verb = {
     .summary = "how far off after a minute, an hour, a day, and which term is to blame",
     .operands = "MODEL... | RESULTS.h5",
     .operands_minimum = 1,
-    .operands_maximum = DRIFT_MODELS_MAX,
+    .operands_maximum = IMK_DRIFT_MODELS_MAX,
     .examples =
         {{"imukit drift tactical --duration 1h --monte-carlo 100",
           "error growth of a class by covariance, with the budget of its terms, beside a hundred "
@@ -165,56 +167,134 @@ static int check(const drift_options *o, bool runs, size_t models)
 
 /* ---- doing it ---- */
 
-static int open_models(const drift_options *o, const char **operands, drift_result *r)
+/* Models, where the errors are of, and what they make. */
+typedef struct work {
+    const drift_options *o;
+    size_t count;
+    imk_model *model[IMK_DRIFT_MODELS_MAX];
+    const char *name[IMK_DRIFT_MODELS_MAX + 1];
+    drift_scene scene;
+    imk_drift_models *r;
+} work;
+
+static int open_models(work *w)
 {
     int code = -1;
-    for (size_t m = 0; m < DRIFT_MODELS_MAX && operands[m] && code < 0; m++) {
-        r->name[m] = operands[m];
-        r->model[m] = command_memory(NULL, sizeof *r->model[m]);
-        r->model_count = m + 1;
-        code = command_model(operands[m], r->model[m], NULL);
+    for (size_t m = 0; w->name[m] && code < 0; m++) {
+        w->model[m] = command_memory(NULL, sizeof *w->model[m]);
+        w->count = m + 1;
+        code = command_model(w->name[m], w->model[m], NULL);
         if (code < 0)
-            code = term_selection_apply(&o->terms, r->model[m]);
+            code = term_selection_apply(&w->o->terms, w->model[m]);
     }
     return code;
 }
 
-static int show(const drift_result *r, const drift_answer *answer)
+/* A wish that can be typed: half of what there is, at a time of the table. */
+static void show_wish(const imk_drift_models *r, imk_result *result)
 {
-    const drift_options *o = r->options;
-    drift_warn(r);
+    char length[IMK_READABLE_SIZE];
+    const imk_drift_case *one = &r->cases[r->case_count - 1];
+    const imk_drift_figures *f = &one->figures[one->time];
+    const double time = r->times->time[one->time], hours = time / 3600, minutes = time / 60;
+    const bool whole_hours = hours == floor(hours), whole_minutes = minutes == floor(minutes);
+    if (!(f->cep > 0) || imk_drift_validity_of(f) == IMK_DRIFT_LOST)
+        return;
+    imk_result_line(result, "\nNext: what would halve it?  %s --want \"CEP %s @ %.8g%s\"",
+                    command_line(), imk_readable_figure(IMK_WISH_CEP, 0.5 * f->cep, length),
+                    whole_hours     ? hours
+                    : whole_minutes ? minutes
+                                    : time,
+                    whole_hours     ? "h"
+                    : whole_minutes ? "min"
+                                    : "s");
+}
+
+/* The last model as data, for the values of its terms. */
+static imk_result *model_data(const work *w)
+{
+    char *text = NULL;
+    size_t size;
+    imk_result *model = imk_result_create(NULL);
+    if (command_unless_memory(
+            imk_model_print_json(w->model[w->count - 1], NULL, &text, &size, NULL)) == IMK_OK)
+        (void)imk_result_json(model, "model", text);
+    free(text);
+    return model;
+}
+
+static int show(const work *w)
+{
+    const drift_options *o = w->o;
+    const imk_drift_models *r = w->r;
+    imk_result *result = show_begin("drift"), *model = r->answer ? model_data(w) : NULL;
+    const imk_drift_shown shown = {w->scene.motion ? o->motion : NULL, o->seed.value,
+                                   imk_drift_verdict(r, result), model};
+    for (size_t i = 0; i < shown.verdict.count; i++)
+        command_warn(shown.verdict.message[i].code, "%s", shown.verdict.message[i].text);
     const int code = o->output && !r->found ? drift_write_csv(r, o->output) : -1;
-    if (code >= 0)
+    if (code >= 0) {
+        imk_result_free(result);
+        imk_result_free(model);
         return code;
-    imk_result *result = show_begin("drift");
-    drift_show(r, answer, result);
+    }
+    imk_show_drift(r, &shown, result);
+    imk_result_free(model);
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    if (w->count == 1 && !r->answer && !r->found)
+        show_wish(r, result);
+    else if (w->count == 1 && !r->answer && !o->output)
+        imk_result_line(result, "\nNext: keep the runs with -o RESULTS.h5");
+    imk_result_for(result, IMK_FOR_PAGE);
+    for (size_t m = 0; m < w->count; m++)
+        show_model(result, w->name[m], w->model[m]);
+    show_origin(result);
     return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},
                     EXIT_DONE);
 }
 
 /* A part of a campaign has no figures worth showing: what to do with it is said. */
-static void show_shard(const drift_options *o, const drift_result *r)
+static void show_shard(const work *w)
 {
-    printf("%s: %llu runs.\nNext, with all parts: imukit merge PART.h5... -o WHOLE.h5\n", o->output,
-           (unsigned long long)r->run_count);
+    printf("%s: %llu runs.\nNext, with all parts: imukit merge PART.h5... -o WHOLE.h5\n",
+           w->o->output, (unsigned long long)w->r->run_count);
 }
 
-static int drift(const drift_options *o, drift_result *r, bool runs)
+/* A sentence about the model names it; one about the settings does not. */
+static int refuse(const work *w, const imk_error *error)
 {
-    drift_answer answer = {0};
+    const bool of_model = strncmp(error->field, "gyro", 4) == 0 ||
+                          strncmp(error->field, "accel", 5) == 0 ||
+                          strncmp(error->field, "timing", 6) == 0;
+    return command_error(error, of_model && w->r ? w->r->cases[w->r->case_count - 1].name : NULL);
+}
+
+static int drift(work *w)
+{
+    const drift_options *o = w->o;
+    const drift_scene *scene = &w->scene;
+    const imk_model *models[IMK_DRIFT_MODELS_MAX];
+    imk_error error;
     imk_thread_pool *pool = imk_thread_pool_create(campaign_threads(o->threads.value));
     const imk_executor executor = imk_thread_pool_executor(pool);
-    int code = drift_analyse(r, &executor);
-    if (code < 0 && r->scene->want.asked)
-        code = drift_answer_find(r, &executor, &answer);
+    const imk_job job = {.executor = &executor};
+    imk_drift_models_settings settings = imk_drift_models_default();
+    settings.drift = scene->settings;
+    settings.calibrated = o->compensated;
+    settings.want = scene->want;
+    for (size_t m = 0; m < w->count; m++)
+        models[m] = w->model[m];
+    const imk_status status = imk_drift_models_run(w->count, models, w->name, &scene->times,
+                                                   &settings, &job, &w->r, &error);
     imk_thread_pool_destroy(pool);
-    if (code < 0 && runs)
-        code = drift_runs(r);
+    int code = status == IMK_OK ? -1 : refuse(w, &error);
+    if (code < 0 && o->monte_carlo.given)
+        code = drift_runs(o, scene, w->r);
     if (code < 0 && o->shard)
-        show_shard(o, r);
+        show_shard(w);
     else if (code < 0)
-        code = show(r, r->scene->want.asked ? &answer : NULL);
-    drift_answer_free(&answer);
+        code = show(w);
+    imk_drift_models_free(w->r);
     return code;
 }
 
@@ -226,38 +306,34 @@ static int run(int count, char **words)
                        .align_time = missing,
                        .latitude = missing,
                        .seed = {.value = 1}};
-    const char *operands[DRIFT_MODELS_MAX + 1] = {NULL};
-    drift_scene scene = {.time = NULL};
-    int code = options_parse(&drift_verb, count, words, &o, operands);
+    work w = {.o = &o};
+    int code = options_parse(&drift_verb, count, words, &o, w.name);
     if (code >= 0)
         return code;
     const bool runs = o.monte_carlo.given;
     size_t models = 0;
-    while (models < DRIFT_MODELS_MAX && operands[models])
+    while (w.name[models])
         models++;
     code = check(&o, runs, models);
     if (code >= 0)
         return code;
     for (size_t m = 0; m < models && models > 1; m++)
-        if (imk_has_ending(operands[m], ".h5"))
+        if (imk_has_ending(w.name[m], ".h5"))
             return command_misused("%s: a results file is shown by itself; several parts of a "
                                    "campaign are put together by imukit merge",
-                                   operands[m]);
-    if (models == 1 && imk_has_ending(operands[0], ".h5"))
+                                   w.name[m]);
+    if (models == 1 && imk_has_ending(w.name[0], ".h5"))
         return runs ? command_misused("%s holds runs that were made already: leave --monte-carlo "
                                       "out",
-                                      operands[0])
-                    : drift_results(&o, operands[0]);
-    drift_result *r = command_zeroed(sizeof *r);
-    r->options = &o;
-    r->scene = &scene;
-    code = open_models(&o, operands, r);
+                                      w.name[0])
+                    : drift_results(&o, w.name[0]);
+    code = open_models(&w);
     if (code < 0)
-        code = drift_scene_open(&o, &scene);
+        code = drift_scene_open(&o, &w.scene);
     if (code < 0)
-        code = drift(&o, r, runs);
-    drift_result_free(r);
-    drift_scene_free(&scene);
-    free(r);
+        code = drift(&w);
+    for (size_t m = 0; m < w.count; m++)
+        free(w.model[m]);
+    drift_scene_free(&w.scene);
     return code < 0 ? EXIT_DONE : code;
 }

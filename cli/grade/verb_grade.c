@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit grade: the class of a model, by its biases and by the errors of position that all its
  * terms make, and where it stands among others. */
-#include "grade_parts.h"
+#include "shell/show.h"
+
+#include "imukit/show.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+enum { MODELS_MAX = 8 };
 
 typedef struct grade_options {
     bool json;
@@ -31,7 +35,7 @@ const verb grade_verb = {
     .summary = "class of a model by its biases and by computed performance, and what limits it",
     .operands = "MODEL...",
     .operands_minimum = 1,
-    .operands_maximum = GRADE_MODELS_MAX,
+    .operands_maximum = MODELS_MAX,
     .examples = {{"imukit grade model.yaml", "the class of an identified model"},
                  {"imukit grade model.yaml HG1700 navigation --report grade.html",
                   "beside a device of the catalogue and a class, with maps"}},
@@ -46,33 +50,51 @@ const verb grade_verb = {
                 grade_option_table, 0}},
     .run = run};
 
-static int open_models(const char **operands, grade_result *r)
+/* What the library is given, and what it gives. */
+typedef struct grading {
+    size_t count;
+    imk_model *model[MODELS_MAX];
+    imk_graded *graded[MODELS_MAX];
+    const char *name[MODELS_MAX + 1];
+} grading;
+
+static int grade(grading *g)
 {
     int code = -1;
-    for (size_t m = 0; m < GRADE_MODELS_MAX && operands[m] && code < 0; m++) {
-        grade_case *one = &r->cases[m];
-        one->operand = operands[m];
-        one->model = command_memory(NULL, sizeof *one->model);
-        r->count = m + 1;
-        code = command_model(operands[m], one->model, NULL);
-        if (code < 0)
-            code = grade_analyse(one);
-        if (code < 0 && !one->table.limiting[0] && !one->has_position)
-            code = command_failed("%s states no bias repeatability, no bias instability and no "
-                                  "uncertainty of the fixed bias: there is nothing to grade",
-                                  operands[m]);
+    for (size_t m = 0; g->name[m] && code < 0; m++) {
+        imk_error error;
+        char text[200];
+        g->model[m] = command_memory(NULL, sizeof *g->model[m]);
+        g->count = m + 1;
+        code = command_model(g->name[m], g->model[m], NULL);
+        if (code >= 0 || imk_grade_run(g->model[m], NULL, &g->graded[m], &error) == IMK_OK)
+            continue;
+        const imk_finding *why =
+            g->graded[m] ? imk_findings_failure(&g->graded[m]->findings) : NULL;
+        if (why)
+            imk_finding_text(why, text, sizeof text);
+        code = why ? command_failed("%s %s", g->name[m], text) : command_error(&error, g->name[m]);
     }
     return code;
 }
 
-static int show(const grade_result *r, const grade_options *o)
+static int show(const grading *g, const grade_options *o)
 {
+    const imk_graded *graded[MODELS_MAX];
+    const imk_graded_several several = {g->count, graded, g->name};
+    for (size_t m = 0; m < g->count; m++)
+        graded[m] = g->graded[m];
     /* A terminal has room for one map. */
-    const int all = o->plot && strcmp(o->plot, "term") == 0 ? GRADE_MAP_GYRO : GRADE_MAPS;
-    const int map = o->map > 0 ? o->map - 1 : all;
-    const bool stands = grade_stands(r, map);
+    const imk_grade_map all =
+        o->plot && strcmp(o->plot, "term") == 0 ? IMK_GRADE_MAP_GYRO : IMK_GRADE_MAPS;
+    const imk_grade_map map = o->map > 0 ? (imk_grade_map)(o->map - 1) : all;
+    const bool stands = imk_grade_stands(&several, map);
     imk_result *result = show_begin("grade");
-    grade_show(r, map, result);
+    imk_show_grade(&several, map, result);
+    imk_result_for(result, IMK_FOR_PAGE);
+    for (size_t m = 0; m < g->count; m++)
+        show_model(result, g->name[m], g->model[m]);
+    show_origin(result);
     const int code = show_end(
         result,
         &(show_options){.report = o->report, .plot = stands ? o->plot : NULL, .json = o->json},
@@ -85,22 +107,19 @@ static int show(const grade_result *r, const grade_options *o)
 static int run(int count, char **words)
 {
     grade_options o = {0};
-    const char *operands[GRADE_MODELS_MAX + 1] = {NULL};
-    int code = options_parse(&grade_verb, count, words, &o, operands);
+    grading g = {0};
+    int code = options_parse(&grade_verb, count, words, &o, g.name);
     if (code < 0)
         code = command_check_plot(o.plot);
     if (code < 0 && o.map > 0 && !o.plot)
         code = command_misused("--map is of a drawing: add --plot FILE.svg");
-    if (code >= 0)
-        return code;
-    grade_result *r = command_zeroed(sizeof *r);
-    code = open_models(operands, r);
     if (code < 0)
-        code = show(r, &o);
-    for (size_t m = 0; m < r->count; m++) {
-        list_free(&r->cases[m].omitted);
-        free(r->cases[m].model);
+        code = grade(&g);
+    if (code < 0)
+        code = show(&g, &o);
+    for (size_t m = 0; m < g.count; m++) {
+        imk_graded_free(g.graded[m]);
+        free(g.model[m]);
     }
-    free(r);
     return code;
 }

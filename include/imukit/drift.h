@@ -183,6 +183,14 @@ IMK_API imk_drift_figures imk_drift_figures_of_runs(size_t count, size_t stride,
                                                     imk_drift_figures *low, imk_drift_figures *high,
                                                     size_t *used);
 
+/** What the answer of a linear theory is worth at one time. */
+typedef enum imk_drift_validity {
+    IMK_DRIFT_LINEAR = 0,
+    IMK_DRIFT_ROUGH, /**< tilt or heading beyond a tenth of a radian */
+    IMK_DRIFT_LOST   /**< drms beyond IMK_DRIFT_DISTANCE_MAX: no position any more */
+} imk_drift_validity;
+IMK_API imk_drift_validity imk_drift_validity_of(const imk_drift_figures *figures);
+
 /** A wish: a figure at a time of the analysis. */
 typedef enum imk_drift_wish {
     IMK_WISH_CEP = 0,
@@ -194,6 +202,10 @@ typedef enum imk_drift_wish {
     IMK_WISH_HEADING
 } imk_drift_wish;
 
+/** "CEP", "R95", "DRMS", "height", "velocity", "tilt", "heading" */
+IMK_API const char *imk_drift_wish_name(imk_drift_wish wish);
+/** The SI unit of its figure: "m", "m/s", "rad". */
+IMK_API const char *imk_drift_wish_unit(imk_drift_wish wish);
 /** Value of the figure a wish is about. */
 IMK_API double imk_drift_wished(const imk_drift_figures *figures, imk_drift_wish wish);
 

@@ -8,7 +8,9 @@
 #include "imukit/allan_log.h"
 #include "imukit/calibrate_log.h"
 #include "imukit/compensate_log.h"
+#include "imukit/drift_models.h"
 #include "imukit/earth.h"
+#include "imukit/grade_position.h"
 #include "imukit/identify_several.h"
 #include "imukit/navigate_log.h"
 #include "imukit/record_plan.h"
@@ -34,6 +36,24 @@ IMK_API void imk_show_compensate_log(const imk_compensate_log *log, const char *
 /** Terms as an array of the data, and as a line. @param key,label  of these */
 IMK_API void imk_show_terms(const char *key, const char *label, const imk_term_keys *keys,
                             imk_result *result);
+
+/** Models that are graded, with what each is called. */
+typedef struct imk_graded_several {
+    size_t count;
+    const imk_graded *const *graded;
+    const char *const *name;
+} imk_graded_several;
+/** Maps of models among classes, technologies and applications. */
+typedef enum imk_grade_map {
+    IMK_GRADE_MAP_GYRO = 0, /**< stability of bias against that of scale factor */
+    IMK_GRADE_MAP_ACCEL,
+    IMK_GRADE_MAP_COST, /**< cost against performance */
+    IMK_GRADE_MAPS      /**< all of them */
+} imk_grade_map;
+/** Does a model state enough to stand on a map, or on any of IMK_GRADE_MAPS? */
+IMK_API bool imk_grade_stands(const imk_graded_several *r, imk_grade_map map);
+/** Classes, errors of position and what limits them, and maps. @param map  for the plot */
+IMK_API void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *result);
 
 /** @name What was identified
  *  @{ */
@@ -98,6 +118,28 @@ IMK_API imk_status imk_calibrate_plan_text(const imk_calibrate_plan *plan,
  *  the error. @return length of the text; 0: nothing is to be said beyond the error */
 IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *log, const imk_error *error,
                                      char *text, size_t size);
+/** @} */
+
+/** @name Drift
+ *  @{ */
+/** What makes figures doubtful: terms that are left out, errors beyond the linear range, runs that
+ *  differ. Warnings alone. */
+IMK_API imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result);
+
+/** What stands beside the figures. */
+typedef struct imk_drift_shown {
+    const char *motion; /**< what it is called; NULL: at rest */
+    uint64_t seed;      /**< of the runs */
+    imk_verdict verdict;
+    const imk_result *model; /**< the last model as data called "model", for values of terms; NULL:
+                                  none are told */
+} imk_drift_shown;
+
+/** Growth, budgets, runs, the answer to what is wanted, and figures. */
+IMK_API void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown,
+                            imk_result *result);
+/** Runs alone. @param words  what they are */
+IMK_API void imk_show_drift_runs(const imk_drift_models *r, const char *words, imk_result *result);
 /** @} */
 
 /** What records of several lengths tell, how long they must be, and, of a curve, a figure. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Numbers and durations as a person reads them. */
+/* Numbers, durations and figures of drift as a person reads them. */
 #include "imukit/readable.h"
 
 #include <math.h>
@@ -46,4 +46,44 @@ void imk_readable_duration(double seconds, char *text, size_t size)
         if (part[i].count > 0)
             used += (size_t)snprintf(text + used, size - used, "%s%lu %s", used ? " " : "",
                                      part[i].count, part[i].unit);
+}
+
+imk_unit imk_readable_figure_unit(imk_drift_wish wish, double value)
+{
+    const double size = fabs(value), degree = 3.14159265358979323846 / 180;
+    if (wish == IMK_WISH_VELOCITY)
+        return imk_unit_of("m/s");
+    if (wish == IMK_WISH_TILT || wish == IMK_WISH_HEADING)
+        return imk_unit_of(size >= degree ? "deg" : size >= degree / 60 ? "arcmin" : "arcsec");
+    return imk_unit_of(size < 1000 ? "m" : "km");
+}
+
+const char *imk_readable_number(double value, char text[IMK_READABLE_SIZE])
+{
+    if (!isfinite(value))
+        snprintf(text, IMK_READABLE_SIZE, "-");
+    else if (value == 0)
+        snprintf(text, IMK_READABLE_SIZE, "0");
+    else if (fabs(value) < 0.001)
+        snprintf(text, IMK_READABLE_SIZE, "%.2g", value);
+    else
+        imk_readable_value(value, 0, 3, text, IMK_READABLE_SIZE);
+    return text;
+}
+
+const char *imk_readable_quantity(double value, const imk_unit *unit, char text[IMK_READABLE_SIZE])
+{
+    char number[IMK_READABLE_SIZE];
+    imk_readable_number(value / unit->scale, number);
+    if (isfinite(value))
+        snprintf(text, IMK_READABLE_SIZE, "%.24s %.12s", number, unit->text);
+    else
+        snprintf(text, IMK_READABLE_SIZE, "-");
+    return text;
+}
+
+const char *imk_readable_figure(imk_drift_wish wish, double value, char text[IMK_READABLE_SIZE])
+{
+    const imk_unit unit = imk_readable_figure_unit(wish, value);
+    return imk_readable_quantity(value, &unit, text);
 }

@@ -232,6 +232,9 @@ static const struct message {
     {"not_followed", "the output ends at {1u}, the input is {0u}"},
     {"physics:temperature", "{0.4g} degC is outside the temperatures of this design, {1.4g} to "
                             "{2.4g} degC"},
+    /* grade_position.c */
+    {"nothing_to_grade", "states no bias repeatability, no bias instability and no uncertainty of "
+                         "the fixed bias: there is nothing to grade"},
     {"bridged", "{0} of {1} samples are missing or bad: bridged by straight lines"},
 };
 

@@ -228,3 +228,27 @@ imk_drift_figures imk_drift_figures_of_runs(size_t count, size_t stride, const d
         *used = r.used;
     return f;
 }
+
+imk_drift_validity imk_drift_validity_of(const imk_drift_figures *f)
+{
+    /* Beyond a tenth of a radian the square of an angle, which the linear theory drops, is a
+     * twentieth of it [rad]. */
+    const double largest_angle = 0.1;
+    if (!(f->drms <= IMK_DRIFT_DISTANCE_MAX))
+        return IMK_DRIFT_LOST;
+    return f->tilt <= largest_angle && f->heading <= largest_angle ? IMK_DRIFT_LINEAR
+                                                                   : IMK_DRIFT_ROUGH;
+}
+
+const char *imk_drift_wish_name(imk_drift_wish wish)
+{
+    static const char *const names[] = {"CEP",      "R95",  "DRMS",   "height",
+                                        "velocity", "tilt", "heading"};
+    return names[wish];
+}
+
+const char *imk_drift_wish_unit(imk_drift_wish wish)
+{
+    static const char *const units[] = {"m", "m", "m", "m", "m/s", "rad", "rad"};
+    return units[wish];
+}

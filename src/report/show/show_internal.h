@@ -6,7 +6,9 @@
 #include "imukit/channel_units.h"
 #include "imukit/even_record.h"
 #include "imukit/identify.h"
+#include "imukit/readable.h"
 #include "imukit/show.h"
+#include "report/growing_text_internal.h"
 
 enum { IMKI_WORDS = 120 };
 
@@ -32,6 +34,9 @@ size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t
 /* {"present", "value", "sigma", "lower", "upper"} of an estimate. */
 void imki_show_estimate(imk_result *result, const char *key, const imk_estimate *estimate,
                         double scale, const char *unit);
+
+/* A line, of a text that is put together; nothing when it is empty. The text is freed. */
+void imki_show_text(imki_text *text, imk_result *result);
 
 bool imki_warned(const imk_findings *findings);
 /* The warnings, as findings of the page. */

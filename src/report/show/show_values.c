@@ -2,7 +2,10 @@
 /* Values with their uncertainty, in words and as data. */
 #include "show_internal.h"
 
+#include "report/result_internal.h"
+
 #include <stdio.h>
+#include <stdlib.h>
 
 imki_words imki_value(double value, double uncertainty, int digits)
 {
@@ -75,6 +78,15 @@ void imki_show_estimate(imk_result *result, const char *key, const imk_estimate 
     imk_result_quantity(result, "lower", estimate->lower / scale, unit);
     imk_result_quantity(result, "upper", estimate->upper / scale, unit);
     imk_result_end(result);
+}
+
+void imki_show_text(imki_text *text, imk_result *result)
+{
+    if (result && text->failed)
+        result->arena.failed = true;
+    else if (text->size > 0)
+        imk_result_line(result, "%s", text->bytes);
+    free(text->bytes);
 }
 
 bool imki_warned(const imk_findings *findings)

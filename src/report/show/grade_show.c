@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A grade as a result: classes, errors of position and what limits them, in figures, sentences and
  * tables. */
-#include "grade_parts.h"
+#include "grade_show_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const char assumption[] =
     "Computed by covariance from all terms of the model: at rest at 45 deg N, level, 100 Hz, the "
@@ -13,6 +14,21 @@ static const char assumption[] =
 /* With a heading that is off by more than this there is none. */
 static const double no_north = 1; /* [rad] */
 
+static const char *grade_name(imk_grade grade)
+{
+    const imk_grade_row *row = imk_grade_table(grade);
+    return row ? row->name : "below every class";
+}
+
+/* Nautical miles, as claims are, from a tenth of one; else metres. */
+static const char *grade_length(double metres, char text[IMK_READABLE_SIZE])
+{
+    const imk_unit mile = imk_unit_of("nmi");
+    if (isfinite(metres) && metres >= 0.1 * mile.scale)
+        return imk_readable_quantity(metres, &mile, text);
+    return imk_readable_figure(IMK_WISH_CEP, metres, text);
+}
+
 static const char *name_or(bool known, imk_grade grade, const char *otherwise)
 {
     return known ? grade_name(grade) : otherwise;
@@ -20,15 +36,15 @@ static const char *name_or(bool known, imk_grade grade, const char *otherwise)
 
 /* ---- data ---- */
 
-static void show_way(const char *key, const grade_position *p, imk_result *result)
+static void show_way(const char *key, const imk_grade_way *p, imk_result *result)
 {
     static const char *const validity[] = {"linear", "rough", "no position"};
     imk_result_object(result, key);
     imk_result_text(result, "class", name_or(p->grade != IMK_GRADE_NONE, p->grade, NULL));
     imk_result_array(result, "times");
-    for (size_t t = 0; t < GRADE_TIMES; t++) {
+    for (size_t t = 0; t < IMK_GRADE_TIMES; t++) {
         imk_result_object(result, NULL);
-        imk_result_quantity(result, "time", grade_time[t], "s");
+        imk_result_quantity(result, "time", imk_grade_time(t), "s");
         imk_result_quantity(result, "cep", p->cep[t], "m");
         imk_result_quantity(result, "tilt", p->figures[t].tilt, "rad");
         imk_result_quantity(result, "heading", p->figures[t].heading, "rad");
@@ -39,8 +55,8 @@ static void show_way(const char *key, const grade_position *p, imk_result *resul
     imk_result_end(result);
 }
 
-static void show_shares(const char *key, size_t count, const grade_share *share, const char *value,
-                        imk_result *result)
+static void show_shares(const char *key, size_t count, const imk_grade_share *share,
+                        const char *value, imk_result *result)
 {
     imk_result_array(result, key);
     for (size_t i = 0; i < count; i++) {
@@ -52,16 +68,16 @@ static void show_shares(const char *key, size_t count, const grade_share *share,
     imk_result_end(result);
 }
 
-static void show_computed(const grade_case *one, imk_result *result)
+static void show_computed(const imk_graded *one, imk_result *result)
 {
-    static const char *const names[GRADE_WAYS] = {"given", "self", "given_compensated",
-                                                  "self_compensated"};
-    if (!one->has_position) {
+    static const char *const names[IMK_GRADE_WAYS] = {"given", "self", "given_compensated",
+                                                      "self_compensated"};
+    if (one->no_position) {
         imk_result_null(result, "position");
         return;
     }
     imk_result_object(result, "position");
-    for (int way = 0; way < GRADE_WAYS; way++)
+    for (int way = 0; way < IMK_GRADE_WAYS; way++)
         show_way(names[way], &one->way[way], result);
     show_shares("shares", one->share_count, one->share, "share", result);
     if (one->next == IMK_GRADE_NONE) {
@@ -77,13 +93,13 @@ static void show_computed(const grade_case *one, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_data(const grade_case *one, imk_result *result)
+static void show_data(const imk_graded *one, const char *name, imk_result *result)
 {
     const imk_grade_result *t = &one->table;
     const bool known = t->limiting[0];
     const imk_grade_row *row = imk_grade_table(t->overall);
     imk_result_object(result, NULL);
-    imk_result_text(result, "model", one->operand);
+    imk_result_text(result, "model", name);
     imk_result_text(result, "overall", name_or(known, t->overall, NULL));
     imk_result_text(result, "gyro", name_or(!isnan(t->gyro_bias), t->gyro, NULL));
     imk_result_text(result, "accel", name_or(!isnan(t->accel_bias), t->accel, NULL));
@@ -95,13 +111,13 @@ static void show_data(const grade_case *one, imk_result *result)
     imk_result_text(result, "position_performance",
                     known && row ? row->position_performance : NULL);
     show_computed(one, result);
-    imk_result_text(result, "no_position", one->has_position ? NULL : one->no_position);
+    imk_result_text(result, "no_position", one->no_position);
     imk_result_end(result);
 }
 
 /* ---- sentences ---- */
 
-static void show_bias(const grade_case *one, bool gyro, imk_result *result)
+static void show_bias(const imk_graded *one, bool gyro, imk_result *result)
 {
     const char *unit = gyro ? "deg/h" : "ug", *sensor = gyro ? "Gyro" : "Accelerometer";
     const double scale = imk_unit_of(unit).scale;
@@ -118,7 +134,7 @@ static void show_bias(const grade_case *one, bool gyro, imk_result *result)
     const imk_grade_row *row = imk_grade_table(grade);
     const imk_grade_row *better =
         grade > IMK_GRADE_STRATEGIC ? imk_grade_table((imk_grade)((int)grade - 1)) : NULL;
-    char allows[80] = "", needs[80] = "", number[DRIFT_TEXT];
+    char allows[80] = "", needs[80] = "", number[IMK_READABLE_SIZE];
     if (row)
         snprintf(allows, sizeof allows, ", the class allows %.6g",
                  (gyro ? row->gyro_bias_limit : row->accel_bias_limit) / scale);
@@ -126,62 +142,62 @@ static void show_bias(const grade_case *one, bool gyro, imk_result *result)
         snprintf(needs, sizeof needs, "; the next better class, %s, needs %.6g", better->name,
                  (gyro ? better->gyro_bias_limit : better->accel_bias_limit) / scale);
     imk_result_line(result, "%s: %s; remaining bias %s %s%s%s", sensor, grade_name(grade),
-                    drift_number(bias / scale, number), unit, allows, needs);
+                    imk_readable_number(bias / scale, number), unit, allows, needs);
 }
 
 /* A line on the terminal, a finding of the page. */
-static void show_position(const grade_case *one, imk_result *result)
+static void show_position(const imk_graded *one, imk_result *result)
 {
-    const grade_position *p = &one->way[GRADE_GIVEN];
-    char text[600], hour[DRIFT_TEXT], day[DRIFT_TEXT];
-    if (!one->has_position)
+    const imk_grade_way *p = &one->way[IMK_GRADE_GIVEN];
+    char text[600], hour[IMK_READABLE_SIZE], day[IMK_READABLE_SIZE];
+    if (one->no_position)
         snprintf(text, sizeof text, "Position: not computed; %s", one->no_position);
-    else if (p->validity[GRADE_HOUR] == DRIFT_LOST)
+    else if (p->validity[IMK_GRADE_HOUR] == IMK_DRIFT_LOST)
         snprintf(text, sizeof text,
                  "Position: below every class that claims one; no longer a position after 1 h");
-    else if (p->validity[GRADE_DAY] == DRIFT_LOST)
+    else if (p->validity[IMK_GRADE_DAY] == IMK_DRIFT_LOST)
         snprintf(text, sizeof text,
                  "Position: %s; CEP %s after 1 h, no longer a position after 24 h",
-                 grade_name(p->grade), grade_length(p->cep[GRADE_HOUR], hour));
+                 grade_name(p->grade), grade_length(p->cep[IMK_GRADE_HOUR], hour));
     else
         snprintf(text, sizeof text, "Position: %s; CEP %s after 1 h, %s after 24 h",
-                 grade_name(p->grade), grade_length(p->cep[GRADE_HOUR], hour),
-                 grade_length(p->cep[GRADE_DAY], day));
-    imk_result_finding(result, one->has_position ? 1 : 2, text);
+                 grade_name(p->grade), grade_length(p->cep[IMK_GRADE_HOUR], hour),
+                 grade_length(p->cep[IMK_GRADE_DAY], day));
+    imk_result_finding(result, !one->no_position ? 1 : 2, text);
 }
 
-static void show_limits(const grade_case *one, imk_result *result)
+static void show_limits(const imk_graded *one, imk_result *result)
 {
-    growing_list text = {0};
+    imki_text text = {.bytes = NULL};
     for (size_t i = 0; i < one->share_count; i++)
-        list_add(&text, "%s%s %.0f %%", i == 0 ? "What makes it after 1 h, by variance: " : ", ",
-                 one->share[i].text, 100 * one->share[i].value);
+        imki_text_add(&text, "%s%s %.0f %%",
+                      i == 0 ? "What makes it after 1 h, by variance: " : ", ", one->share[i].text,
+                      100 * one->share[i].value);
     if (one->shifted)
-        list_add(&text,
-                 "%sMost of it is no scatter but a shift by known values, which compensation takes "
-                 "out",
-                 text.size > 0 ? ". " : "");
-    if (text.size > 0)
-        imk_result_line(result, "%s", text.text);
-    list_free(&text);
+        imki_text_add(
+            &text,
+            "%sMost of it is no scatter but a shift by known values, which compensation takes "
+            "out",
+            text.size > 0 ? ". " : "");
+    imki_show_text(&text, result);
 }
 
-static void show_needs(const grade_case *one, imk_result *result)
+static void show_needs(const imk_graded *one, imk_result *result)
 {
     const imk_grade_row *row = imk_grade_table(one->next);
-    growing_list text = {0};
-    if (!row || !one->has_position || !(one->next_all > 0))
+    imki_text text = {.bytes = NULL};
+    if (!row || one->no_position || !(one->next_all > 0))
         return;
-    list_add(&text, "For %s (%s) every term would have to be %.3g times smaller", row->name,
-             isinf(row->position_limit) ? "a position at all after 1 h" : row->position_performance,
-             1 / one->next_all);
+    imki_text_add(&text, "For %s (%s) every term would have to be %.3g times smaller", row->name,
+                  isinf(row->position_limit) ? "a position at all after 1 h"
+                                             : row->position_performance,
+                  1 / one->next_all);
     for (size_t i = 0; i < one->need_count; i++)
-        list_add(&text, "%s%s %.3g times", i == 0 ? "; or only " : ", ", one->need[i].text,
-                 one->need[i].value);
+        imki_text_add(&text, "%s%s %.3g times", i == 0 ? "; or only " : ", ", one->need[i].text,
+                      one->need[i].value);
     if (one->need_more > 0)
-        list_add(&text, ", and %zu more", one->need_more);
-    imk_result_line(result, "%s", text.text);
-    list_free(&text);
+        imki_text_add(&text, ", and %zu more", one->need_more);
+    imki_show_text(&text, result);
 }
 
 /* Without the bias that differs from run to run the figures are those of a better sensor. */
@@ -193,11 +209,11 @@ static bool states_repeatability(const imk_triad *triad)
     return false;
 }
 
-static void show_flattery(const grade_case *one, imk_result *result)
+static void show_flattery(const imk_graded *one, imk_result *result)
 {
     const bool gyro = states_repeatability(&one->model->gyro);
     const bool accel = states_repeatability(&one->model->accel);
-    if (one->has_position && !(gyro && accel))
+    if (!one->no_position && !(gyro && accel))
         imk_result_line(result,
                         "The model states no run-to-run bias of its %s: class and errors of "
                         "position flatter it.",
@@ -209,12 +225,13 @@ static void show_flattery(const grade_case *one, imk_result *result)
 /* ---- tables ---- */
 
 /* The computed figure that answers a claim. */
-static void add_answer(imk_table *table, const grade_case *one, const imk_grade_row *row)
+static void add_answer(imk_table *table, const imk_graded *one, const imk_grade_row *row)
 {
-    char length[DRIFT_TEXT];
-    const size_t time = row->position_time > grade_time[GRADE_HOUR] ? GRADE_DAY : GRADE_HOUR;
-    const double cep = one->way[GRADE_GIVEN].cep[time];
-    if (!one->has_position || isnan(row->position_time))
+    char length[IMK_READABLE_SIZE];
+    const size_t time =
+        row->position_time > imk_grade_time(IMK_GRADE_HOUR) ? IMK_GRADE_DAY : IMK_GRADE_HOUR;
+    const double cep = one->way[IMK_GRADE_GIVEN].cep[time];
+    if (one->no_position || isnan(row->position_time))
         imk_table_add(table, "-");
     else if (isnan(cep))
         imk_table_add(table, "no position");
@@ -229,7 +246,7 @@ static const char *met(imk_grade grade, double bias, int row)
 }
 
 /* Claims beside figures. */
-static void show_classes(const grade_case *one, imk_result *result)
+static void show_classes(const imk_graded *one, imk_result *result)
 {
     const imk_grade_result *t = &one->table;
     imk_result_gap(result);
@@ -249,65 +266,65 @@ static void show_classes(const grade_case *one, imk_result *result)
     }
 }
 
-static bool finds_north(const grade_position *p, int way)
+static bool finds_north(const imk_grade_way *p, int way)
 {
-    const bool self = way == GRADE_SELF || way == GRADE_SELF_COMPENSATED;
-    return !(self && p->figures[GRADE_MINUTE].heading > no_north);
+    const bool self = way == IMK_GRADE_SELF || way == IMK_GRADE_SELF_COMPENSATED;
+    return !(self && p->figures[IMK_GRADE_MINUTE].heading > no_north);
 }
 
-static void add_cep(imk_table *table, const grade_position *p, size_t t, const char *rough)
+static void add_cep(imk_table *table, const imk_grade_way *p, size_t t, const char *rough)
 {
-    char text[DRIFT_TEXT];
+    char text[IMK_READABLE_SIZE];
     imk_table_add(table, "%s%s",
-                  p->validity[t] == DRIFT_LOST ? "no position" : grade_length(p->cep[t], text),
-                  p->validity[t] == DRIFT_ROUGH ? rough : "");
+                  p->validity[t] == IMK_DRIFT_LOST ? "no position" : grade_length(p->cep[t], text),
+                  p->validity[t] == IMK_DRIFT_ROUGH ? rough : "");
 }
 
-static void show_ways(const grade_case *one, imk_result *result)
+static void show_ways(const imk_graded *one, imk_result *result)
 {
-    static const char *const names[GRADE_WAYS] = {
+    static const char *const names[IMK_GRADE_WAYS] = {
         "attitude perfect at the start", "self-aligned, 5 min at rest",
         "perfect start, compensated", "self-aligned, compensated"};
     imk_result_gap(result);
     imk_table *table = imk_result_table(result, 0x3eU);
     imk_table_row(table, "CEP after\t1 min\t1 h\t24 h\ttilt (1 h)\theading (1 h)\tclass");
-    for (int way = 0; way < (one->compensation_matters ? GRADE_WAYS : 2); way++) {
-        const grade_position *p = &one->way[way];
-        char tilt[DRIFT_TEXT] = "", heading[DRIFT_TEXT] = "";
+    for (int way = 0; way < (one->compensation_matters ? IMK_GRADE_WAYS : 2); way++) {
+        const imk_grade_way *p = &one->way[way];
+        char tilt[IMK_READABLE_SIZE] = "", heading[IMK_READABLE_SIZE] = "";
         imk_table_row(table, "%s", names[way]);
         if (!finds_north(p, way)) {
             imk_table_add(table, "no north");
             continue;
         }
-        for (size_t t = 0; t < GRADE_TIMES; t++)
+        for (size_t t = 0; t < IMK_GRADE_TIMES; t++)
             add_cep(table, p, t, " ~");
-        if (p->validity[GRADE_HOUR] != DRIFT_LOST) {
-            drift_angle(p->figures[GRADE_HOUR].tilt, tilt);
-            drift_angle(p->figures[GRADE_HOUR].heading, heading);
+        if (p->validity[IMK_GRADE_HOUR] != IMK_DRIFT_LOST) {
+            imk_readable_figure(IMK_WISH_HEADING, p->figures[IMK_GRADE_HOUR].tilt, tilt);
+            imk_readable_figure(IMK_WISH_HEADING, p->figures[IMK_GRADE_HOUR].heading, heading);
         }
         imk_table_add(table, "%s\t%s\t%s", tilt, heading,
                       name_or(p->grade != IMK_GRADE_NONE, p->grade, "none claims it"));
     }
 }
 
-static bool any_rough(const grade_case *one)
+static bool any_rough(const imk_graded *one)
 {
-    for (int way = 0; way < GRADE_WAYS; way++)
-        for (size_t t = 0; t < GRADE_TIMES; t++)
-            if (one->way[way].validity[t] == DRIFT_ROUGH && finds_north(&one->way[way], way))
+    for (int way = 0; way < IMK_GRADE_WAYS; way++)
+        for (size_t t = 0; t < IMK_GRADE_TIMES; t++)
+            if (one->way[way].validity[t] == IMK_DRIFT_ROUGH && finds_north(&one->way[way], way))
                 return true;
     return false;
 }
 
 static void add_value(imk_table *table, double value, const char *unit)
 {
-    char text[DRIFT_TEXT];
+    char text[IMK_READABLE_SIZE];
     const imk_unit of = imk_unit_of(unit);
-    imk_table_add(table, "%s", isnan(value) ? "-" : drift_in_unit(value, &of, text));
+    imk_table_add(table, "%s", isnan(value) ? "-" : imk_readable_quantity(value, &of, text));
 }
 
 /* Several models side by side. */
-static void show_comparison(const grade_result *r, imk_audience audience, imk_result *result)
+static void show_comparison(const imk_graded_several *r, imk_audience audience, imk_result *result)
 {
     if (r->count < 2)
         return;
@@ -319,15 +336,15 @@ static void show_comparison(const grade_result *r, imk_audience audience, imk_re
     imk_table_row(table, "model\tby biases\tby position\tCEP 1 min\tCEP 1 h\tCEP 24 h\tgyro bias\t"
                          "scale factor\taccel bias\tscale factor");
     for (size_t m = 0; m < r->count; m++) {
-        const grade_case *one = &r->cases[m];
-        const grade_position *p = &one->way[GRADE_GIVEN];
-        imk_table_row(table, "%.40s\t%s\t%s", one->operand,
+        const imk_graded *one = r->graded[m];
+        const imk_grade_way *p = &one->way[IMK_GRADE_GIVEN];
+        imk_table_row(table, "%.40s\t%s\t%s", r->name[m],
                       name_or(one->table.limiting[0], one->table.overall, "-"),
-                      !one->has_position
+                      one->no_position
                           ? "-"
                           : name_or(p->grade != IMK_GRADE_NONE, p->grade, "none claims it"));
-        for (size_t t = 0; t < GRADE_TIMES; t++)
-            if (one->has_position)
+        for (size_t t = 0; t < IMK_GRADE_TIMES; t++)
+            if (!one->no_position)
                 add_cep(table, p, t, "");
             else
                 imk_table_add(table, "-");
@@ -341,7 +358,7 @@ static void show_comparison(const grade_result *r, imk_audience audience, imk_re
 /* ---- all ---- */
 
 /* What is said of the computed position below its table. */
-static void show_notes(const grade_case *one, imk_result *result)
+static void show_notes(const imk_graded *one, imk_result *result)
 {
     imk_result_gap(result);
     imk_result_line(result, "%s", assumption);
@@ -353,20 +370,24 @@ static void show_notes(const grade_case *one, imk_result *result)
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (!one->compensation_matters)
         imk_result_line(result, "The model holds no known value that compensation would take out.");
-    if (one->omitted.size > 0)
-        imk_result_line(result, "Not in these figures: %s.", one->omitted.text);
+    imki_text omitted = {.bytes = NULL};
+    for (size_t i = 0; i < one->omitted_count; i++)
+        imki_text_add(&omitted, "%s%s", i == 0 ? "Not in these figures: " : ", ", one->omitted[i]);
+    if (omitted.size > 0)
+        imki_text_put(&omitted, ".");
+    imki_show_text(&omitted, result);
 }
 
-static void show_case(const grade_case *one, imk_result *result)
+static void show_case(const imk_graded *one, const char *name, imk_result *result)
 {
     const imk_grade_result *t = &one->table;
     char text[600];
     imk_result_for(result, IMK_FOR_TERMINAL);
     imk_result_line(result, "%s: " IMK_BOLD "%s" IMK_PLAIN,
-                    one->model->name[0] ? one->model->name : one->operand,
+                    one->model->name[0] ? one->model->name : name,
                     name_or(t->limiting[0], t->overall, "no biases stated"));
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_heading(result, one->operand);
+    imk_result_heading(result, name);
     if (t->limiting[0]) {
         snprintf(text, sizeof text, "By its biases: %s, decided by the %s.", grade_name(t->overall),
                  t->limiting);
@@ -384,39 +405,36 @@ static void show_case(const grade_case *one, imk_result *result)
     show_limits(one, result);
     show_needs(one, result);
     show_classes(one, result);
-    if (!one->has_position)
+    if (one->no_position)
         return;
     show_ways(one, result);
     show_notes(one, result);
 }
 
-void grade_show(const grade_result *r, int map, imk_result *result)
+void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *result)
 {
     imk_result_object(result, "inputs");
     imk_result_array(result, "models");
     for (size_t m = 0; m < r->count; m++)
-        imk_result_text(result, NULL, r->cases[m].operand);
+        imk_result_text(result, NULL, r->name[m]);
     imk_result_end(result);
     imk_result_end(result);
     imk_result_object(result, "result");
     imk_result_array(result, "models");
     for (size_t m = 0; m < r->count; m++)
-        show_data(&r->cases[m], result);
+        show_data(r->graded[m], r->name[m], result);
     imk_result_end(result);
     imk_result_end(result);
-    imk_result_title(result, "Grade", "%s", r->count > 1 ? "" : r->cases[0].operand);
+    imk_result_title(result, "Grade", "%s", r->count > 1 ? "" : r->name[0]);
     show_comparison(r, IMK_FOR_PAGE, result);
     for (size_t m = 0; m < r->count; m++) {
         if (m > 0)
             imk_result_gap(result);
-        show_case(&r->cases[m], result);
+        show_case(r->graded[m], r->name[m], result);
     }
     show_comparison(r, IMK_FOR_TERMINAL, result);
     imk_result_for(result, IMK_FOR_PLOT);
-    grade_show_plot(r, map, result);
+    imki_show_grade_plot(r, map, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    grade_show_maps(r, result);
-    for (size_t m = 0; m < r->count; m++)
-        show_model(result, r->cases[m].operand, r->cases[m].model);
-    show_origin(result);
+    imki_show_grade_maps(r, result);
 }

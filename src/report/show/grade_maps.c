@@ -13,10 +13,12 @@
  * What a source leaves open ("< 0.01 deg/h") ends where the better class does or at the edge, and
  * what it states as one number ("0.1 deg/s", "about 100,000 $") is drawn as a factor of two to
  * either side. */
-#include "grade_parts.h"
+#include "grade_show_internal.h"
+
+#include "report/result_internal.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 
 typedef struct grade_region {
     imk_region region;  /* in the units of its map */
@@ -79,7 +81,7 @@ typedef struct grade_map {
 
 #define REGIONS(table) sizeof(table) / sizeof(table)[0], table
 
-static const grade_map maps[GRADE_MAPS] = {
+static const grade_map maps[IMK_GRADE_MAPS] = {
     {"Gyros: applications, classes and technologies",
      "stability of the scale factor [ppm]",
      "stability of the bias [deg/h]",
@@ -115,12 +117,13 @@ typedef struct spot {
     const char *remark;
 } spot;
 
-static spot find_spot(const grade_case *one, int map)
+static spot find_spot(const imk_graded *one, int map)
 {
-    const bool gyro = map == GRADE_MAP_GYRO;
-    if (map == GRADE_MAP_COST) {
-        const double cep = one->has_position ? one->way[GRADE_GIVEN].cep[GRADE_HOUR] : (double)NAN;
-        const bool lost = one->has_position && isnan(cep);
+    const bool gyro = map == IMK_GRADE_MAP_GYRO;
+    if (map == IMK_GRADE_MAP_COST) {
+        const double cep =
+            !one->no_position ? one->way[IMK_GRADE_GIVEN].cep[IMK_GRADE_HOUR] : (double)NAN;
+        const bool lost = !one->no_position && isnan(cep);
         return (spot){lost ? beyond : cep / imk_unit_of("nmi").scale, (double)NAN,
                       lost ? ", no longer a position" : ""};
     }
@@ -132,11 +135,11 @@ static spot find_spot(const grade_case *one, int map)
                                 : ""};
 }
 
-bool grade_stands(const grade_result *r, int map)
+bool imk_grade_stands(const imk_graded_several *r, imk_grade_map map)
 {
-    for (int i = 0; i < GRADE_MAPS; i++)
-        for (size_t m = 0; m < r->count && (map == GRADE_MAPS || i == map); m++) {
-            const spot s = find_spot(&r->cases[m], i);
+    for (int i = 0; i < IMK_GRADE_MAPS; i++)
+        for (size_t m = 0; m < r->count && (map == IMK_GRADE_MAPS || i == (int)map); m++) {
+            const spot s = find_spot(r->graded[m], i);
             if (!isnan(s.x) || !isnan(s.y))
                 return true;
         }
@@ -146,7 +149,9 @@ bool grade_stands(const grade_result *r, int map)
 /* The presets show what the classes look like here. */
 static void add_presets(bool gyro, imk_figure_builder *figure)
 {
-    imk_model *model = command_memory(NULL, sizeof *model);
+    imk_model *model = figure ? imki_arena_take(figure->arena, sizeof *model) : NULL;
+    if (!model)
+        return;
     imk_figure_curve(figure,
                      &(imk_curve){.label = "presets, strategic to control",
                                   .style = IMK_CURVE_POINTS,
@@ -161,18 +166,18 @@ static void add_presets(bool gyro, imk_figure_builder *figure)
                          gyro ? table.gyro_bias / imk_unit_of("deg/h").scale
                               : table.accel_bias / imk_unit_of("ug").scale);
     }
-    free(model);
 }
 
 /* A point, or a line over the range of the axis that is not known. */
-static void add_model(const grade_case *one, int color, int map, imk_figure_builder *figure)
+static void add_model(const imk_graded *one, const char *name, int color, int map,
+                      imk_figure_builder *figure)
 {
     const spot s = find_spot(one, map);
     const bool line = isnan(s.x) || isnan(s.y);
     char label[120];
     if (isnan(s.x) && isnan(s.y))
         return;
-    snprintf(label, sizeof label, "%.60s%s", one->operand, s.remark);
+    snprintf(label, sizeof label, "%.60s%s", name, s.remark);
     imk_figure_curve(figure,
                      &(imk_curve){.label = label,
                                   .style = line ? IMK_CURVE_DASHES : IMK_CURVE_MARKS,
@@ -183,7 +188,7 @@ static void add_model(const grade_case *one, int color, int map, imk_figure_buil
                          isnan(s.y) ? maps[map].y_range[i] : s.y);
 }
 
-static void add_panel(const grade_result *r, int map, imk_figure_builder *figure)
+static void add_panel(const imk_graded_several *r, int map, imk_figure_builder *figure)
 {
     const grade_map *m = &maps[map];
     imk_figure_panel(figure, &(imk_panel){.title = m->title,
@@ -194,25 +199,25 @@ static void add_panel(const grade_result *r, int map, imk_figure_builder *figure
                                           .key = IMK_KEY_BELOW});
     for (size_t i = 0; i < m->region_count; i++)
         imk_figure_region(figure, &m->regions[i].region);
-    if (map != GRADE_MAP_COST)
-        add_presets(map == GRADE_MAP_GYRO, figure);
+    if (map != IMK_GRADE_MAP_COST)
+        add_presets(map == IMK_GRADE_MAP_GYRO, figure);
     for (size_t k = 0; k < r->count; k++)
-        add_model(&r->cases[k], (int)k, map, figure);
+        add_model(r->graded[k], r->name[k], (int)k, map, figure);
 }
 
-void grade_show_plot(const grade_result *r, int map, imk_result *result)
+void imki_show_grade_plot(const imk_graded_several *r, int map, imk_result *result)
 {
     imk_figure_builder *figure = imk_result_figure(result, "Grade", 2, "");
-    for (int i = 0; i < GRADE_MAPS; i++)
-        if ((map == GRADE_MAPS || i == map) && grade_stands(r, i))
+    for (int i = 0; i < IMK_GRADE_MAPS; i++)
+        if ((map == IMK_GRADE_MAPS || i == (int)map) && imk_grade_stands(r, (imk_grade_map)i))
             add_panel(r, i, figure);
 }
 
-void grade_show_maps(const grade_result *r, imk_result *result)
+void imki_show_grade_maps(const imk_graded_several *r, imk_result *result)
 {
     imk_result_heading(result, "Maps");
-    for (int i = 0; i < GRADE_MAPS; i++) {
-        if (!grade_stands(r, i))
+    for (int i = 0; i < IMK_GRADE_MAPS; i++) {
+        if (!imk_grade_stands(r, (imk_grade_map)i))
             continue;
         add_panel(r, i, imk_result_figure(result, "", 0, maps[i].caption));
         imk_table *table = imk_result_table(result, 0);

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Drift as a picture: how the error grows, and which term makes how much of it at which time. */
-#include "drift_parts.h"
+#include "drift_show_internal.h"
+
+#include "report/result_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +21,7 @@ typedef struct band {
 
 /* Times in the unit of their axis, and room for as many values. */
 typedef struct drawing {
-    const drift_result *of;
+    const imk_drift_models *of;
     imk_figure_builder *figure;
     const char *time_label;
     double unit, length; /* [s], [m] */
@@ -28,7 +31,7 @@ typedef struct drawing {
 
 static bool is_drawn(const imk_drift_figures *f)
 {
-    return drift_validity_of(f) != DRIFT_LOST;
+    return imk_drift_validity_of(f) != IMK_DRIFT_LOST;
 }
 
 static void begin_panel(const drawing *d, const char *title, const char *y_label, imk_key_place key,
@@ -44,7 +47,7 @@ static void begin_panel(const drawing *d, const char *title, const char *y_label
 
 /* ---- growth ---- */
 
-static void add_line(const drawing *d, const drift_case *one, imk_drift_wish wish,
+static void add_line(const drawing *d, const imk_drift_case *one, imk_drift_wish wish,
                      const char *label, int color)
 {
     imk_figure_curve(d->figure, &(imk_curve){.label = label, .color = color}, 1);
@@ -58,14 +61,14 @@ static void add_line(const drawing *d, const drift_case *one, imk_drift_wish wis
 /* Points with their intervals; too few runs have no upper limit. */
 static void add_runs(const drawing *d, imk_drift_wish wish, const char *label, int color)
 {
-    const drift_result *r = d->of;
+    const imk_drift_models *r = d->of;
     imk_figure_curve(d->figure,
                      &(imk_curve){.label = label, .style = IMK_CURVE_POINTS, .color = color}, 1);
-    for (size_t k = 0; k < r->scene->row_count; k++) {
+    for (size_t k = 0; k < r->times->row_count; k++) {
         const double found = imk_drift_wished(&r->found[k], wish) / d->length,
                      low = imk_drift_wished(&r->low[k], wish) / d->length,
                      high = imk_drift_wished(&r->high[k], wish) / d->length;
-        imk_figure_bar(d->figure, d->time[r->scene->row[k]], found, low,
+        imk_figure_bar(d->figure, d->time[r->times->row[k]], found, low,
                        isfinite(high) ? high : found);
     }
 }
@@ -73,7 +76,7 @@ static void add_runs(const drawing *d, imk_drift_wish wish, const char *label, i
 /* CEP of each case; of one case also R95. */
 static void show_growth(const drawing *d)
 {
-    const drift_result *r = d->of;
+    const imk_drift_models *r = d->of;
     begin_panel(d, r->case_count > 1 ? "CEP: half of all outcomes are within" : "Horizontal error",
                 d->length > 1 ? "radius [km]" : "radius [m]", IMK_KEY_LOWER, true);
     for (size_t c = 0; c < r->case_count && r->case_count > 1; c++)
@@ -144,13 +147,13 @@ static void choose_colors(const band *before, size_t before_count, band *bands, 
     }
 }
 
-static bool has_shares(const drift_case *one, size_t t)
+static bool has_shares(const imk_drift_case *one, size_t t)
 {
     return is_drawn(&one->figures[t]) && variance(&one->analysis->total[t]) > 0;
 }
 
 /* Bands from 0 to 100 %, each on the ones before; the rest, where it shows, is the last. */
-static void add_bands(const drawing *d, const drift_case *one, const band *bands, size_t count)
+static void add_bands(const drawing *d, const imk_drift_case *one, const band *bands, size_t count)
 {
     double *below = d->below, rest = 0;
     for (size_t t = 0; t < d->count; t++)
@@ -175,12 +178,12 @@ static void add_bands(const drawing *d, const drift_case *one, const band *bands
 
 static void show_shares(const drawing *d)
 {
-    const drift_result *r = d->of;
+    const imk_drift_models *r = d->of;
     const char *const when[] = {", before calibration", ", after calibration"};
     band bands[2][IMK_DRIFT_SOURCES_MAX];
     size_t count[2] = {0};
     for (size_t c = 0; c < r->case_count; c++) {
-        const drift_case *one = &r->cases[c];
+        const imk_drift_case *one = &r->cases[c];
         char title[60];
         count[c] = rank_sources(one->analysis, bands[c]);
         choose_colors(bands[0], c > 0 ? count[0] : 0, bands[c], count[c]);
@@ -194,33 +197,32 @@ static void show_shares(const drawing *d)
 /* ---- all ---- */
 
 /* The largest distance that is drawn: kilometres when they are some. */
-static double largest(const drift_result *r)
+static double largest(const imk_drift_models *r)
 {
     double most = 0;
     for (size_t c = 0; c < r->case_count; c++)
-        for (size_t t = 0; t < r->scene->time_count; t++)
+        for (size_t t = 0; t < r->times->count; t++)
             if (is_drawn(&r->cases[c].figures[t]))
                 most = fmax(most, r->cases[c].figures[t].cep);
-    for (size_t k = 0; r->found && k < r->scene->row_count; k++)
+    for (size_t k = 0; r->found && k < r->times->row_count; k++)
         if (isfinite(r->found[k].cep))
             most = fmax(most, r->found[k].cep);
     return most;
 }
 
 /* Of one model, where there are any. */
-static bool any_shares(const drift_result *r)
+static bool any_shares(const imk_drift_models *r)
 {
-    for (size_t t = 0; t < r->scene->time_count && r->model_count == 1; t++)
+    for (size_t t = 0; t < r->times->count && r->model_count == 1; t++)
         if (has_shares(&r->cases[0], t))
             return true;
     return false;
 }
 
-void drift_show_figure(const drift_result *r, bool shares, imk_result *result)
+void imki_drift_show_figure(const imk_drift_models *r, bool shares, imk_result *result)
 {
-    const drift_scene *scene = r->scene;
-    const size_t count = scene->time_count;
-    const double last = scene->time[count - 1];
+    const size_t count = r->times->count;
+    const double last = r->times->time[count - 1];
     const bool any = any_shares(r);
     drawing d = {.of = r,
                  .time_label = last >= 7200  ? "time [h]"
@@ -231,10 +233,13 @@ void drift_show_figure(const drift_result *r, bool shares, imk_result *result)
                                        : 1,
                  .length = largest(r) >= 2000 ? 1000 : 1,
                  .count = count,
-                 .time = command_memory(NULL, 2 * count * sizeof *d.time)};
+                 .time =
+                     result ? imki_arena_take(&result->arena, 2 * count * sizeof *d.time) : NULL};
+    if (!d.time)
+        return;
     d.below = d.time + count;
     for (size_t t = 0; t < count; t++)
-        d.time[t] = scene->time[t] / d.unit;
+        d.time[t] = r->times->time[t] / d.unit;
     d.figure = imk_result_figure(
         result, r->model_count > 1 ? "Comparison" : r->name[0], any ? 1 + r->case_count : 1,
         "CEP is the radius of the circle that holds half of all outcomes, R95 that of 95 %. Shares "
@@ -242,5 +247,4 @@ void drift_show_figure(const drift_result *r, bool shares, imk_result *result)
     show_growth(&d);
     if (shares && any)
         show_shares(&d);
-    free(d.time);
 }

@@ -1,34 +1,35 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Drift in tables: growth, budgets, runs. */
-#include "drift_parts.h"
+#include "drift_show_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Shares below this are summed up in one line. */
 static const double least_share = 0.002;
 
 /* Seconds where a part of one would be lost. */
-const char *drift_time(double time, drift_validity validity, char text[DRIFT_TIME_TEXT])
+const char *imki_drift_time(double time, imk_drift_validity validity, char text[IMKI_DRIFT_TIME])
 {
-    char plain[DRIFT_TIME_TEXT - 4];
+    char plain[IMKI_DRIFT_TIME - 4];
     if (time < 3600 && fabs(time - floor(time + 0.5)) > 1e-6)
         snprintf(plain, sizeof plain, "%.6g s", time);
     else
         imk_readable_duration(time, plain, sizeof plain);
-    snprintf(text, DRIFT_TIME_TEXT, "%s%s", plain, validity == DRIFT_ROUGH ? " ~" : "");
+    snprintf(text, IMKI_DRIFT_TIME, "%s%s", plain, validity == IMK_DRIFT_ROUGH ? " ~" : "");
     return text;
 }
 
-static void begin_row(imk_table *table, double time, drift_validity validity)
+static void begin_row(imk_table *table, double time, imk_drift_validity validity)
 {
-    char text[DRIFT_TIME_TEXT];
-    imk_table_row(table, "%s", drift_time(time, validity, text));
+    char text[IMKI_DRIFT_TIME];
+    imk_table_row(table, "%s", imki_drift_time(time, validity, text));
 }
 
 static void add_figure(imk_table *table, const imk_drift_figures *f, imk_drift_wish wish)
 {
-    char text[DRIFT_TEXT];
-    imk_table_add(table, "%s", drift_figure_text(wish, imk_drift_wished(f, wish), text));
+    char text[IMK_READABLE_SIZE];
+    imk_table_add(table, "%s", imk_readable_figure(wish, imk_drift_wished(f, wish), text));
 }
 
 static imk_table *begin_table(imk_result *result, unsigned right)
@@ -43,27 +44,27 @@ static imk_table *begin_table(imk_result *result, unsigned right)
 static void add_miles(imk_table *table, double value)
 {
     const imk_unit mile = imk_unit_of("nmi");
-    char text[DRIFT_TEXT] = "";
+    char text[IMK_READABLE_SIZE] = "";
     if (value >= 0.01 * mile.scale)
-        drift_in_unit(value, &mile, text);
+        imk_readable_quantity(value, &mile, text);
     imk_table_add(table, "%s", text);
 }
 
-static void show_one(const drift_result *r, const drift_case *one, imk_result *result)
+static void show_one(const imk_drift_models *r, const imk_drift_case *one, imk_result *result)
 {
-    const bool is_free = r->scene->settings.vertical == IMK_VERTICAL_FREE;
+    const bool is_free = r->settings.drift.vertical == IMK_VERTICAL_FREE;
     imk_table *table = begin_table(result, is_free ? 0x3FEU : 0xFEU);
     if (is_free)
         imk_table_row(table, "time\tCEP\t\tR95\tDRMS\theight\tvelocity\tclimb\ttilt\theading");
     else
         imk_table_row(table, "time\tCEP\t\tR95\tDRMS\tvelocity\ttilt\theading");
-    for (size_t k = 0; k < r->scene->row_count; k++) {
-        const size_t t = r->scene->row[k];
+    for (size_t k = 0; k < r->times->row_count; k++) {
+        const size_t t = r->times->row[k];
         const imk_drift_figures *f = &one->figures[t];
-        const drift_validity validity = drift_validity_of(f);
-        char text[DRIFT_TEXT];
-        begin_row(table, r->scene->time[t], validity);
-        if (validity == DRIFT_LOST) {
+        const imk_drift_validity validity = imk_drift_validity_of(f);
+        char text[IMK_READABLE_SIZE];
+        begin_row(table, r->times->time[t], validity);
+        if (validity == IMK_DRIFT_LOST) {
             imk_table_add(table, "no position");
             continue;
         }
@@ -75,54 +76,56 @@ static void show_one(const drift_result *r, const drift_case *one, imk_result *r
             add_figure(table, f, IMK_WISH_HEIGHT);
         add_figure(table, f, IMK_WISH_VELOCITY);
         if (is_free)
-            imk_table_add(table, "%s", drift_speed(f->climb, text));
+            imk_table_add(table, "%s", imk_readable_figure(IMK_WISH_VELOCITY, f->climb, text));
         add_figure(table, f, IMK_WISH_TILT);
         add_figure(table, f, IMK_WISH_HEADING);
     }
 }
 
 /* Before and after calibration, side by side: the two cases of one model. */
-static void show_both(const drift_result *r, imk_result *result)
+static void show_both(const imk_drift_models *r, imk_result *result)
 {
     static const imk_drift_wish shown[] = {IMK_WISH_CEP, IMK_WISH_R95, IMK_WISH_VELOCITY,
                                            IMK_WISH_HEADING};
     imk_table *table = begin_table(result, 0x1FEU);
     imk_table_row(table, "time\tCEP before\tafter\tR95 before\tafter\tvelocity before\tafter\t"
                          "heading before\tafter");
-    for (size_t k = 0; k < r->scene->row_count; k++) {
-        const size_t t = r->scene->row[k];
+    for (size_t k = 0; k < r->times->row_count; k++) {
+        const size_t t = r->times->row[k];
         const imk_drift_figures *f[2] = {&r->cases[0].figures[t], &r->cases[1].figures[t]};
-        const drift_validity v[2] = {drift_validity_of(f[0]), drift_validity_of(f[1])};
-        begin_row(table, r->scene->time[t], v[0] > v[1] ? v[0] : v[1]);
+        const imk_drift_validity v[2] = {imk_drift_validity_of(f[0]), imk_drift_validity_of(f[1])};
+        begin_row(table, r->times->time[t], v[0] > v[1] ? v[0] : v[1]);
         for (size_t cell = 0; cell < 2 * sizeof shown / sizeof shown[0]; cell++)
-            if (v[cell % 2] != DRIFT_LOST)
+            if (v[cell % 2] != IMK_DRIFT_LOST)
                 add_figure(table, f[cell % 2], shown[cell / 2]);
             else
                 imk_table_add(table, "%s", cell < 2 ? "no position" : "-");
     }
 }
 
-static void show_several(const drift_result *r, imk_result *result)
+static void show_several(const imk_drift_models *r, imk_result *result)
 {
     imk_table *table = begin_table(result, (1U << (1 + r->case_count)) - 2);
     imk_table_row(table, "CEP after");
     for (size_t c = 0; c < r->case_count; c++)
         imk_table_add(table, "%.30s", r->cases[c].label);
-    for (size_t k = 0; k < r->scene->row_count; k++) {
-        const size_t t = r->scene->row[k];
-        begin_row(table, r->scene->time[t], DRIFT_LINEAR);
+    for (size_t k = 0; k < r->times->row_count; k++) {
+        const size_t t = r->times->row[k];
+        begin_row(table, r->times->time[t], IMK_DRIFT_LINEAR);
         for (size_t c = 0; c < r->case_count; c++) {
             const imk_drift_figures *f = &r->cases[c].figures[t];
-            const drift_validity validity = drift_validity_of(f);
-            char length[DRIFT_TEXT];
+            const imk_drift_validity validity = imk_drift_validity_of(f);
+            char length[IMK_READABLE_SIZE];
             imk_table_add(table, "%s%s",
-                          validity == DRIFT_LOST ? "no position" : drift_length(f->cep, length),
-                          validity == DRIFT_ROUGH ? " ~" : "");
+                          validity == IMK_DRIFT_LOST
+                              ? "no position"
+                              : imk_readable_figure(IMK_WISH_CEP, f->cep, length),
+                          validity == IMK_DRIFT_ROUGH ? " ~" : "");
         }
     }
 }
 
-void drift_show_growth(const drift_result *r, imk_result *result)
+void imki_drift_show_growth(const imk_drift_models *r, imk_result *result)
 {
     if (r->model_count > 1)
         show_several(r, result);
@@ -134,17 +137,17 @@ void drift_show_growth(const drift_result *r, imk_result *result)
 
 /* ---- budget ---- */
 
-static void show_shares(const drift_result *r, const drift_case *one, imk_result *result)
+static void show_shares(const imk_drift_models *r, const imk_drift_case *one, imk_result *result)
 {
-    const imk_drift_wish wish = drift_looked_at(r);
+    const imk_drift_wish wish = imki_drift_looked_at(r);
     const imk_drift_wish other = wish == IMK_WISH_HEADING ? IMK_WISH_CEP : IMK_WISH_HEADING;
     double rest = 0;
     size_t rest_count = 0;
     imk_table *table = begin_table(result, 0xEU);
-    imk_table_row(table, "term\tshare\t%s alone\t%s alone", drift_wish_name(wish),
-                  drift_wish_name(other));
+    imk_table_row(table, "term\tshare\t%s alone\t%s alone", imk_drift_wish_name(wish),
+                  imk_drift_wish_name(other));
     for (size_t i = 0; i < one->share_count; i++) {
-        const drift_share *s = &one->share[i];
+        const imk_drift_share *s = &one->share[i];
         if (s->share < least_share) {
             rest += s->share;
             rest_count += s->share > 0;
@@ -164,7 +167,7 @@ static void show_shares(const drift_result *r, const drift_case *one, imk_result
 
 /* The moments of a source, or of all together, behind the last, where a shift shows beside the
  * scatter: a thousandth of it. NULL: it does not. */
-static const imk_drift_moments *shift_of(const drift_case *one, size_t source)
+static const imk_drift_moments *shift_of(const imk_drift_case *one, size_t source)
 {
     const double least = 1e-3;
     const imk_drift_analysis *a = one->analysis;
@@ -178,7 +181,7 @@ static const imk_drift_moments *shift_of(const drift_case *one, size_t source)
                : NULL;
 }
 
-static void show_shifts(const drift_case *one, imk_result *result)
+static void show_shifts(const imk_drift_case *one, imk_result *result)
 {
     const imk_drift_analysis *a = one->analysis;
     imk_table *table = begin_table(result, 0xEU);
@@ -186,24 +189,26 @@ static void show_shifts(const drift_case *one, imk_result *result)
     for (size_t k = 0; k <= a->source_count; k++) {
         const imk_drift_moments *m = shift_of(one, k);
         const bool total = k == a->source_count;
-        char north[DRIFT_TEXT], east[DRIFT_TEXT], heading[DRIFT_TEXT];
+        char north[IMK_READABLE_SIZE], east[IMK_READABLE_SIZE], heading[IMK_READABLE_SIZE];
         if (!m || (total && imk_table_rows(table) < 3))
             continue;
         imk_table_row(table, "%s\t%s\t%s\t%s", total ? "together" : a->source[k].text,
-                      drift_length(m->mean[0], north), drift_length(m->mean[1], east),
-                      drift_angle(m->mean[8], heading));
+                      imk_readable_figure(IMK_WISH_CEP, m->mean[0], north),
+                      imk_readable_figure(IMK_WISH_CEP, m->mean[1], east),
+                      imk_readable_figure(IMK_WISH_HEADING, m->mean[8], heading));
     }
 }
 
-void drift_show_budget(const drift_result *r, const drift_case *one, imk_result *result)
+void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one,
+                            imk_result *result)
 {
     const bool shares = one->share_count > 0 && one->share[0].share >= least_share;
     bool shifts = false;
     for (size_t k = 0; k < one->analysis->source_count; k++)
         shifts = shifts || shift_of(one, k);
     const imk_audience audience = r->model_count > 1 ? IMK_FOR_PAGE : IMK_FOR_BOTH;
-    char title[240], time[DRIFT_TIME_TEXT];
-    drift_time(r->scene->time[one->time], DRIFT_LINEAR, time);
+    char title[240], time[IMKI_DRIFT_TIME];
+    imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, time);
     snprintf(title, sizeof title, "What makes it after %s: %s", time, one->label);
     imk_result_for(result, IMK_FOR_PAGE);
     if (shares)
@@ -229,21 +234,21 @@ void drift_show_budget(const drift_result *r, const drift_case *one, imk_result 
 static void add_interval(imk_table *table, imk_drift_wish wish, double value, double low,
                          double high)
 {
-    char a[DRIFT_TEXT], b[DRIFT_TEXT], c[DRIFT_TEXT];
-    const imk_unit unit = drift_unit_of(wish, value);
-    imk_table_add(table, "%s (%s to %s)", drift_in_unit(value, &unit, a),
-                  drift_number(low / unit.scale, b),
-                  isinf(high) ? "?" : drift_number(high / unit.scale, c));
+    char a[IMK_READABLE_SIZE], b[IMK_READABLE_SIZE], c[IMK_READABLE_SIZE];
+    const imk_unit unit = imk_readable_figure_unit(wish, value);
+    imk_table_add(table, "%s (%s to %s)", imk_readable_quantity(value, &unit, a),
+                  imk_readable_number(low / unit.scale, b),
+                  isinf(high) ? "?" : imk_readable_number(high / unit.scale, c));
 }
 
-void drift_show_runs(const drift_result *r, imk_result *result)
+void imki_drift_show_runs(const imk_drift_models *r, imk_result *result)
 {
     static const imk_drift_wish shown[] = {IMK_WISH_CEP, IMK_WISH_R95, IMK_WISH_VELOCITY,
                                            IMK_WISH_HEADING};
     imk_table *table = begin_table(result, 0);
     imk_table_row(table, "time\truns\tCEP\tR95\tvelocity\theading");
-    for (size_t k = 0; k < r->scene->row_count; k++) {
-        begin_row(table, r->scene->time[r->scene->row[k]], DRIFT_LINEAR);
+    for (size_t k = 0; k < r->times->row_count; k++) {
+        begin_row(table, imki_drift_row_time(r, k), IMK_DRIFT_LINEAR);
         imk_table_add(table, "%zu", r->used[k]);
         for (size_t c = 0; c < sizeof shown / sizeof shown[0]; c++)
             add_interval(table, shown[c], imk_drift_wished(&r->found[k], shown[c]),
@@ -252,15 +257,15 @@ void drift_show_runs(const drift_result *r, imk_result *result)
     }
 }
 
-void drift_show_ratios(const drift_result *r, imk_result *result)
+void imki_drift_show_ratios(const imk_drift_models *r, imk_result *result)
 {
     static const imk_drift_wish shown[] = {IMK_WISH_CEP, IMK_WISH_VELOCITY, IMK_WISH_HEADING};
     imk_table *table = begin_table(result, 0xEU);
     imk_table_row(table, "runs / covariance\tCEP\tvelocity\theading");
-    for (size_t k = 0; k < r->scene->row_count; k++) {
-        const size_t t = r->scene->row[k];
-        const imk_drift_figures *f = &drift_last_case(r)->figures[t];
-        begin_row(table, r->scene->time[t], drift_validity_of(f));
+    for (size_t k = 0; k < r->times->row_count; k++) {
+        const size_t t = r->times->row[k];
+        const imk_drift_figures *f = &imki_drift_last_case(r)->figures[t];
+        begin_row(table, r->times->time[t], imk_drift_validity_of(f));
         for (size_t c = 0; c < 3; c++) {
             const double linear = imk_drift_wished(f, shown[c]),
                          ratio = imk_drift_wished(&r->found[k], shown[c]) / linear;

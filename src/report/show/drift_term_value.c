@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The value of a term as the model file says it, made so many times larger or smaller: names of
  * sources are paths in the file ("gyro.noise.gauss_markov[0]"). */
-#include "drift_parts.h"
+#include "drift_show_internal.h"
+
+#include "imukit/decimal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { NUMBERS = 8 };
@@ -49,14 +52,14 @@ static bool is_known(const char *source)
            !strstr(source, "jitter");
 }
 
-static void put(const numbers *n, bool sigma, double factor, growing_list *text)
+static void put(const numbers *n, bool sigma, double factor, imki_text *text)
 {
     const size_t count = sigma ? n->sigma_count : n->count;
     const double *value = sigma ? n->sigma : n->value;
     bool equal = true;
     for (size_t i = 1; i < count; i++)
         equal = equal && value[i] == value[0];
-    list_add(text, "%s", sigma ? "±" : "");
+    imki_text_add(text, "%s", sigma ? "±" : "");
     for (size_t i = 0; i < (equal ? 1 : count); i++) {
         const double scaled = value[i] * factor;
         char number[40];
@@ -66,9 +69,9 @@ static void put(const numbers *n, bool sigma, double factor, growing_list *text)
             snprintf(number, sizeof number, "%.3g", scaled);
         else
             imk_readable_value(scaled, 0, 3, number, sizeof number);
-        list_add(text, "%s%s", i ? " " : "", number);
+        imki_text_add(text, "%s%s", i ? " " : "", number);
     }
-    list_add(text, " %s", n->unit);
+    imki_text_add(text, " %s", n->unit);
 }
 
 static const char *text_at(const imk_result *model, const char *source, const char *member)
@@ -101,8 +104,8 @@ static bool largest_of_rows(const imk_result *model, const char *source, bool si
     }
 }
 
-void drift_term_value(const imk_result *model, const char *source, bool compensated, double factor,
-                      growing_list *text)
+void imki_drift_term_value(const imk_result *model, const char *source, bool compensated,
+                           double factor, imki_text *text)
 {
     static const char *const members[] = {"", ".sigma", ".amplitude"}; /* what sizes a process */
     const bool sigma = compensated && is_known(source);
@@ -116,7 +119,7 @@ void drift_term_value(const imk_result *model, const char *source, bool compensa
     if (found && read_numbers(found, &n) && (!sigma || n.sigma_count > 0)) {
         put(&n, sigma, factor, text);
     } else if (!found && largest_of_rows(model, source, sigma, &n)) {
-        list_add(text, "<= ");
+        imki_text_add(text, "<= ");
         put(&n, sigma, factor, text);
     }
 }

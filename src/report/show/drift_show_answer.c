@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The answer to --want as a result. */
-#include "drift_parts.h"
-
-#include "imukit/model_file.h"
+#include "drift_show_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-void drift_show_answer_data(const drift_result *r, const drift_answer *answer, imk_result *result)
+void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
 {
-    const drift_wished *want = &r->scene->want;
-    const imk_drift_analysis *a = drift_last_case(r)->analysis;
+    const imk_drift_answer *answer = r->answer;
+    const imk_drift_wanted *want = &r->settings.want;
+    const imk_drift_analysis *a = imki_drift_last_case(r)->analysis;
     const imk_drift_requirement *need = &answer->requirement;
-    const char *unit = drift_wish_unit(want->figure);
+    const char *unit = imk_drift_wish_unit(want->figure);
     imk_result_object(result, "want");
-    imk_result_text(result, "figure", drift_wish_name(want->figure));
+    imk_result_text(result, "figure", imk_drift_wish_name(want->figure));
     imk_result_quantity(result, "goal", want->goal, unit);
     imk_result_quantity(result, "time", want->time, "s");
     imk_result_quantity(result, "present", need->present, unit);
@@ -31,14 +31,14 @@ void drift_show_answer_data(const drift_result *r, const drift_answer *answer, i
     imk_result_end(result);
     imk_result_array(result, "devices");
     for (size_t i = 0; i < answer->candidate_count; i++) {
-        const drift_candidate *c = &answer->candidate[i];
+        const imk_drift_candidate *c = &answer->candidate[i];
         if (!c->usable)
             continue;
         imk_result_object(result, NULL);
         imk_result_text(result, "name", c->device->name);
         imk_result_flag(result, "preset", c->device->is_preset);
         imk_result_quantity(result, "figure", imk_drift_wished(&c->figures, want->figure), unit);
-        imk_result_flag(result, "meets", drift_would_do(r, c, c->device->is_preset));
+        imk_result_flag(result, "meets", imki_drift_would_do(r, c, c->device->is_preset));
         imk_result_flag(result, "bias_stated", !c->no_bias);
         imk_result_end(result);
     }
@@ -50,31 +50,31 @@ void drift_show_answer_data(const drift_result *r, const drift_answer *answer, i
 
 /* What stands at the start: of the settings, not of the model. */
 static void add_initial(const imk_drift_settings *s, const char *source, double factor,
-                        growing_list *text)
+                        imki_text *text)
 {
     const int group = strstr(source, "position") ? 0 : strstr(source, "velocity") ? 3 : 6;
     const imk_drift_wish kind = group == 0   ? IMK_WISH_CEP
                                 : group == 3 ? IMK_WISH_VELOCITY
                                              : IMK_WISH_HEADING;
     double largest = 0;
-    char number[DRIFT_TEXT];
+    char number[IMK_READABLE_SIZE];
     for (int i = group; i < group + 3; i++)
         largest = s->initial_sigma[i] > largest ? s->initial_sigma[i] : largest;
-    list_add(text, "%s", drift_figure_text(kind, largest * factor, number));
+    imki_text_add(text, "%s", imk_readable_figure(kind, largest * factor, number));
 }
 
 /* A source made so many times as large. */
-static void add_value(const drift_case *one, const imk_result *model, size_t source, double factor,
-                      imk_table *table)
+static void add_value(const imk_drift_case *one, const imk_result *model, size_t source,
+                      double factor, imk_table *table)
 {
     const char *name = one->analysis->source[source].name;
-    growing_list text = {0};
+    imki_text text = {.bytes = NULL};
     if (strncmp(name, "initial.", 8) == 0)
         add_initial(&one->settings, name, factor, &text);
     else
-        drift_term_value(model, name, one->settings.compensated, factor, &text);
-    imk_table_add(table, "%s", text.size > 0 ? text.text : "");
-    list_free(&text);
+        imki_drift_term_value(model, name, one->settings.compensated, factor, &text);
+    imk_table_add(table, "%s", text.size > 0 ? text.bytes : "");
+    free(text.bytes);
 }
 
 /* 0 is below what the search for a factor can tell. */
@@ -82,26 +82,21 @@ static void add_factor(double factor, const char *none, imk_table *table)
 {
     if (factor == 0)
         imk_table_add(table, "%s", none);
-    else if (factor < DRIFT_SAME)
+    else if (factor < IMK_DRIFT_SAME)
         imk_table_add(table, "%.3g times smaller", 1 / factor);
     else
         imk_table_add(table, "-");
 }
 
-static void show_terms(const drift_result *r, const drift_answer *answer, imk_result *result)
+static void show_terms(const imk_drift_models *r, const imk_result *model, imk_result *result)
 {
-    const drift_case *one = drift_last_case(r);
+    const imk_drift_case *one = imki_drift_last_case(r);
+    const imk_drift_answer *answer = r->answer;
     const imk_drift_requirement *need = &answer->requirement;
-    char *text = NULL;
-    size_t size;
     if (answer->order_count == 0)
         return;
     imk_result_gap(result);
     imk_table *table = imk_result_table(result, 0x18U);
-    imk_result *model = imk_result_create(NULL);
-    if (command_unless_memory(imk_model_print_json(one->model, NULL, &text, &size, NULL)) == IMK_OK)
-        (void)imk_result_json(model, "model", text);
-    free(text);
     imk_table_row(table, "term\tis\tmust become\tfactor");
     if (answer->alone)
         imk_table_add(table, "this one alone");
@@ -117,7 +112,6 @@ static void show_terms(const drift_result *r, const drift_answer *answer, imk_re
         if (answer->alone)
             add_factor(need->alone[k], "not enough", table);
     }
-    imk_result_free(model);
     imk_result_for(result, IMK_FOR_TERMINAL);
     imk_result_line(result, "%s",
                     answer->alone
@@ -128,14 +122,14 @@ static void show_terms(const drift_result *r, const drift_answer *answer, imk_re
 /* ---- devices ---- */
 
 /* The least that does comes first. */
-static void show_devices(const drift_result *r, const drift_answer *answer, bool presets,
+static void show_devices(const imk_drift_models *r, const imk_drift_answer *answer, bool presets,
                          imk_result *result)
 {
     imk_table *table = NULL;
     for (size_t i = answer->candidate_count; i-- > 0;) {
-        const drift_candidate *c = &answer->candidate[i];
-        char text[DRIFT_TEXT];
-        if (!drift_would_do(r, c, presets))
+        const imk_drift_candidate *c = &answer->candidate[i];
+        char text[IMK_READABLE_SIZE];
+        if (!imki_drift_would_do(r, c, presets))
             continue;
         if (!table) {
             const char *what = presets ? "Grade presets" : "Devices of the catalogue";
@@ -147,9 +141,9 @@ static void show_devices(const drift_result *r, const drift_answer *answer, bool
             imk_result_for(result, IMK_FOR_BOTH);
             table = imk_result_table(result, 2);
         }
-        const double figure = imk_drift_wished(&c->figures, r->scene->want.figure);
+        const double figure = imk_drift_wished(&c->figures, r->settings.want.figure);
         imk_table_row(table, "%s%s\t%s\t%s", c->device->name, c->no_bias ? " *" : "",
-                      drift_in_unit(figure, &r->scene->want.unit, text),
+                      imk_readable_quantity(figure, &r->settings.want.unit, text),
                       presets ? "grade preset" : c->device->grade);
     }
     imk_result_for(result, IMK_FOR_TERMINAL);
@@ -157,14 +151,15 @@ static void show_devices(const drift_result *r, const drift_answer *answer, bool
         imk_result_line(result, "\nNo device of the catalogue would do.");
 }
 
-static void show_remarks(const drift_result *r, const drift_answer *answer, imk_result *result)
+static void show_remarks(const imk_drift_models *r, const imk_drift_answer *answer,
+                         imk_result *result)
 {
     bool starred = false;
     size_t left_out = 0;
     for (size_t i = 0; i < answer->candidate_count; i++) {
-        const drift_candidate *c = &answer->candidate[i];
+        const imk_drift_candidate *c = &answer->candidate[i];
         left_out += !c->usable;
-        starred = starred || (c->no_bias && drift_would_do(r, c, c->device->is_preset));
+        starred = starred || (c->no_bias && imki_drift_would_do(r, c, c->device->is_preset));
     }
     if (starred)
         imk_result_line(result, "* Its source states no run-to-run bias of gyros or "
@@ -177,16 +172,17 @@ static void show_remarks(const drift_result *r, const drift_answer *answer, imk_
 
 /* ---- all ---- */
 
-void drift_show_answer(const drift_result *r, const drift_answer *answer, imk_result *result)
+void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, imk_result *result)
 {
-    const drift_wished *want = &r->scene->want;
+    const imk_drift_answer *answer = r->answer;
+    const imk_drift_wanted *want = &r->settings.want;
     const imk_drift_requirement *need = &answer->requirement;
     const bool met = need->present <= want->goal;
     char title[160], factor[80] = "nothing makes it.";
-    char now[DRIFT_TEXT], goal[DRIFT_TEXT], time[DRIFT_TIME_TEXT];
-    snprintf(title, sizeof title, "Wanted: %s %s after %s", drift_wish_name(want->figure),
-             drift_in_unit(want->goal, &want->unit, goal),
-             drift_time(want->time, DRIFT_LINEAR, time));
+    char now[IMK_READABLE_SIZE], goal[IMK_READABLE_SIZE], time[IMKI_DRIFT_TIME];
+    snprintf(title, sizeof title, "Wanted: %s %s after %s", imk_drift_wish_name(want->figure),
+             imk_readable_quantity(want->goal, &want->unit, goal),
+             imki_drift_time(want->time, IMK_DRIFT_LINEAR, time));
     if (!met)
         snprintf(factor, sizeof factor,
                  "all terms would have to be %.3g times smaller. The least work:", 1 / need->all);
@@ -194,14 +190,14 @@ void drift_show_answer(const drift_result *r, const drift_answer *answer, imk_re
         snprintf(factor, sizeof factor, "all terms may be %.3g times larger.", need->all);
     imk_result_for(result, IMK_FOR_TERMINAL);
     imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: it is %s, %s", title,
-                    met ? "Met" : "Not met", drift_in_unit(need->present, &want->unit, now),
+                    met ? "Met" : "Not met", imk_readable_quantity(need->present, &want->unit, now),
                     factor);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, title);
     imk_result_finding(result, met ? 0 : 1,
                        met ? "Met." : "Not met. The least work that would do, counted in factors:");
     imk_result_for(result, IMK_FOR_BOTH);
-    show_terms(r, answer, result);
+    show_terms(r, model, result);
     show_devices(r, answer, false, result);
     show_devices(r, answer, true, result);
     show_remarks(r, answer, result);

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The answer to --want: what each term must become, and which devices of the catalogue would do. */
-#include "drift_parts.h"
+/* The answer to what is wanted: what each term must become, and which devices of the catalogue
+ * would do. */
+#include "drift_models_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct search {
-    const drift_result *result;
+    imk_drift_wish figure;
+    const imk_allocator *allocator;
     imk_drift_settings settings; /* of the one time */
-    drift_candidate *candidate;
+    imk_drift_candidate *candidate;
 } search;
 
 static bool states_bias(const imk_triad *triad)
@@ -24,9 +26,9 @@ static bool states_bias(const imk_triad *triad)
 static void try_device(void *context, size_t item)
 {
     const search *s = context;
-    drift_candidate *c = &s->candidate[item];
-    imk_model *model = malloc(sizeof *model);
-    void *memory = NULL;
+    imk_drift_candidate *c = &s->candidate[item];
+    imki_arena scratch = {.allocator = *s->allocator};
+    imk_model *model = imki_arena_take(&scratch, sizeof *model);
     imk_drift_analysis *analysis;
     c->no_memory = !model;
     if (!model)
@@ -35,21 +37,20 @@ static void try_device(void *context, size_t item)
     c->no_bias = !states_bias(&model->gyro) || !states_bias(&model->accel);
     if (imk_drift_validate(model, &s->settings, NULL) == IMK_OK) {
         const size_t size = imk_drift_covariance_size(model, &s->settings);
-        memory = drift_memory(size);
+        void *memory = imki_arena_take(&scratch, size);
         c->no_memory = !memory;
         if (memory && imk_drift_covariance(model, &s->settings, memory, size, NULL, &analysis,
                                            NULL) == IMK_OK) {
             c->figures = imk_drift_figures_of(&analysis->total[0]);
-            c->usable = isfinite(imk_drift_wished(&c->figures, s->result->scene->want.figure));
+            c->usable = isfinite(imk_drift_wished(&c->figures, s->figure));
         }
     }
-    free(memory);
-    free(model);
+    imki_arena_free(&scratch);
 }
 
 typedef struct ranked {
     double figure;
-    drift_candidate candidate;
+    imk_drift_candidate candidate;
 } ranked;
 
 static int by_figure(const void *a, const void *b)
@@ -60,26 +61,28 @@ static int by_figure(const void *a, const void *b)
     return strcmp(x->candidate.device->name, y->candidate.device->name);
 }
 
-static void sort_candidates(drift_answer *answer, imk_drift_wish wish)
+static bool sort_candidates(imk_drift_answer *answer, imk_drift_wish wish, imki_arena *arena)
 {
-    ranked *list = command_memory(NULL, (answer->candidate_count + 1) * sizeof *list);
+    ranked *list = imki_arena_take(arena, (answer->candidate_count + 1) * sizeof *list);
+    if (!list)
+        return false;
     for (size_t i = 0; i < answer->candidate_count; i++) {
-        const drift_candidate *c = &answer->candidate[i];
+        const imk_drift_candidate *c = &answer->candidate[i];
         list[i] = (ranked){c->usable ? imk_drift_wished(&c->figures, wish) : (double)INFINITY, *c};
     }
     qsort(list, answer->candidate_count, sizeof *list, by_figure);
     for (size_t i = 0; i < answer->candidate_count; i++)
         answer->candidate[i] = list[i].candidate;
-    free(list);
+    return true;
 }
 
 /* Terms that must become better, the one that needs most first. */
-static void order_terms(const imk_drift_analysis *a, drift_answer *answer)
+static void order_terms(const imk_drift_analysis *a, imk_drift_answer *answer)
 {
     const imk_drift_requirement *need = &answer->requirement;
     size_t *order = answer->order;
     for (size_t k = 0; k < a->source_count; k++) {
-        if (!(need->source[k] < DRIFT_SAME))
+        if (!(need->source[k] < IMK_DRIFT_SAME))
             continue;
         size_t i = answer->order_count++;
         for (; i > 0 && need->source[order[i - 1]] > need->source[k]; i--)
@@ -89,37 +92,37 @@ static void order_terms(const imk_drift_analysis *a, drift_answer *answer)
     }
 }
 
-int drift_answer_find(const drift_result *r, const imk_executor *executor, drift_answer *answer)
+imk_status imki_drift_answer(imk_drift_models *r, imki_arena *arena, const imk_executor *executor,
+                             imk_error *error)
 {
-    const drift_case *one = drift_last_case(r);
-    const drift_wished *want = &r->scene->want;
-    imk_error error;
-    *answer = (drift_answer){.candidate_count = imk_device_count()};
-    if (imk_drift_require(one->analysis, one->time, want->figure, want->goal, &answer->requirement,
-                          &error) != IMK_OK)
-        return command_error(&error, one->name);
+    const imk_drift_case *one = imki_drift_last_case(r);
+    const imk_drift_wanted *want = &r->settings.want;
+    imk_drift_answer *answer = r->answer = imki_arena_take(arena, sizeof *answer);
+    const size_t count = imk_device_count();
+    if (!answer)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    const imk_status status = imk_drift_require(one->analysis, one->time, want->figure, want->goal,
+                                                &answer->requirement, error);
+    if (status != IMK_OK)
+        return status;
     order_terms(one->analysis, answer);
-    answer->candidate = command_zeroed(answer->candidate_count * sizeof *answer->candidate);
+    answer->candidate = imki_arena_take(arena, count * sizeof *answer->candidate);
+    answer->candidate_count = answer->candidate ? count : 0;
     for (size_t i = 0; i < answer->candidate_count; i++)
         answer->candidate[i].device = imk_device_get(i);
-    search s = {r, one->settings, answer->candidate};
-    s.settings.time = &r->scene->time[one->time];
+    search s = {want->figure, &arena->allocator, one->settings, answer->candidate};
+    s.settings.time = &r->times->time[one->time];
     s.settings.time_count = 1;
     imk_execute(executor, answer->candidate_count, try_device, &s);
+    bool there = answer->candidate && sort_candidates(answer, want->figure, arena);
     for (size_t i = 0; i < answer->candidate_count; i++)
-        (void)command_unless_memory(answer->candidate[i].no_memory ? IMK_ERROR_MEMORY : IMK_OK);
-    sort_candidates(answer, want->figure);
-    return -1;
+        there = there && !answer->candidate[i].no_memory;
+    return there ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
 }
 
-void drift_answer_free(drift_answer *answer)
+bool imki_drift_would_do(const imk_drift_models *r, const imk_drift_candidate *c, bool preset)
 {
-    free(answer->candidate);
-}
-
-bool drift_would_do(const drift_result *r, const drift_candidate *c, bool preset)
-{
-    const drift_wished *want = &r->scene->want;
+    const imk_drift_wanted *want = &r->settings.want;
     return c->device->is_preset == preset && c->usable &&
            imk_drift_wished(&c->figures, want->figure) <= want->goal;
 }

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Covariance of each model, its figures, and the budget of its terms. */
+#include "drift_models_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const uint32_t settings_cookie = 0x44524d31; /* "DRM1" */
+
+/* The result and its memory. */
+typedef struct holder {
+    imk_drift_models models;
+    imki_arena arena;
+} holder;
+
+imk_drift_models_settings imk_drift_models_default(void)
+{
+    return (imk_drift_models_settings){.cookie = settings_cookie, .drift = imk_drift_default()};
+}
+
+/* ---- the budget ---- */
+
+static size_t budget_time(const imk_drift_models *r, const imk_drift_case *one)
+{
+    const imk_drift_times *times = r->times;
+    size_t chosen = times->row[0];
+    for (size_t k = 0; k < times->row_count; k++) {
+        const size_t t = times->row[k];
+        if (r->settings.want.asked ? fabs(times->time[t] - r->settings.want.time) <
+                                         fabs(times->time[chosen] - r->settings.want.time)
+                                   : imk_drift_validity_of(&one->figures[t]) != IMK_DRIFT_LOST)
+            chosen = t;
+    }
+    return chosen;
+}
+
+/* States whose squares make a figure. */
+static void states_of(imk_drift_wish wish, int *first, int *last)
+{
+    static const int of[][2] = {{0, 1}, {0, 1}, {0, 1}, {2, 2}, {3, 4}, {6, 7}, {8, 8}};
+    *first = of[wish][0];
+    *last = of[wish][1];
+}
+
+static double variance_of(const imk_drift_moments *m, imk_drift_wish wish)
+{
+    int first, last;
+    double sum = 0;
+    states_of(wish, &first, &last);
+    for (int i = first; i <= last; i++)
+        sum += m->covariance[i][i];
+    return sum;
+}
+
+static double shift_of(const imk_drift_moments *m, imk_drift_wish wish)
+{
+    int first, last;
+    double sum = 0;
+    states_of(wish, &first, &last);
+    for (int i = first; i <= last; i++)
+        sum += m->mean[i] * m->mean[i];
+    return sqrt(sum);
+}
+
+static int by_share(const void *a, const void *b)
+{
+    const imk_drift_share *x = a, *y = b;
+    if (x->share != y->share)
+        return x->share < y->share ? 1 : -1;
+    if (x->shift != y->shift)
+        return x->shift < y->shift ? 1 : -1;
+    return (x->source > y->source) - (x->source < y->source);
+}
+
+static bool find_budget(const imk_drift_models *r, imk_drift_case *one, imki_arena *arena)
+{
+    const imk_drift_wish wish = imki_drift_looked_at(r);
+    const imk_drift_analysis *a = one->analysis;
+    one->time = budget_time(r, one);
+    one->share = imki_arena_take(arena, (a->source_count + 1) * sizeof *one->share);
+    if (!one->share)
+        return false;
+    const double total = variance_of(&a->total[one->time], wish);
+    for (size_t k = 0; k < a->source_count; k++) {
+        imk_drift_moments m = a->contribution[k * a->time_count + one->time];
+        imk_drift_share s = {.source = k, .shift = shift_of(&m, wish)};
+        s.share = total > 0 ? variance_of(&m, wish) / total : 0;
+        if (!(s.share > 0) && !(s.shift > 0))
+            continue;
+        s.whole = imk_drift_figures_of(&m);
+        for (int i = 0; i < IMK_DRIFT_STATES; i++)
+            m.mean[i] = 0;
+        s.random = imk_drift_figures_of(&m);
+        one->share[one->share_count++] = s;
+    }
+    qsort(one->share, one->share_count, sizeof *one->share, by_share);
+    return true;
+}
+
+/* ---- all ---- */
+
+static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_arena *arena,
+                          const imk_executor *executor, imk_error *error)
+{
+    imk_status status = imk_drift_validate(one->model, &one->settings, error);
+    if (status != IMK_OK)
+        return status;
+    const size_t size = imk_drift_covariance_size(one->model, &one->settings);
+    void *memory = imki_arena_take(arena, size);
+    one->figures = imki_arena_take(arena, one->settings.time_count * sizeof *one->figures);
+    if (!memory || !one->figures)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    status = imk_drift_covariance(one->model, &one->settings, memory, size, executor,
+                                  &one->analysis, error);
+    if (status != IMK_OK)
+        return status;
+    for (size_t t = 0; t < one->analysis->time_count; t++)
+        one->figures[t] = imk_drift_figures_of(&one->analysis->total[t]);
+    return find_budget(r, one, arena) ? IMK_OK
+                                      : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+}
+
+static imk_status add_case(holder *h, size_t model, bool compensated, const char *label,
+                           const imk_executor *executor, imk_error *error)
+{
+    imk_drift_models *r = &h->models;
+    imk_drift_case *one = &r->cases[r->case_count++];
+    one->name = r->name[model];
+    one->model = r->model[model];
+    one->settings = r->settings.drift;
+    one->settings.compensated = compensated;
+    snprintf(one->label, sizeof one->label, "%.90s%s", r->name[model], label);
+    return analyse(r, one, &h->arena, executor, error);
+}
+
+imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
+                                const char *const *names, const imk_drift_times *times,
+                                const imk_drift_models_settings *settings, const imk_job *job,
+                                imk_drift_models **result, imk_error *error)
+{
+    const imk_job alone = {.memory = 0};
+    job = job ? job : &alone;
+    *result = NULL;
+    if (settings->cookie != settings_cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
+                             "imk_drift_models_default()");
+    holder *h = imki_resize(&job->allocator, NULL, sizeof *h);
+    if (!h)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    memset(h, 0, sizeof *h);
+    h->arena.allocator = job->allocator;
+    imk_drift_models *r = &h->models;
+    *result = r;
+    r->settings = *settings;
+    r->settings.drift.time = times->time;
+    r->settings.drift.time_count = times->count;
+    r->times = times;
+    r->model_count = count;
+    for (size_t m = 0; m < count; m++) {
+        r->model[m] = models[m];
+        r->name[m] = names[m];
+    }
+    const bool after = settings->calibrated;
+    imk_status status = IMK_OK;
+    if (after && count == 1)
+        status = add_case(h, 0, false, "", job->executor, error);
+    for (size_t m = 0; m < count && status == IMK_OK; m++)
+        status = add_case(h, m, after, after ? ", compensated" : "", job->executor, error);
+    if (status == IMK_OK && count > 0 && settings->want.asked)
+        status = imki_drift_answer(r, &h->arena, job->executor, error);
+    return status;
+}
+
+imk_status imk_drift_models_take_runs(imk_drift_models *r, uint64_t runs, const double *errors,
+                                      imk_error *error)
+{
+    imki_arena *arena = &((holder *)r)->arena;
+    const size_t rows = r->times->row_count;
+    double *workspace = imki_resize(&arena->allocator, NULL, (runs + 1) * sizeof *workspace);
+    r->run_count = runs;
+    r->low = imki_arena_take(arena, rows * sizeof *r->low);
+    r->high = imki_arena_take(arena, rows * sizeof *r->high);
+    r->used = imki_arena_take(arena, rows * sizeof *r->used);
+    r->found = imki_arena_take(arena, rows * sizeof *r->found);
+    const bool there = workspace && r->low && r->high && r->used && r->found;
+    for (size_t k = 0; k < rows && there; k++)
+        r->found[k] =
+            imk_drift_figures_of_runs(runs, rows * IMK_DRIFT_STATES, errors + k * IMK_DRIFT_STATES,
+                                      workspace, &r->low[k], &r->high[k], &r->used[k]);
+    imki_resize(&arena->allocator, workspace, 0);
+    return there ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+}
+
+void imk_drift_models_free(imk_drift_models *result)
+{
+    if (!result)
+        return;
+    imki_arena arena = ((holder *)result)->arena;
+    imki_arena_free(&arena);
+    imki_resize(&arena.allocator, result, 0);
+}

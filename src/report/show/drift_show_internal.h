@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The parts of a drift that is shown: tables, figure, and the answer to what is wanted. */
+#ifndef IMUKI_DRIFT_SHOW_INTERNAL_H
+#define IMUKI_DRIFT_SHOW_INTERNAL_H
+
+#include "jobs/drift/drift_models_internal.h"
+#include "show_internal.h"
+
+enum { IMKI_DRIFT_TIME = 80 };
+/* "10 min ~", where figures are rough. @return text */
+const char *imki_drift_time(double time, imk_drift_validity validity, char text[IMKI_DRIFT_TIME]);
+
+/* Each table behind an empty line. Growth of one case, two of one model, or several models. */
+void imki_drift_show_growth(const imk_drift_models *r, imk_result *result);
+void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one,
+                            imk_result *result);
+void imki_drift_show_runs(const imk_drift_models *r, imk_result *result);
+/* How the runs compare with the covariance. */
+void imki_drift_show_ratios(const imk_drift_models *r, imk_result *result);
+
+/* @param shares  with the shares of the terms beside it */
+void imki_drift_show_figure(const imk_drift_models *r, bool shares, imk_result *result);
+/* @param model  of the last case, its JSON as data called "model"; NULL: no values are told */
+void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, imk_result *result);
+void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result);
+
+/* "gyro.bias.repeatability" -> "1 deg/h" as the model says it, times a factor; nothing when it
+ * cannot be told in one quantity. */
+void imki_drift_term_value(const imk_result *model, const char *source, bool compensated,
+                           double factor, imki_text *text);
+
+#endif

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What makes figures of drift doubtful. */
+#include "drift_show_internal.h"
+
+#include "report/result_internal.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+/* A linear figure and one of runs differ when the interval of the runs leaves out this much on
+ * either side of the linear figure: what fourth-order terms explain is left aside. Of a table of
+ * 95 % intervals some leave out the truth: they are widened by 2.5, to 1e-6 each for a figure that
+ * is near normal. */
+static const double tolerance = 0.05, widening = 2.5;
+
+static void warn(imk_verdict *v, const char *code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void warn(imk_verdict *v, const char *code, const char *format, ...)
+{
+    imki_arena *arena = &v->result->arena;
+    va_list arguments;
+    va_start(arguments, format);
+    const char *words = imki_arena_format(arena, format, arguments);
+    va_end(arguments);
+    v->message = imki_arena_extend(arena, v->message, v->count, sizeof *v->message);
+    if (v->message)
+        v->message[v->count++] = (imk_message){IMK_FINDING_WARNING, code, words};
+    else
+        v->count = 0;
+}
+
+/* Omitted terms of one case in a list. */
+static void warn_of_omitted(const imk_drift_case *one, imk_verdict *v)
+{
+    imki_text list = {.bytes = NULL};
+    for (size_t i = 0; i < one->analysis->omitted_count; i++)
+        imki_text_add(&list, "%s%s", i > 0 ? ", " : "", one->analysis->omitted[i]);
+    if (list.size > 0)
+        warn(v, "omitted",
+             "%s: left out by the linear theory: %.239s; --monte-carlo has all that needs "
+             "no temperature",
+             one->label, list.bytes);
+    free(list.bytes);
+}
+
+/* The first row of the table that is worth no more than this. */
+static const char *first_time(const imk_drift_models *r, const imk_drift_case *one,
+                              imk_drift_validity validity, char text[IMKI_DRIFT_TIME])
+{
+    const imk_drift_times *times = r->times;
+    for (size_t k = 0; k < times->row_count; k++)
+        if (imk_drift_validity_of(&one->figures[times->row[k]]) == validity)
+            return imki_drift_time(times->time[times->row[k]], IMK_DRIFT_LINEAR, text);
+    return NULL;
+}
+
+static void warn_of_range(const imk_drift_models *r, const imk_drift_case *one, imk_verdict *v)
+{
+    char text[IMKI_DRIFT_TIME];
+    if (first_time(r, one, IMK_DRIFT_LOST, text))
+        warn(v, "no_position",
+             "%s: at %s the error is beyond a tenth of the Earth's radius: no longer a "
+             "position",
+             one->label, text);
+    else if (first_time(r, one, IMK_DRIFT_ROUGH, text))
+        warn(v, "nonlinear",
+             "%s: at %s attitude errors exceed 0.1 rad: linear figures are rough from "
+             "there (~)%s",
+             one->label, text, r->found ? "" : "; --monte-carlo 1000 shows the whole");
+}
+
+/* First row where an interval of the runs leaves the linear figure out; -1: none. */
+static int disagreement(const imk_drift_models *r, imk_drift_wish *wish)
+{
+    static const imk_drift_wish looked_at[] = {IMK_WISH_CEP, IMK_WISH_DRMS, IMK_WISH_VELOCITY,
+                                               IMK_WISH_TILT, IMK_WISH_HEADING};
+    for (size_t k = 0; k < r->times->row_count; k++) {
+        const imk_drift_figures *f = &imki_drift_last_case(r)->figures[r->times->row[k]];
+        for (size_t c = 0; c < sizeof looked_at / sizeof looked_at[0]; c++) {
+            *wish = looked_at[c];
+            const double linear = imk_drift_wished(f, *wish),
+                         found = imk_drift_wished(&r->found[k], *wish);
+            const double low = imk_drift_wished(&r->low[k], *wish),
+                         high = imk_drift_wished(&r->high[k], *wish);
+            if (found * pow(low / found, widening) > (1 + tolerance) * linear ||
+                found * pow(high / found, widening) < (1 - tolerance) * linear)
+                return (int)k;
+        }
+    }
+    return -1;
+}
+
+static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
+{
+    imk_drift_wish wish;
+    char text[IMKI_DRIFT_TIME];
+    const size_t last = r->times->row_count - 1;
+    if (r->used[last] < r->run_count)
+        warn(v, "lost_runs",
+             "%llu of %llu runs left the Earth or found no attitude; the figures are of "
+             "the others",
+             (unsigned long long)(r->run_count - r->used[last]), (unsigned long long)r->run_count);
+    const int row = disagreement(r, &wish);
+    if (row < 0)
+        return;
+    warn(v, "disagreement",
+         "from %s on the runs differ from the covariance by more than %g %% (%s): the "
+         "runs are right, the linear theory leaves something out",
+         imki_drift_time(imki_drift_row_time(r, row), IMK_DRIFT_LINEAR, text), 100 * tolerance,
+         imk_drift_wish_name(wish));
+}
+
+imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result)
+{
+    imk_verdict v = {.result = result};
+    if (!result)
+        return v;
+    for (size_t c = 0; c < r->case_count; c++) {
+        if (c == 0 || r->cases[c].model != r->cases[c - 1].model)
+            warn_of_omitted(&r->cases[c], &v);
+        warn_of_range(r, &r->cases[c], &v);
+    }
+    if (r->found)
+        warn_of_runs(r, &v);
+    return v;
+}
