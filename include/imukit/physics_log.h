@@ -69,7 +69,7 @@ typedef struct imk_physics_log {
  *                 when even its memory failed
  *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
  *          "duration": no sample fits); and with a finding, IMK_ERROR_NOT_FINITE
- * ("output_not_finite") and what the sinks return ("not_written") */
+ *          ("output_not_finite") and what the sinks return ("not_written") */
 IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                        const imk_record_sink *outputs,
                                        const imk_record_sink *signals, const imk_job *job,
