@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runs an instrument into a log, and its internal signals into another. */
+/* Runs an instrument into a log, and its internal signals into another; or its experiments. */
 #include "physics_parts.h"
 #include "shell/job_progress.h"
 
-#include <math.h>
-#include <stdlib.h>
+#include "imukit/thread_pool.h"
+
 #include <string.h>
 
 int physics_refused(const physics *p, imk_error *error)
@@ -23,18 +23,6 @@ int physics_refused(const physics *p, imk_error *error)
         snprintf(error->field, sizeof error->field, "--level");
     }
     return command_error(error, is_file && error->field[0] != '-' ? p->source : NULL);
-}
-
-int physics_start(const physics *p, const imk_physics_settings *settings, void **state)
-{
-    imk_error error = {.status = IMK_OK};
-    const imk_instrument *instrument = p->settings.instrument;
-    *state = command_aligned(instrument->state_size);
-    if (instrument->init(p->settings.design, settings, *state, &error) == IMK_OK)
-        return -1;
-    free(*state);
-    *state = NULL;
-    return physics_refused(p, &error);
 }
 
 static int check(const physics *p)
@@ -92,4 +80,15 @@ int physics_run_make(const physics *p, imk_physics_log **run)
     if (status == IMK_OK && ended != IMK_OK)
         return command_error(&second, NULL);
     return tell(p, *run, status, &error);
+}
+
+int physics_sweep_make(const physics *p, imk_physics_sweep **sweep)
+{
+    imk_error error = {.status = IMK_OK};
+    imk_thread_pool *pool = imk_thread_pool_create(p->options->threads.value);
+    const imk_executor executor = imk_thread_pool_executor(pool);
+    const imk_job job = {.executor = &executor};
+    const imk_status status = imk_physics_sweep_run(&p->settings, &job, sweep, &error);
+    imk_thread_pool_destroy(pool);
+    return status == IMK_OK ? -1 : physics_refused(p, &error);
 }

@@ -2,6 +2,7 @@
 /* imukit physics: instruments from first principles, run, looked into, reduced to error models. */
 #include "physics_parts.h"
 
+#include "imukit/model_file.h"
 #include "imukit/names.h"
 
 #include <math.h>
@@ -186,13 +187,66 @@ static int check_numbers(const physics_options *o)
 
 /* ---- the tasks ------------------------------------------------------------------------------- */
 
+/* How to go on from the design. */
+static void show_next(const physics *p, imk_result *result)
+{
+    const bool gyro = p->settings.instrument->sensor == IMK_GYRO;
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    imk_result_line(result,
+                    "\nNext\n"
+                    "  imukit physics %s --%s --duration 10s -o out.csv\n"
+                    "  imukit physics %s --report report.html\n"
+                    "  imukit physics %s --reduce -o model.yaml\n"
+                    "  imukit physics %s --sweep",
+                    p->source, gyro ? "rate \"10 deg/s\"" : "acceleration \"1 g\"", p->source,
+                    p->source, p->source);
+    imk_result_for(result, IMK_FOR_PAGE);
+}
+
+/* All there is to show of a run, of the error models (sweep NULL: not measured), or of the design.
+ * @return -1 or the exit code, the message printed */
+static int make_result(const physics *p, const imk_physics_shown *shown, imk_result *result)
+{
+    const physics_options *o = p->options;
+    const imk_physics_sweep *l = shown->sweep;
+    int code = -1;
+    imk_show_physics(shown, result);
+    if (!shown->run && !l && !o->reduce)
+        show_next(p, result);
+    if (o->report) {
+        physics_show_views(p, result);
+        imk_show_physics_design(shown, result);
+        show_model(result, "As a file", p->model);
+    }
+    if (l) {
+        imk_show_physics_sweep(shown, result);
+        if (o->plot && l->result.point_count == 0 && l->result.response_count == 0)
+            code = command_failed("nothing was measured that can be drawn");
+    } else if (o->plot && !shown->run) {
+        imk_result_for(result, IMK_FOR_PLOT);
+        code = physics_show_view_figure(p, result);
+        imk_result_for(result, IMK_FOR_PAGE);
+    }
+    show_warnings(result); /* all are known now */
+    show_origin(result);
+    return code;
+}
+
 /* Picture, page, JSON, tables of what was done: without the picture, for want of gnuplot, still the
  * page. @return the exit code */
-static int show(const physics *p, const imk_physics_log *r, const physics_laboratory *l, bool quiet)
+static int show(const physics *p, const imk_physics_log *r, const imk_physics_sweep *l, bool quiet)
 {
     const physics_options *o = p->options;
     imk_result *result = show_begin("physics");
-    const int code = physics_show(p, r, l, result);
+    const imk_physics_shown shown = {.settings = &p->settings,
+                                     .source = p->source,
+                                     .name = p->file.name,
+                                     .description = p->file.description,
+                                     .model = p->model,
+                                     .reduced = o->reduce,
+                                     .run = r,
+                                     .sweep = l};
+    const int code = make_result(p, &shown, result);
     if (code >= 0) {
         imk_result_free(result);
         return code;
@@ -214,16 +268,30 @@ static int do_run(const physics *p)
     return code;
 }
 
+static int write_model(const physics *p, const imk_model *model)
+{
+    imk_error error;
+    imk_model *copy = command_memory(NULL, sizeof *copy);
+    *copy = *model;
+    if (p->file.name[0])
+        snprintf(copy->name, sizeof copy->name, "%s", p->file.name);
+    if (!p->options->single_axis)
+        imk_model_three_axes(copy);
+    const imk_status status = imk_model_write(p->options->output, copy, NULL, &error);
+    free(copy);
+    return status == IMK_OK ? -1 : command_error(&error, NULL);
+}
+
 static int do_model(const physics *p)
 {
     const physics_options *o = p->options;
-    physics_laboratory *l = o->sweep ? command_zeroed(sizeof *l) : NULL;
-    int code = l ? physics_laboratory_make(p, l) : -1;
+    imk_physics_sweep *l = NULL;
+    int code = o->sweep ? physics_sweep_make(p, &l) : -1;
     if (code < 0 && o->output)
-        code = physics_write_model(p, o->reduce ? p->model : &l->result.model, o->output);
+        code = write_model(p, o->reduce ? p->model : &l->result.model);
     if (code < 0)
         code = show(p, NULL, l, false);
-    free(l);
+    imk_physics_sweep_free(l);
     return code;
 }
 
@@ -246,7 +314,9 @@ static int do_task(const physics *p)
 static int list(const physics_options *o)
 {
     imk_result *result = show_begin("physics");
-    physics_show_list(result);
+    imk_show_instruments(result);
+    imk_result_line(result, "\nOne of them: imukit physics NAME\n"
+                            "A design of your own: imukit physics NAME --show > mine.yaml");
     return show_end(result, &(show_options){.json = o->json}, EXIT_DONE);
 }
 
@@ -287,6 +357,9 @@ static int start(const physics_options *o, const char *operand)
     p.settings.physics.run = (uint32_t)o->run.value;
     p.settings.duration = o->duration;
     p.settings.signal_rate = o->signal_rate;
+    p.settings.view_duration = isnan(o->view_duration) ? 0 : o->view_duration;
+    p.settings.view_rate = o->view && !isnan(o->view_rate) ? o->view_rate : 0;
+    p.settings.view_input = o->rate || o->acceleration;
     int code = open_design(&p);
     p.settings.instrument = p.file.instrument;
     p.settings.design = p.file.design;

@@ -12,7 +12,7 @@
 #ifndef IMUKIT_DESIGN_FILE_H
 #define IMUKIT_DESIGN_FILE_H
 
-#include "imukit/instrument.h"
+#include "imukit/physics_log.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -63,19 +63,6 @@ IMK_API imk_status imk_design_write(const char *path, const imk_design_file *fil
  *  @return errors of the instrument's validate; IMK_ERROR_MEMORY */
 IMK_API imk_status imk_design_print(const imk_design_file *file, char **text, size_t *size,
                                     imk_error *error);
-
-/** Put the numbers of an error that a validate or init filled in SI into the unit of the field it
- *  names, for the sentence: `"30 kHz" is outside its valid range (limit 10 kHz)`. Fields that are
- *  not of the table, and values that do not stand in the design, are left as they are.
- *  @param design  what was refused */
-IMK_API void imk_design_error_in_units(const imk_instrument *instrument, const void *design,
-                                       imk_error *error);
-
-/** A field of the table as text with its unit ("400 Hz", "closed", "yes"), at most `digits`
- *  significant digits, or 0 for as many as give the same bits.
- *  @return length, 0 when `size` is too small */
-IMK_API size_t imk_design_field_text(const imk_design_field *field, const void *design, int digits,
-                                     char *text, size_t size);
 
 #ifdef __cplusplus
 }

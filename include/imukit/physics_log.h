@@ -32,8 +32,10 @@ typedef struct imk_physics_log_settings {
     const void *design;
     imk_physics_settings physics; /**< its rate is that of the rows */
     imk_physics_input input;
-    double duration;    /**< [s] */
-    double signal_rate; /**< of the rows of signals [Hz]; 0: that of the others */
+    double duration;                 /**< [s] */
+    double signal_rate;              /**< of the rows of signals [Hz]; 0: that of the others */
+    double view_duration, view_rate; /**< of views [s], [Hz]; 0: their own */
+    bool view_input;                 /**< views are of this input; false: of their own */
 } imk_physics_log_settings;
 
 /** At rest at 20 degrees, 100 Hz. */
@@ -67,7 +69,7 @@ typedef struct imk_physics_log {
  *                 when even its memory failed
  *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
  *          "duration": no sample fits); and with a finding, IMK_ERROR_NOT_FINITE
- * ("output_not_finite") and what the sinks return ("not_written") */
+ *          ("output_not_finite") and what the sinks return ("not_written") */
 IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                        const imk_record_sink *outputs,
                                        const imk_record_sink *signals, const imk_job *job,
@@ -76,6 +78,65 @@ IMK_API void imk_physics_log_free(imk_physics_log *result);
 
 /** Unit to show an output in: of the measured input, by its size. */
 IMK_API imk_unit imk_physics_output_unit(const imk_physics_log *log, size_t output);
+
+enum { IMK_PHYSICS_LABEL = 128 };
+
+/** A view of an instrument (imk_view), run. */
+typedef struct imk_physics_view {
+    imk_view view; /**< with the duration and rate that were asked for */
+    const imk_instrument *instrument;
+    size_t points;
+    double *data; /**< x, then each curve, in the units of their labels */
+    bool empty;   /**< it shows what this design has not, such as the bits of an open loop */
+    char x_label[IMK_PHYSICS_LABEL], y_label[IMK_PHYSICS_LABEL], clock[80];
+    imk_allocator allocator; /**< of the data */
+} imk_physics_view;
+
+/** Run the instrument as its view number `index` says.
+ *  @param view  imk_physics_view_free() it, also on failure
+ *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _RANGE (error.field "view": too
+ *          few points, or too many) */
+IMK_API imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t index,
+                                        const imk_job *job, imk_physics_view *view,
+                                        imk_error *error);
+IMK_API void imk_physics_view_free(imk_physics_view *view);
+/** The view of this number from 1, or whose title begins so; -1: none. */
+IMK_API int imk_physics_view_find(const imk_instrument *instrument, const char *text);
+/** Whether it shows one signal against another, which can move. */
+IMK_API bool imk_physics_view_moves(const imk_view *view);
+
+/** Closed forms beside what a laboratory found. */
+typedef struct imk_physics_sweep {
+    imk_laboratory_result result;
+    size_t count;
+    imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
+    imk_allocator allocator; /**< of this */
+} imk_physics_sweep;
+
+/** Find the error model by experiments (laboratory.h), in the settings' surroundings.
+ *  @param sweep  imk_physics_sweep_free() it; NULL on failure
+ *  @return as imk_laboratory_run(); IMK_ERROR_MEMORY */
+IMK_API imk_status imk_physics_sweep_run(const imk_physics_log_settings *settings,
+                                         const imk_job *job, imk_physics_sweep **sweep,
+                                         imk_error *error);
+IMK_API void imk_physics_sweep_free(imk_physics_sweep *sweep);
+/** Figure `index`: "agrees", "close", "differs", "not measured". A figure agrees when the
+ * difference is within four 1-sigma values, and is close within the tenth of it that the closed
+ * forms may leave out: small terms of higher order. */
+IMK_API const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t index);
+
+/** Put the numbers of an error that a validate or init filled in SI into the unit of the field it
+ *  names, for the sentence: `"30 kHz" is outside its valid range (limit 10 kHz)`. Fields that are
+ *  not of the table, and values that do not stand in the design, are left as they are.
+ *  @param design  what was refused */
+IMK_API void imk_design_error_in_units(const imk_instrument *instrument, const void *design,
+                                       imk_error *error);
+
+/** A field of the table as text with its unit ("400 Hz", "closed", "yes"), at most `digits`
+ *  significant digits, or 0 for as many as give the same bits.
+ *  @return length, 0 when `size` is too small */
+IMK_API size_t imk_design_field_text(const imk_design_field *field, const void *design, int digits,
+                                     char *text, size_t size);
 
 #ifdef __cplusplus
 }

@@ -13,6 +13,7 @@
 #include "imukit/grade_position.h"
 #include "imukit/identify_several.h"
 #include "imukit/navigate_log.h"
+#include "imukit/physics_log.h"
 #include "imukit/record_plan.h"
 #include "imukit/result.h"
 #include "imukit/spectrum_log.h"
@@ -140,6 +141,36 @@ IMK_API void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *sh
                             imk_result *result);
 /** Runs alone. @param words  what they are */
 IMK_API void imk_show_drift_runs(const imk_drift_models *r, const char *words, imk_result *result);
+/** @} */
+
+/** @name Instruments
+ *  @{ */
+/** An instrument, and what was done with it. */
+typedef struct imk_physics_shown {
+    const imk_physics_log_settings *settings;
+    const char *source;             /**< as it was asked for */
+    const char *name, *description; /**< of the design; NULL or "": none */
+    const imk_model *model;         /**< by closed forms, one axis */
+    bool reduced;                   /**< which is shown */
+    const imk_physics_log *run;     /**< NULL: none */
+    const imk_physics_sweep *sweep; /**< NULL: none */
+} imk_physics_shown;
+
+/** The instruments there are. */
+IMK_API void imk_show_instruments(imk_result *result);
+/** A run with its figure, error models, or, without either, the design. What is added after it is
+ *  for the page. */
+IMK_API void imk_show_physics(const imk_physics_shown *shown, imk_result *result);
+/** Design and error model, for the page. */
+IMK_API void imk_show_physics_design(const imk_physics_shown *shown, imk_result *result);
+/** The sweep for the page, with a figure where something was measured that can be drawn. */
+IMK_API void imk_show_physics_sweep(const imk_physics_shown *shown, imk_result *result);
+/** A view that shows something: a figure, or an animation. */
+IMK_API void imk_show_physics_view(const imk_physics_view *view, imk_result *result);
+/** A view as a panel of a figure. */
+IMK_API void imk_show_physics_panel(const imk_physics_view *view, imk_figure_builder *figure);
+/** A view that can move; its texts and numbers are the view's. */
+IMK_API imk_animation imk_physics_animation(const imk_physics_view *view);
 /** @} */
 
 /** What records of several lengths tell, how long they must be, and, of a curve, a figure. */

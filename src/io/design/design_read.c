@@ -13,6 +13,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+bool imki_design_component(const char *path, const char *prefix, size_t *length,
+                           const char **component)
+{
+    const size_t skipped = strlen(prefix);
+    if (strncmp(path, prefix, skipped) != 0)
+        return false;
+    *component = path + skipped;
+    *length = strcspn(*component, ".");
+    return true;
+}
+
 enum { CANDIDATES_MAX = IMKI_DESIGN_FIELDS_MAX + 4, WORD_SIZE = 64, CHOICES_MAX = 16 };
 
 typedef struct reader {

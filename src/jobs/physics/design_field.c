@@ -1,23 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A parameter of a design as text with its unit, and errors in the units of the table. */
-#include "design_file_internal.h"
-
 #include "imukit/decimal.h"
+#include "imukit/physics_log.h"
 #include "imukit/units.h"
 
 #include <stdio.h>
 #include <string.h>
 
-bool imki_design_component(const char *path, const char *prefix, size_t *length,
-                           const char **component)
-{
-    const size_t skipped = strlen(prefix);
-    if (strncmp(path, prefix, skipped) != 0)
-        return false;
-    *component = path + skipped;
-    *length = strcspn(*component, ".");
-    return true;
-}
+enum { TEXT_SIZE = 128 };
 
 static size_t put(const char *source, size_t length, char *text, size_t size)
 {
@@ -37,7 +27,7 @@ static bool is_bare(const imk_design_field *field)
 static size_t number_text(const imk_design_field *field, double value, int digits, char *text,
                           size_t size)
 {
-    char whole[IMKI_DESIGN_TEXT_SIZE];
+    char whole[TEXT_SIZE];
     const imk_unit unit = imk_unit_of(field->unit);
     size_t length;
     if (digits > 0) {

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The error model of an instrument by closed forms, and beside it what the experiments of a
- * laboratory say: as tables, as data, as a model file. */
-#include "physics_parts.h"
-
-#include "imukit/model_file.h"
-#include "imukit/thread_pool.h"
+ * laboratory say: as tables and as data. */
+#include "physics_show_internal.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { FIGURES_MAX = IMK_LABORATORY_FIGURES_MAX + 12 + 7 * IMK_TERMS_MAX };
@@ -62,12 +58,12 @@ static size_t all_figures(const imk_model *model, int sensor, imk_laboratory_fig
     return add_terms(figures, n, &t->noise, si, small);
 }
 
-const char *physics_unit_text(const char *unit)
+const char *imki_unit_text(const char *unit)
 {
     return strcmp(unit, "1") == 0 ? "" : unit;
 }
 
-void physics_show_model(const imk_model *model, int sensor, imk_result *result)
+void imki_show_reduced(const imk_model *model, int sensor, imk_result *result)
 {
     imk_laboratory_figure figures[FIGURES_MAX];
     const size_t count = all_figures(model, sensor, figures);
@@ -76,11 +72,11 @@ void physics_show_model(const imk_model *model, int sensor, imk_result *result)
     for (const imk_laboratory_figure *f = figures; f < figures + count; f++)
         if (f->value != 0 && !isnan(f->value))
             imk_table_row(table, "%s\t%.5g\t%s", f->key, f->value / imk_unit_of(f->unit).scale,
-                          physics_unit_text(f->unit));
+                          imki_unit_text(f->unit));
 }
 
 /* Of several terms of a kind: sigma, sigma[1], … */
-void physics_model_data(const imk_model *model, int sensor, imk_result *result)
+void imki_reduced_data(const imk_model *model, int sensor, imk_result *result)
 {
     imk_laboratory_figure figures[FIGURES_MAX];
     const size_t count = all_figures(model, sensor, figures);
@@ -97,73 +93,16 @@ void physics_model_data(const imk_model *model, int sensor, imk_result *result)
     imk_result_end(result);
 }
 
-int physics_write_model(const physics *p, const imk_model *model, const char *path)
-{
-    imk_error error;
-    imk_model *copy = command_memory(NULL, sizeof *copy);
-    *copy = *model;
-    if (p->file.name[0])
-        snprintf(copy->name, sizeof copy->name, "%s", p->file.name);
-    if (!p->options->single_axis)
-        imk_model_three_axes(copy);
-    const imk_status status = imk_model_write(path, copy, NULL, &error);
-    free(copy);
-    return status == IMK_OK ? -1 : command_error(&error, NULL);
-}
-
 /* ---- experiments ----------------------------------------------------------------------------- */
-
-/* A figure agrees when the difference is within this many 1-sigma values, or within the part of
- * the figure that the closed forms leave out: small terms of higher order. */
-static const double sigmas_allowed = 4, part_allowed = 0.1;
-
-int physics_laboratory_make(const physics *p, physics_laboratory *laboratory)
-{
-    imk_error error = {.status = IMK_OK};
-    imk_laboratory settings = imk_laboratory_default();
-    settings.instrument = p->settings.instrument;
-    settings.design = p->settings.design;
-    settings.physics = p->settings.physics;
-    settings.surroundings.temperature = p->settings.input.exposure.temperature;
-    if (!p->settings.physics.noise)
-        settings.record = 0;
-    const size_t size = imk_laboratory_workspace_size(&settings);
-    void *workspace = command_aligned(size);
-    imk_thread_pool *pool = imk_thread_pool_create(p->options->threads.value);
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    const imk_status status =
-        imk_laboratory_run(&settings, workspace, size, &executor, &laboratory->result, &error);
-    imk_thread_pool_destroy(pool);
-    free(workspace);
-    if (status != IMK_OK)
-        return physics_refused(p, &error);
-    const int sensor = p->settings.instrument->sensor;
-    laboratory->count = imk_laboratory_figures(p->model, sensor, laboratory->computed);
-    (void)imk_laboratory_figures(&laboratory->result.model, sensor, laboratory->found);
-    return -1;
-}
 
 /* Worth a line: one of the two says something. */
 static bool says_something(const imk_laboratory_figure *computed,
                            const imk_laboratory_figure *found)
 {
-    return computed->value != 0 || fabs(found->value) > sigmas_allowed * found->sigma;
+    return computed->value != 0 || fabs(found->value) > 4 * found->sigma;
 }
 
-static const char *judge(const imk_laboratory_figure *computed, const imk_laboratory_figure *found)
-{
-    const double difference = fabs(found->value - computed->value);
-    const double sigma = hypot(found->sigma, computed->sigma);
-    if (isnan(found->value) || (found->value == 0 && found->sigma == 0))
-        return "not measured";
-    if (difference <= sigmas_allowed * sigma)
-        return "agrees";
-    if (difference <= part_allowed * fabs(computed->value))
-        return "close";
-    return "differs";
-}
-
-void physics_show_laboratory(const physics_laboratory *l, imk_result *result)
+void imki_show_sweep(const imk_physics_sweep *l, imk_result *result)
 {
     imk_table *table = imk_result_table(result, 0xeu);
     imk_table_row(table, "parameter\tclosed form\texperiment\t1 sigma\tunit\t");
@@ -173,7 +112,7 @@ void physics_show_laboratory(const physics_laboratory *l, imk_result *result)
         if (says_something(computed, found))
             imk_table_row(table, "%s\t%.5g\t%.5g\t%.2g\t%s\t%s", found->key,
                           computed->value / scale, found->value / scale, found->sigma / scale,
-                          physics_unit_text(found->unit), judge(computed, found));
+                          imki_unit_text(found->unit), imk_physics_sweep_verdict(l, i));
     }
 }
 
@@ -199,9 +138,9 @@ static void show_points(const imk_laboratory_result *r, const char *si, imk_resu
     imk_result_end(result);
 }
 
-void physics_laboratory_data(const physics *p, const physics_laboratory *l, imk_result *result)
+void imki_sweep_data(const imk_physics_sweep *l, int sensor, imk_result *result)
 {
-    const char *si = p->settings.instrument->sensor == IMK_GYRO ? "rad/s" : "m/s^2";
+    const char *si = sensor == IMK_GYRO ? "rad/s" : "m/s^2";
     const imk_laboratory_result *r = &l->result;
     imk_result_object(result, "experiment");
     imk_result_object(result, "figures");
@@ -211,7 +150,7 @@ void physics_laboratory_data(const physics *p, const physics_laboratory *l, imk_
         imk_result_quantity(result, "closed_form", computed->value, found->si);
         imk_result_quantity(result, "experiment", found->value, found->si);
         imk_result_quantity(result, "sigma", found->sigma, found->si);
-        imk_result_text(result, "verdict", judge(computed, found));
+        imk_result_text(result, "verdict", imk_physics_sweep_verdict(l, i));
         imk_result_end(result);
     }
     imk_result_end(result);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The instruments there are, and the design of one. */
-#include "physics_parts.h"
+#include "physics_show_internal.h"
 
 #include <string.h>
 
-void physics_instrument_data(const imk_instrument *instrument, const char *key, imk_result *result)
+void imki_instrument_data(const imk_instrument *instrument, const char *key, imk_result *result)
 {
     imk_result_object(result, key);
     imk_result_text(result, "name", instrument->name);
@@ -15,7 +15,7 @@ void physics_instrument_data(const imk_instrument *instrument, const char *key, 
     imk_result_end(result);
 }
 
-void physics_show_list(imk_result *result)
+void imk_show_instruments(imk_result *result)
 {
     imk_result_object(result, "inputs");
     imk_result_end(result);
@@ -26,7 +26,7 @@ void physics_show_list(imk_result *result)
     imk_result_line(result, "\nDefault designs");
     for (size_t i = 0; i < imk_instrument_count(); i++) {
         const imk_instrument *instrument = imk_instrument_get(i);
-        physics_instrument_data(instrument, NULL, result);
+        imki_instrument_data(instrument, NULL, result);
         imk_table_row(table, "%s\t%s\t%s\t%s", instrument->name, instrument->title,
                       instrument->technology[0] ? instrument->technology : "-",
                       instrument->sensor == IMK_GYRO ? "angular rate" : "specific force");
@@ -34,23 +34,21 @@ void physics_show_list(imk_result *result)
     }
     imk_result_end(result);
     imk_result_end(result);
-    imk_result_line(result, "\nOne of them: imukit physics NAME\n"
-                            "A design of your own: imukit physics NAME --show > mine.yaml");
 }
 
 /* ---- one design ------------------------------------------------------------------------------ */
 
 enum { VALUE_SIZE = 120 };
 
-void physics_show_design(const physics *p, imk_result *result)
+void imki_show_design(const imk_physics_shown *p, imk_result *result)
 {
-    const imk_instrument *instrument = p->settings.instrument;
+    const imk_instrument *instrument = p->settings->instrument;
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table, "parameter\tvalue\t");
     for (size_t i = 0; i < instrument->field_count; i++) {
         const imk_design_field *field = &instrument->fields[i];
         char value[VALUE_SIZE] = "";
-        (void)imk_design_field_text(field, p->settings.design, 6, value, sizeof value);
+        (void)imk_design_field_text(field, p->settings->design, 6, value, sizeof value);
         imk_table_row(table, "%s\t%s\t%s", field->path, value, field->help);
     }
 }
@@ -82,12 +80,12 @@ static void field_data(const imk_design_field *field, const void *design, imk_re
     }
 }
 
-void physics_design_data(const physics *p, imk_result *result)
+void imki_design_data(const imk_physics_shown *p, imk_result *result)
 {
-    const imk_instrument *instrument = p->settings.instrument;
+    const imk_instrument *instrument = p->settings->instrument;
     imk_result_object(result, "design");
     for (size_t i = 0; i < instrument->field_count; i++)
-        field_data(&instrument->fields[i], p->settings.design, result);
+        field_data(&instrument->fields[i], p->settings->design, result);
     imk_result_end(result);
 }
 
@@ -100,26 +98,18 @@ static void show_signals(const char *title, size_t count, const imk_signal *sign
         imk_result_line(result, "  %s [%s]: %s", signals[i].name, signals[i].unit, signals[i].help);
 }
 
-void physics_show_overview(const physics *p, imk_result *result)
+void imki_show_overview(const imk_physics_shown *p, imk_result *result)
 {
-    const imk_instrument *instrument = p->settings.instrument;
-    const bool named = p->file.name[0];
-    imk_result_line(result, IMK_BOLD "%s" IMK_PLAIN "%s%s\nDefault design: %s\n", physics_name(p),
-                    named ? ": " : "", named ? instrument->title : "", instrument->source);
-    physics_show_design(p, result);
+    const imk_instrument *instrument = p->settings->instrument;
+    const bool named = p->name && p->name[0];
+    imk_result_line(result, IMK_BOLD "%s" IMK_PLAIN "%s%s\nDefault design: %s\n",
+                    imki_physics_name(p), named ? ": " : "", named ? instrument->title : "",
+                    instrument->source);
+    imki_show_design(p, result);
     show_signals("Outputs", instrument->output_count, instrument->outputs, result);
     show_signals("Inside (--signals)", instrument->signal_count, instrument->signals, result);
     if (instrument->view_count > 0)
         imk_result_line(result, "\nViews (--view NUMBER --plot FILE)");
     for (size_t i = 0; i < instrument->view_count; i++)
         imk_result_line(result, "  %zu: %s", i + 1, instrument->views[i].title);
-    imk_result_line(result,
-                    "\nNext\n"
-                    "  imukit physics %s --%s --duration 10s -o out.csv\n"
-                    "  imukit physics %s --report report.html\n"
-                    "  imukit physics %s --reduce -o model.yaml\n"
-                    "  imukit physics %s --sweep",
-                    p->source,
-                    instrument->sensor == IMK_GYRO ? "rate \"10 deg/s\"" : "acceleration \"1 g\"",
-                    p->source, p->source, p->source);
 }

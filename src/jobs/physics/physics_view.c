@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A view of an instrument: some of its signals, against time or against one another. */
+#include "physics_log_internal.h"
+
+#include "jobs/arena_internal.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* More points than this are not seen. */
+enum { VIEW_POINTS = 5000 };
+
+const char *imki_physics_label(char *text, const char *name, const char *unit)
+{
+    if (strcmp(unit, "1") == 0)
+        snprintf(text, IMK_PHYSICS_LABEL, "%.48s", name);
+    else
+        snprintf(text, IMK_PHYSICS_LABEL, "%.48s [%.40s]", name, unit);
+    for (char *c = text; *c && *c != '['; c++)
+        if (*c == '_')
+            *c = ' ';
+    return text;
+}
+
+/* The view's own input, unless another was asked for. */
+static imk_physics_input input_of(const imk_physics_log_settings *settings, const imk_view *view)
+{
+    imk_physics_input input = settings->input;
+    if (!settings->view_input) {
+        const bool gyro = settings->instrument->sensor == IMK_GYRO;
+        (gyro ? input.exposure.angular_rate : input.exposure.specific_force)[0] = view->input;
+    }
+    return input;
+}
+
+/* Rows of x, y … in display units into `data`. */
+static void record(const imk_physics_log_settings *settings, const imk_physics_view *v,
+                   uint64_t stride, void *state)
+{
+    const imk_instrument *instrument = settings->instrument;
+    const imk_view *view = &v->view;
+    double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], inside[IMK_INSTRUMENT_SIGNALS_MAX];
+    const imk_physics_input input = input_of(settings, view);
+    const uint64_t settle = (uint64_t)floor(view->settle * view->rate + 0.5);
+    for (uint64_t k = 0; k < settle; k++) {
+        const imk_exposure e = imk_physics_input_at(&input, view->rate, k);
+        instrument->step(state, &e, outputs);
+    }
+    for (uint64_t k = 0; k < v->points * stride; k++) {
+        const imk_exposure e = imk_physics_input_at(&input, view->rate, settle + k);
+        instrument->step(state, &e, outputs);
+        if ((k + 1) % stride != 0)
+            continue;
+        const size_t row = (size_t)(k / stride);
+        instrument->observe(state, inside);
+        for (int c = -1; c < view->curve_count; c++) {
+            const int signal = c < 0 ? view->x : view->y[c];
+            const imk_unit unit = imk_unit_of(signal < 0 ? "s" : instrument->signals[signal].unit);
+            const double value = signal < 0 ? (double)(k + 1) / view->rate : inside[signal];
+            v->data[(size_t)(c + 1) * v->points + row] = (value - unit.offset) / unit.scale;
+        }
+    }
+}
+
+/* The time axis of a short view is in ms or us. @return its unit */
+static const char *scale_time(const imk_view *view, size_t points, double *time)
+{
+    const imk_unit unit = imk_unit_readable(imk_unit_of("s").dimension, view->duration);
+    if (unit.scale > 1)
+        return "s";
+    for (size_t k = 0; k < points; k++)
+        time[k] /= unit.scale;
+    return unit.scale == 1 ? "s" : unit.scale > 1e-4 ? "ms" : "us";
+}
+
+/* "tilt x, tilt y", as far as there is room: else the key says it. */
+static void label_view(const char *x_unit, imk_physics_view *v)
+{
+    const imk_view *view = &v->view;
+    const imk_signal *signals = v->instrument->signals;
+    const imk_unit unit = imk_unit_readable(imk_unit_of("s").dimension, view->duration);
+    char names[256] = "";
+    size_t length = 0;
+    for (int c = 0; c < view->curve_count && length < sizeof names; c++)
+        length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", c > 0 ? ", " : "",
+                                   signals[view->y[c]].name);
+    imki_physics_label(v->x_label, view->x < 0 ? "time" : signals[view->x].name, x_unit);
+    imki_physics_label(v->y_label, length > 48 ? "" : names, signals[view->y[0]].unit);
+    snprintf(v->clock, sizeof v->clock, "a round: %.4g %s", view->duration / unit.scale, unit.text);
+}
+
+static bool is_constant(size_t count, const double *values)
+{
+    for (size_t i = 1; i < count; i++)
+        if (values[i] != values[0])
+            return false;
+    return true;
+}
+
+/* What the view shows is not in this design, such as the bits of an open loop: the first curve is
+ * 0, or no curve moves, or a curve against a signal has no width. */
+static bool is_empty(const imk_physics_view *v)
+{
+    const double *y = v->data + v->points;
+    if (v->view.x >= 0 && is_constant(v->points, v->data))
+        return true;
+    if (y[0] == 0 && is_constant(v->points, y))
+        return true;
+    for (int c = 0; c < v->view.curve_count; c++)
+        if (!is_constant(v->points, y + (size_t)c * v->points))
+            return false;
+    return true;
+}
+
+imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t index,
+                                const imk_job *job, imk_physics_view *v, imk_error *error)
+{
+    const imk_instrument *instrument = settings->instrument;
+    const imk_job alone = {.memory = 0};
+    job = job ? job : &alone;
+    *v = (imk_physics_view){
+        .view = instrument->views[index], .instrument = instrument, .allocator = job->allocator};
+    imk_view *view = &v->view;
+    if (settings->view_duration > 0)
+        view->duration = settings->view_duration;
+    if (settings->view_rate > 0)
+        view->rate = settings->view_rate;
+    const double samples = view->duration * view->rate;
+    if (!(samples >= 2 && samples <= 1e9))
+        return imk_error_set(error, IMK_ERROR_RANGE, "view", NULL, NULL);
+    const uint64_t stride = (uint64_t)floor(samples + 0.5) / VIEW_POINTS + 1;
+    v->points = (size_t)((uint64_t)floor(samples + 0.5) / stride);
+    imki_arena arena = {.allocator = job->allocator};
+    const size_t size = instrument->state_size;
+    void *state = imki_arena_take(&arena, size > 256 ? size : 256); /* a cache line begins there */
+    v->data = imki_resize(&job->allocator, NULL,
+                          ((size_t)(view->curve_count + 1) * v->points + 1) * sizeof *v->data);
+    imk_physics_settings physics = settings->physics;
+    physics.rate = view->rate;
+    imk_status status = state && v->data
+                            ? instrument->init(settings->design, &physics, state, error)
+                            : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (status == IMK_OK) {
+        record(settings, v, stride, state);
+        label_view(view->x < 0 ? scale_time(view, v->points, v->data)
+                               : instrument->signals[view->x].unit,
+                   v);
+        v->empty = is_empty(v);
+    }
+    imki_arena_free(&arena);
+    return status;
+}
+
+void imk_physics_view_free(imk_physics_view *view)
+{
+    imki_resize(&view->allocator, view->data, 0);
+    view->data = NULL;
+}
+
+bool imk_physics_view_moves(const imk_view *view)
+{
+    return view->x >= 0 && view->curve_count == 1;
+}
+
+/* Titles are compared by their letters and digits. */
+static bool begins_alike(const char *title, const char *text)
+{
+    for (;; title++, text++) {
+        while (*text && !isalnum((unsigned char)*text))
+            text++;
+        while (*title && !isalnum((unsigned char)*title))
+            title++;
+        if (!*text)
+            return true;
+        if (tolower((unsigned char)*title) != tolower((unsigned char)*text))
+            return false;
+    }
+}
+
+int imk_physics_view_find(const imk_instrument *instrument, const char *text)
+{
+    char *end;
+    const unsigned long number = strtoul(text, &end, 10);
+    if (*end == '\0')
+        return number >= 1 && number <= instrument->view_count ? (int)number - 1 : -1;
+    for (size_t i = 0; i < instrument->view_count; i++)
+        if (begins_alike(instrument->views[i].title, text))
+            return (int)i;
+    return -1;
+}
