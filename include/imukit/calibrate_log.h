@@ -141,6 +141,12 @@ IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
 /** @name Records of tests
  *  Memory is of the log's allocator.
  *  @{ */
+/** Fill record->record from record->log, which is loaded, and record->path: rows whose time does
+ * not increase are left out, and numbers of sensors that are no readings become NaN.
+ *  @param section  column of texts that names holds, turns or runs; NULL: the only one
+ *  @return with a finding, IMK_ERROR_EMPTY, _COLUMN; IMK_ERROR_MEMORY */
+IMK_API imk_status imk_calibrate_record_make(imk_calibrate_record *record, const char *section,
+                                             imk_findings *findings, imk_error *error);
 /** One of its columns of references, zeros at first: rate, force, angular acceleration, x to z.
  *  @return NULL when memory is exhausted */
 IMK_API double *imk_calibrate_record_column(imk_calibrate_record *record, int column);
