@@ -141,8 +141,8 @@ IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
 /** @name Records of tests
  *  Memory is of the log's allocator.
  *  @{ */
-/** Fill log->record from log->log, which is loaded, and log->path: rows whose time does
- * not increase are left out, and numbers of sensors that are no readings become NaN.
+/** Fill log->record from log->log, which is loaded, and log->path: rows whose time does not
+ *  increase are left out, and numbers of sensors that are no readings become NaN.
  *  @param section  column of texts that names holds, turns or runs; NULL: the only one
  *  @return with a finding, IMK_ERROR_EMPTY, _COLUMN; IMK_ERROR_MEMORY */
 IMK_API imk_status imk_calibrate_record_make(imk_calibrate_record *log, const char *section,
