@@ -50,7 +50,7 @@ int bench_load(bench *b, bench_log *log);
 /* calibrate_reference.c: what the unit was exposed to, from columns or from --motion. */
 int bench_reference(bench *b, bench_log *log);
 
-/* calibrate_problem.c: the options as a problem; then each log looked at; then the solution. */
+/* calibrate_problem.c: the options as a problem, and the logs loaded. */
 int bench_choose(bench *b); /* procedures, place and frame */
 int bench_known_before(bench *b);
 int bench_prepare(bench *b);

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* From the options and the logs to a solution: what is known before, what each log adds, and the
- * one estimate of all of them together. */
+/* From the options to a problem: what is known before, and how each log is looked at. */
 #include "calibrate_parts.h"
 #include "shell/place_text.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Where the accelerometers' own axes are the frame, those of a table are others: the mounting of

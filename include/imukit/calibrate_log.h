@@ -86,15 +86,15 @@ typedef struct imk_calibrate_log {
  *  @return IMK_ERROR_RANGE (0 records, or more than IMK_TEST_RECORDS_MAX), _MEMORY */
 IMK_API imk_status imk_calibrate_log_create(size_t count,
                                             const imk_calibrate_log_settings *settings,
-                                            const imk_job *job, imk_calibrate_log **log,
+                                            const imk_job *job, imk_calibrate_log **bench,
                                             imk_error *error);
 /** Free it; what the caller filled in stays the caller's. */
-IMK_API void imk_calibrate_log_free(imk_calibrate_log *log);
+IMK_API void imk_calibrate_log_free(imk_calibrate_log *bench);
 
 /** Observe each record by its procedure, solve all together, make the model.
  *  @return as imk_procedure_observe(), imk_calibration_solve(), imk_ferraris_closed_form(),
- *          imk_repeatability_of_holds(); then log->failed says of what */
-IMK_API imk_status imk_calibrate_log_run(imk_calibrate_log *log, imk_error *error);
+ *          imk_repeatability_of_holds(); then bench->failed says of what */
+IMK_API imk_status imk_calibrate_log_run(imk_calibrate_log *bench, imk_error *error);
 
 /** Bias and scale factor of a model with their sigmas, as the calibration of a run; of counts by
  *  the sensitivities and zeros of the first one, since each may have found its own. */
@@ -102,7 +102,7 @@ IMK_API void imk_calibration_of_model(const imk_model *model, const imk_model *f
                                       imk_calibration_result *result);
 /** Compare runs, the calibration of each given, and make the model.
  *  @return with a finding, IMK_ERROR_TOO_SHORT, _EMPTY; as imk_repeatability_of_calibrations() */
-IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *log,
+IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *bench,
                                              const imk_calibration_result *const *run,
                                              imk_error *error);
 
@@ -110,11 +110,11 @@ IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *log,
 IMK_API bool imk_procedure_is_known(imk_procedure procedure);
 
 /** Index of a parameter of the solution, or -1. */
-IMK_API int imk_calibrate_find(const imk_calibrate_log *log, imk_model_parameter parameter);
+IMK_API int imk_calibrate_find(const imk_calibrate_log *bench, imk_model_parameter parameter);
 
 /** The poses that would tell most about the accelerometers, given the rests that were found.
  *  @return false where they are not known, or memory is exhausted */
-IMK_API bool imk_calibrate_advise(const imk_calibrate_log *log, const imk_calibrate_record *record,
+IMK_API bool imk_calibrate_advise(const imk_calibrate_log *bench, const imk_calibrate_record *log,
                                   const imk_allocator *allocator,
                                   imk_pose_advice advice[IMK_CALIBRATE_POSES]);
 
@@ -141,19 +141,25 @@ IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
 /** @name Records of tests
  *  Memory is of the log's allocator.
  *  @{ */
+/** Fill log->record from log->log, which is loaded, and log->path: rows whose time does not
+ *  increase are left out, and numbers of sensors that are no readings become NaN.
+ *  @param section  column of texts that names holds, turns or runs; NULL: the only one
+ *  @return with a finding, IMK_ERROR_EMPTY, _COLUMN; IMK_ERROR_MEMORY */
+IMK_API imk_status imk_calibrate_record_make(imk_calibrate_record *log, const char *section,
+                                             imk_findings *findings, imk_error *error);
 /** One of its columns of references, zeros at first: rate, force, angular acceleration, x to z.
  *  @return NULL when memory is exhausted */
-IMK_API double *imk_calibrate_record_column(imk_calibrate_record *record, int column);
-/** References by a motion that begins at record->motion_offset; NaN outside a recorded one.
+IMK_API double *imk_calibrate_record_column(imk_calibrate_record *log, int column);
+/** References by a motion that begins at log->motion_offset; NaN outside a recorded one.
  *  @return IMK_ERROR_MEMORY */
-IMK_API imk_status imk_calibrate_record_expose(imk_calibrate_record *record,
-                                               const imk_motion *motion, imk_error *error);
+IMK_API imk_status imk_calibrate_record_expose(imk_calibrate_record *log, const imk_motion *motion,
+                                               imk_error *error);
 /** Where readings follow the references best. @param largest  looked at on both sides [s]; a
  *  quarter of the log at most @return as imk_reference_offset(); IMK_ERROR_MEMORY */
-IMK_API imk_status imk_calibrate_record_shift(const imk_calibrate_record *record, double largest,
+IMK_API imk_status imk_calibrate_record_shift(const imk_calibrate_record *log, double largest,
                                               imk_reference_shift *shift, imk_error *error);
 /** Free columns, sections and references. */
-IMK_API void imk_calibrate_record_free(imk_calibrate_record *record);
+IMK_API void imk_calibrate_record_free(imk_calibrate_record *log);
 /** When a row was taken [s]. */
 IMK_API double imk_test_record_time(const imk_test_record *record, size_t row);
 /** Rows with a reading or a temperature that is no number. @param first  set when there are some */

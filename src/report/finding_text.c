@@ -168,6 +168,20 @@ static const struct message {
     {"left_the_earth", "by {0.3f} s the estimate has left the Earth's surroundings: a reading "
                        "before is absurd, or its unit wrong"},
     /* calibrate */
+    /* calibrate: bench_record.c */
+    {"rows_dropped", "{0} rows whose time does not increase, or is no number, are left out"},
+    {"readings_missing",
+     "in {0} of {1} rows a reading or the temperature is no finite number, or beyond 1e60, first "
+     "in row {2}: such rows are left out, or the hold or step that they interrupt"},
+    {"axis_gap", "has {name}: calibration needs the axes one after the other; name the columns "
+                 "with --columns"},
+    {"counts_mixed", "some {name} columns are in counts and some are not"},
+    {"no_sensor", "has no gyro and no accelerometer column; name them with --columns, such as "
+                  "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z"},
+    {"no_section", "has no column \"{name}\" of texts to divide it into sections"},
+    {"sections", "has {0} columns of texts: say which one divides it into sections, such as "
+                 "--section {name}"},
+    /* calibrate_closed_form.c, power_cycles.c, calibrate_model.c */
     {"stretches", "these are more than {0} holds and turns"},
     {"many_runs", "these are more than {0} runs"},
     {"few_runs", "{0} run: at least two are needed, better ten; give a log for each power cycle, "

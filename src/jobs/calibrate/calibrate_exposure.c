@@ -21,15 +21,6 @@ double *imk_calibrate_record_column(imk_calibrate_record *log, int column)
     return log->reference + (size_t)column * rows;
 }
 
-void imk_calibrate_record_free(imk_calibrate_record *log)
-{
-    const imk_allocator allocator = log->log.allocator;
-    imki_resize(&allocator, log->section, 0);
-    imki_resize(&allocator, log->section_name, 0);
-    imki_resize(&allocator, log->reference, 0);
-    imk_log_free(&log->log);
-}
-
 static void fill_from_recorded(const imk_recorded_motion *motion, imk_calibrate_record *log,
                                double *const column[IMK_CALIBRATE_REFERENCES])
 {

@@ -21,11 +21,11 @@ imk_calibrate_log_settings imk_calibrate_log_default(void)
 }
 
 imk_status imk_calibrate_log_create(size_t count, const imk_calibrate_log_settings *settings,
-                                    const imk_job *job, imk_calibrate_log **log, imk_error *error)
+                                    const imk_job *job, imk_calibrate_log **b, imk_error *error)
 {
     const imk_job alone = {.memory = 0};
     imki_arena arena = {.allocator = (job ? job : &alone)->allocator};
-    *log = NULL;
+    *b = NULL;
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
                              "imk_calibrate_log_default()");
@@ -47,39 +47,39 @@ imk_status imk_calibrate_log_create(size_t count, const imk_calibrate_log_settin
                                 .calibration = calibration,
                                 .memory = memory};
     *memory = arena;
-    *log = made;
+    *b = made;
     return IMK_OK;
 }
 
-void imk_calibrate_log_free(imk_calibrate_log *log)
+void imk_calibrate_log_free(imk_calibrate_log *b)
 {
-    if (!log)
+    if (!b)
         return;
-    imki_resize(&log->job.allocator, log->calibration->observation, 0);
-    imki_resize(&log->job.allocator, log->calibration->turn, 0);
-    imki_arena arena = *log->memory;
+    imki_resize(&b->job.allocator, b->calibration->observation, 0);
+    imki_resize(&b->job.allocator, b->calibration->turn, 0);
+    imki_arena arena = *b->memory;
     imki_arena_free(&arena);
 }
 
-imk_status imk_calibrate_log_run(imk_calibrate_log *log, imk_error *error)
+imk_status imk_calibrate_log_run(imk_calibrate_log *b, imk_error *error)
 {
     imk_status status = IMK_OK;
-    log->failed = log->count;
-    if (log->settings.repeatability)
-        status = imki_compare_runs(log, error);
-    else if (log->settings.closed_form)
-        status = imki_closed_form(log, error);
-    for (size_t k = 0; !log->runs && !log->ferraris && status == IMK_OK && k < log->count; k++) {
-        log->failed = k;
-        status = imki_job_progress(&log->job, "observing", "logs", k, log->count, error);
+    b->failed = b->count;
+    if (b->settings.repeatability)
+        status = imki_compare_runs(b, error);
+    else if (b->settings.closed_form)
+        status = imki_closed_form(b, error);
+    for (size_t k = 0; !b->runs && !b->ferraris && status == IMK_OK && k < b->count; k++) {
+        b->failed = k;
+        status = imki_job_progress(&b->job, "observing", "logs", k, b->count, error);
         if (status == IMK_OK)
-            status = imki_observe(log, &log->record[k], error);
+            status = imki_observe(b, &b->record[k], error);
     }
-    if (!log->runs && !log->ferraris && status == IMK_OK) {
-        log->failed = log->count;
-        status = imki_solve(log, error);
+    if (!b->runs && !b->ferraris && status == IMK_OK) {
+        b->failed = b->count;
+        status = imki_solve(b, error);
     }
     if (status == IMK_OK)
-        imki_calibrate_model(log);
+        imki_calibrate_model(b);
     return status;
 }

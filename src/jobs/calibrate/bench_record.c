@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Logs of bench tests as records: columns as they are, rows with gaps as they are. Only rows whose
+ * time does not increase are left out, because no sample interval belongs to them. */
+#include "calibrate_internal.h"
+
+#include "imukit/even_record.h"
+#include "jobs/job_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Close up the rows whose time increases. */
+static void drop_rows(imk_calibrate_record *log, int time, imk_findings *findings)
+{
+    imk_log *columns = &log->log;
+    double last = -HUGE_VAL;
+    size_t kept = 0;
+    for (size_t row = 0; row < columns->rows; row++) {
+        const double now = columns->data[time][row];
+        if (!(now > last) || !isfinite(now))
+            continue;
+        last = now;
+        for (size_t c = 0; c < columns->column_count && kept != row; c++)
+            columns->data[c][kept] = columns->data[c][row];
+        kept++;
+    }
+    log->dropped = columns->rows - kept;
+    columns->rows = kept;
+    if (log->dropped > 0)
+        imki_find(findings, IMK_FINDING_WARNING, "rows_dropped", NULL,
+                  IMKI_NUMBERS((double)log->dropped));
+}
+
+/* The axes of one kind of sensor, in their order. */
+static imk_status take_axes(imk_calibrate_record *log, int sensor, imk_findings *findings,
+                            imk_error *error)
+{
+    static const imk_quantity kinds[2] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
+    const char *key = imki_sensor_keys[sensor];
+    imk_test_record *record = &log->record;
+    int axes = 0;
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
+        const int column = imk_log_find(&log->log, kinds[sensor], axis);
+        if (column < 0)
+            continue;
+        if (axis != axes) {
+            char which[60];
+            snprintf(which, sizeof which, "%s_%c but no %s_%c", key, imk_axis_letter(axis), key,
+                     imk_axis_letter(axes));
+            return imki_fail(findings, error, IMK_ERROR_COLUMN, "axis_gap", which, 0, NULL);
+        }
+        const bool counts = imk_dimension_equal(log->log.column[column].unit.dimension,
+                                                imk_unit_of("count").dimension);
+        if (axes > 0 && counts != record->counts[sensor])
+            return imki_fail(findings, error, IMK_ERROR_COLUMN, "counts_mixed", key, 0, NULL);
+        record->counts[sensor] = counts;
+        record->reading[sensor][axes++] = log->log.data[column];
+    }
+    record->axis_count[sensor] = axes;
+    return IMK_OK;
+}
+
+/* The column of this name, or the only one that holds texts; -1: there is none. */
+static imk_status find_section(const imk_calibrate_record *log, const char *wanted, int *found,
+                               imk_findings *findings, imk_error *error)
+{
+    size_t labels = 0;
+    const char *first = NULL;
+    *found = -1;
+    for (size_t c = 0; c < log->log.column_count; c++) {
+        const char *name = log->log.column[c].name;
+        if (!log->log.column[c].label)
+            continue;
+        first = labels++ == 0 ? name : first;
+        if (!wanted || strcmp(wanted, name) == 0)
+            *found = (int)c;
+    }
+    if (wanted && *found < 0)
+        return imki_fail(findings, error, IMK_ERROR_COLUMN, "no_section", wanted, 0, NULL);
+    if (!wanted && labels > 1)
+        return imki_fail(findings, error, IMK_ERROR_COLUMN, "sections", first,
+                         IMKI_NUMBERS((double)labels));
+    return IMK_OK;
+}
+
+static imk_status take_sections(imk_calibrate_record *log, int column, imk_error *error)
+{
+    const imk_allocator *allocator = &log->log.allocator;
+    const size_t rows = log->log.rows, labels = log->log.label_count;
+    if (column < 0)
+        return IMK_OK;
+    log->section = imki_resize(allocator, NULL, rows * sizeof *log->section);
+    log->section_name = imki_resize(allocator, NULL, (labels + 1) * sizeof *log->section_name);
+    if (!log->section || !log->section_name)
+        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    for (size_t row = 0; row < rows; row++) {
+        const double label = log->log.data[column][row];
+        const bool none = !(label >= 0 && label < (double)labels);
+        log->section[row] = none || !log->log.label[(size_t)label][0] ? -1 : (int)label;
+    }
+    for (size_t k = 0; k < labels; k++)
+        log->section_name[k] = log->log.label[k];
+    log->record.section = log->section;
+    log->record.section_count = labels;
+    log->record.section_name = log->section_name;
+    return IMK_OK;
+}
+
+static void tell_missing(const imk_test_record *record, imk_findings *findings)
+{
+    size_t first;
+    const size_t rows = imk_test_record_missing(record, &first);
+    if (rows > 0)
+        imki_find(findings, IMK_FINDING_WARNING, "readings_missing", NULL,
+                  IMKI_NUMBERS((double)rows, (double)record->count, (double)first + 1));
+}
+
+imk_status imk_calibrate_record_make(imk_calibrate_record *log, const char *section,
+                                     imk_findings *findings, imk_error *error)
+{
+    imk_log *columns = &log->log;
+    imk_test_record *record = &log->record;
+    const int time = imk_log_find(columns, IMK_QUANTITY_TIME, -1);
+    const int temperature = imk_log_find(columns, IMK_QUANTITY_TEMPERATURE, -1);
+    int column = -1;
+    imk_log_forget_faults(columns);
+    if (time >= 0)
+        drop_rows(log, time, findings);
+    if (columns->rows == 0)
+        return imki_fail(findings, error, IMK_ERROR_EMPTY, "no_rows", NULL, 0, NULL);
+    const char *slash = strrchr(log->path, '/');
+    record->name = slash ? slash + 1 : log->path;
+    record->count = columns->rows;
+    record->dt = columns->findings.interval;
+    record->time = time >= 0 ? columns->data[time] : NULL;
+    record->temperature = temperature >= 0 ? columns->data[temperature] : NULL;
+    imk_status status = take_axes(log, 0, findings, error);
+    if (status == IMK_OK)
+        status = take_axes(log, 1, findings, error);
+    if (status == IMK_OK && record->axis_count[0] + record->axis_count[1] == 0)
+        status = imki_fail(findings, error, IMK_ERROR_COLUMN, "no_sensor", NULL, 0, NULL);
+    if (status == IMK_OK)
+        status = find_section(log, section, &column, findings, error);
+    if (status == IMK_OK)
+        status = take_sections(log, column, error);
+    if (status == IMK_OK)
+        tell_missing(record, findings);
+    return status;
+}
+
+void imk_calibrate_record_free(imk_calibrate_record *log)
+{
+    const imk_allocator allocator = log->log.allocator;
+    imki_resize(&allocator, log->section, 0);
+    imki_resize(&allocator, log->section_name, 0);
+    imki_resize(&allocator, log->reference, 0);
+    imk_log_free(&log->log);
+}
