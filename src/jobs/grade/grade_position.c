@@ -172,20 +172,24 @@ imk_status imk_grade_run(const imk_model *model, const imk_job *job, imk_graded 
 {
     const imk_job alone = {.memory = 0};
     job = job ? job : &alone;
+    *result = NULL;
     imk_graded *one = imki_resize(&job->allocator, NULL, sizeof *one);
-    *result = one;
     if (!one)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    *one = (imk_graded){.model = model, .allocator = job->allocator, .next = IMK_GRADE_NONE};
+    memset(one, 0, sizeof *one);
+    *result = one;
+    one->model = model;
+    one->allocator = job->allocator;
+    one->next = IMK_GRADE_NONE;
     one->table = imk_grade_model(model);
     one->gyro_scale = scale_stability(&model->gyro);
     one->accel_scale = scale_stability(&model->accel);
     one->no_position = why_no_position(model);
     if (!one->no_position)
         return find_position(one, job, error);
-    return one->table.limiting[0] ? IMK_OK
-                                  : imki_fail(&one->findings, error, IMK_ERROR_EMPTY,
-                                              "nothing_to_grade", NULL, 0, NULL);
+    if (*one->table.limiting)
+        return IMK_OK;
+    return imki_fail(&one->findings, error, IMK_ERROR_EMPTY, "nothing_to_grade", NULL, 0, NULL);
 }
 
 void imk_graded_free(imk_graded *result)
