@@ -42,7 +42,7 @@ PUBLIC = {
     "physics": "fibre_optic free_gyro instrument laboratory mems_accelerometer pendulous_servo "
                "rate_gyro rate_integrating_gyro ring_laser shell_gyro spinning_mass "
                "suspended_rotor tuned_gyro tuning_fork vibrating_beam",
-    "jobs": "allan_log allocator channel_units compensate_log even_record identify_curve identify_log "
+    "jobs": "allan_log allocator channel_units compensate_log evaluate_sheet even_record identify_curve identify_log "
             "identify_several job physics_log readable record record_plan simulate_log spectrum_log",
     "report": "report result show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "

@@ -10,6 +10,7 @@
 #include "imukit/allocator.h"
 #include "imukit/channel_units.h"
 #include "imukit/compensate_log.h"
+#include "imukit/evaluate_sheet.h"
 #include "imukit/even_record.h"
 #include "imukit/identify_curve.h"
 #include "imukit/identify_log.h"

@@ -33,4 +33,7 @@ size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t
 void imki_show_estimate(imk_result *result, const char *key, const imk_estimate *estimate,
                         double scale, const char *unit);
 
+/* evaluate_figure_show.c: deviations and hysteresis of a channel. */
+void imki_show_evaluate_panels(const imk_evaluate_channel *channel, imk_figure_builder *figure);
+
 #endif
