@@ -43,8 +43,9 @@ PUBLIC = {
                "rate_gyro rate_integrating_gyro ring_laser shell_gyro spinning_mass "
                "suspended_rotor tuned_gyro tuning_fork vibrating_beam",
     "jobs": "allan_log allocator calibrate_log channel_units compensate_log drift_models "
-            "even_record grade_position identify_curve identify_log identify_several job "
-            "navigate_log physics_log readable record record_plan simulate_log spectrum_log",
+            "evaluate_sheet even_record grade_position identify_curve identify_log "
+            "identify_several job navigate_log physics_log readable record record_plan "
+            "simulate_log spectrum_log",
     "report": "report result show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "
           "motion_file output_file parameter_file thread_pool",

@@ -15,11 +15,11 @@
 /* ---- channels -------------------------------------------------------------------------------- */
 
 /* The channel of this name, made when there is none; NULL after a message. */
-static evaluate_channel *channel_of(evaluation *v, const char *name, imk_unit reference,
-                                    imk_unit reading)
+static imk_evaluate_channel *channel_of(evaluation *v, const char *name, imk_unit reference,
+                                        imk_unit reading)
 {
     for (size_t k = 0; k < v->channel_count; k++) {
-        evaluate_channel *c = &v->channel[k];
+        imk_evaluate_channel *c = &v->channel[k];
         if (strcmp(c->name, name) != 0)
             continue;
         if (imk_dimension_equal(c->reference_unit.dimension, reference.dimension) &&
@@ -29,18 +29,18 @@ static evaluate_channel *channel_of(evaluation *v, const char *name, imk_unit re
                        c->reading_unit.text, c->reference_unit.text, reading.text, reference.text);
         return NULL;
     }
-    if (v->channel_count == EVALUATE_CHANNELS) {
-        command_failed("there are more than %d columns of readings", EVALUATE_CHANNELS);
+    if (v->channel_count == IMK_EVALUATE_CHANNELS) {
+        command_failed("there are more than %d columns of readings", IMK_EVALUATE_CHANNELS);
         return NULL;
     }
-    evaluate_channel *c = &v->channel[v->channel_count++];
+    imk_evaluate_channel *c = &v->channel[v->channel_count++];
     snprintf(c->name, sizeof c->name, "%s", name);
     c->reference_unit = reference;
     c->reading_unit = reading;
     return c;
 }
 
-static void add_reading(evaluate_channel *c, double reference, double reading, double sigma,
+static void add_reading(imk_evaluate_channel *c, double reference, double reading, double sigma,
                         int direction, int run)
 {
     if (c->count == c->capacity) {
@@ -124,8 +124,8 @@ static int run_number(run_list *runs, double value)
     return (int)(runs->first + runs->count - 1);
 }
 
-static int take_row(evaluate_channel *c, const char *path, const imk_log *log, const columns *at,
-                    int reading, size_t row, run_list *runs)
+static int take_row(imk_evaluate_channel *c, const char *path, const imk_log *log,
+                    const columns *at, int reading, size_t row, run_list *runs)
 {
     int direction = 0;
     int code = at->direction >= 0 ? read_direction(log, at->direction, row, &direction) : -1;
@@ -158,7 +158,7 @@ static int take_table(evaluation *v, const char *path, const imk_log *log)
             continue;
         const char *name = column->name[7] == '_' ? column->name + 8 : column->name;
         code = check_unit(path, column);
-        evaluate_channel *c =
+        imk_evaluate_channel *c =
             code < 0 ? channel_of(v, name, log->column[at.reference].unit, column->unit) : NULL;
         if (code < 0 && !c)
             return EXIT_FAILED;
@@ -251,7 +251,7 @@ static bool about_axis(const imk_test_record *record, const imk_reference_stretc
     return true;
 }
 
-static int add_stretches(evaluation *v, const bench_log *log, evaluate_channel *c, int sensor,
+static int add_stretches(evaluation *v, const bench_log *log, imk_evaluate_channel *c, int sensor,
                          int axis, double most, size_t count, const imk_reference_stretch *stretch)
 {
     const bool sections = v->options->bench.section != NULL;
@@ -274,7 +274,7 @@ static int add_stretches(evaluation *v, const bench_log *log, evaluate_channel *
 static int take_axis(evaluation *v, const bench_log *log, const double *zero, int sensor, int axis)
 {
     static const char *const names[2] = {"gyro", "accel"};
-    char name[EVALUATE_NAME];
+    char name[IMK_EVALUATE_NAME];
     const double most = span(&log->record, sensor, axis);
     if (!isfinite(most))
         return -1;
@@ -284,7 +284,7 @@ static int take_axis(evaluation *v, const bench_log *log, const double *zero, in
     const imk_unit input = imk_unit_of(sensor == 0 ? "deg/s" : "g");
     const imk_test_record own = record_of_axis(&log->record, sensor, axis, zero);
     int code = find_stretches(&v->options->bench, log, &own, &stretch, &count);
-    evaluate_channel *c =
+    imk_evaluate_channel *c =
         code < 0
             ? channel_of(v, name, input, log->record.counts[sensor] ? imk_unit_of("count") : input)
             : NULL;
@@ -406,7 +406,7 @@ int evaluate_load(evaluation *v)
 /* ---- at rest --------------------------------------------------------------------------------- */
 
 static void identify(const log_channels *channels, size_t c, double confidence, void *workspace,
-                     size_t size, evaluate_rest *rest)
+                     size_t size, imk_evaluate_rest *rest)
 {
     imk_error error;
     const imk_log_column *column = log_channel_column(channels, c);
@@ -424,7 +424,7 @@ static void identify(const log_channels *channels, size_t c, double confidence, 
         return;
     }
     rest->unit = channel_readable_unit(column, rest->result.minimum_floor);
-    evaluate_rest_figures(rest);
+    imk_evaluate_rest_figures(rest);
 }
 
 int evaluate_load_rest(evaluation *v)
@@ -438,7 +438,7 @@ int evaluate_load_rest(evaluation *v)
         return code;
     const size_t size = imk_identify_workspace_size(channels.rows);
     void *workspace = command_memory(NULL, size);
-    for (size_t c = 0; c < channels.count && v->rest_count < EVALUATE_CHANNELS; c++)
+    for (size_t c = 0; c < channels.count && v->rest_count < IMK_EVALUATE_CHANNELS; c++)
         identify(&channels, c, o->confidence, workspace, size, &v->rest[v->rest_count++]);
     free(workspace);
     log_channels_free(&channels);

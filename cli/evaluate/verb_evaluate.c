@@ -131,7 +131,7 @@ static int read_quantity(const char *name, const char *text, imk_dimension dimen
     return -1;
 }
 
-static bool in_counts(const evaluate_channel *c)
+static bool in_counts(const imk_evaluate_channel *c)
 {
     return imk_dimension_equal(c->reading_unit.dimension, imk_unit_of("count").dimension);
 }
@@ -163,7 +163,7 @@ static int check_company(const evaluation *v)
 }
 
 /* Counts become what they stand for. */
-static int apply_sensitivity(const evaluate_options *o, evaluate_channel *c)
+static int apply_sensitivity(const evaluate_options *o, imk_evaluate_channel *c)
 {
     const imk_dimension counts = imk_unit_of("count").dimension;
     imk_dimension dimension = counts;
@@ -184,7 +184,7 @@ static int apply_sensitivity(const evaluate_options *o, evaluate_channel *c)
     return code;
 }
 
-static int prepare(const evaluate_options *o, evaluate_channel *c)
+static int prepare(const evaluate_options *o, imk_evaluate_channel *c)
 {
     double largest = 0;
     c->settings = imk_evaluation_default();
@@ -214,7 +214,7 @@ static bool all_known(size_t count, const double *sigma)
     return true;
 }
 
-static bool any_direction(const evaluate_channel *c)
+static bool any_direction(const imk_evaluate_channel *c)
 {
     for (size_t k = 0; k < c->count; k++)
         if (c->direction[k] != 0)
@@ -222,7 +222,7 @@ static bool any_direction(const evaluate_channel *c)
     return false;
 }
 
-static int evaluate_channel_table(const evaluate_options *o, evaluate_channel *c)
+static int evaluate_channel_table(const evaluate_options *o, imk_evaluate_channel *c)
 {
     imk_error error;
     int code = prepare(o, c);
@@ -242,7 +242,7 @@ static int evaluate_channel_table(const evaluate_options *o, evaluate_channel *c
     free(workspace);
     if (status != IMK_OK)
         return command_error(&error, c->name);
-    evaluate_channel_figures(c);
+    imk_evaluate_channel_figures(c);
     return -1;
 }
 
@@ -252,7 +252,26 @@ static int show(const evaluation *v)
     const int end =
         o->strict && (v->missed || command_warning_count() > 0) ? EXIT_FAILED : EXIT_DONE;
     imk_result *result = show_begin("evaluate");
-    evaluate_show(v, result);
+    const imk_evaluate_shown shown = {.confidence = o->confidence,
+                                      .path_count = v->path_count,
+                                      .path = v->path,
+                                      .rest_path = o->rest,
+                                      .unit = o->unit,
+                                      .serial = o->serial,
+                                      .operator_name = o->operator_name,
+                                      .laboratory = o->laboratory,
+                                      .date = o->date,
+                                      .temperature = o->temperature,
+                                      .report = o->report,
+                                      .levels = o->levels,
+                                      .missed = v->missed,
+                                      .channel_count = v->channel_count,
+                                      .rest_count = v->rest_count,
+                                      .limit_count = v->limit_count,
+                                      .channel = v->channel,
+                                      .rest = v->rest};
+    imk_show_evaluate(&shown, result);
+    show_origin(result);
     const show_options options = {
         .report = o->report,
         .plot = o->plot,
@@ -280,7 +299,7 @@ static int evaluate(evaluation *v)
 static void free_evaluation(evaluation *v)
 {
     for (size_t k = 0; k < v->channel_count; k++) {
-        evaluate_channel *c = &v->channel[k];
+        imk_evaluate_channel *c = &v->channel[k];
         free(c->reference);
         free(c->reading);
         free(c->sigma);

@@ -12,6 +12,7 @@
 #include "imukit/channel_units.h"
 #include "imukit/compensate_log.h"
 #include "imukit/drift_models.h"
+#include "imukit/evaluate_sheet.h"
 #include "imukit/even_record.h"
 #include "imukit/grade_position.h"
 #include "imukit/identify_curve.h"

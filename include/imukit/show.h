@@ -10,6 +10,7 @@
 #include "imukit/compensate_log.h"
 #include "imukit/drift_models.h"
 #include "imukit/earth.h"
+#include "imukit/evaluate_sheet.h"
 #include "imukit/grade_position.h"
 #include "imukit/identify_several.h"
 #include "imukit/navigate_log.h"
@@ -172,6 +173,24 @@ IMK_API void imk_show_physics_panel(const imk_physics_view *view, imk_figure_bui
 /** A view that can move; its texts and numbers are the view's. */
 IMK_API imk_animation imk_physics_animation(const imk_physics_view *view);
 /** @} */
+
+/** An evaluation, and what its test report says of the unit; texts may be NULL. */
+typedef struct imk_evaluate_shown {
+    double confidence;
+    size_t path_count;
+    const char *const *path; /**< of the readings */
+    const char *rest_path;   /**< of the log at rest */
+    const char *unit, *serial, *operator_name, *laboratory, *date, *temperature;
+    const char *report; /**< where the page goes */
+    bool levels;        /**< on the terminal too */
+    bool missed;        /**< a limit */
+    size_t channel_count, rest_count, limit_count;
+    const imk_evaluate_channel *channel;
+    const imk_evaluate_rest *rest;
+} imk_evaluate_shown;
+
+/** Data, tables and test report. What is added after it is for the page. */
+IMK_API void imk_show_evaluate(const imk_evaluate_shown *shown, imk_result *result);
 
 /** What records of several lengths tell, how long they must be, and, of a curve, a figure. */
 IMK_API void imk_show_record_plan(const imk_record_plan *plan, const char *name,

@@ -20,8 +20,8 @@ void imki_show_overview(const imk_physics_shown *p, imk_result *result);
  * repeatability included; and what experiments say of it. */
 void imki_show_reduced(const imk_model *model, int sensor, imk_result *result);
 void imki_reduced_data(const imk_model *model, int sensor, imk_result *result);
-void imki_show_sweep(const imk_physics_sweep *sweep, imk_result *result);
-void imki_sweep_data(const imk_physics_sweep *sweep, int sensor, imk_result *result);
+void imki_show_sweep(const imk_physics_sweep *l, imk_result *result);
+void imki_sweep_data(const imk_physics_sweep *l, int sensor, imk_result *result);
 
 /* physics_figure_show.c: the outputs of a run against time, and against the input when that is a
  * sine; what a laboratory found. */

@@ -41,5 +41,7 @@ void imki_show_text(imki_text *text, imk_result *result);
 bool imki_warned(const imk_findings *findings);
 /* The warnings, as findings of the page. */
 void imki_show_warnings(const imk_findings *findings, imk_result *result);
+/* evaluate_figure_show.c: deviations and hysteresis of a channel. */
+void imki_show_evaluate_panels(const imk_evaluate_channel *channel, imk_figure_builder *figure);
 
 #endif

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The evaluation as a result: data, tables for the terminal, and the test report that can be read,
  * or printed on paper or into a PDF. */
-#include "evaluate_parts.h"
+#include "show_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { NUMBER = 40 };
 
 /* ---- data ------------------------------------------------------------------------------------ */
 
-static void show_figure_data(const evaluate_sheet *sheet, imk_result *result)
+static void show_figure_data(const imk_evaluate_sheet *sheet, imk_result *result)
 {
     imk_result_object(result, "figures");
-    for (const evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
+    for (const imk_evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
         imk_result_object(result, row->key);
         imk_result_number(result, "value", row->figure.value);
         imk_result_number(result, "lower", row->figure.lower);
@@ -21,9 +22,9 @@ static void show_figure_data(const evaluate_sheet *sheet, imk_result *result)
         imk_result_text(result, "unit", row->si);
         if (row->level >= 0)
             imk_result_count(result, "level", row->level);
-        if (row->verdict != VERDICT_NONE) {
+        if (row->verdict != IMK_EVALUATE_NONE) {
             imk_result_text(result, "limit", row->limit);
-            imk_result_text(result, "verdict", evaluate_verdict_text(row->verdict));
+            imk_result_text(result, "verdict", imk_evaluate_verdict_text(row->verdict));
         }
         imk_result_end(result);
     }
@@ -39,7 +40,7 @@ static void show_line_data(const char *key, const imk_evaluation_line *line, imk
     imk_result_end(result);
 }
 
-static void show_level_data(const evaluate_channel *c, imk_result *result)
+static void show_level_data(const imk_evaluate_channel *c, imk_result *result)
 {
     imk_result_array(result, "levels");
     for (const imk_evaluation_level *l = c->level; l < c->level + c->result.levels; l++) {
@@ -57,7 +58,7 @@ static void show_level_data(const evaluate_channel *c, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_channel_data(const evaluate_channel *c, imk_result *result)
+static void show_channel_data(const imk_evaluate_channel *c, imk_result *result)
 {
     static const char *const sources[] = {"replicates", "stated", "residuals", "none"};
     char reference[40], reading[40];
@@ -84,15 +85,15 @@ static void show_channel_data(const evaluate_channel *c, imk_result *result)
     imk_result_end(result);
 }
 
-static void show_data(const evaluation *v, imk_result *result)
+static void show_data(const imk_evaluate_shown *v, imk_result *result)
 {
     imk_result_object(result, "inputs");
     imk_result_array(result, "files");
     for (size_t k = 0; k < v->path_count; k++)
         imk_result_text(result, NULL, v->path[k]);
     imk_result_end(result);
-    imk_result_text(result, "static", v->options->rest);
-    imk_result_number(result, "confidence", v->options->confidence);
+    imk_result_text(result, "static", v->rest_path);
+    imk_result_number(result, "confidence", v->confidence);
     imk_result_end(result);
     imk_result_object(result, "result");
     imk_result_array(result, "channels");
@@ -121,7 +122,7 @@ static void number(double value, double spread, char text[NUMBER])
 }
 
 /* "1.20 … 1.45", "above 0.1" where one end is open. */
-static void add_interval(const evaluate_row *row, imk_table *table)
+static void add_interval(const imk_evaluate_row *row, imk_table *table)
 {
     const double scale = row->unit.scale, low = row->figure.lower / scale;
     const double high = row->figure.upper / scale, spread = 0.25 * (high - low);
@@ -137,20 +138,19 @@ static void add_interval(const evaluate_row *row, imk_table *table)
 }
 
 /* Figures that are not determined are left out, unless they have a limit. */
-static void show_figures(const evaluation *v, const char *name, const evaluate_sheet *sheet,
-                         imk_result *result)
+static void show_figures(const imk_evaluate_shown *v, const char *name,
+                         const imk_evaluate_sheet *sheet, imk_result *result)
 {
     const bool limits = v->limit_count > 0;
     imk_table *table = imk_result_table(result, 1U << 1 | 1U << 2);
-    for (const evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
+    for (const imk_evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
         const imk_evaluation_figure *f = &row->figure;
         const double scale = row->unit.scale;
         char value[NUMBER];
-        if (!isfinite(f->value) && !isfinite(f->upper) && row->verdict == VERDICT_NONE)
+        if (!isfinite(f->value) && !isfinite(f->upper) && row->verdict == IMK_EVALUATE_NONE)
             continue;
         if (imk_table_rows(table) == 0) {
-            imk_table_row(table, "%s\tvalue\t%g %% interval\tunit", name,
-                          100 * v->options->confidence);
+            imk_table_row(table, "%s\tvalue\t%g %% interval\tunit", name, 100 * v->confidence);
             if (limits)
                 imk_table_add(table, "limit\tverdict");
         }
@@ -159,13 +159,13 @@ static void show_figures(const evaluation *v, const char *name, const evaluate_s
         add_interval(row, table);
         imk_table_add(table, "%s", row->unit.text);
         if (limits)
-            imk_table_add(table, "%s\t%s", row->limit, evaluate_verdict_text(row->verdict));
+            imk_table_add(table, "%s\t%s", row->limit, imk_evaluate_verdict_text(row->verdict));
     }
     if (imk_table_rows(table) > 0)
         imk_result_gap(result);
 }
 
-static void show_levels(const evaluate_channel *c, imk_result *result)
+static void show_levels(const imk_evaluate_channel *c, imk_result *result)
 {
     static const char *const heads[] = {"mean",    "1 sigma",      "rising",
                                         "falling", "off the line", "off the best line"};
@@ -194,7 +194,7 @@ static void show_levels(const evaluate_channel *c, imk_result *result)
 /* ---- words ----------------------------------------------------------------------------------- */
 
 /* What the figures rest on. */
-static void show_basis(const evaluate_channel *c, imk_result *result)
+static void show_basis(const imk_evaluate_channel *c, imk_result *result)
 {
     static const char *const sources[] = {"replicates", "the stated sigmas",
                                           "the residuals of the line, nonlinearity included",
@@ -211,7 +211,7 @@ static void show_basis(const evaluate_channel *c, imk_result *result)
 }
 
 /* What a reader should know beside the numbers. */
-static void show_remarks(const evaluate_channel *c, imk_result *result)
+static void show_remarks(const imk_evaluate_channel *c, imk_result *result)
 {
     const imk_evaluation *r = &c->result;
     if (r->source >= IMK_SCATTER_RESIDUALS)
@@ -236,14 +236,13 @@ static void show_remarks(const evaluate_channel *c, imk_result *result)
 }
 
 /* What only the user knows; no line for what was not said. */
-static void show_unit(const evaluation *v, imk_result *result)
+static void show_unit(const imk_evaluate_shown *v, imk_result *result)
 {
-    const evaluate_options *o = v->options;
     const struct {
         const char *title, *text;
-    } rows[] = {{"Unit under test", o->unit},  {"Serial number", o->serial},
-                {"Laboratory", o->laboratory}, {"Operator", o->operator_name},
-                {"Date of the test", o->date}, {"Temperature", o->temperature}};
+    } rows[] = {{"Unit under test", v->unit},  {"Serial number", v->serial},
+                {"Laboratory", v->laboratory}, {"Operator", v->operator_name},
+                {"Date of the test", v->date}, {"Temperature", v->temperature}};
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table, "Test");
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
@@ -251,29 +250,29 @@ static void show_unit(const evaluation *v, imk_result *result)
             imk_table_row(table, "%s\t%s", rows[k].title, rows[k].text);
     for (size_t k = 0; k < v->path_count; k++)
         imk_table_row(table, "%s\t%s", k == 0 ? "Readings" : "", v->path[k]);
-    if (o->rest)
-        imk_table_row(table, "Log at rest\t%s", o->rest);
+    if (v->rest_path)
+        imk_table_row(table, "Log at rest\t%s", v->rest_path);
 }
 
 /* A finding for each limit that is not surely met. @return how many limits there are */
-static size_t show_limits(const char *name, const evaluate_sheet *sheet, bool *met,
+static size_t show_limits(const char *name, const imk_evaluate_sheet *sheet, bool *met,
                           imk_result *result)
 {
     size_t judged = 0;
-    for (const evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
+    for (const imk_evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
         char line[300];
-        judged += row->verdict != VERDICT_NONE;
-        if (row->verdict <= VERDICT_MET)
+        judged += row->verdict != IMK_EVALUATE_NONE;
+        if (row->verdict <= IMK_EVALUATE_MET)
             continue;
         *met = false;
         snprintf(line, sizeof line, "%s, %s: %s (limit %s).", name, row->title,
-                 evaluate_verdict_text(row->verdict), row->limit);
-        imk_result_finding(result, row->verdict == VERDICT_DOUBTFUL ? 1 : 2, line);
+                 imk_evaluate_verdict_text(row->verdict), row->limit);
+        imk_result_finding(result, row->verdict == IMK_EVALUATE_DOUBTFUL ? 1 : 2, line);
     }
     return judged;
 }
 
-static void show_verdict(const evaluation *v, imk_result *result)
+static void show_verdict(const imk_evaluate_shown *v, imk_result *result)
 {
     size_t judged = 0;
     bool met = true;
@@ -290,10 +289,10 @@ static void show_verdict(const evaluation *v, imk_result *result)
         imk_result_finding(result, 0, text);
 }
 
-static void show_definitions(const evaluation *v, imk_result *result)
+static void show_definitions(const imk_evaluate_shown *v, imk_result *result)
 {
-    const evaluate_sheet *sheets[2] = {v->channel_count > 0 ? &v->channel[0].sheet : NULL,
-                                       v->rest_count > 0 ? &v->rest[0].sheet : NULL};
+    const imk_evaluate_sheet *sheets[2] = {v->channel_count > 0 ? &v->channel[0].sheet : NULL,
+                                           v->rest_count > 0 ? &v->rest[0].sheet : NULL};
     imk_result_heading(result, "Definitions");
     imk_table *table = imk_result_table(result, 0);
     imk_table_row(table, "figure\tdefinition");
@@ -308,7 +307,7 @@ static void show_definitions(const evaluation *v, imk_result *result)
         "distribution for the figures of the line and the precision. Of figures that are the "
         "largest of several differences, the interval is that of what a unit without noise "
         "would show at the same levels; it holds it with at least about that confidence.",
-        100 * v->options->confidence);
+        100 * v->confidence);
     imk_result_line(result, "Figures are those of the runs tested; how a further run would differ "
                             "is the repeatability. The uncertainty of the reference is not "
                             "contained.");
@@ -316,7 +315,8 @@ static void show_definitions(const evaluation *v, imk_result *result)
 
 /* ---- all of it ------------------------------------------------------------------------------- */
 
-static void show_channel(const evaluation *v, const evaluate_channel *c, imk_result *result)
+static void show_channel(const imk_evaluate_shown *v, const imk_evaluate_channel *c,
+                         imk_result *result)
 {
     imk_result_for(result, IMK_FOR_PAGE);
     if (c > v->channel)
@@ -327,7 +327,7 @@ static void show_channel(const evaluation *v, const evaluate_channel *c, imk_res
     imk_result_gap(result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     show_figures(v, c->name, &c->sheet, result);
-    if (v->options->levels)
+    if (v->levels)
         show_levels(c, result);
     imk_result_for(result, IMK_FOR_PAGE);
     show_figures(v, "figure", &c->sheet, result);
@@ -337,7 +337,7 @@ static void show_channel(const evaluation *v, const evaluate_channel *c, imk_res
         imk_result_gap(result);
     imk_result_for(result, IMK_FOR_PAGE);
     if (c->result.levels > 1)
-        evaluate_show_panels(
+        imki_show_evaluate_panels(
             c, imk_result_figure(result, "", c->result.hysteresis_level < 0 ? 1 : 2,
                                  "Mean readings of each level less the least-squares line. "
                                  "Dashes: the best line; tinted: the narrowest strip that holds "
@@ -346,7 +346,7 @@ static void show_channel(const evaluation *v, const evaluate_channel *c, imk_res
 }
 
 /* All channels in one; a single panel keeps its own width, two stand side by side. */
-static void show_plotted(const evaluation *v, imk_result *result)
+static void show_plotted(const imk_evaluate_shown *v, imk_result *result)
 {
     bool two = false;
     for (size_t k = 0; k < v->channel_count; k++)
@@ -354,15 +354,14 @@ static void show_plotted(const evaluation *v, imk_result *result)
     imk_result_for(result, IMK_FOR_PLOT);
     imk_figure_builder *figure = imk_result_figure(result, "", two ? 2 : 1, "");
     for (size_t k = 0; k < v->channel_count; k++)
-        evaluate_show_panels(&v->channel[k], figure);
+        imki_show_evaluate_panels(&v->channel[k], figure);
 }
 
-void evaluate_show(const evaluation *v, imk_result *result)
+void imk_show_evaluate(const imk_evaluate_shown *v, imk_result *result)
 {
-    const evaluate_options *o = v->options;
     show_data(v, result);
-    imk_result_title(result, "Test report", "%s%s%s", o->unit ? o->unit : "Laboratory figures",
-                     o->serial ? ", serial number " : "", o->serial ? o->serial : "");
+    imk_result_title(result, "Test report", "%s%s%s", v->unit ? v->unit : "Laboratory figures",
+                     v->serial ? ", serial number " : "", v->serial ? v->serial : "");
     imk_result_for(result, IMK_FOR_PAGE);
     show_unit(v, result);
     show_verdict(v, result);
@@ -375,17 +374,17 @@ void evaluate_show(const evaluation *v, imk_result *result)
     for (size_t k = 0; k < v->rest_count; k++)
         show_figures(v, v->rest[k].name, &v->rest[k].sheet, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
-    if (o->report)
-        imk_result_line(result, "Report: %s", o->report);
+    if (v->report)
+        imk_result_line(result, "Report: %s", v->report);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_break(result);
     show_definitions(v, result);
     for (size_t k = 0; k < v->channel_count; k++) {
-        char text[EVALUATE_NAME + 20];
+        char text[IMK_EVALUATE_NAME + 20];
         snprintf(text, sizeof text, "Levels of %s", v->channel[k].name);
         imk_result_heading(result, text);
         show_levels(&v->channel[k], result);
     }
-    show_origin(result);
     show_plotted(v, result);
+    imk_result_for(result, IMK_FOR_PAGE);
 }

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The figures of a channel as they are shown: names, definitions, units. */
-#include "evaluate_parts.h"
+#include "imukit/evaluate_sheet.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef enum shown_in { IN_SLOPE, IN_READING, IN_REFERENCE, IN_PERCENT, IN_PPM } shown_in;
@@ -81,34 +83,34 @@ static const definition definitions[] = {
      IN_READING, AT_REST, false, 0, 0},
 };
 enum { DEFINITIONS = sizeof definitions / sizeof *definitions };
-_Static_assert(DEFINITIONS <= (int)EVALUATE_ROWS, "there is room for all");
+_Static_assert(DEFINITIONS <= (int)IMK_EVALUATE_ROWS, "there is room for all");
 
-size_t evaluate_limit_keys(const char *key[EVALUATE_ROWS])
+size_t imk_evaluate_limit_keys(const char *key[IMK_EVALUATE_ROWS])
 {
     for (size_t k = 1; k < DEFINITIONS; k++) /* all but the sensitivity */
         key[k - 1] = definitions[k].key;
     return DEFINITIONS - 1;
 }
 
-static evaluate_row *add_row(evaluate_sheet *sheet, const definition *d,
-                             imk_evaluation_figure figure, imk_unit unit)
+static imk_evaluate_row *add_row(imk_evaluate_sheet *sheet, const definition *d,
+                                 imk_evaluation_figure figure, imk_unit unit)
 {
-    evaluate_row *row = &sheet->row[sheet->count++];
-    *row = (evaluate_row){.key = d->key,
-                          .title = d->title,
-                          .definition = d->definition,
-                          .figure = figure,
-                          .unit = unit,
-                          .is_signed = d->is_signed,
-                          .level = -1,
-                          .limit = ""};
+    imk_evaluate_row *row = &sheet->row[sheet->count++];
+    *row = (imk_evaluate_row){.key = d->key,
+                              .title = d->title,
+                              .definition = d->definition,
+                              .figure = figure,
+                              .unit = unit,
+                              .is_signed = d->is_signed,
+                              .level = -1,
+                              .limit = ""};
     if (imk_dimension_si(unit.dimension, row->si, sizeof row->si) == 0 || !row->si[0])
         snprintf(row->si, sizeof row->si, "1");
     return row;
 }
 
 /* reading/reference, as one unit to show in. */
-static imk_unit slope_unit(const evaluate_channel *c, char *si, size_t size)
+static imk_unit slope_unit(const imk_evaluate_channel *c, char *si, size_t size)
 {
     imk_unit unit = c->reading_unit;
     unit.scale = c->reading_unit.scale / c->reference_unit.scale;
@@ -138,7 +140,7 @@ static imk_unit of_difference(imk_unit unit)
     return unit;
 }
 
-static imk_unit unit_of(const evaluate_channel *c, shown_in unit)
+static imk_unit unit_of(const imk_evaluate_channel *c, shown_in unit)
 {
     static const char *const fixed[] = {[IN_PERCENT] = "%", [IN_PPM] = "ppm"};
     return unit == IN_READING     ? of_difference(c->reading_unit)
@@ -160,7 +162,7 @@ static imk_evaluation_figure figure_of(const imk_evaluation *r, const definition
     return (imk_evaluation_figure){f->value - less, f->lower - less, f->upper - less};
 }
 
-void evaluate_channel_figures(evaluate_channel *c)
+void imk_evaluate_channel_figures(imk_evaluate_channel *c)
 {
     const imk_evaluation *r = &c->result;
     char si[80];
@@ -171,7 +173,7 @@ void evaluate_channel_figures(evaluate_channel *c)
             (d->kind == OF_RUNS && r->runs < 2) || d->kind == AT_REST)
             continue;
         const bool is_slope = d->unit == IN_SLOPE;
-        evaluate_row *row =
+        imk_evaluate_row *row =
             add_row(&c->sheet, d, figure_of(r, d), is_slope ? slope : unit_of(c, d->unit));
         if (is_slope)
             memcpy(row->si, si, sizeof si);
@@ -180,7 +182,7 @@ void evaluate_channel_figures(evaluate_channel *c)
     }
 }
 
-void evaluate_rest_figures(evaluate_rest *rest)
+void imk_evaluate_rest_figures(imk_evaluate_rest *rest)
 {
     const double none = (double)NAN;
     const imk_estimate *b = &rest->result.term[IMK_NOISE_BIAS_INSTABILITY];

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Deviations of the mean readings from both lines, rising and falling apart, and the loop they
  * make. */
-#include "evaluate_parts.h"
-
-#include "imukit/figure_file.h"
+#include "show_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 
-static void begin_panel(const evaluate_channel *c, const char *what, imk_figure_builder *figure)
+static void begin_panel(const imk_evaluate_channel *c, const char *what, imk_figure_builder *figure)
 {
     char title[100], x_label[100], y_label[100];
     snprintf(title, sizeof title, "%s: %s", c->name, what);
@@ -25,7 +24,7 @@ static void begin_curve(imk_figure_builder *figure, const char *label, imk_curve
 }
 
 /* The minimax line with its strip, and the mean of both directions with its interval. */
-static void show_means(const evaluate_channel *c, imk_figure_builder *figure)
+static void show_means(const imk_evaluate_channel *c, imk_figure_builder *figure)
 {
     static const char *const labels[] = {"strip of the best line", "best line",
                                          "mean reading, 2 sigma"};
@@ -51,8 +50,8 @@ static void show_means(const evaluate_channel *c, imk_figure_builder *figure)
 }
 
 /* Levels with a mean of one direction: deviation from the least-squares line. */
-static void show_side(const evaluate_channel *c, bool up, const char *label, imk_curve_style style,
-                      imk_figure_builder *figure)
+static void show_side(const imk_evaluate_channel *c, bool up, const char *label,
+                      imk_curve_style style, imk_figure_builder *figure)
 {
     const imk_evaluation_line *line = &c->result.line;
     begin_curve(figure, label, style, up ? 2 : 1);
@@ -66,7 +65,7 @@ static void show_side(const evaluate_channel *c, bool up, const char *label, imk
     }
 }
 
-void evaluate_show_panels(const evaluate_channel *c, imk_figure_builder *figure)
+void imki_show_evaluate_panels(const imk_evaluate_channel *c, imk_figure_builder *figure)
 {
     begin_panel(c, "off the least-squares line", figure);
     show_means(c, figure);
