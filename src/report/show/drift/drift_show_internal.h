@@ -4,7 +4,7 @@
 #define IMUKI_DRIFT_SHOW_INTERNAL_H
 
 #include "jobs/drift/drift_models_internal.h"
-#include "show_internal.h"
+#include "report/show/show_internal.h"
 
 enum { IMKI_DRIFT_TIME = 80 };
 /* "10 min ~", where figures are rough. @return text */

@@ -3,7 +3,7 @@
 #ifndef IMUKI_IDENTIFY_SHOW_INTERNAL_H
 #define IMUKI_IDENTIFY_SHOW_INTERNAL_H
 
-#include "show_internal.h"
+#include "report/show/show_internal.h"
 
 #include "report/growing_text_internal.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The plan of a record to be shown: lengths that are due, what each length tells, a figure. */
-#include "show_internal.h"
+#include "report/show/show_internal.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef IMUKI_GRADE_SHOW_INTERNAL_H
 #define IMUKI_GRADE_SHOW_INTERNAL_H
 
-#include "show_internal.h"
+#include "report/show/show_internal.h"
 
 /* One map, or IMK_GRADE_MAPS beside one another. */
 void imki_show_grade_plot(const imk_graded_several *r, int map, imk_result *result);

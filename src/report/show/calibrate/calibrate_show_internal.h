@@ -4,7 +4,7 @@
 #define IMUKI_CALIBRATE_SHOW_INTERNAL_H
 
 #include "report/growing_text_internal.h"
-#include "report/show/identify_show_internal.h"
+#include "report/show/identify/identify_show_internal.h"
 
 #include "imukit/show.h"
 #include "jobs/calibrate/calibrate_internal.h"
