@@ -46,7 +46,7 @@ int main(void)
 {
     double *columns[] = {malloc(ROWS * sizeof(double)), malloc(ROWS * sizeof(double))};
     imk_identify_log *found = NULL;
-    imk_error error;
+    imk_error error = {.status = IMK_ERROR_MEMORY};
     int failed = EXIT_FAILURE;
     if (columns[0] && columns[1] && simulate(columns, &error) == IMK_OK &&
         identify(columns, &found, &error) == IMK_OK) {
