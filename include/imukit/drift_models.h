@@ -137,7 +137,7 @@ IMK_API imk_status imk_drift_models_run(size_t count, const imk_model *const *mo
 /** Statistics of runs of the last case at the rows of the table (imk_drift_runs()).
  *  @param errors  [run][row][state]
  *  @return IMK_ERROR_MEMORY */
-IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, uint64_t runs,
+IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, size_t runs,
                                               const double *errors, imk_error *error);
 IMK_API void imk_drift_models_free(imk_drift_models *result);
 

@@ -173,7 +173,7 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
     return status;
 }
 
-imk_status imk_drift_models_take_runs(imk_drift_models *r, uint64_t runs, const double *errors,
+imk_status imk_drift_models_take_runs(imk_drift_models *r, size_t runs, const double *errors,
                                       imk_error *error)
 {
     imki_arena *arena = &((holder *)r)->arena;
