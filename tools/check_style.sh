@@ -29,6 +29,11 @@ for name in $(find src cli -name '*.c' -printf '%f\n' | sort | uniq -d); do
         $(find src cli -name "$name" -printf '%p ')
 done
 
+# Of two messages with one code the second would never be told.
+for code in $(grep -oE '^    \{"[^"]+"' src/report/finding_text.c | sort | uniq -d | tr -d ' {"'); do
+    complain "src/report/finding_text.c: two messages have the code $code: name the job, JOB:$code"
+done
+
 grep -rnE '\b(TODO|FIXME|XXX|HACK)\b' include src cli tests bench fuzz examples cmake &&
     complain "something is left behind (above)"
 

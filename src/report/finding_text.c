@@ -206,7 +206,7 @@ static const struct message {
     {"axes_do_not_match",
      "{record} has {0} {1k} columns, {model} describes {2}: they cannot be matched; name the log's "
      "columns with --columns, - for one to skip"},
-    {"no_sensor", "{record} has no gyro and no accel column: name them with --columns"},
+    {"compensate:no_sensor", "{record} has no gyro and no accel column: name them with --columns"},
     {"sensor_needed", "{record} has no {0k} columns, which {name} of {model} needs"},
     {"not_in_model", "{model} describes no {0p}: these columns are copied as they are"},
     {"no_sensor_in_model", "{model} describes none of the sensors in {record}"},

@@ -91,7 +91,7 @@ imk_status imki_compensate_match(const imk_record_source *source, imk_compensate
     columns->time = imk_record_find(source, IMK_QUANTITY_TIME, -1);
     columns->temperature = imk_record_find(source, IMK_QUANTITY_TEMPERATURE, -1);
     if (there[0] + there[1] == 0)
-        return imki_fail(findings, error, IMK_ERROR_COLUMN, "no_sensor", NULL, 0, NULL);
+        return imki_fail(findings, error, IMK_ERROR_COLUMN, "compensate:no_sensor", NULL, 0, NULL);
     for (int sensor = 0; sensor < 2 && status == IMK_OK; sensor++) {
         const bool had = triads[sensor]->present;
         const char *term = there[sensor] == 0 && had ? needed_for(&log->model, sensor) : NULL;
