@@ -7,6 +7,7 @@
 #include "jobs/job_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 static const uint32_t settings_cookie = 0x414C4C31; /* "ALL1" */
 
@@ -174,7 +175,8 @@ imk_status imk_allan_log_run(const imk_record_source *source,
     imk_allan_log *made = imki_resize(&job->allocator, NULL, sizeof *made);
     if (!made)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    *made = (imk_allan_log){.settings = *settings};
+    memset(made, 0, sizeof *made);
+    made->settings = *settings;
     *result = made;
     imk_status status =
         imk_even_record_load(source, settings->gaps, job, &made->record, &made->findings, error);

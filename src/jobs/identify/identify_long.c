@@ -339,8 +339,10 @@ imk_status imki_identify_long(imk_identify_log *log, const imk_record_source *so
     *taken = false;
     if (!s)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    *s = (long_record){
-        .log = log, .source = source, .job = job, .arena = {.allocator = job->allocator}};
+    s->log = log; /* the rest is zero: three megabytes, too much for a literal on the stack */
+    s->source = source;
+    s->job = job;
+    s->arena.allocator = job->allocator;
     const bool long_enough = begin(s, &touched);
     imk_status status = refused_by_system(s, error);
     if (status == IMK_OK && long_enough) {
