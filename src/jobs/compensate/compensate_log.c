@@ -53,14 +53,14 @@ static stream *allocate(const imk_record_source *source, imki_arena *arena)
     if (!s)
         return NULL;
     for (size_t k = 0; k < source->column_count; k++)
-        s->data[k] = imki_arena_take(arena, size);
+        s->data[k] = imki_arena_room(arena, size);
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++)
-            s->corrected[sensor][i] = imki_arena_take(arena, size);
-    s->flag_column = imki_arena_take(arena, size);
+            s->corrected[sensor][i] = imki_arena_room(arena, size);
+    s->flag_column = imki_arena_room(arena, size);
     s->temperature = imki_arena_take(arena, size);
-    s->workspace = imki_arena_take(arena, imk_compensate_workspace(BLOCK_ROWS) * sizeof(double));
-    s->flags = imki_arena_take(arena, rows);
+    s->workspace = imki_arena_room(arena, imk_compensate_workspace(BLOCK_ROWS) * sizeof(double));
+    s->flags = imki_arena_room(arena, rows);
     s->first_time = s->last_time = (double)NAN;
     return arena->failed ? NULL : s;
 }

@@ -108,7 +108,7 @@ static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_a
     if (status != IMK_OK)
         return status;
     const size_t size = imk_drift_covariance_size(one->model, &one->settings);
-    void *memory = imki_arena_take(arena, size);
+    void *memory = imki_arena_room(arena, size);
     one->figures = imki_arena_take(arena, one->settings.time_count * sizeof *one->figures);
     if (!memory || !one->figures)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);

@@ -119,8 +119,8 @@ imk_status imk_identify_log_twin(const imk_identify_log *log, const imk_model *n
     const size_t n = log->record.rows, channels = log->record.count;
     const size_t size = imk_simulator_size(noise, &simulation);
     imki_arena scratch = {.allocator = job->allocator};
-    void *memory = imki_arena_take(&scratch, size > 256 ? size : 256); /* 64-byte aligned */
-    double *data = imki_arena_take(&scratch, (n + 1) * channels * sizeof *data);
+    void *memory = imki_arena_room(&scratch, size > 256 ? size : 256); /* 64-byte aligned */
+    double *data = imki_arena_room(&scratch, (n + 1) * channels * sizeof *data);
     double *columns[IMK_LOG_COLUMNS_MAX];
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, "twin", NULL, NULL);
     imk_simulator *simulator;

@@ -96,7 +96,7 @@ static imk_status begin_sheet(imk_physics_log *log, sheet *s, uint64_t rows, imk
         return IMK_OK;
     for (size_t c = 0; c < s->columns; c++) {
         decimals[c] = -1;
-        s->data[c] = imki_arena_take(arena, BLOCK_ROWS * sizeof *s->data[c]);
+        s->data[c] = imki_arena_room(arena, BLOCK_ROWS * sizeof *s->data[c]);
     }
     if (arena->failed)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);

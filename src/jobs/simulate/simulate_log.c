@@ -189,8 +189,8 @@ imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_s
                    .layout = make_layout(model, settings),
                    .drops = model->timing.drops.value > 0};
     const size_t size = imk_simulator_size(model, &settings->simulation);
-    void *memory = imki_arena_take(&arena, size > 256 ? size : 256); /* a cache line begins there */
-    double *block = imki_arena_take(&arena, r.layout.count * BLOCK_ROWS * sizeof *block);
+    void *memory = imki_arena_room(&arena, size > 256 ? size : 256); /* a cache line begins there */
+    double *block = imki_arena_room(&arena, r.layout.count * BLOCK_ROWS * sizeof *block);
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     for (size_t c = 0; block && c < r.layout.count; c++)
         r.column[c] = block + c * BLOCK_ROWS;

@@ -188,7 +188,7 @@ imk_status imk_simulate_truth_run(const imk_model *model, const imk_simulate_log
     imk_trajectory_piece rest_piece;
     imk_trajectory rest;
     const size_t size = imk_simulator_size(model, &settings->simulation);
-    void *memory = imki_arena_take(&arena, size > 256 ? size : 256); /* a cache line begins there */
+    void *memory = imki_arena_room(&arena, size > 256 ? size : 256); /* a cache line begins there */
     truth *t = imki_arena_take(&arena, sizeof *t);
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (memory && t) {
