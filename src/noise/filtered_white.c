@@ -11,6 +11,7 @@
  * plain white noise nothing cancels, so both limits are reached: white for a bandwidth far above
  * the rate, the continuous filter far below. */
 #include "arma_internal.h"
+#include "noise_terms_internal.h"
 
 /* w of the filter from its -3 dB point f: second order, with r = (2 pi f/w)^2,
  * (1 - r)^2 + 4 damping^2 r = 2, whose positive root is r = m + sqrt(m^2 + 1), m = 1 - 2 damping^2.
@@ -110,3 +111,22 @@ imk_status imk_filtered_white_start(imk_arma_state *state, double density, imk_l
     imk_status status = imk_filtered_white_arma(density, filter, dt, &arma);
     return status == IMK_OK ? imk_arma_start(state, &arma, random, stream) : status;
 }
+
+static double bandwidth(imki_term_place place)
+{
+    return place.triad->bandwidth.value[place.axis];
+}
+
+static imk_status start(void *state, imki_term_place place, double dt, imk_random random,
+                        uint64_t stream)
+{
+    const imk_low_pass filter = {bandwidth(place), place.triad->damping.value[place.axis]};
+    return imk_filtered_white_start(state, place.triad->noise.white.value[place.axis], filter, dt,
+                                    random, stream);
+}
+
+const imki_generator imki_filtered_white = {.state_size = sizeof(imk_arma_state),
+                                            .start = start,
+                                            .field = "bandwidth",
+                                            .refused = bandwidth,
+                                            .across = imki_arma_across};

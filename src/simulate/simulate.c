@@ -68,39 +68,6 @@ static size_t aligned(size_t size)
     return (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 }
 
-/* Bytes of the lists of one channel. */
-static size_t list_size(const imk_noise *noise)
-{
-    return aligned((size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state)) +
-           aligned((size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state)) +
-           aligned((size_t)noise->resonance_count * sizeof(imk_arma_state));
-}
-
-size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
-{
-    size_t gyros = axes_of(&model->gyro), accels = axes_of(&model->accel);
-    return aligned(sizeof(imk_simulator)) + aligned((gyros + accels) * sizeof(imki_channel)) +
-           gyros * list_size(&model->gyro.noise) + accels * list_size(&model->accel.noise) +
-           aligned(imki_scene_size(model, simulation) * sizeof(double));
-}
-
-static void *take(unsigned char **memory, size_t size)
-{
-    void *taken = *memory;
-    *memory += aligned(size);
-    return taken;
-}
-
-static void assign_lists(imki_channel *channel, const imk_noise *noise, unsigned char **memory)
-{
-    channel->gauss_markov =
-        take(memory, (size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state));
-    channel->sinusoid = take(memory, (size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state));
-    channel->resonance = take(memory, (size_t)noise->resonance_count * sizeof(imk_arma_state));
-}
-
-/* ---- start ---- */
-
 static imki_axis axis_of(const imk_model *model, size_t channel)
 {
     size_t gyros = axes_of(&model->gyro);
@@ -110,6 +77,25 @@ static imki_axis axis_of(const imk_model *model, size_t channel)
     return (imki_axis){&model->accel, "accel", IMK_ACCEL, (int)axis,
                        (uint8_t)(axis + IMK_AXES_MAX)};
 }
+
+size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
+{
+    const size_t channels = axes_of(&model->gyro) + axes_of(&model->accel);
+    size_t size = aligned(sizeof(imk_simulator)) + aligned(channels * sizeof(imki_channel)) +
+                  aligned(imki_scene_size(model, simulation) * sizeof(double));
+    for (size_t i = 0; i < channels; i++)
+        size += imki_channel_memory(axis_of(model, i));
+    return size;
+}
+
+static void *take(unsigned char **memory, size_t size)
+{
+    void *taken = *memory;
+    *memory += aligned(size);
+    return taken;
+}
+
+/* ---- start ---- */
 
 /* One draw for the whole run. */
 static double repeatability(const imk_axes *sigma, imki_axis axis, uint8_t instance,
@@ -156,10 +142,9 @@ static imk_status start_channels(imk_simulator *made, unsigned char *memory, con
     for (size_t i = 0; i < made->channels; i++) {
         imki_axis axis = axis_of(model, i);
         imki_channel *channel = &made->channel[i];
-        assign_lists(channel, &axis.triad->noise, &memory);
-        imk_status status =
-            imki_channel_start(channel, axis, 1.0 / simulation->rate, made->scene.substeps,
-                               made->random, simulation->run, error);
+        imk_status status = imki_channel_start(channel, axis, 1.0 / simulation->rate,
+                                               made->scene.substeps, made->random, simulation->run,
+                                               take(&memory, imki_channel_memory(axis)), error);
         if (status != IMK_OK)
             return status;
         if (!made->scene.varies)
