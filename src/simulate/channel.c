@@ -101,13 +101,12 @@ static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double
 {
     imk_low_pass filter = {axis.triad->bandwidth.value[axis.axis],
                            axis.triad->damping.value[axis.axis]};
+    imki_stretch stretch;
     if (filter.bandwidth == 0.0)
         return IMK_OK;
-    imk_status status = imki_check_low_pass(filter, part);
+    const imk_status status = imki_low_pass_over(filter, part, &stretch);
     if (status != IMK_OK)
         return refused(error, status, axis, "bandwidth", filter.bandwidth);
-    imki_dynamics dynamics = imki_filter_dynamics(1.0, filter);
-    imki_stretch stretch = imki_stretch_of_time(&dynamics, part);
     imki_band_limit *limit = &channel->band_limit;
     limit->present = true;
     for (int i = 0; i < 2; i++) {

@@ -78,14 +78,25 @@ static imki_axis axis_of(const imk_model *model, size_t channel)
                        (uint8_t)(axis + IMK_AXES_MAX)};
 }
 
+/* Bytes of the parts, in this order; the columns of the scene last. */
+typedef struct layout {
+    size_t channels, states, columns, all;
+} layout;
+
+static layout layout_of(const imk_model *model, const imk_simulation *simulation)
+{
+    const size_t count = axes_of(&model->gyro) + axes_of(&model->accel);
+    layout l = {.channels = aligned(count * sizeof(imki_channel)),
+                .columns = aligned(imki_scene_size(model, simulation) * sizeof(double))};
+    for (size_t i = 0; i < count; i++)
+        l.states += imki_channel_memory(axis_of(model, i));
+    l.all = aligned(sizeof(imk_simulator)) + l.channels + l.states + l.columns;
+    return l;
+}
+
 size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
 {
-    const size_t channels = axes_of(&model->gyro) + axes_of(&model->accel);
-    size_t size = aligned(sizeof(imk_simulator)) + aligned(channels * sizeof(imki_channel)) +
-                  aligned(imki_scene_size(model, simulation) * sizeof(double));
-    for (size_t i = 0; i < channels; i++)
-        size += imki_channel_memory(axis_of(model, i));
-    return size;
+    return layout_of(model, simulation).all;
 }
 
 static void *take(unsigned char **memory, size_t size)
@@ -162,23 +173,21 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
         status = check_simulation(simulation, error);
     if (status != IMK_OK)
         return status;
-    if (size < imk_simulator_size(model, simulation))
+    const layout l = layout_of(model, simulation);
+    if (size < l.all)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_simulator_size() bytes");
     if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
-    const size_t columns_size = aligned(imki_scene_size(model, simulation) * sizeof(double));
-    memset(memory, 0, imk_simulator_size(model, simulation) - columns_size);
+    memset(memory, 0, l.all - l.columns);
     unsigned char *rest = memory;
     imk_simulator *made = take(&rest, sizeof *made);
     made->random = imk_random_seeded(simulation->seed);
     made->drops = model->timing.drops.value;
     made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
     made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
-    made->channel = take(&rest, made->channels * sizeof *made->channel);
-    /* The columns of the scene come last. */
-    double *columns = (double *)(void *)((unsigned char *)memory +
-                                         imk_simulator_size(model, simulation) - columns_size);
+    made->channel = take(&rest, l.channels);
+    double *columns = (double *)(void *)(rest + l.states);
     status = imki_scene_start(&made->scene, model, simulation, checked, columns, error);
     if (status == IMK_OK)
         status = start_distortion(made, model, simulation, error);
