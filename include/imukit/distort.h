@@ -35,9 +35,6 @@
 extern "C" {
 #endif
 
-/** Index of the two-element arrays below: gyros and accelerometers. */
-enum { IMK_GYRO = 0, IMK_ACCEL = 1 };
-
 /** What a unit is exposed to: one array per quantity, one element per sample; body axes. NULL means
  *  zero throughout (for the temperature: the polynomials vanish). */
 typedef struct imk_stimulus {

@@ -196,6 +196,14 @@ typedef struct imk_model {
     imk_correlation correlation;
 } imk_model;
 
+/** A kind of sensor, and the index of arrays of two: gyros and accelerometers. */
+enum { IMK_GYRO = 0, IMK_ACCEL = 1 };
+
+/** The triad of a kind of sensor, IMK_GYRO or IMK_ACCEL. */
+IMK_API const imk_triad *imk_model_triad(const imk_model *model, int sensor);
+/** The same, to be changed. */
+IMK_API imk_triad *imk_model_triad_to_set(imk_model *model, int sensor);
+
 /** A perfect unit: orthogonal triads of gyros and accelerometers without any error. */
 IMK_API void imk_model_default(imk_model *model);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Preparing the correction of a model: which unknowns there are, how large they can be, whether
  * every reading belongs to one motion, and how many iterations lead to it. */
+#include "base/algebra/vector_internal.h"
 #include "correct_internal.h"
 #include "model_internal.h"
 
@@ -131,7 +132,7 @@ static void find_unknowns(imki_inversion *v, const imk_model *model)
         v->outputs[sensor] = !triad->present ? 0 : v->solves[sensor] ? 3 : triad->axis_count;
         for (int i = 0; triad->present && i < triad->axis_count; i++) {
             const double *e = triad->direction[i];
-            const double squared = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+            const double squared = imki_dot3(e, e);
             for (int j = 0; j < 3; j++)
                 v->along[sensor][i][j] = e[j] / squared;
         }
@@ -242,8 +243,7 @@ static imk_status check_monotonic(const imki_inversion *v, imk_error *error)
         for (int i = 0; i < v->distortion->axis_count[sensor]; i++) {
             const imk_axis_response *axis = &v->distortion->axis[sensor][i];
             const double *along = v->along[sensor][i], limit = v->input_limit[sensor][i];
-            const double linear =
-                axis->other[0] * along[0] + axis->other[1] * along[1] + axis->other[2] * along[2];
+            const double linear = imki_dot3(axis->other, along);
             const double u = imki_turning_point(axis, linear, limit);
             if (!(fabs(u) <= limit))
                 continue;

@@ -21,3 +21,13 @@ void imk_model_default(imk_model *model)
     set_triad(&model->gyro);
     set_triad(&model->accel);
 }
+
+const imk_triad *imk_model_triad(const imk_model *model, int sensor)
+{
+    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
+}
+
+imk_triad *imk_model_triad_to_set(imk_model *model, int sensor)
+{
+    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
+}

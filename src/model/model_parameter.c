@@ -104,7 +104,7 @@ bool imki_model_parameter_exists(const imk_model *model, imk_model_parameter par
     const term_place *place = place_of_parameter(parameter);
     if (!place)
         return false;
-    const imk_triad *triad = parameter.sensor == IMKI_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, parameter.sensor);
     const bool diagonal = place->shape == IMKI_OFF_DIAGONAL && triad->axis_count == 3 &&
                           parameter.axis == parameter.element;
     return triad->present && parameter.axis < triad->axis_count && !diagonal;
@@ -115,7 +115,7 @@ static const double *value_at(const imk_model *model, imk_model_parameter parame
     if (!imki_model_parameter_exists(model, parameter))
         return NULL;
     const term_place *place = place_of_parameter(parameter);
-    const imk_triad *triad = parameter.sensor == IMKI_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, parameter.sensor);
     const double *first = (const double *)(const void *)((const char *)triad + place->offset);
     /* Each power of a polynomial is an imk_axes; elsewhere an axis has its elements in a row. */
     const size_t between_elements =

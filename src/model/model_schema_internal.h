@@ -7,9 +7,6 @@
 
 #include "imukit/model.h"
 
-/* Kinds of sensor: index of the two-element arrays below. */
-enum { IMKI_GYRO, IMKI_ACCEL };
-
 typedef enum imki_shape {
     IMKI_SCALAR,       /* imk_scalar */
     IMKI_AXES,         /* imk_axes */

@@ -3,6 +3,7 @@
  * a step does not lower the cost, with the turns linearised. Integrating the turns is what costs
  * time; so the solution is iterated to the end with the linearisation at hand, and the turns are
  * integrated again at the solution. */
+#include "base/algebra/vector_internal.h"
 #include "estimator_internal.h"
 
 #include <math.h>
@@ -205,7 +206,7 @@ static double left_out(const imki_estimator *e)
         if (!e->turn[t].usable)
             continue;
         moved_by(e, t, moved);
-        const double size = sqrt(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2]);
+        const double size = imki_norm3(moved);
         largest = fmax(largest, size * (size + 0.01) / e->turn[t].sigma);
     }
     return largest;

@@ -26,6 +26,7 @@
  * The Earth turns below the gyros. The vertical part of its rate turns about the direction carried
  * and does not move it; the horizontal part, of unknown heading, belongs to the turn's sigma
  * (multiposition_sigma.c), or is one of the solver's unknowns (calibration_earth.c). */
+#include "base/algebra/vector_internal.h"
 #include "calibration_internal.h"
 
 #include "imukit/attitude.h"
@@ -102,10 +103,7 @@ static inverse invert(const turn_model *turn, int sensor, const imk_triad *triad
     const bool spans = imk_matrix3_inverse(normal, &inverse_normal) == IMK_OK;
     for (int j = 0; j < 3; j++)
         for (int i = 0; i < count; i++) {
-            out.p[j][i] = !spans ? (double)NAN
-                                 : inverse_normal.m[j][0] * row[i][0] +
-                                       inverse_normal.m[j][1] * row[i][1] +
-                                       inverse_normal.m[j][2] * row[i][2];
+            out.p[j][i] = !spans ? (double)NAN : imki_dot3(inverse_normal.m[j], row[i]);
             out.weight[j][i] = out.p[j][i] * unit[i];
             out.constant[j] += out.p[j][i] * offset[i];
         }
@@ -221,7 +219,7 @@ static void solve_nonlinear(const turn_model *turn, const double f[3], double w[
         double sum[3] = {0.0, 0.0, 0.0};
         for (int i = 0; i < turn->gyro.count; i++) {
             const double *e = gyro->direction[i];
-            powers_of(e[0] * w[0] + e[1] * w[1] + e[2] * w[2], power[i]);
+            powers_of(imki_dot3(e, w), power[i]);
             double n = gyro->nonlinearity.k2.value[i] * power[i][0] +
                        gyro->nonlinearity.koq.value[i] * power[i][1] +
                        gyro->nonlinearity.k3.value[i] * power[i][2] +
@@ -301,8 +299,7 @@ static void integrate(const turn_model *turn, size_t begin, size_t end, bool sum
             components(&turn->accel, record->reading[IMK_ACCEL], k, f);
         if (turn->force_changes)
             for (int j = 0; j < 3; j++)
-                w[j] -= turn->force_to_rate[j][0] * f[0] + turn->force_to_rate[j][1] * f[1] +
-                        turn->force_to_rate[j][2] * f[2];
+                w[j] -= imki_dot3(turn->force_to_rate[j], f);
         if (turn->nonlinear)
             solve_nonlinear(turn, f, w, product, power);
         const double x = w[0] * dt, y = w[1] * dt, z = w[2] * dt;

@@ -29,7 +29,7 @@ double imki_plan_mean_variance(const imk_triad *triad, int axis, double dt, doub
 
 double imki_plan_floor_variance(const imk_model *model, imk_model_parameter parameter)
 {
-    const imk_triad *triad = parameter.sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, parameter.sensor);
     if (parameter.term == IMK_MODEL_SCALE_FACTOR) {
         const double r = triad->scale_factor.repeatability.value[parameter.axis];
         return r * r;

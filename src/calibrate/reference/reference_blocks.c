@@ -5,6 +5,7 @@
  * the mean of u^2 is what counts, not the square of the mean; they differ by the variance of u
  * within the block, (length x slope)^2/12. A block is as long as keeps that below 1e-4 of the
  * variance of u in the log, at least one sample. */
+#include "base/algebra/vector_internal.h"
 #include "reference_internal.h"
 
 #include "imukit/samples.h"
@@ -33,7 +34,7 @@ static double relative_steps(const imk_test_record *record, const double *const 
             value[j] = channel[j][k] - channel[j][0];
             step[j] = channel[j][k] - channel[j][k - 1];
         }
-        const double square = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
+        const double square = imki_dot3(step, step);
         if (!(square < HUGE_VAL))
             continue;
         steps += square;

@@ -45,19 +45,19 @@ static void offset_name(char *name, size_t size, int kind, int imu, const char *
     if (imu > 0)
         snprintf(number, sizeof number, "%d", imu + 1);
     /* "GYROFFS" of the first, "GYR2OFFS" of others */
-    snprintf(name, size, "INS_%s%s%s_%c", kind == IMKI_GYRO ? "GYR" : "ACC", number, what,
+    snprintf(name, size, "INS_%s%s%s_%c", kind == IMK_GYRO ? "GYR" : "ACC", number, what,
              axis_letters[axis]);
 }
 
 static void thermal_name(char *name, size_t size, int kind, int imu, int order, int axis)
 {
-    snprintf(name, size, "INS_TCAL%d_%s%d_%c", imu + 1, kind == IMKI_GYRO ? "GYR" : "ACC", order,
+    snprintf(name, size, "INS_TCAL%d_%s%d_%c", imu + 1, kind == IMK_GYRO ? "GYR" : "ACC", order,
              axis_letters[axis]);
 }
 
 static void temperature_name(char *name, size_t size, int kind, int imu)
 {
-    snprintf(name, size, "INS_%s%d_CALTEMP", kind == IMKI_GYRO ? "GYR" : "ACC", imu + 1);
+    snprintf(name, size, "INS_%s%d_CALTEMP", kind == IMK_GYRO ? "GYR" : "ACC", imu + 1);
 }
 
 /* Axis of a name that is the pattern but for its last letter, X, Y or Z; -1 for others. */
@@ -77,7 +77,7 @@ static bool find_target(ardupilot_sensor *s, const char *name, int kind, int imu
     int offset, scale = -1;
     offset_name(pattern, sizeof pattern, kind, imu, "OFFS", 0);
     offset = axis_of(name, pattern);
-    if (kind == IMKI_ACCEL) {
+    if (kind == IMK_ACCEL) {
         offset_name(pattern, sizeof pattern, kind, imu, "SCAL", 0);
         scale = axis_of(name, pattern);
     }
@@ -271,7 +271,7 @@ static imk_status fill(imki_parameters *p, const ardupilot_imu *imu, int number,
                        imk_triad *triad)
 {
     const ardupilot_sensor *s = &imu->sensor[kind];
-    const imki_unit unit = {kind == IMKI_GYRO ? "rad/s" : "m/s^2", 1};
+    const imki_unit unit = {kind == IMK_GYRO ? "rad/s" : "m/s^2", 1};
     imki_place place = {"OFFS", s->line, 0};
     triad->present = s->line > 0;
     if (!triad->present)
@@ -297,9 +297,9 @@ imk_status imki_ardupilot_read(imki_parameters *p)
     if (status == IMK_OK)
         status = choose(p, imus, &chosen);
     if (status == IMK_OK)
-        status = fill(p, &imus[chosen], chosen + 1, IMKI_GYRO, &p->model->gyro);
+        status = fill(p, &imus[chosen], chosen + 1, IMK_GYRO, &p->model->gyro);
     if (status == IMK_OK)
-        status = fill(p, &imus[chosen], chosen + 1, IMKI_ACCEL, &p->model->accel);
+        status = fill(p, &imus[chosen], chosen + 1, IMK_ACCEL, &p->model->accel);
     return status;
 }
 
@@ -328,7 +328,7 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, d
         offset_name(name, sizeof name, kind, 0, "OFFS", i);
         write_parameter(p, name, offset);
     }
-    for (int i = 0; i < 3 && kind == IMKI_ACCEL; i++) {
+    for (int i = 0; i < 3 && kind == IMK_ACCEL; i++) {
         const double s = triad->scale_factor.fixed.value[i];
         offset_name(name, sizeof name, kind, 0, "SCAL", i);
         write_parameter(p, name, s == 0 ? 1 : 1 / (1 + s));
@@ -359,7 +359,7 @@ static void write_thermal(imki_parameters *p, const imk_triad *const triads[2], 
     for (int kind = 0; kind < 2; kind++)
         if (!triads[kind]->present || triads[kind]->bias.temperature.order == 0)
             imki_note(p, false, "INS_TCAL1_%s1_X … are not written: they must be 0, their default",
-                      kind == IMKI_GYRO ? "GYR" : "ACC");
+                      kind == IMK_GYRO ? "GYR" : "ACC");
 }
 
 imk_status imki_ardupilot_write(imki_parameters *p)
@@ -403,7 +403,7 @@ imk_status imki_ardupilot_write(imki_parameters *p)
         write_sensor(p, kind, triads[kind], cubic, calibrated);
     }
     write_thermal(p, triads, any ? minimum : 0, any ? maximum : 0);
-    if (triads[IMKI_GYRO]->present)
+    if (triads[IMK_GYRO]->present)
         imki_note(p, false,
                   "INS_GYROFFS_X …: ArduPilot measures them anew at each start, unless INS_GYR_CAL "
                   "is 0");

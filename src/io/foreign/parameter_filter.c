@@ -253,7 +253,7 @@ static imk_status write_sensor(tree_writer *w, int kind)
 {
     static const char *const names[2] = {"gyro", "accel"};
     imki_parameters *p = w->p;
-    const imk_triad *triad = kind == IMKI_GYRO ? &p->source->gyro : &p->source->accel;
+    const imk_triad *triad = kind == IMK_GYRO ? &p->source->gyro : &p->source->accel;
     const char *const *unit = units[kind];
     const double dt = 1 / p->settings->rate;
     imk_filter_noise noise[3];
@@ -339,9 +339,9 @@ imk_status imki_filter_write(imki_parameters *p)
     imki_text_add(&p->out, " ");
     imki_text_numbers(&p->out, &p->settings->rate, 1, "");
     put_comment(&w, "Hz", "of the matrices and of what is per sample");
-    imk_status status = write_sensor(&w, IMKI_GYRO);
+    imk_status status = write_sensor(&w, IMK_GYRO);
     if (status == IMK_OK)
-        status = write_sensor(&w, IMKI_ACCEL);
+        status = write_sensor(&w, IMK_ACCEL);
     if (p->is_json)
         close_branch(&w, '}');
     imki_text_add(&p->out, "\n");
@@ -395,7 +395,7 @@ static imk_status read_sensor(imki_parameters *p, const imk_document *document, 
                                         "y",
                                         "z"};
     enum { KNOWN = sizeof known / sizeof known[0] };
-    imk_triad *triad = kind == IMKI_GYRO ? &p->model->gyro : &p->model->accel;
+    imk_triad *triad = kind == IMK_GYRO ? &p->model->gyro : &p->model->accel;
     const char *const *unit = units[kind];
     double white[3] = {0}, quantization[3] = {0}, initial[3] = {0};
     imk_status status = imki_node_accept(p, document, node, "white_noise", kind, IMKI_WHITE,
@@ -438,7 +438,7 @@ imk_status imki_filter_read(imki_parameters *p)
         const int node = imki_document_value(document, 0, names[kind]);
         if (node == IMKI_NONE)
             continue;
-        (kind == IMKI_GYRO ? &p->model->gyro : &p->model->accel)->present = true;
+        (kind == IMK_GYRO ? &p->model->gyro : &p->model->accel)->present = true;
         status = document->node[node].kind == IMKI_NODE_MAPPING
                      ? read_sensor(p, document, node, kind)
                      : imki_document_error(document, node, IMK_ERROR_SYNTAX, names[kind],

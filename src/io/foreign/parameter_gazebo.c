@@ -331,9 +331,9 @@ imk_status imki_gazebo_read(imki_parameters *p)
     if (status == IMK_OK)
         status = find_rate(p, chosen, &rate);
     if (status == IMK_OK)
-        status = fill(p, &chosen->noise[0], IMKI_GYRO, rate, &p->model->gyro);
+        status = fill(p, &chosen->noise[0], IMK_GYRO, rate, &p->model->gyro);
     if (status == IMK_OK)
-        status = fill(p, &chosen->noise[1], IMKI_ACCEL, rate, &p->model->accel);
+        status = fill(p, &chosen->noise[1], IMK_ACCEL, rate, &p->model->accel);
     if (status == IMK_OK && !p->model->gyro.present && !p->model->accel.present)
         return imk_error_set(p->error, IMK_ERROR_KEY_MISSING, "noise", "<noise>",
                              "a noise in angular_velocity or linear_acceleration");

@@ -75,9 +75,9 @@ imk_status imki_gnss_ins_sim_read(imki_parameters *p)
         return status;
     for (int i = 0; i < 8; i++)
         known[i] = keys[i / 4][i % 4].name;
-    status = read_triad(p, document, IMKI_GYRO, &p->model->gyro);
+    status = read_triad(p, document, IMK_GYRO, &p->model->gyro);
     if (status == IMK_OK)
-        status = read_triad(p, document, IMKI_ACCEL, &p->model->accel);
+        status = read_triad(p, document, IMK_ACCEL, &p->model->accel);
     for (int key = document->node[0].first; key != IMKI_NONE && status == IMK_OK;) {
         const char *name = document->node[key].text;
         bool is_known = false;
@@ -112,7 +112,7 @@ imk_status imki_gnss_ins_sim_write(imki_parameters *p)
                                       : "# gnss-ins-sim: the dictionary accuracy of its class IMU; "
                                         "make numpy arrays of the lists\n");
     for (int kind = 0; kind < 2; kind++) {
-        const imk_triad *triad = kind == IMKI_GYRO ? &p->source->gyro : &p->source->accel;
+        const imk_triad *triad = kind == IMK_GYRO ? &p->source->gyro : &p->source->accel;
         imk_triad none = {.present = false};
         if (!triad->present)
             triad = &none;
@@ -124,7 +124,7 @@ imk_status imki_gnss_ins_sim_write(imki_parameters *p)
         write_line(p, &keys[kind][0], triad->bias.fixed.value, false);
         write_line(p, &keys[kind][1], triad->noise.white.value, false);
         write_line(p, &keys[kind][2], sigma, false);
-        write_line(p, &keys[kind][3], time, kind == IMKI_ACCEL);
+        write_line(p, &keys[kind][3], time, kind == IMK_ACCEL);
     }
     if (p->is_json)
         imki_text_add(&p->out, "}\n");

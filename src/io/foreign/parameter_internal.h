@@ -71,7 +71,7 @@ typedef enum imki_quantity {
 } imki_quantity;
 
 /* Three numbers of a file, in `unit`, which is `scale` SI units: checked and converted. kind is
- * IMKI_GYRO or IMKI_ACCEL of the model's schema. */
+ * IMK_GYRO or IMK_ACCEL of the model's schema. */
 typedef struct imki_unit {
     const char *name;
     double scale;

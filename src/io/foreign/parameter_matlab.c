@@ -135,7 +135,7 @@ static imk_status read_acceleration_bias(imki_parameters *p, const imk_document 
                                          int sensor, imk_triad *triad)
 {
     double g[3] = {0};
-    imk_status status = imki_node_accept(p, document, sensor, "AccelerationBias", IMKI_GYRO,
+    imk_status status = imki_node_accept(p, document, sensor, "AccelerationBias", IMK_GYRO,
                                          IMKI_PLAIN, (imki_unit){"(rad/s)/(m/s^2)", 1}, g);
     for (int i = 0; i < 3; i++)
         triad->g_sensitivity.value[i][i] = g[i];
@@ -215,7 +215,7 @@ static imk_status read_sensor(imki_parameters *p, const imk_document *document, 
         status = read_temperature(p, document, sensor, kind, triad);
     if (status == IMK_OK)
         status = read_output(p, document, sensor, kind, triad);
-    if (status == IMK_OK && kind == IMKI_GYRO)
+    if (status == IMK_OK && kind == IMK_GYRO)
         status = read_acceleration_bias(p, document, sensor, triad);
     for (int key = document->node[sensor].first; key != IMKI_NONE && status == IMK_OK;) {
         size_t i = 0;
@@ -286,10 +286,10 @@ imk_status imki_matlab_read(imki_parameters *p)
                  document->node[document->node[part].key].text);
     if (status == IMK_OK)
         status = read_sensor(p, document, imki_document_value(document, part, sensor_names[0]),
-                             IMKI_GYRO, &p->model->gyro);
+                             IMK_GYRO, &p->model->gyro);
     if (status == IMK_OK)
         status = read_sensor(p, document, imki_document_value(document, part, sensor_names[1]),
-                             IMKI_ACCEL, &p->model->accel);
+                             IMK_ACCEL, &p->model->accel);
     if (status == IMK_OK && imki_document_value(document, part, "Magnetometer") != IMKI_NONE)
         imki_note(p, true, "Magnetometer: a model has none");
     imk_document_free(document);
@@ -352,7 +352,7 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, b
               single ? "single-sided: set it in MATLAB" : "double-sided, MATLAB's default");
     for (int i = 0; i < 3; i++)
         diagonal[i] = triad->g_sensitivity.value[i][i];
-    if (kind == IMKI_GYRO)
+    if (kind == IMK_GYRO)
         write_vector(p, "AccelerationBias", diagonal, 1);
     write_vector(p, "TemperatureBias", bias->order > 0 ? bias->coefficient[0].value : none, 1);
     imki_text_add(&p->out, "      \"TemperatureScaleFactor\": [");
@@ -380,9 +380,9 @@ imk_status imki_matlab_write(imki_parameters *p)
     name[length] = '\0';
     imki_text_add(&p->out, "{\n  \"%s\": {\n", length > 0 ? name : "imu");
     if (p->source->gyro.present)
-        write_sensor(p, IMKI_GYRO, &p->source->gyro, !p->source->accel.present);
+        write_sensor(p, IMK_GYRO, &p->source->gyro, !p->source->accel.present);
     if (p->source->accel.present)
-        write_sensor(p, IMKI_ACCEL, &p->source->accel, true);
+        write_sensor(p, IMK_ACCEL, &p->source->accel, true);
     imki_text_add(&p->out, "  }\n}\n");
     return IMK_OK;
 }

@@ -236,9 +236,9 @@ imk_status imki_navego_read(imki_parameters *p)
     if (status == IMK_OK)
         status = check_structure(p, &s);
     if (status == IMK_OK)
-        status = fill(p, &s, IMKI_GYRO, &p->model->gyro);
+        status = fill(p, &s, IMK_GYRO, &p->model->gyro);
     if (status == IMK_OK)
-        status = fill(p, &s, IMKI_ACCEL, &p->model->accel);
+        status = fill(p, &s, IMK_ACCEL, &p->model->accel);
     if (status == IMK_OK)
         snprintf(p->model->name, sizeof p->model->name, "%s", s.structure);
     return status;
@@ -279,9 +279,9 @@ imk_status imki_navego_write(imki_parameters *p)
         snprintf(structure, sizeof structure, "imu");
     imki_text_add(&p->out, "%% NaveGo: error profile of an IMU, for imu_si_errors(); x y z\n");
     if (p->source->gyro.present)
-        write_triad(p, structure, IMKI_GYRO, &p->source->gyro);
+        write_triad(p, structure, IMK_GYRO, &p->source->gyro);
     if (p->source->accel.present)
-        write_triad(p, structure, IMKI_ACCEL, &p->source->accel);
+        write_triad(p, structure, IMK_ACCEL, &p->source->accel);
     if (p->settings->rate > 0) {
         imki_text_add(&p->out, "%s.freq = ", structure);
         imki_text_numbers(&p->out, &p->settings->rate, 1, "");

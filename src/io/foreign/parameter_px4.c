@@ -262,7 +262,7 @@ static imk_status fill(imki_parameters *p, const px4_file *file, int kind, int c
 {
     const px4_sensor *s = &file->sensor[kind][chosen];
     const px4_sensor *thermal = thermal_of(file->sensor[kind], chosen);
-    const imki_unit unit = {kind == IMKI_GYRO ? "rad/s" : "m/s^2", 1};
+    const imki_unit unit = {kind == IMK_GYRO ? "rad/s" : "m/s^2", 1};
     triad->present = in_use(file, kind, chosen);
     if (!triad->present)
         return IMK_OK;
@@ -293,9 +293,9 @@ imk_status imki_px4_read(imki_parameters *p)
     if (status == IMK_OK)
         status = choose(p, &file, &chosen);
     if (status == IMK_OK)
-        status = fill(p, &file, IMKI_GYRO, chosen, &p->model->gyro);
+        status = fill(p, &file, IMK_GYRO, chosen, &p->model->gyro);
     if (status == IMK_OK)
-        status = fill(p, &file, IMKI_ACCEL, chosen, &p->model->accel);
+        status = fill(p, &file, IMK_ACCEL, chosen, &p->model->accel);
     return status;
 }
 
@@ -323,9 +323,9 @@ static void write_thermal(imki_parameters *p, int kind, const imk_temperature_po
     for (int i = 0; i < 3; i++)
         worst = fmax(worst, imki_cubic(t, i, t->reference, cubic[i]));
     if (worst > 0)
-        imki_note(
-            p, true, "%s.bias.temperature: PX4 has cubics; the nearest one is up to %.2g %s off",
-            kind == IMKI_GYRO ? "gyro" : "accel", worst, kind == IMKI_GYRO ? "rad/s" : "m/s^2");
+        imki_note(p, true,
+                  "%s.bias.temperature: PX4 has cubics; the nearest one is up to %.2g %s off",
+                  kind == IMK_GYRO ? "gyro" : "accel", worst, kind == IMK_GYRO ? "rad/s" : "m/s^2");
     for (int k = 0; k <= ORDER; k++)
         for (int i = 0; i < 3; i++) {
             snprintf(name, sizeof name, "TC_%c0_X%d_%d", letter, k, i);
@@ -340,15 +340,15 @@ static void write_thermal(imki_parameters *p, int kind, const imk_temperature_po
 static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad)
 {
     char name[24];
-    bool scaled = kind == IMKI_ACCEL;
+    bool scaled = kind == IMK_ACCEL;
     for (int i = 0; i < 3; i++)
         scaled = scaled || triad->scale_factor.fixed.value[i] != 0;
-    if (kind == IMKI_GYRO && scaled)
+    if (kind == IMK_GYRO && scaled)
         imki_note(p, false, "CAL_GYRO0_XSCALE …: only early versions of PX4 have a gyro scale");
     imki_text_add(&p->out,
                   "# CAL_%s0: offset [%s], scale [1]; corrected = (reading - offset) "
                   "scale\n",
-                  calibration_names[kind], kind == IMKI_GYRO ? "rad/s" : "m/s^2");
+                  calibration_names[kind], kind == IMK_GYRO ? "rad/s" : "m/s^2");
     for (int i = 0; i < 3; i++) {
         snprintf(name, sizeof name, "CAL_%s0_%cOFF", calibration_names[kind], 'X' + i);
         write_parameter(p, name, triad->bias.fixed.value[i], false);
@@ -366,9 +366,9 @@ imk_status imki_px4_write(imki_parameters *p)
     imki_text_add(&p->out, "# PX4 calibration parameters; temperatures [degC], TC_…_Xk [unit of "
                            "the offset/degC^k]\n#\n# Vehicle-Id Component-Id Name Value Type\n");
     if (p->source->gyro.present)
-        write_sensor(p, IMKI_GYRO, &p->source->gyro);
+        write_sensor(p, IMK_GYRO, &p->source->gyro);
     if (p->source->accel.present)
-        write_sensor(p, IMKI_ACCEL, &p->source->accel);
+        write_sensor(p, IMK_ACCEL, &p->source->accel);
     imki_note(p, true,
               "CAL_GYRO0_ID, CAL_ACC0_ID are not known: set them to the IDs of the devices");
     return IMK_OK;

@@ -65,7 +65,7 @@ static imk_status read_quantity(imki_reader *r, int node, const char *si, unsign
     const imki_node *n = imki_reader_node(r, node);
     if (says_infinite(n->text)) {
         bool is_time = imki_reader_node(r, n->key != IMKI_NONE ? n->key : node)->text[0] == 'c';
-        const char *walk = r->kind == IMKI_GYRO
+        const char *walk = r->kind == IMK_GYRO
                                ? "a finite time; a bias that never forgets is a rate_random_walk"
                                : "a finite time; a bias that never forgets is an "
                                  "acceleration_random_walk";

@@ -161,8 +161,8 @@ imk_status imki_parameters_compare(imki_parameters *p, imki_parameter_function *
         bring_together(p, &source->accel);
     }
     if (status == IMK_OK) {
-        kept = compare_triads(p, format, IMKI_GYRO, &source->gyro, &back->gyro, &had);
-        kept += compare_triads(p, format, IMKI_ACCEL, &source->accel, &back->accel, &had);
+        kept = compare_triads(p, format, IMK_GYRO, &source->gyro, &back->gyro, &had);
+        kept += compare_triads(p, format, IMK_ACCEL, &source->accel, &back->accel, &had);
         compare_timing(p, format, &source->timing);
     }
     if (status == IMK_OK && had > 0 && kept == 0)

@@ -107,7 +107,7 @@ static void static_record(const imk_laboratory *laboratory, char *state, double 
                              imk_identify_workspace_size(count), NULL) == IMK_OK;
     if (!result->has_noise)
         return;
-    imk_triad *triad = imki_triad_of(laboratory, result);
+    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     const imk_axes bandwidth = triad->bandwidth; /* the shaker's, not that of the noise */
     imk_identification_store(&result->noise, &result->model, instrument->sensor == IMK_ACCEL, 0);
     if (bandwidth.value[0] > 0.0)
@@ -132,7 +132,7 @@ static stated_axes begin_model(const imk_laboratory *laboratory, imk_laboratory_
     const imk_instrument *instrument = laboratory->instrument;
     imk_model *model = &result->model;
     instrument->reduce(laboratory->design, model);
-    imk_triad *triad = imki_triad_of(laboratory, result);
+    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     stated_axes stated = {.range = triad->range, .bandwidth = triad->bandwidth.value[0]};
     memcpy(stated.direction, triad->direction, sizeof stated.direction);
     memcpy(stated.pendulous_axis, triad->nonlinearity.pendulous_axis, sizeof stated.pendulous_axis);
