@@ -122,6 +122,126 @@ const imki_field imki_triad_fields[] = {
 };
 const size_t imki_triad_field_count = sizeof imki_triad_fields / sizeof imki_triad_fields[0];
 
+/* ---- terms ----------------------------------------------------------------------------------- */
+
+#define TEXTS(words)                                                                               \
+    {                                                                                              \
+        "gyro " words, "accelerometer " words                                                      \
+    }
+#define NO_TEXTS NO_UNITS
+/* Numbers of draws that no row has: 4 bias.hysteresis, 18 and 19 of the timing. */
+const imki_term imki_terms[IMKI_TERMS] = {
+    [IMK_MODEL_BIAS] = {AT(bias.fixed), IMKI_FORM_ONE, 0, "bias", TEXTS("bias, fixed")},
+    [IMK_MODEL_SCALE_FACTOR] = {AT(scale_factor.fixed), IMKI_FORM_INPUT, 5, "scale factor error",
+                                TEXTS("scale factor")},
+    [IMK_MODEL_MISALIGNMENT] = {AT(misalignment), IMKI_FORM_SEEN, 12, "misalignment",
+                                TEXTS("misalignment")},
+    [IMK_MODEL_CROSS_AXIS] = {AT(cross_axis), IMKI_FORM_SEEN, 13, "cross-axis response",
+                              TEXTS("cross-axis response")},
+    [IMK_MODEL_K2] = {AT(nonlinearity.k2), IMKI_FORM_POWER, 7, "K2",
+                      TEXTS("nonlinearity, second order")},
+    [IMK_MODEL_KOQ] = {AT(nonlinearity.koq), IMKI_FORM_POWER, 8, "Koq",
+                       TEXTS("nonlinearity, odd quadratic")},
+    [IMK_MODEL_K3] = {AT(nonlinearity.k3), IMKI_FORM_POWER, 9, "K3",
+                      TEXTS("nonlinearity, third order")},
+    [IMK_MODEL_ASYMMETRY] = {AT(nonlinearity.asymmetry), IMKI_FORM_POWER, 10, "asymmetry",
+                             TEXTS("asymmetry")},
+    [IMK_MODEL_CROSS_PRODUCTS] = {AT(nonlinearity.cross_products), IMKI_FORM_CROSS, 11,
+                                  "cross product", TEXTS("cross products")},
+    [IMK_MODEL_G_SENSITIVITY] = {AT(g_sensitivity), IMKI_FORM_FORCE, 14, "g-sensitivity",
+                                 TEXTS("g-sensitivity")},
+    [IMK_MODEL_G2_SENSITIVITY] = {AT(g2_sensitivity), IMKI_FORM_PRODUCT, 15, "g^2-sensitivity",
+                                  TEXTS("g2-sensitivity")},
+    [IMK_MODEL_LEVER_ARM] = {AT(lever_arm), IMKI_FORM_PLACE, 16, "place", TEXTS("lever arms")},
+    [IMK_MODEL_BIAS_TEMPERATURE] = {AT(bias.temperature), IMKI_FORM_WARMTH, 1,
+                                    "bias over temperature", NO_TEXTS},
+    [IMK_MODEL_SCALE_TEMPERATURE] = {AT(scale_factor.temperature), IMKI_FORM_WARM_INPUT, 6,
+                                     "scale factor over temperature", NO_TEXTS},
+    [IMK_MODEL_TEMPERATURE_RATE] = {AT(bias.temperature_rate), IMKI_FORM_WARMING, 2,
+                                    "bias by temperature rate", NO_TEXTS},
+    [IMKI_TERM_WARM_UP] = {AT(bias.warm_up_amplitude), IMKI_FORM_DECAY, 3, "warm-up",
+                           TEXTS("warm-up")},
+    [IMKI_TERM_RAMP] = {AT(noise.ramp), IMKI_FORM_TIME, 17, "ramp",
+                        UNITS("gyro rate ramp", "accelerometer ramp")},
+};
+
+/* In the order of their fields. */
+const imki_power imki_input_powers[] = {
+    {IMK_MODEL_K2, 2, 0, true, 1.0},
+    {IMK_MODEL_KOQ, 1, 1, true, 1.0},
+    {IMK_MODEL_K3, 3, 0, true, 1.0},
+    {IMK_MODEL_ASYMMETRY, 0, 1, true, 0.5},
+};
+const size_t imki_input_power_count = sizeof imki_input_powers / sizeof imki_input_powers[0];
+
+const imki_field *imki_term_field(int term)
+{
+    const imki_field *field = imki_triad_fields;
+    while (field->offset != imki_terms[term].offset)
+        field++;
+    return field;
+}
+
+int imki_field_term(const imki_field *field)
+{
+    int term = IMKI_TERMS - 1;
+    while (term >= 0 && imki_terms[term].offset != field->offset)
+        term--;
+    return term;
+}
+
+/* -1: the sensor has no such term. */
+static int group_of(int term, int kind)
+{
+    const imki_field *field = imki_term_field(term);
+    return !field->path[kind] ? -1 : term == IMKI_TERM_RAMP ? 2 : !field->path[1 - kind];
+}
+
+size_t imki_terms_in_order(int kind, uint8_t term[IMKI_TERMS])
+{
+    size_t count = 0;
+    for (int group = 0; group < 3; group++)
+        for (size_t i = 0; i < imki_triad_field_count; i++) {
+            const int found = imki_field_term(&imki_triad_fields[i]);
+            if (found >= 0 && group_of(found, kind) == group)
+                term[count++] = (uint8_t)found;
+        }
+    return count;
+}
+
+int imki_form_elements(imki_form form)
+{
+    switch (form) {
+    case IMKI_FORM_SEEN:
+    case IMKI_FORM_CROSS:
+    case IMKI_FORM_FORCE:
+    case IMKI_FORM_PLACE:
+        return 3;
+    case IMKI_FORM_PRODUCT:
+        return 6;
+    case IMKI_FORM_WARMTH:
+    case IMKI_FORM_WARM_INPUT:
+        return IMK_TEMPERATURE_ORDER_MAX;
+    default:
+        return 1;
+    }
+}
+
+const char *imki_form_element(imki_form form, int element)
+{
+    static const char *const components[] = {"x", "y", "z"}, *const cross[] = {"ip", "io", "po"},
+                             *const products[] = {"xx", "yy", "zz", "xy", "yz", "zx"},
+                             *const powers[] = {"1", "2", "3", "4", "5"};
+    const char *const *names = form == IMKI_FORM_CROSS     ? cross
+                               : form == IMKI_FORM_PRODUCT ? products
+                               : form == IMKI_FORM_WARMTH || form == IMKI_FORM_WARM_INPUT
+                                   ? powers
+                                   : components;
+    return imki_form_elements(form) > 1 ? names[element] : NULL;
+}
+
+/* ---- lists, units ---------------------------------------------------------------------------- */
+
 static const imki_field gauss_markov_fields[] = {
     {BOTH("sigma"), IMKI_AXES, 0, IN(imk_gauss_markov_term, sigma), NO_COUNT, UNITS("deg/h", "ug"),
      NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
