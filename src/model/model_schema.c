@@ -37,13 +37,13 @@
 #define NO_COUNT 0
 
 const imki_field imki_triad_fields[] = {
-    {BOTH("direction"), IMKI_DIRECTION, IMKI_BARE, AT(direction), AT(axis_count), UNIT("1"),
-     NO_UNITS, UNIT("1"), ANY},
-    {BOTH("sensitivity"), IMKI_AXES, 0, AT(sensitivity), NO_COUNT,
+    {BOTH("direction"), IMKI_DIRECTION, IMKI_BARE | IMKI_OUTPUT, AT(direction), AT(axis_count),
+     UNIT("1"), NO_UNITS, UNIT("1"), ANY},
+    {BOTH("sensitivity"), IMKI_AXES, IMKI_OUTPUT, AT(sensitivity), NO_COUNT,
      UNITS("count/(rad/s)", "count/(m/s^2)"), NO_UNITS, UNITS("count/(rad/s)", "count/(m/s^2)"),
      ANY},
-    {BOTH("zero_offset"), IMKI_AXES, 0, AT(zero_offset), NO_COUNT, UNIT("count"), NO_UNITS,
-     UNIT("count"), ANY},
+    {BOTH("zero_offset"), IMKI_AXES, IMKI_OUTPUT, AT(zero_offset), NO_COUNT, UNIT("count"),
+     NO_UNITS, UNIT("count"), ANY},
     {BOTH("bias.fixed"), IMKI_AXES, 0, AT(bias.fixed), NO_COUNT, UNITS("deg/h", "mg"), NO_UNITS,
      UNITS("rad/s", "m/s^2"), ANY},
     {BOTH("bias.repeatability"), IMKI_AXES, 0, AT(bias.repeatability), NO_COUNT,
@@ -54,8 +54,8 @@ const imki_field imki_triad_fields[] = {
      UNITS("deg/h/(K/min)", "mg/(K/min)"), NO_UNITS, UNITS("rad/s/(K/s)", "m/s^2/(K/s)"), ANY},
     {BOTH("bias.warm_up.amplitude"), IMKI_AXES, 0, AT(bias.warm_up_amplitude), NO_COUNT,
      UNITS("deg/h", "mg"), NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
-    {BOTH("bias.warm_up.time"), IMKI_SCALAR, 0, AT(bias.warm_up_time), NO_COUNT, UNIT("s"),
-     NO_UNITS, UNIT("s"), NOT_NEGATIVE},
+    {BOTH("bias.warm_up.time"), IMKI_SCALAR, IMKI_COMPANION, AT(bias.warm_up_time), NO_COUNT,
+     UNIT("s"), NO_UNITS, UNIT("s"), NOT_NEGATIVE},
     {BOTH("bias.hysteresis"), IMKI_AXES, 0, AT(bias.hysteresis), NO_COUNT, UNITS("deg/h", "mg"),
      NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
     {BOTH("scale_factor.fixed"), IMKI_AXES, IMKI_OPEN, AT(scale_factor.fixed), NO_COUNT,
@@ -74,8 +74,8 @@ const imki_field imki_triad_fields[] = {
      UNIT("ppm"), NO_UNITS, UNIT("1"), -2.0, 2.0},
     {ACCEL("cross_products"), IMKI_ROWS, 0, AT(nonlinearity.cross_products), NO_COUNT,
      UNIT("ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
-    {ACCEL("pendulous_axis"), IMKI_PENDULOUS, IMKI_BARE, AT(nonlinearity.pendulous_axis), NO_COUNT,
-     UNIT("1"), NO_UNITS, UNIT("1"), ANY},
+    {ACCEL("pendulous_axis"), IMKI_PENDULOUS, IMKI_BARE | IMKI_COMPANION,
+     AT(nonlinearity.pendulous_axis), NO_COUNT, UNIT("1"), NO_UNITS, UNIT("1"), ANY},
     {BOTH("misalignment"), IMKI_OFF_DIAGONAL, 0, AT(misalignment), NO_COUNT, UNIT("mrad"), NO_UNITS,
      UNIT("rad"), ANY},
     {BOTH("cross_axis"), IMKI_OFF_DIAGONAL, 0, AT(cross_axis), NO_COUNT, UNIT("%"), NO_UNITS,
@@ -86,8 +86,8 @@ const imki_field imki_triad_fields[] = {
      NO_UNITS, UNIT("rad/s/(m/s^2)^2"), ANY},
     {ACCEL("lever_arm"), IMKI_ROWS, 0, AT(lever_arm), NO_COUNT, UNIT("mm"), NO_UNITS, UNIT("m"),
      ANY},
-    {BOTH("noise.density"), IMKI_DENSITY, 0, AT(noise.density), NO_COUNT, NO_UNITS, NO_UNITS,
-     NO_UNITS, ANY},
+    {BOTH("noise.density"), IMKI_DENSITY, IMKI_COMPANION, AT(noise.density), NO_COUNT, NO_UNITS,
+     NO_UNITS, NO_UNITS, ANY},
     {UNITS("noise.angle_random_walk", "noise.velocity_random_walk"), IMKI_AXES, 0, AT(noise.white),
      NO_COUNT, UNITS("deg/sqrt(h)", "m/s/sqrt(h)"), UNITS("deg/s/sqrt(Hz)", "ug/sqrt(Hz)"),
      UNITS("rad/sqrt(s)", "m/s/sqrt(s)"), NOT_NEGATIVE},
@@ -111,11 +111,11 @@ const imki_field imki_triad_fields[] = {
     {BOTH("bandwidth"), IMKI_AXES, 0, AT(bandwidth), NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"),
      NOT_NEGATIVE},
     /* The limits of imk_low_pass in noise.h. */
-    {BOTH("damping"), IMKI_AXES, IMKI_BARE | IMKI_TYPICAL, AT(damping), NO_COUNT, UNIT("1"),
-     NO_UNITS, UNIT("1"), 0.05, 50.0},
+    {BOTH("damping"), IMKI_AXES, IMKI_BARE | IMKI_TYPICAL | IMKI_COMPANION, AT(damping), NO_COUNT,
+     UNIT("1"), NO_UNITS, UNIT("1"), 0.05, 50.0},
     {BOTH("dead_band"), IMKI_AXES, 0, AT(dead_band), NO_COUNT, UNITS("deg/s", "mg"), NO_UNITS,
      UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("range"), IMKI_AXES, 0, AT(range), NO_COUNT, UNITS("deg/s", "g"), NO_UNITS,
+    {BOTH("range"), IMKI_AXES, IMKI_COMPANION, AT(range), NO_COUNT, UNITS("deg/s", "g"), NO_UNITS,
      UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
     {BOTH("resolution"), IMKI_AXES, 0, AT(resolution), NO_COUNT, UNITS("deg/s", "mg"), NO_UNITS,
      UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
@@ -188,6 +188,17 @@ int imki_field_term(const imki_field *field)
     while (term >= 0 && imki_terms[term].offset != field->offset)
         term--;
     return term;
+}
+
+bool imki_field_taken_out(const imki_field *field)
+{
+    const int term = imki_field_term(field);
+    return term >= 0 ? term != IMKI_TERM_RAMP : (field->flags & IMKI_OUTPUT) != 0;
+}
+
+const char *imki_field_name(const imki_field *field, int kind)
+{
+    return field->offset == AT(bias.warm_up_amplitude) ? "bias.warm_up" : field->path[kind];
 }
 
 /* -1: the sensor has no such term. */

@@ -26,10 +26,12 @@ typedef enum imki_shape {
 } imki_shape;
 
 enum {
-    IMKI_OPEN = 1,   /* the limits themselves are excluded */
-    IMKI_BARE = 2,   /* a pure number: needs no unit */
-    IMKI_FLOOR = 4,  /* another way to state the field before: times sqrt(2 ln 2/pi) */
-    IMKI_TYPICAL = 8 /* 0 is allowed beside the range: no such thing on this axis */
+    IMKI_OPEN = 1,      /* the limits themselves are excluded */
+    IMKI_BARE = 2,      /* a pure number: needs no unit */
+    IMKI_FLOOR = 4,     /* another way to state the field before: times sqrt(2 ln 2/pi) */
+    IMKI_TYPICAL = 8,   /* 0 is allowed beside the range: no such thing on this axis */
+    IMKI_OUTPUT = 16,   /* says what the outputs are: no error */
+    IMKI_COMPANION = 32 /* says how another term acts, or when a reading is saturated */
 };
 
 typedef struct imki_field {
@@ -129,6 +131,12 @@ extern const imki_term imki_terms[IMKI_TERMS];
 /* The field of a term, and the term of a field or -1. */
 const imki_field *imki_term_field(int term);
 int imki_field_term(const imki_field *field);
+
+/* True for what compensation takes out of readings, as far as a model has it. */
+bool imki_field_taken_out(const imki_field *field);
+
+/* What a field is called as a term: its path, but "bias.warm_up" for the amplitude of it. */
+const char *imki_field_name(const imki_field *field, int kind);
 
 /* The terms of a sensor in the order in which results are told: those that both kinds of sensor
  * have, its own, the ramp; each group in the order of the fields. @return how many */
