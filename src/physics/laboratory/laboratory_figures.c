@@ -33,13 +33,12 @@ static void add_cross_axis(list *l, const imk_triad *t)
 /* What differs from run to run, and within one, counts as sigma. */
 static double spread_of(const imk_triad *t, int term, double sigma)
 {
-    double spread = 0.0, wander = 0.0;
-    if (term == IMK_MODEL_BIAS) {
-        spread = t->bias.repeatability.value[0];
-        wander = t->noise.bias_instability.value[0];
-    } else if (term == IMK_MODEL_SCALE_FACTOR) {
-        spread = t->scale_factor.repeatability.value[0];
-    }
+    if (term != IMK_MODEL_BIAS && term != IMK_MODEL_SCALE_FACTOR)
+        return sigma;
+    const bool bias = term == IMK_MODEL_BIAS;
+    const double wander = bias ? t->noise.bias_instability.value[0] : 0.0;
+    const double spread =
+        bias ? t->bias.repeatability.value[0] : t->scale_factor.repeatability.value[0];
     return sqrt(sigma * sigma + spread * spread + wander * wander);
 }
 
