@@ -164,6 +164,15 @@ enum { IMKI_POWERS_MAX = 8 };
 extern const imki_power imki_input_powers[];
 extern const size_t imki_input_power_count;
 
+/* The power that a term of IMKI_FORM_POWER is. */
+static inline int imki_power_of(int term)
+{
+    int power = 0;
+    while (imki_input_powers[power].term != term)
+        power++;
+    return power;
+}
+
 static inline double imki_power_at(const imki_power *power, double u)
 {
     double x = power->q ? power->weight * fabs(u) : power->weight;
