@@ -10,26 +10,6 @@
 extern "C" {
 #endif
 
-/** The deterministic terms that have numbers of their own. Values are fixed for ever. */
-typedef enum imk_model_term {
-    IMK_MODEL_BIAS = 0,
-    IMK_MODEL_SCALE_FACTOR = 1,
-    IMK_MODEL_MISALIGNMENT = 2, /**< element: column 0 … 2, not the axis itself in a triad */
-    IMK_MODEL_CROSS_AXIS = 3,   /**< likewise */
-    IMK_MODEL_K2 = 4,
-    IMK_MODEL_KOQ = 5,
-    IMK_MODEL_K3 = 6,
-    IMK_MODEL_ASYMMETRY = 7,
-    IMK_MODEL_CROSS_PRODUCTS = 8,     /**< accelerometer; element 0 Kip, 1 Kio, 2 Kpo */
-    IMK_MODEL_G_SENSITIVITY = 9,      /**< gyro; element: component of force */
-    IMK_MODEL_G2_SENSITIVITY = 10,    /**< gyro; element 0 … 5 */
-    IMK_MODEL_LEVER_ARM = 11,         /**< accelerometer; element: component of the place */
-    IMK_MODEL_BIAS_TEMPERATURE = 12,  /**< element: power - 1 */
-    IMK_MODEL_SCALE_TEMPERATURE = 13, /**< element: power - 1 */
-    IMK_MODEL_TEMPERATURE_RATE = 14,
-    IMK_MODEL_TERMS
-} imk_model_term;
-
 /** Numbers of a term per axis: 1, 3, 5 or 6; 0 when the sensor does not have it. Of a temperature
  *  term as many as a polynomial can have, whatever its order in a model. */
 IMK_API int imk_model_term_elements(int sensor, int term);

@@ -37,13 +37,13 @@
 #define NO_COUNT 0
 
 const imki_field imki_triad_fields[] = {
-    {BOTH("direction"), IMKI_DIRECTION, IMKI_BARE, AT(direction), AT(axis_count), UNIT("1"),
-     NO_UNITS, UNIT("1"), ANY},
-    {BOTH("sensitivity"), IMKI_AXES, 0, AT(sensitivity), NO_COUNT,
+    {BOTH("direction"), IMKI_DIRECTION, IMKI_BARE | IMKI_OUTPUT, AT(direction), AT(axis_count),
+     UNIT("1"), NO_UNITS, UNIT("1"), ANY},
+    {BOTH("sensitivity"), IMKI_AXES, IMKI_OUTPUT, AT(sensitivity), NO_COUNT,
      UNITS("count/(rad/s)", "count/(m/s^2)"), NO_UNITS, UNITS("count/(rad/s)", "count/(m/s^2)"),
      ANY},
-    {BOTH("zero_offset"), IMKI_AXES, 0, AT(zero_offset), NO_COUNT, UNIT("count"), NO_UNITS,
-     UNIT("count"), ANY},
+    {BOTH("zero_offset"), IMKI_AXES, IMKI_OUTPUT, AT(zero_offset), NO_COUNT, UNIT("count"),
+     NO_UNITS, UNIT("count"), ANY},
     {BOTH("bias.fixed"), IMKI_AXES, 0, AT(bias.fixed), NO_COUNT, UNITS("deg/h", "mg"), NO_UNITS,
      UNITS("rad/s", "m/s^2"), ANY},
     {BOTH("bias.repeatability"), IMKI_AXES, 0, AT(bias.repeatability), NO_COUNT,
@@ -54,8 +54,8 @@ const imki_field imki_triad_fields[] = {
      UNITS("deg/h/(K/min)", "mg/(K/min)"), NO_UNITS, UNITS("rad/s/(K/s)", "m/s^2/(K/s)"), ANY},
     {BOTH("bias.warm_up.amplitude"), IMKI_AXES, 0, AT(bias.warm_up_amplitude), NO_COUNT,
      UNITS("deg/h", "mg"), NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
-    {BOTH("bias.warm_up.time"), IMKI_SCALAR, 0, AT(bias.warm_up_time), NO_COUNT, UNIT("s"),
-     NO_UNITS, UNIT("s"), NOT_NEGATIVE},
+    {BOTH("bias.warm_up.time"), IMKI_SCALAR, IMKI_COMPANION, AT(bias.warm_up_time), NO_COUNT,
+     UNIT("s"), NO_UNITS, UNIT("s"), NOT_NEGATIVE},
     {BOTH("bias.hysteresis"), IMKI_AXES, 0, AT(bias.hysteresis), NO_COUNT, UNITS("deg/h", "mg"),
      NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
     {BOTH("scale_factor.fixed"), IMKI_AXES, IMKI_OPEN, AT(scale_factor.fixed), NO_COUNT,
@@ -74,8 +74,8 @@ const imki_field imki_triad_fields[] = {
      UNIT("ppm"), NO_UNITS, UNIT("1"), -2.0, 2.0},
     {ACCEL("cross_products"), IMKI_ROWS, 0, AT(nonlinearity.cross_products), NO_COUNT,
      UNIT("ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
-    {ACCEL("pendulous_axis"), IMKI_PENDULOUS, IMKI_BARE, AT(nonlinearity.pendulous_axis), NO_COUNT,
-     UNIT("1"), NO_UNITS, UNIT("1"), ANY},
+    {ACCEL("pendulous_axis"), IMKI_PENDULOUS, IMKI_BARE | IMKI_COMPANION,
+     AT(nonlinearity.pendulous_axis), NO_COUNT, UNIT("1"), NO_UNITS, UNIT("1"), ANY},
     {BOTH("misalignment"), IMKI_OFF_DIAGONAL, 0, AT(misalignment), NO_COUNT, UNIT("mrad"), NO_UNITS,
      UNIT("rad"), ANY},
     {BOTH("cross_axis"), IMKI_OFF_DIAGONAL, 0, AT(cross_axis), NO_COUNT, UNIT("%"), NO_UNITS,
@@ -86,8 +86,8 @@ const imki_field imki_triad_fields[] = {
      NO_UNITS, UNIT("rad/s/(m/s^2)^2"), ANY},
     {ACCEL("lever_arm"), IMKI_ROWS, 0, AT(lever_arm), NO_COUNT, UNIT("mm"), NO_UNITS, UNIT("m"),
      ANY},
-    {BOTH("noise.density"), IMKI_DENSITY, 0, AT(noise.density), NO_COUNT, NO_UNITS, NO_UNITS,
-     NO_UNITS, ANY},
+    {BOTH("noise.density"), IMKI_DENSITY, IMKI_COMPANION, AT(noise.density), NO_COUNT, NO_UNITS,
+     NO_UNITS, NO_UNITS, ANY},
     {UNITS("noise.angle_random_walk", "noise.velocity_random_walk"), IMKI_AXES, 0, AT(noise.white),
      NO_COUNT, UNITS("deg/sqrt(h)", "m/s/sqrt(h)"), UNITS("deg/s/sqrt(Hz)", "ug/sqrt(Hz)"),
      UNITS("rad/sqrt(s)", "m/s/sqrt(s)"), NOT_NEGATIVE},
@@ -111,16 +111,147 @@ const imki_field imki_triad_fields[] = {
     {BOTH("bandwidth"), IMKI_AXES, 0, AT(bandwidth), NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"),
      NOT_NEGATIVE},
     /* The limits of imk_low_pass in noise.h. */
-    {BOTH("damping"), IMKI_AXES, IMKI_BARE | IMKI_TYPICAL, AT(damping), NO_COUNT, UNIT("1"),
-     NO_UNITS, UNIT("1"), 0.05, 50.0},
+    {BOTH("damping"), IMKI_AXES, IMKI_BARE | IMKI_TYPICAL | IMKI_COMPANION, AT(damping), NO_COUNT,
+     UNIT("1"), NO_UNITS, UNIT("1"), 0.05, 50.0},
     {BOTH("dead_band"), IMKI_AXES, 0, AT(dead_band), NO_COUNT, UNITS("deg/s", "mg"), NO_UNITS,
      UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("range"), IMKI_AXES, 0, AT(range), NO_COUNT, UNITS("deg/s", "g"), NO_UNITS,
+    {BOTH("range"), IMKI_AXES, IMKI_COMPANION, AT(range), NO_COUNT, UNITS("deg/s", "g"), NO_UNITS,
      UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
     {BOTH("resolution"), IMKI_AXES, 0, AT(resolution), NO_COUNT, UNITS("deg/s", "mg"), NO_UNITS,
      UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
 };
 const size_t imki_triad_field_count = sizeof imki_triad_fields / sizeof imki_triad_fields[0];
+
+/* ---- terms ----------------------------------------------------------------------------------- */
+
+#define TEXTS(words)                                                                               \
+    {                                                                                              \
+        "gyro " words, "accelerometer " words                                                      \
+    }
+#define NO_TEXTS NO_UNITS
+/* Numbers of draws that no row has: 4 bias.hysteresis, 18 and 19 of the timing. */
+const imki_term imki_terms[IMKI_TERMS] = {
+    [IMK_MODEL_BIAS] = {AT(bias.fixed), IMKI_FORM_ONE, 0, "bias", TEXTS("bias, fixed")},
+    [IMK_MODEL_SCALE_FACTOR] = {AT(scale_factor.fixed), IMKI_FORM_INPUT, 5, "scale factor error",
+                                TEXTS("scale factor")},
+    [IMK_MODEL_MISALIGNMENT] = {AT(misalignment), IMKI_FORM_SEEN, 12, "misalignment",
+                                TEXTS("misalignment")},
+    [IMK_MODEL_CROSS_AXIS] = {AT(cross_axis), IMKI_FORM_SEEN, 13, "cross-axis response",
+                              TEXTS("cross-axis response")},
+    [IMK_MODEL_K2] = {AT(nonlinearity.k2), IMKI_FORM_POWER, 7, "K2",
+                      TEXTS("nonlinearity, second order")},
+    [IMK_MODEL_KOQ] = {AT(nonlinearity.koq), IMKI_FORM_POWER, 8, "Koq",
+                       TEXTS("nonlinearity, odd quadratic")},
+    [IMK_MODEL_K3] = {AT(nonlinearity.k3), IMKI_FORM_POWER, 9, "K3",
+                      TEXTS("nonlinearity, third order")},
+    [IMK_MODEL_ASYMMETRY] = {AT(nonlinearity.asymmetry), IMKI_FORM_POWER, 10, "asymmetry",
+                             TEXTS("asymmetry")},
+    [IMK_MODEL_CROSS_PRODUCTS] = {AT(nonlinearity.cross_products), IMKI_FORM_CROSS, 11,
+                                  "cross product", TEXTS("cross products")},
+    [IMK_MODEL_G_SENSITIVITY] = {AT(g_sensitivity), IMKI_FORM_FORCE, 14, "g-sensitivity",
+                                 TEXTS("g-sensitivity")},
+    [IMK_MODEL_G2_SENSITIVITY] = {AT(g2_sensitivity), IMKI_FORM_PRODUCT, 15, "g^2-sensitivity",
+                                  TEXTS("g2-sensitivity")},
+    [IMK_MODEL_LEVER_ARM] = {AT(lever_arm), IMKI_FORM_PLACE, 16, "place", TEXTS("lever arms")},
+    [IMK_MODEL_BIAS_TEMPERATURE] = {AT(bias.temperature), IMKI_FORM_WARMTH, 1,
+                                    "bias over temperature", NO_TEXTS},
+    [IMK_MODEL_SCALE_TEMPERATURE] = {AT(scale_factor.temperature), IMKI_FORM_WARM_INPUT, 6,
+                                     "scale factor over temperature", NO_TEXTS},
+    [IMK_MODEL_TEMPERATURE_RATE] = {AT(bias.temperature_rate), IMKI_FORM_WARMING, 2,
+                                    "bias by temperature rate", NO_TEXTS},
+    [IMKI_TERM_WARM_UP] = {AT(bias.warm_up_amplitude), IMKI_FORM_DECAY, 3, "warm-up",
+                           TEXTS("warm-up")},
+    [IMKI_TERM_RAMP] = {AT(noise.ramp), IMKI_FORM_TIME, 17, "ramp",
+                        UNITS("gyro rate ramp", "accelerometer ramp")},
+};
+
+/* In the order of their fields. */
+const imki_power imki_input_powers[] = {
+    {IMK_MODEL_K2, 2, 0, true, 1.0},
+    {IMK_MODEL_KOQ, 1, 1, true, 1.0},
+    {IMK_MODEL_K3, 3, 0, true, 1.0},
+    {IMK_MODEL_ASYMMETRY, 0, 1, true, 0.5},
+};
+const size_t imki_input_power_count = sizeof imki_input_powers / sizeof imki_input_powers[0];
+
+const imki_field *imki_term_field(int term)
+{
+    const imki_field *field = imki_triad_fields;
+    while (field->offset != imki_terms[term].offset)
+        field++;
+    return field;
+}
+
+int imki_field_term(const imki_field *field)
+{
+    int term = IMKI_TERMS - 1;
+    while (term >= 0 && imki_terms[term].offset != field->offset)
+        term--;
+    return term;
+}
+
+bool imki_field_taken_out(const imki_field *field)
+{
+    const int term = imki_field_term(field);
+    return term >= 0 ? term != IMKI_TERM_RAMP : (field->flags & IMKI_OUTPUT) != 0;
+}
+
+const char *imki_field_name(const imki_field *field, int kind)
+{
+    return field->offset == AT(bias.warm_up_amplitude) ? "bias.warm_up" : field->path[kind];
+}
+
+/* -1: the sensor has no such term. */
+static int group_of(int term, int kind)
+{
+    const imki_field *field = imki_term_field(term);
+    return !field->path[kind] ? -1 : term == IMKI_TERM_RAMP ? 2 : !field->path[1 - kind];
+}
+
+size_t imki_terms_in_order(int kind, uint8_t term[IMKI_TERMS])
+{
+    size_t count = 0;
+    for (int group = 0; group < 3; group++)
+        for (size_t i = 0; i < imki_triad_field_count; i++) {
+            const int found = imki_field_term(&imki_triad_fields[i]);
+            if (found >= 0 && group_of(found, kind) == group)
+                term[count++] = (uint8_t)found;
+        }
+    return count;
+}
+
+int imki_form_elements(imki_form form)
+{
+    switch (form) {
+    case IMKI_FORM_SEEN:
+    case IMKI_FORM_CROSS:
+    case IMKI_FORM_FORCE:
+    case IMKI_FORM_PLACE:
+        return 3;
+    case IMKI_FORM_PRODUCT:
+        return 6;
+    case IMKI_FORM_WARMTH:
+    case IMKI_FORM_WARM_INPUT:
+        return IMK_TEMPERATURE_ORDER_MAX;
+    default:
+        return 1;
+    }
+}
+
+const char *imki_form_element(imki_form form, int element)
+{
+    static const char *const components[] = {"x", "y", "z"}, *const cross[] = {"ip", "io", "po"},
+                             *const products[] = {"xx", "yy", "zz", "xy", "yz", "zx"},
+                             *const powers[] = {"1", "2", "3", "4", "5"};
+    const char *const *names = form == IMKI_FORM_CROSS     ? cross
+                               : form == IMKI_FORM_PRODUCT ? products
+                               : form == IMKI_FORM_WARMTH || form == IMKI_FORM_WARM_INPUT
+                                   ? powers
+                                   : components;
+    return imki_form_elements(form) > 1 ? names[element] : NULL;
+}
+
+/* ---- lists, units ---------------------------------------------------------------------------- */
 
 static const imki_field gauss_markov_fields[] = {
     {BOTH("sigma"), IMKI_AXES, 0, IN(imk_gauss_markov_term, sigma), NO_COUNT, UNITS("deg/h", "ug"),

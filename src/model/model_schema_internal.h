@@ -7,6 +7,8 @@
 
 #include "imukit/model.h"
 
+#include <math.h>
+
 typedef enum imki_shape {
     IMKI_SCALAR,       /* imk_scalar */
     IMKI_AXES,         /* imk_axes */
@@ -21,10 +23,12 @@ typedef enum imki_shape {
 } imki_shape;
 
 enum {
-    IMKI_OPEN = 1,   /* the limits themselves are excluded */
-    IMKI_BARE = 2,   /* a pure number: needs no unit */
-    IMKI_FLOOR = 4,  /* another way to state the field before: times sqrt(2 ln 2/pi) */
-    IMKI_TYPICAL = 8 /* 0 is allowed beside the range: no such thing on this axis */
+    IMKI_OPEN = 1,      /* the limits themselves are excluded */
+    IMKI_BARE = 2,      /* a pure number: needs no unit */
+    IMKI_FLOOR = 4,     /* another way to state the field before: times sqrt(2 ln 2/pi) */
+    IMKI_TYPICAL = 8,   /* 0 is allowed beside the range: no such thing on this axis */
+    IMKI_OUTPUT = 16,   /* says what the outputs are: no error */
+    IMKI_COMPANION = 32 /* says how another term acts, or when a reading is saturated */
 };
 
 typedef struct imki_field {
@@ -88,6 +92,91 @@ bool imki_field_absent(const imki_field *field, const imk_triad *triad);
 /* The field of a triad with this dotted path, "noise.gauss_markov.sigma" included (then *list is
  * the list it belongs to, else NULL); NULL when there is none. */
 const imki_field *imki_field_find(const char *path, int kind, const imki_field **list);
+
+/* ---- terms: what a field does to a reading --------------------------------------------------- */
+
+/* What a number of a term is multiplied by: u is the input along the axis, v what the axis sees,
+ * f the specific force (distort.h). */
+typedef enum imki_form {
+    IMKI_FORM_ONE,
+    IMKI_FORM_INPUT,      /* u */
+    IMKI_FORM_POWER,      /* a power of u: imki_input_powers */
+    IMKI_FORM_SEEN,       /* components of v */
+    IMKI_FORM_CROSS,      /* u p, u o, p o */
+    IMKI_FORM_FORCE,      /* of a gyro: components of f */
+    IMKI_FORM_PRODUCT,    /* of a gyro: fx^2, fy^2, fz^2, fx fy, fy fz, fz fx */
+    IMKI_FORM_PLACE,      /* of an accelerometer: what a unit of length makes of the rotation */
+    IMKI_FORM_WARMTH,     /* powers of the temperature */
+    IMKI_FORM_WARM_INPUT, /* u times these */
+    IMKI_FORM_WARMING,    /* dT/dt */
+    IMKI_FORM_DECAY,      /* e^(-t/time) of the warm-up */
+    IMKI_FORM_TIME        /* t */
+} imki_form;
+
+/* Behind imk_model_term: terms that no calibration finds. */
+enum { IMKI_TERM_WARM_UP = IMK_MODEL_TERMS, IMKI_TERM_RAMP, IMKI_TERMS };
+
+typedef struct imki_term {
+    size_t offset; /* of its field */
+    imki_form form;
+    int draw;            /* number of its draws in drift_residual.c, fixed for ever */
+    const char *title;   /* as calibration calls it */
+    const char *text[2]; /* as a source of drift; NULL: none */
+} imki_term;
+extern const imki_term imki_terms[IMKI_TERMS];
+
+/* The field of a term, and the term of a field or -1. */
+const imki_field *imki_term_field(int term);
+int imki_field_term(const imki_field *field);
+
+/* True for what compensation takes out of readings, as far as a model has it. */
+bool imki_field_taken_out(const imki_field *field);
+
+/* What a field is called as a term: its path, but "bias.warm_up" for the amplitude of it. */
+const char *imki_field_name(const imki_field *field, int kind);
+
+/* The terms of a sensor in the order in which results are told: those that both kinds of sensor
+ * have, its own, the ramp; each group in the order of the fields. @return how many */
+size_t imki_terms_in_order(int kind, uint8_t term[IMKI_TERMS]);
+
+/* Numbers of a form for each axis, and what they are called ("x", "xy"); NULL where it is one. */
+int imki_form_elements(imki_form form);
+const char *imki_form_element(imki_form form, int element);
+
+/* Values of a term, in which those of axis i begin at [i * imki_form_elements()]; of powers of the
+ * temperature each is an imk_axes. */
+static inline const double *imki_term_values(int term, const imk_triad *triad)
+{
+    return (const double *)(const void *)((const char *)triad + imki_terms[term].offset);
+}
+
+/* weight u^p |u|^q, p + q > 0 */
+typedef struct imki_power {
+    uint8_t term;
+    uint8_t p, q; /* q is 0 or 1 */
+    bool sought;  /* by procedures without being named */
+    double weight;
+} imki_power;
+enum { IMKI_POWERS_MAX = 8 };
+extern const imki_power imki_input_powers[];
+extern const size_t imki_input_power_count;
+
+/* The power that a term of IMKI_FORM_POWER is. */
+static inline int imki_power_of(int term)
+{
+    int power = 0;
+    while (imki_input_powers[power].term != term)
+        power++;
+    return power;
+}
+
+static inline double imki_power_at(const imki_power *power, double u)
+{
+    double x = power->q ? power->weight * fabs(u) : power->weight;
+    for (int k = 0; k < power->p; k++)
+        x *= u;
+    return x;
+}
 
 /* sqrt(2 ln 2/pi): the flat floor of the Allan deviation of flicker noise of instability 1
  * [IEEE952]. */

@@ -145,9 +145,8 @@ static imk_status refuse_name(const char *name, imk_error *error)
 /* What is no error: it says what the outputs are. */
 static bool is_no_error(const imki_field *field)
 {
-    return field->shape == IMKI_DIRECTION || field->shape == IMKI_PENDULOUS ||
-           field->shape == IMKI_DENSITY || field->offset == offsetof(imk_triad, sensitivity) ||
-           field->offset == offsetof(imk_triad, zero_offset);
+    return field->flags & IMKI_OUTPUT || field->shape == IMKI_PENDULOUS ||
+           field->shape == IMKI_DENSITY;
 }
 
 static void clear(const imki_field *field, void *base)

@@ -3,6 +3,8 @@
  * input, three axes from one. */
 #include "physics_internal.h"
 
+#include "model/model_schema_internal.h"
+
 static void copy_text(char *to, size_t size, const char *from)
 {
     size_t i = 0;
@@ -44,95 +46,60 @@ double imki_reduction_offset(imk_triad *triad, double u, double per_kelvin)
     return slope;
 }
 
-/* Component k of axis 0 becomes component (k + axis) mod 3 of axis `axis`. */
-static void turn_rows(imk_rows *rows)
+/* Component k of axis 0 becomes component (k + axis) mod 3 of axis `axis`. Squares turn as
+ * components do; so do the products xy, yz, zx. */
+static void copy_row(double *row, int length, bool turns)
 {
     for (int axis = 1; axis < 3; axis++)
-        for (int k = 0; k < 3; k++) {
-            rows->value[axis][(k + axis) % 3] = rows->value[0][k];
-            rows->sigma[axis][(k + axis) % 3] = rows->sigma[0][k];
-        }
+        for (int k = 0; k < length; k++)
+            row[axis * length + (turns ? k / 3 * 3 + (k + axis) % 3 : k)] = row[k];
 }
 
-/* Squares turn as components do; so do the products xy, yz, zx. */
-static void turn_quadratic(imk_quadratic_rows *rows)
+static void copy_field(const imki_field *field, void *base)
 {
-    for (int axis = 1; axis < 3; axis++)
-        for (int k = 0; k < 6; k++) {
-            const int to = k / 3 * 3 + (k + axis) % 3;
-            rows->value[axis][to] = rows->value[0][k];
-            rows->sigma[axis][to] = rows->sigma[0][k];
-        }
+    const int length = imki_row_length(field->shape);
+    double *value = (double *)(void *)((char *)base + field->offset);
+    /* Kip, Kio, Kpo are of the axis itself. */
+    const bool turns =
+        length > 1 && field->offset != offsetof(imk_triad, nonlinearity.cross_products);
+    copy_row(value, length, turns);
+    if (field->shape != IMKI_PENDULOUS) /* the sigmas stand behind the values */
+        copy_row(value + (ptrdiff_t)IMK_AXES_MAX * length, length, turns);
 }
 
-static void repeat(imk_axes *axes)
+static void copy_list(const imki_field *field, imk_triad *triad)
 {
-    for (int axis = 1; axis < 3; axis++) {
-        axes->value[axis] = axes->value[0];
-        axes->sigma[axis] = axes->sigma[0];
-    }
+    const imki_list list = imki_list_of(field);
+    for (size_t i = 0; i < IMK_TERMS_MAX; i++)
+        for (size_t j = 0; j < list.field_count; j++)
+            copy_field(&list.field[j], (char *)triad + field->offset + i * list.size);
 }
 
-static void repeat_polynomial(imk_temperature_polynomial *polynomial)
+static void copy_polynomial(imk_temperature_polynomial *polynomial)
 {
-    for (int i = 0; i < IMK_TEMPERATURE_ORDER_MAX; i++)
-        repeat(&polynomial->coefficient[i]);
-}
-
-static void repeat_noise(imk_noise *noise)
-{
-    imk_axes *const single[] = {&noise->white, &noise->bias_instability, &noise->random_walk,
-                                &noise->ramp, &noise->quantization};
-    for (size_t i = 0; i < sizeof single / sizeof single[0]; i++)
-        repeat(single[i]);
-    for (int i = 0; i < IMK_TERMS_MAX; i++) {
-        repeat(&noise->gauss_markov[i].sigma);
-        repeat(&noise->gauss_markov[i].correlation_time);
-        repeat(&noise->sinusoid[i].amplitude);
-        repeat(&noise->sinusoid[i].frequency);
-        repeat(&noise->resonance[i].sigma);
-        repeat(&noise->resonance[i].frequency);
-        repeat(&noise->resonance[i].q);
+    for (int k = 0; k < IMK_TEMPERATURE_ORDER_MAX; k++) {
+        copy_row(polynomial->coefficient[k].value, 1, false);
+        copy_row(polynomial->coefficient[k].sigma, 1, false);
     }
 }
 
 static void three_axes(imk_triad *triad)
 {
-    imk_axes *const single[] = {&triad->bias.fixed,
-                                &triad->bias.repeatability,
-                                &triad->bias.temperature_rate,
-                                &triad->bias.warm_up_amplitude,
-                                &triad->bias.hysteresis,
-                                &triad->scale_factor.fixed,
-                                &triad->scale_factor.repeatability,
-                                &triad->nonlinearity.k2,
-                                &triad->nonlinearity.koq,
-                                &triad->nonlinearity.k3,
-                                &triad->nonlinearity.asymmetry,
-                                &triad->bandwidth,
-                                &triad->damping,
-                                &triad->dead_band,
-                                &triad->range,
-                                &triad->resolution,
-                                &triad->sensitivity,
-                                &triad->zero_offset};
-    imk_rows *const rows[] = {&triad->misalignment, &triad->cross_axis, &triad->g_sensitivity,
-                              &triad->lever_arm};
-    for (size_t i = 0; i < sizeof single / sizeof single[0]; i++)
-        repeat(single[i]);
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-        turn_rows(rows[i]);
-    repeat_polynomial(&triad->bias.temperature);
-    repeat_polynomial(&triad->scale_factor.temperature);
-    repeat_noise(&triad->noise);
-    turn_quadratic(&triad->g2_sensitivity);
-    imk_rows *cross = &triad->nonlinearity.cross_products; /* Kip, Kio, Kpo: of the axis itself */
-    for (int axis = 1; axis < 3; axis++)
-        for (int k = 0; k < 3; k++) {
-            cross->value[axis][k] = cross->value[0][k];
-            cross->sigma[axis][k] = cross->sigma[0][k];
-            triad->nonlinearity.pendulous_axis[axis][(k + axis) % 3] =
-                triad->nonlinearity.pendulous_axis[0][k];
+    for (const imki_field *field = imki_triad_fields;
+         field < imki_triad_fields + imki_triad_field_count; field++)
+        switch (field->shape) {
+        case IMKI_SCALAR:
+        case IMKI_DENSITY:
+        case IMKI_DIRECTION:
+            break;
+        case IMKI_POLYNOMIAL:
+            copy_polynomial((imk_temperature_polynomial *)(void *)((char *)triad + field->offset));
+            break;
+        case IMKI_LIST:
+            copy_list(field, triad);
+            break;
+        default:
+            copy_field(field, triad);
         }
     for (int axis = 0; axis < 3; axis++)
         for (int k = 0; k < 3; k++)

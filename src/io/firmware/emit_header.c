@@ -21,44 +21,6 @@ static void add_key(imk_term_keys *keys, const char *sensor, const char *key)
         memcpy(keys->key[keys->count++], text, sizeof text);
 }
 
-static bool is_one_of(const char *key, size_t count, const char *const *list)
-{
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(key, list[i]) == 0)
-            return true;
-    return false;
-}
-
-/* Terms of which the readings can be freed; the device's model has those that it frees them of. */
-static bool is_correctable(const char *key)
-{
-    static const char *const keys[] = {"direction",
-                                       "sensitivity",
-                                       "zero_offset",
-                                       "bias.fixed",
-                                       "bias.temperature",
-                                       "scale_factor.fixed",
-                                       "scale_factor.temperature",
-                                       "nonlinearity.k2",
-                                       "nonlinearity.koq",
-                                       "nonlinearity.k3",
-                                       "nonlinearity.asymmetry",
-                                       "cross_products",
-                                       "misalignment",
-                                       "cross_axis",
-                                       "g_sensitivity",
-                                       "g2_sensitivity"};
-    return is_one_of(key, sizeof keys / sizeof keys[0], keys);
-}
-
-/* What says how another term acts, or when a reading is saturated: no error by itself. */
-static bool is_companion(const char *key)
-{
-    static const char *const keys[] = {"range", "pendulous_axis", "damping", "noise.density",
-                                       "bias.warm_up.time"};
-    return is_one_of(key, sizeof keys / sizeof keys[0], keys);
-}
-
 void imk_firmware_terms(const imk_firmware *firmware, const imk_model *model,
                         imk_term_keys *taken_out, imk_term_keys *left_in)
 {
@@ -69,15 +31,15 @@ void imk_firmware_terms(const imk_firmware *firmware, const imk_model *model,
         for (size_t i = 0; whole[kind]->present && i < imki_triad_field_count; i++) {
             const imki_field *field = &imki_triad_fields[i];
             const char *key = field->path[kind];
-            if (!key || is_companion(key) || imki_field_absent(field, whole[kind]))
+            if (!key || field->flags & IMKI_COMPANION || imki_field_absent(field, whole[kind]))
                 continue;
-            if (is_correctable(key) && !imki_field_absent(field, device[kind]))
-                add_key(taken_out, imki_emit_sensor[kind], key);
-            else
-                add_key(left_in, imki_emit_sensor[kind],
-                        strncmp(key, "noise.", 6) == 0               ? "noise"
-                        : strcmp(key, "bias.warm_up.amplitude") == 0 ? "bias.warm_up"
-                                                                     : key);
+            const char *name =
+                strncmp(key, "noise.", 6) == 0 ? "noise" : imki_field_name(field, kind);
+            /* The device's model has only what its code takes out. */
+            add_key(imki_field_taken_out(field) && !imki_field_absent(field, device[kind])
+                        ? taken_out
+                        : left_in,
+                    imki_emit_sensor[kind], name);
         }
     for (size_t i = 0; i < imki_timing_field_count; i++)
         if (*imki_field_values(&imki_timing_fields[i], &model->timing) != 0)

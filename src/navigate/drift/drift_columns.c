@@ -5,6 +5,7 @@
 #include "drift_covariance_internal.h"
 
 #include "imukit/distort.h"
+#include "model/model_schema_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,14 +39,8 @@ static double factor(const imki_drift_column *column, const imki_drift_node *nod
         return f[part];
     case IMKI_COLUMN_PRODUCT:
         return f[part % 3] * f[second[part]];
-    case IMKI_COLUMN_SQUARE:
-        return u * u;
-    case IMKI_COLUMN_SIGNED:
-        return u * fabs(u);
-    case IMKI_COLUMN_CUBE:
-        return u * u * u;
-    case IMKI_COLUMN_HALF:
-        return 0.5 * fabs(u);
+    case IMKI_COLUMN_POWER:
+        return imki_power_at(&imki_input_powers[part], u);
     case IMKI_COLUMN_CROSS:
         return (part < 2 ? u : imki_dot3(column->pendulous, f)) *
                imki_dot3(part == 0 ? column->pendulous : column->output, f);

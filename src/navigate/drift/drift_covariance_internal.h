@@ -81,10 +81,7 @@ typedef enum imki_column_kind {
     IMKI_COLUMN_RATE,     /* times the rate about body axis `part` */
     IMKI_COLUMN_FORCE,    /* times the force along it */
     IMKI_COLUMN_PRODUCT,  /* times fx^2, fy^2, fz^2, fx fy, fy fz, fz fx */
-    IMKI_COLUMN_SQUARE,   /* times u^2, u the axis' own input */
-    IMKI_COLUMN_SIGNED,   /* u|u| */
-    IMKI_COLUMN_CUBE,     /* u^3 */
-    IMKI_COLUMN_HALF,     /* |u|/2 */
+    IMKI_COLUMN_POWER,    /* times power `part` of imki_input_powers of the axis' own input */
     IMKI_COLUMN_CROSS,    /* input x pendulous, input x output, pendulous x output */
     IMKI_COLUMN_LEVER,    /* what an accelerometer moved along body axis `part` has besides */
     IMKI_COLUMN_ROUNDING, /* enters as its derivative: what is rounded and carried; see below */

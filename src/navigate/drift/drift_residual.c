@@ -6,34 +6,17 @@
  *                 axis),
  *
  * axis 0-7 of the gyros, 8-15 of the accelerometers, 0 for the timing. The numbers of the
- * parameters below are fixed for ever, so that a new one changes no draw of an old one; components
- * are counted along a row of the model (x, y, z), a scalar being component 0. */
+ * parameters (imki_term.draw) are fixed for ever, so that a new one changes no draw of an old one;
+ * components are counted along a row of the model (x, y, z), a scalar being component 0. */
 #include "drift_runs_internal.h"
 
 #include "imukit/noise.h"
+#include "model/model_schema_internal.h"
 
 #include <string.h>
 
-enum parameter {
-    BIAS_FIXED = 0,
-    /* 1, 2 and 4 are kept for bias.temperature, bias.temperature_rate and bias.hysteresis, 6 for
-     * scale_factor.temperature: without a temperature profile they do nothing. */
-    BIAS_WARM_UP = 3,
-    SCALE_FACTOR_FIXED = 5,
-    K2 = 7,
-    KOQ = 8,
-    K3 = 9,
-    ASYMMETRY = 10,
-    CROSS_PRODUCTS = 11,
-    MISALIGNMENT = 12,
-    CROSS_AXIS = 13,
-    G_SENSITIVITY = 14,
-    G2_SENSITIVITY = 15,
-    LEVER_ARM = 16,
-    RAMP = 17,
-    RATE_ERROR = 18,
-    SKEW = 19
-};
+/* Of the timing; those of the terms stand in their rows. */
+enum { RATE_ERROR = 18, SKEW = 19 };
 
 typedef struct draw {
     imk_random random;
@@ -43,8 +26,8 @@ typedef struct draw {
 } draw;
 
 /* One row of a parameter: value[i] <- sigma[i] n[i]. */
-static void draw_row(const draw *d, enum parameter parameter, int axis, size_t count,
-                     const double *sigma, double *value)
+static void draw_row(const draw *d, int parameter, int axis, size_t count, const double *sigma,
+                     double *value)
 {
     double normal[6];
     bool any = false;
@@ -60,52 +43,33 @@ static void draw_row(const draw *d, enum parameter parameter, int axis, size_t c
         value[i] = sigma[i] * normal[i];
 }
 
-static void draw_axes(const draw *d, enum parameter parameter, imk_axes *axes)
-{
-    for (int i = 0; i < d->axis_count; i++)
-        draw_row(d, parameter, i, 1, &axes->sigma[i], &axes->value[i]);
-}
-
-static void draw_rows(const draw *d, enum parameter parameter, imk_rows *rows)
-{
-    for (int i = 0; i < d->axis_count; i++)
-        draw_row(d, parameter, i, 3, rows->sigma[i], rows->value[i]);
-}
-
-static void draw_scalar(const draw *d, enum parameter parameter, imk_scalar *scalar)
+static void draw_scalar(const draw *d, int parameter, imk_scalar *scalar)
 {
     draw_row(d, parameter, 0, 1, &scalar->sigma, &scalar->value);
 }
 
-static void draw_bias(const draw *d, imk_bias *bias)
+/* Without a temperature profile what needs one does nothing. */
+static void draw_term(const draw *d, int term, imk_triad *triad)
 {
-    draw_axes(d, BIAS_FIXED, &bias->fixed);
-    bias->temperature.order = 0;
-    memset(&bias->temperature_rate, 0, sizeof bias->temperature_rate);
-    memset(&bias->hysteresis, 0, sizeof bias->hysteresis);
+    const imki_form form = imki_terms[term].form;
+    const size_t count = (size_t)imki_form_elements(form);
+    double *value = (double *)(void *)((char *)triad + imki_terms[term].offset);
+    if (form == IMKI_FORM_WARMTH || form == IMKI_FORM_WARM_INPUT)
+        ((imk_temperature_polynomial *)(void *)value)->order = 0;
+    else if (form == IMKI_FORM_WARMING)
+        memset(value, 0, sizeof(imk_axes));
     /* A model without a warm-up states no time for it. */
-    if (bias->warm_up_time.value > 0.0)
-        draw_axes(d, BIAS_WARM_UP, &bias->warm_up_amplitude);
+    else if (form != IMKI_FORM_DECAY || triad->bias.warm_up_time.value > 0.0)
+        for (int i = 0; i < d->axis_count; i++)
+            draw_row(d, imki_terms[term].draw, i, count,
+                     value + ((size_t)IMK_AXES_MAX + (size_t)i) * count, value + (size_t)i * count);
 }
 
 static void draw_triad(const draw *d, imk_triad *triad)
 {
-    draw_bias(d, &triad->bias);
-    draw_axes(d, SCALE_FACTOR_FIXED, &triad->scale_factor.fixed);
-    triad->scale_factor.temperature.order = 0;
-    draw_axes(d, K2, &triad->nonlinearity.k2);
-    draw_axes(d, KOQ, &triad->nonlinearity.koq);
-    draw_axes(d, K3, &triad->nonlinearity.k3);
-    draw_axes(d, ASYMMETRY, &triad->nonlinearity.asymmetry);
-    draw_rows(d, CROSS_PRODUCTS, &triad->nonlinearity.cross_products);
-    draw_rows(d, MISALIGNMENT, &triad->misalignment);
-    draw_rows(d, CROSS_AXIS, &triad->cross_axis);
-    draw_rows(d, G_SENSITIVITY, &triad->g_sensitivity);
-    for (int i = 0; i < d->axis_count; i++)
-        draw_row(d, G2_SENSITIVITY, i, 6, triad->g2_sensitivity.sigma[i],
-                 triad->g2_sensitivity.value[i]);
-    draw_rows(d, LEVER_ARM, &triad->lever_arm);
-    draw_axes(d, RAMP, &triad->noise.ramp);
+    for (int term = 0; term < IMKI_TERMS; term++)
+        draw_term(d, term, triad);
+    memset(&triad->bias.hysteresis, 0, sizeof triad->bias.hysteresis);
 }
 
 void imki_drift_residual(imk_model *model, imk_random random, uint32_t run)

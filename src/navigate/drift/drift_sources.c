@@ -6,6 +6,7 @@
 
 #include "imukit/distort.h"
 #include "imukit/elementary.h"
+#include "model/model_schema_internal.h"
 #include "noise/noise_terms_internal.h"
 
 #include <string.h>
@@ -15,31 +16,44 @@
 
 static const char *const kinds[2] = {"gyro", "accel"};
 
-typedef enum known_driver { CONSTANT, RAMP, DECAY } known_driver;
-
 /* A term whose numbers are known: `width` for each axis. */
 typedef struct known_term {
-    const double *value, *sigma;
-    int width;
-    bool own; /* the column is that of the axis' own kind of input */
-    imki_column_kind column;
-    known_driver driver;
-    const char *name;
-    const char *text[2];
+    const double *number;
+    int term, width, sensor;
 } known_term;
 
-static const double *numbers(const known_term *term, bool compensated, int axis)
+/* The kind of column of a form, and which part of it number j is. */
+static imki_column_kind kind_of(const known_term *known, int axis, int j, int *part)
 {
-    return (compensated ? term->sigma : term->value) + (size_t)axis * (size_t)term->width;
+    *part = known->width > 1 ? j : 0;
+    switch (imki_terms[known->term].form) {
+    case IMKI_FORM_INPUT:
+        *part = axis;
+        return imki_drift_own_input(known->sensor);
+    case IMKI_FORM_SEEN:
+        return imki_drift_own_input(known->sensor);
+    case IMKI_FORM_POWER:
+        *part = imki_power_of(known->term);
+        return IMKI_COLUMN_POWER;
+    case IMKI_FORM_CROSS:
+        return IMKI_COLUMN_CROSS;
+    case IMKI_FORM_FORCE:
+        return IMKI_COLUMN_FORCE;
+    case IMKI_FORM_PRODUCT:
+        return IMKI_COLUMN_PRODUCT;
+    case IMKI_FORM_PLACE:
+        return IMKI_COLUMN_LEVER;
+    default:
+        return IMKI_COLUMN_ONE;
+    }
 }
 
-static imki_drift_column known_column(const known_term *term, const imk_triad *triad, int sensor,
-                                      int axis, int j)
+static imki_drift_column known_column(const known_term *known, const imk_triad *triad, int axis,
+                                      int j)
 {
-    const imki_column_kind kind = term->own ? imki_drift_own_input(sensor) : term->column;
-    const bool by_part = term->width > 1 || term->own;
-    imki_drift_column column =
-        imki_drift_column_of(kind, sensor, axis, by_part ? (term->width > 1 ? j : axis) : 0);
+    int part;
+    const imki_column_kind kind = kind_of(known, axis, j, &part);
+    imki_drift_column column = imki_drift_column_of(kind, known->sensor, axis, part);
     if (kind != IMKI_COLUMN_CROSS)
         return column;
     const double *stated = triad->nonlinearity.pendulous_axis[axis];
@@ -55,164 +69,43 @@ static imki_drift_column known_column(const known_term *term, const imk_triad *t
     return column;
 }
 
-static void add_known(imki_drift_plan *plan, const known_term *term, const imk_triad *triad,
-                      int sensor, bool compensated)
+static void add_known(imki_drift_plan *plan, const known_term *known, const imk_triad *triad,
+                      bool compensated)
 {
-    /* A model without a warm-up states no time for it. */
-    if (!imki_drift_has_any(numbers(term, compensated, 0), 3 * term->width) ||
-        (term->driver == DECAY && !(triad->bias.warm_up_time.value > 0.0)))
-        return;
-    imki_drift_add_source(plan, kinds[sensor], term->name, "", term->text[sensor]);
-    const imki_drift_driver driver = term->driver == RAMP ? imki_driver_ramp()
-                                     : term->driver == DECAY
-                                         ? imki_driver_decay(triad->bias.warm_up_time.value)
-                                         : imki_driver_constant();
+    const bool ramp = imki_terms[known->term].form == IMKI_FORM_TIME;
+    const bool decay = imki_terms[known->term].form == IMKI_FORM_DECAY;
+    const imki_drift_driver driver = ramp    ? imki_driver_ramp()
+                                     : decay ? imki_driver_decay(triad->bias.warm_up_time.value)
+                                             : imki_driver_constant();
     for (int axis = 0; axis < 3; axis++)
-        for (int j = 0; j < term->width; j++) {
-            const double x = numbers(term, compensated, axis)[j];
+        for (int j = 0; j < known->width; j++) {
+            const double x = known->number[axis * known->width + j];
             if (x == 0.0)
                 continue;
-            const imki_drift_column column = known_column(term, triad, sensor, axis, j);
+            const imki_drift_column column = known_column(known, triad, axis, j);
             imki_drift_add_constant(plan, compensated ? IMKI_ELEMENT_SIZE : IMKI_ELEMENT_MEAN,
-                                    &column, &driver, term->driver == RAMP ? 0.0 : x,
-                                    term->driver == RAMP ? x : 0.0);
+                                    &column, &driver, ramp ? 0.0 : x, ramp ? x : 0.0);
         }
 }
 
-#define AXES(member) triad->member.value, triad->member.sigma, 1
-#define ROWS(member, width) triad->member.value[0], triad->member.sigma[0], width
-
-/* Each function adds a few terms, in the order in which the model file has them. */
-
-static void add_all(imki_drift_plan *plan, const known_term *term, size_t count,
-                    const imk_triad *triad, int sensor, bool compensated)
+static void add_terms(imki_drift_plan *plan, const imk_triad *triad, int sensor, bool compensated)
 {
-    for (size_t i = 0; i < count; i++)
-        add_known(plan, &term[i], triad, sensor, compensated);
-}
-
-#define ADD(term) add_all(plan, term, sizeof(term) / sizeof(term)[0], triad, sensor, compensated)
-
-static void add_constants(imki_drift_plan *plan, const imk_triad *triad, int sensor,
-                          bool compensated)
-{
-    const known_term term[] = {
-        {AXES(bias.fixed),
-         false,
-         IMKI_COLUMN_ONE,
-         CONSTANT,
-         "bias.fixed",
-         {"gyro bias, fixed", "accelerometer bias, fixed"}},
-        {AXES(bias.warm_up_amplitude),
-         false,
-         IMKI_COLUMN_ONE,
-         DECAY,
-         "bias.warm_up",
-         {"gyro warm-up", "accelerometer warm-up"}},
-        {AXES(scale_factor.fixed),
-         true,
-         IMKI_COLUMN_ONE,
-         CONSTANT,
-         "scale_factor.fixed",
-         {"gyro scale factor", "accelerometer scale factor"}},
-    };
-    ADD(term);
-}
-
-static void add_nonlinearities(imki_drift_plan *plan, const imk_triad *triad, int sensor,
-                               bool compensated)
-{
-    const known_term term[] = {
-        {AXES(nonlinearity.k2),
-         false,
-         IMKI_COLUMN_SQUARE,
-         CONSTANT,
-         "nonlinearity.k2",
-         {"gyro nonlinearity, second order", "accelerometer nonlinearity, second order"}},
-        {AXES(nonlinearity.koq),
-         false,
-         IMKI_COLUMN_SIGNED,
-         CONSTANT,
-         "nonlinearity.koq",
-         {"gyro nonlinearity, odd quadratic", "accelerometer nonlinearity, odd quadratic"}},
-        {AXES(nonlinearity.k3),
-         false,
-         IMKI_COLUMN_CUBE,
-         CONSTANT,
-         "nonlinearity.k3",
-         {"gyro nonlinearity, third order", "accelerometer nonlinearity, third order"}},
-        {AXES(nonlinearity.asymmetry),
-         false,
-         IMKI_COLUMN_HALF,
-         CONSTANT,
-         "nonlinearity.asymmetry",
-         {"gyro asymmetry", "accelerometer asymmetry"}},
-    };
-    ADD(term);
-}
-
-static void add_rows(imki_drift_plan *plan, const imk_triad *triad, int sensor, bool compensated)
-{
-    const known_term term[] = {
-        {ROWS(misalignment, 3),
-         true,
-         IMKI_COLUMN_ONE,
-         CONSTANT,
-         "misalignment",
-         {"gyro misalignment", "accelerometer misalignment"}},
-        {ROWS(cross_axis, 3),
-         true,
-         IMKI_COLUMN_ONE,
-         CONSTANT,
-         "cross_axis",
-         {"gyro cross-axis response", "accelerometer cross-axis response"}},
-    };
-    const known_term of_gyro[] = {
-        {ROWS(g_sensitivity, 3),
-         false,
-         IMKI_COLUMN_FORCE,
-         CONSTANT,
-         "g_sensitivity",
-         {"gyro g-sensitivity", ""}},
-        {ROWS(g2_sensitivity, 6),
-         false,
-         IMKI_COLUMN_PRODUCT,
-         CONSTANT,
-         "g2_sensitivity",
-         {"gyro g2-sensitivity", ""}},
-    };
-    const known_term of_accel[] = {
-        {ROWS(nonlinearity.cross_products, 3),
-         false,
-         IMKI_COLUMN_CROSS,
-         CONSTANT,
-         "cross_products",
-         {"", "accelerometer cross products"}},
-        {ROWS(lever_arm, 3),
-         false,
-         IMKI_COLUMN_LEVER,
-         CONSTANT,
-         "lever_arm",
-         {"", "accelerometer lever arms"}},
-    };
-    ADD(term);
-    if (sensor == IMK_GYRO)
-        ADD(of_gyro);
-    else
-        ADD(of_accel);
-}
-
-static void add_ramps(imki_drift_plan *plan, const imk_triad *triad, int sensor, bool compensated)
-{
-    const known_term term[] = {
-        {AXES(noise.ramp),
-         false,
-         IMKI_COLUMN_ONE,
-         RAMP,
-         sensor == IMK_GYRO ? "noise.rate_ramp" : "noise.acceleration_ramp",
-         {"gyro rate ramp", "accelerometer ramp"}},
-    };
-    ADD(term);
+    uint8_t term[IMKI_TERMS];
+    const size_t count = imki_terms_in_order(sensor, term);
+    for (size_t i = 0; i < count; i++) {
+        const imki_term *row = &imki_terms[term[i]];
+        const imki_field *field = imki_term_field(term[i]);
+        const known_term known = {compensated ? imki_field_sigmas(field, triad)
+                                              : imki_field_values(field, triad),
+                                  term[i], imki_form_elements(row->form), sensor};
+        /* A model without a warm-up states no time for it. */
+        if (!row->text[sensor] || !imki_drift_has_any(known.number, 3 * known.width) ||
+            (row->form == IMKI_FORM_DECAY && !(triad->bias.warm_up_time.value > 0.0)))
+            continue;
+        imki_drift_add_source(plan, kinds[sensor], imki_field_name(field, sensor), "",
+                              row->text[sensor]);
+        add_known(plan, &known, triad, compensated);
+    }
 }
 
 /* ---- from run to run ---------------------------------------------------------------------------
@@ -336,10 +229,7 @@ static void add_triad(imki_drift_plan *plan, const imk_triad *triad, int sensor,
                       const imk_drift_settings *settings)
 {
     add_repeatabilities(plan, triad, sensor);
-    add_constants(plan, triad, sensor, settings->compensated);
-    add_nonlinearities(plan, triad, sensor, settings->compensated);
-    add_rows(plan, triad, sensor, settings->compensated);
-    add_ramps(plan, triad, sensor, settings->compensated);
+    add_terms(plan, triad, sensor, settings->compensated);
     imki_drift_noise_sources(plan, triad, sensor, settings);
 }
 

@@ -2,7 +2,10 @@
 /* A model of one axis as a list of figures. */
 #include "laboratory_internal.h"
 
+#include "model/model_schema_internal.h"
+
 #include <math.h>
+#include <stddef.h>
 
 typedef struct list {
     imk_laboratory_figure *figure;
@@ -13,20 +16,6 @@ static void add(list *l, const char *key, const char *si, const char *unit, doub
                 double sigma)
 {
     l->figure[l->count++] = (imk_laboratory_figure){key, si, unit, value, sigma};
-}
-
-static void add_axes(list *l, const char *key, const char *si, const char *unit,
-                     const imk_axes *axes)
-{
-    add(l, key, si, unit, axes->value[0], axes->sigma[0]);
-}
-
-/* A constant that differs from run to run by the repeatability. */
-static void add_constant(list *l, const char *key, const char *si, const char *unit,
-                         const imk_axes *fixed, const imk_axes *repeatability, double wander)
-{
-    const double sigma = fixed->sigma[0], spread = repeatability->value[0];
-    add(l, key, si, unit, fixed->value[0], sqrt(sigma * sigma + spread * spread + wander * wander));
 }
 
 /* What an instrument shows of an input across its axis: geometry and response together, which no
@@ -41,73 +30,109 @@ static void add_cross_axis(list *l, const imk_triad *t)
     }
 }
 
-static void gyro_figures(list *l, const imk_triad *t)
+/* What differs from run to run, and within one, counts as sigma. */
+static double spread_of(const imk_triad *t, int term, double sigma)
+{
+    if (term != IMK_MODEL_BIAS && term != IMK_MODEL_SCALE_FACTOR)
+        return sigma;
+    const bool bias = term == IMK_MODEL_BIAS;
+    const double wander = bias ? t->noise.bias_instability.value[0] : 0.0;
+    const double spread =
+        bias ? t->bias.repeatability.value[0] : t->scale_factor.repeatability.value[0];
+    return sqrt(sigma * sigma + spread * spread + wander * wander);
+}
+
+static void add_power(list *l, const imk_triad *t, int kind, const imki_field *field)
+{
+    const imk_temperature_polynomial *p = (const void *)imki_field_values(field, t);
+    add(l, field->path[kind], imki_polynomial_si(field, kind, 1),
+        imki_polynomial_unit(field, kind, 1), p->coefficient[0].value[0],
+        p->coefficient[0].sigma[0]);
+}
+
+static void add_row(list *l, const imk_triad *t, int kind, const imki_field *field,
+                    const char *const *keys, int elements)
+{
+    for (int k = 0; k < elements; k++)
+        add(l, keys[k], field->si[kind], field->unit[kind], imki_field_values(field, t)[k],
+            imki_field_sigmas(field, t)[k]);
+}
+
+static void add_term(list *l, const imk_triad *t, int kind, int term)
 {
     static const char *const g[] = {"g_sensitivity.x", "g_sensitivity.y", "g_sensitivity.z"};
     static const char *const g2[] = {"g2_sensitivity.xx", "g2_sensitivity.yy", "g2_sensitivity.zz",
                                      "g2_sensitivity.xy", "g2_sensitivity.yz", "g2_sensitivity.zx"};
-    add_constant(l, "bias.fixed", "rad/s", "deg/h", &t->bias.fixed, &t->bias.repeatability,
-                 t->noise.bias_instability.value[0]);
-    add_axes(l, "bias.temperature", "rad/s/K", "deg/h/K", &t->bias.temperature.coefficient[0]);
-    add_axes(l, "bias.temperature_rate", "rad/s/(K/s)", "deg/h/(K/min)", &t->bias.temperature_rate);
-    add_constant(l, "scale_factor.fixed", "1", "ppm", &t->scale_factor.fixed,
-                 &t->scale_factor.repeatability, 0.0);
-    add_axes(l, "scale_factor.temperature", "1/K", "ppm/K",
-             &t->scale_factor.temperature.coefficient[0]);
-    add_axes(l, "nonlinearity.k2", "1/(rad/s)", "ppm/(deg/s)", &t->nonlinearity.k2);
-    add_axes(l, "nonlinearity.koq", "1/(rad/s)", "ppm/(deg/s)", &t->nonlinearity.koq);
-    add_axes(l, "nonlinearity.k3", "1/(rad/s)^2", "ppm/(deg/s)^2", &t->nonlinearity.k3);
-    add_axes(l, "nonlinearity.asymmetry", "1", "ppm", &t->nonlinearity.asymmetry);
-    add_cross_axis(l, t);
-    for (int k = 0; k < 3; k++)
-        add(l, g[k], "rad/s/(m/s^2)", "deg/h/g", t->g_sensitivity.value[0][k],
-            t->g_sensitivity.sigma[0][k]);
-    for (int k = 0; k < 6; k++)
-        add(l, g2[k], "rad/s/(m/s^2)^2", "deg/h/g^2", t->g2_sensitivity.value[0][k],
-            t->g2_sensitivity.sigma[0][k]);
-    add_axes(l, "dead_band", "rad/s", "deg/h", &t->dead_band);
-    add_axes(l, "bandwidth", "Hz", "Hz", &t->bandwidth);
-    add_axes(l, "noise.quantization", "rad", "arcsec", &t->noise.quantization);
-    add_axes(l, "noise.angle_random_walk", "rad/s/sqrt(Hz)", "deg/sqrt(h)", &t->noise.white);
-    add_axes(l, "noise.bias_instability", "rad/s", "deg/h", &t->noise.bias_instability);
-    add_axes(l, "noise.rate_random_walk", "rad/s/sqrt(s)", "deg/h/sqrt(h)", &t->noise.random_walk);
-}
-
-static void accel_figures(list *l, const imk_triad *t)
-{
     static const char *const products[] = {"cross_products.kip", "cross_products.kio",
                                            "cross_products.kpo"};
-    add_constant(l, "bias.fixed", "m/s^2", "mg", &t->bias.fixed, &t->bias.repeatability,
-                 t->noise.bias_instability.value[0]);
-    add_axes(l, "bias.temperature", "m/s^2/K", "mg/K", &t->bias.temperature.coefficient[0]);
-    add_axes(l, "bias.temperature_rate", "m/s^2/(K/s)", "mg/(K/min)", &t->bias.temperature_rate);
-    add_constant(l, "scale_factor.fixed", "1", "ppm", &t->scale_factor.fixed,
-                 &t->scale_factor.repeatability, 0.0);
-    add_axes(l, "scale_factor.temperature", "1/K", "ppm/K",
-             &t->scale_factor.temperature.coefficient[0]);
-    add_axes(l, "nonlinearity.k2", "1/(m/s^2)", "ppm/g", &t->nonlinearity.k2);
-    add_axes(l, "nonlinearity.koq", "1/(m/s^2)", "ppm/g", &t->nonlinearity.koq);
-    add_axes(l, "nonlinearity.k3", "1/(m/s^2)^2", "ppm/g^2", &t->nonlinearity.k3);
-    add_axes(l, "nonlinearity.asymmetry", "1", "ppm", &t->nonlinearity.asymmetry);
-    add_cross_axis(l, t);
-    for (int k = 0; k < 3; k++)
-        add(l, products[k], "1/(m/s^2)", "ppm/g", t->nonlinearity.cross_products.value[0][k],
-            t->nonlinearity.cross_products.sigma[0][k]);
-    add_axes(l, "dead_band", "m/s^2", "ug", &t->dead_band);
-    add_axes(l, "bandwidth", "Hz", "Hz", &t->bandwidth);
-    add_axes(l, "noise.quantization", "m/s", "mm/s", &t->noise.quantization);
-    add_axes(l, "noise.velocity_random_walk", "m/s^2/sqrt(Hz)", "ug/sqrt(Hz)", &t->noise.white);
-    add_axes(l, "noise.bias_instability", "m/s^2", "ug", &t->noise.bias_instability);
-    add_axes(l, "noise.acceleration_random_walk", "m/s^2/sqrt(s)", "ug/sqrt(h)",
-             &t->noise.random_walk);
+    const imki_field *field = imki_term_field(term);
+    const double *value = imki_field_values(field, t);
+    switch (imki_terms[term].form) {
+    case IMKI_FORM_SEEN:
+        if (term == IMK_MODEL_MISALIGNMENT)
+            add_cross_axis(l, t);
+        break;
+    case IMKI_FORM_FORCE:
+        add_row(l, t, kind, field, g, 3);
+        break;
+    case IMKI_FORM_PRODUCT:
+        add_row(l, t, kind, field, g2, 6);
+        break;
+    case IMKI_FORM_CROSS:
+        add_row(l, t, kind, field, products, 3);
+        break;
+    case IMKI_FORM_WARMTH:
+    case IMKI_FORM_WARM_INPUT:
+        add_power(l, t, kind, field);
+        break;
+    case IMKI_FORM_PLACE: /* no experiment on one axis finds these */
+    case IMKI_FORM_DECAY:
+    case IMKI_FORM_TIME:
+        break;
+    default:
+        add(l, field->path[kind], field->si[kind], field->unit[kind], *value,
+            spread_of(t, term, *imki_field_sigmas(field, t)));
+    }
 }
+
+#define AT(member) offsetof(imk_triad, member)
+/* In units of a sheet. */
+static const struct {
+    const char *key[2], *si[2], *unit[2];
+    size_t offset;
+} outputs[] = {
+    {{"dead_band", "dead_band"}, {"rad/s", "m/s^2"}, {"deg/h", "ug"}, AT(dead_band)},
+    {{"bandwidth", "bandwidth"}, {"Hz", "Hz"}, {"Hz", "Hz"}, AT(bandwidth)},
+    {{"noise.quantization", "noise.quantization"},
+     {"rad", "m/s"},
+     {"arcsec", "mm/s"},
+     AT(noise.quantization)},
+    {{"noise.angle_random_walk", "noise.velocity_random_walk"},
+     {"rad/s/sqrt(Hz)", "m/s^2/sqrt(Hz)"},
+     {"deg/sqrt(h)", "ug/sqrt(Hz)"},
+     AT(noise.white)},
+    {{"noise.bias_instability", "noise.bias_instability"},
+     {"rad/s", "m/s^2"},
+     {"deg/h", "ug"},
+     AT(noise.bias_instability)},
+    {{"noise.rate_random_walk", "noise.acceleration_random_walk"},
+     {"rad/s/sqrt(s)", "m/s^2/sqrt(s)"},
+     {"deg/h/sqrt(h)", "ug/sqrt(h)"},
+     AT(noise.random_walk)},
+};
 
 size_t imk_laboratory_figures(const imk_model *model, int sensor, imk_laboratory_figure *figures)
 {
+    const imk_triad *t = sensor == IMK_GYRO ? &model->gyro : &model->accel;
     list l = {figures, 0};
-    if (sensor == IMK_GYRO)
-        gyro_figures(&l, &model->gyro);
-    else
-        accel_figures(&l, &model->accel);
+    uint8_t term[IMKI_TERMS];
+    const size_t count = imki_terms_in_order(sensor, term);
+    for (size_t i = 0; i < count; i++)
+        add_term(&l, t, sensor, term[i]);
+    for (size_t i = 0; i < sizeof outputs / sizeof outputs[0]; i++) {
+        const imk_axes *axes = (const void *)((const char *)t + outputs[i].offset);
+        add(&l, outputs[i].key[sensor], outputs[i].si[sensor], outputs[i].unit[sensor],
+            axes->value[0], axes->sigma[0]);
+    }
     return l.count;
 }

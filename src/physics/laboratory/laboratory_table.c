@@ -5,10 +5,11 @@
 #include "laboratory_internal.h"
 
 #include "imukit/elementary.h"
+#include "model/model_schema_internal.h"
 
 #include <math.h>
 
-enum { ZEROS = 8, TERMS = 6, SCAN = 22, BISECTIONS = 6 };
+enum { ZEROS = 8, TERMS_MAX = 2 + IMKI_POWERS_MAX, SCAN = 22, BISECTIONS = 6 };
 
 void imki_zero_readings(const imk_laboratory *laboratory, char *states,
                         const imk_executor *executor, imk_laboratory_result *result)
@@ -51,29 +52,46 @@ static void store(imk_axes *axes, double value, double sigma)
     axes->sigma[0] = sigma;
 }
 
+/* Powers that a table looks for. */
+static int sought_powers(const imki_power *power[IMKI_POWERS_MAX])
+{
+    int count = 0;
+    for (size_t k = 0; k < imki_input_power_count; k++)
+        if (imki_input_powers[k].sought)
+            power[count++] = &imki_input_powers[k];
+    return count;
+}
+
 static void fit_table(imk_triad *triad, imk_laboratory_result *result)
 {
-    double a[TERMS * IMKI_FIT_ROWS], y[IMKI_FIT_ROWS], x[TERMS], sigma[TERMS], noise = 0.0;
+    double a[TERMS_MAX * IMKI_FIT_ROWS], y[IMKI_FIT_ROWS], x[TERMS_MAX], sigma[TERMS_MAX];
+    const imki_power *power[IMKI_POWERS_MAX];
+    const int powers = sought_powers(power), terms = 2 + powers;
     const double scale = result->full_scale;
+    double noise = 0.0;
     for (int i = 0; i < result->point_count; i++) {
         const imk_laboratory_point *point = &result->point[i];
         const double u = point->input / scale;
-        const double row[TERMS] = {1.0, u, u * u, u * fabs(u), u * u * u, 0.5 * fabs(u)};
-        for (int k = 0; k < TERMS; k++)
-            a[i * TERMS + k] = row[k];
+        double *row = &a[i * terms];
+        row[0] = 1.0;
+        row[1] = u;
+        for (int k = 0; k < powers; k++)
+            row[2 + k] = imki_power_at(power[k], u);
         y[i] = point->output - point->input;
         noise += point->sigma * point->sigma;
     }
     noise = imki_reading_sigma(result, sqrt(noise / result->point_count));
-    if (!imki_fit((size_t)result->point_count, TERMS, a, y, noise, x, sigma))
+    if (!imki_fit((size_t)result->point_count, (size_t)terms, a, y, noise, x, sigma))
         return;
     store(&triad->bias.fixed, x[0], sigma[0]);
     store(&triad->scale_factor.fixed, x[1] / scale, sigma[1] / scale);
-    store(&triad->nonlinearity.k2, x[2] / (scale * scale), sigma[2] / (scale * scale));
-    store(&triad->nonlinearity.koq, x[3] / (scale * scale), sigma[3] / (scale * scale));
-    store(&triad->nonlinearity.k3, x[4] / (scale * scale * scale),
-          sigma[4] / (scale * scale * scale));
-    store(&triad->nonlinearity.asymmetry, x[5] / scale, sigma[5] / scale);
+    for (int k = 0; k < powers; k++) {
+        double unit = scale;
+        for (int n = 1; n < power[k]->p + power[k]->q; n++)
+            unit *= scale;
+        store((imk_axes *)(void *)((char *)triad + imki_terms[power[k]->term].offset),
+              x[2 + k] / unit, sigma[2 + k] / unit);
+    }
 }
 
 void imki_rate_table(const imk_laboratory *laboratory, char *states, const imk_executor *executor,
