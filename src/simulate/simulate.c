@@ -2,11 +2,12 @@
 /* The simulator: memory, channels, and the order in which rows are made. */
 #include "imukit/simulate.h"
 
+#include "base/workspace_internal.h"
 #include "simulate_internal.h"
 
 #include <string.h>
 
-enum { COOKIE = 0x5131A711, ALIGNMENT = 64 };
+enum { COOKIE = 0x5131A711 };
 
 struct imk_simulator {
     imki_scene scene;
@@ -63,40 +64,30 @@ static size_t axes_of(const imk_triad *triad)
     return triad->present ? (size_t)triad->axis_count : 0;
 }
 
-static size_t aligned(size_t size)
-{
-    return (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-}
-
 /* Bytes of the lists of one channel. */
 static size_t list_size(const imk_noise *noise)
 {
-    return aligned((size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state)) +
-           aligned((size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state)) +
-           aligned((size_t)noise->resonance_count * sizeof(imk_arma_state));
+    return imki_aligned((size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state)) +
+           imki_aligned((size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state)) +
+           imki_aligned((size_t)noise->resonance_count * sizeof(imk_arma_state));
 }
 
 size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
 {
     size_t gyros = axes_of(&model->gyro), accels = axes_of(&model->accel);
-    return aligned(sizeof(imk_simulator)) + aligned((gyros + accels) * sizeof(imki_channel)) +
+    return imki_aligned(sizeof(imk_simulator)) +
+           imki_aligned((gyros + accels) * sizeof(imki_channel)) +
            gyros * list_size(&model->gyro.noise) + accels * list_size(&model->accel.noise) +
-           aligned(imki_scene_size(model, simulation) * sizeof(double));
+           imki_aligned(imki_scene_size(model, simulation) * sizeof(double));
 }
 
-static void *take(unsigned char **memory, size_t size)
-{
-    void *taken = *memory;
-    *memory += aligned(size);
-    return taken;
-}
-
-static void assign_lists(imki_channel *channel, const imk_noise *noise, unsigned char **memory)
+static void assign_lists(imki_channel *channel, const imk_noise *noise, imki_arena *memory)
 {
     channel->gauss_markov =
-        take(memory, (size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state));
-    channel->sinusoid = take(memory, (size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state));
-    channel->resonance = take(memory, (size_t)noise->resonance_count * sizeof(imk_arma_state));
+        imki_take(memory, (size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state));
+    channel->sinusoid =
+        imki_take(memory, (size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state));
+    channel->resonance = imki_take(memory, (size_t)noise->resonance_count * sizeof(imk_arma_state));
 }
 
 /* ---- start ---- */
@@ -150,13 +141,13 @@ static double constant_response(const imk_simulator *made, const imki_channel *c
     return response;
 }
 
-static imk_status start_channels(imk_simulator *made, unsigned char *memory, const imk_model *model,
+static imk_status start_channels(imk_simulator *made, imki_arena *memory, const imk_model *model,
                                  const imk_simulation *simulation, imk_error *error)
 {
     for (size_t i = 0; i < made->channels; i++) {
         imki_axis axis = axis_of(model, i);
         imki_channel *channel = &made->channel[i];
-        assign_lists(channel, &axis.triad->noise, &memory);
+        assign_lists(channel, &axis.triad->noise, memory);
         imk_status status =
             imki_channel_start(channel, axis, 1.0 / simulation->rate, made->scene.substeps,
                                made->random, simulation->run, error);
@@ -180,17 +171,17 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
     if (size < imk_simulator_size(model, simulation))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_simulator_size() bytes");
-    if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
+    if (!memory || (uintptr_t)memory % 64 != 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
-    const size_t columns_size = aligned(imki_scene_size(model, simulation) * sizeof(double));
+    const size_t columns_size = imki_aligned(imki_scene_size(model, simulation) * sizeof(double));
     memset(memory, 0, imk_simulator_size(model, simulation) - columns_size);
-    unsigned char *rest = memory;
-    imk_simulator *made = take(&rest, sizeof *made);
+    imki_arena rest = {memory, 0};
+    imk_simulator *made = imki_take(&rest, sizeof *made);
     made->random = imk_random_seeded(simulation->seed);
     made->drops = model->timing.drops.value;
     made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
     made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
-    made->channel = take(&rest, made->channels * sizeof *made->channel);
+    made->channel = imki_take(&rest, made->channels * sizeof *made->channel);
     /* The columns of the scene come last. */
     double *columns = (double *)(void *)((unsigned char *)memory +
                                          imk_simulator_size(model, simulation) - columns_size);
@@ -198,7 +189,7 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
     if (status == IMK_OK)
         status = start_distortion(made, model, simulation, error);
     if (status == IMK_OK)
-        status = start_channels(made, rest, model, simulation, error);
+        status = start_channels(made, &rest, model, simulation, error);
     if (status == IMK_OK)
         *simulator = made;
     return status;

@@ -3,6 +3,7 @@
  * divided, and the figures are made one after the other. */
 #include "evaluate_internal.h"
 
+#include "base/workspace_internal.h"
 #include "imukit/distributions.h"
 #include "imukit/random.h"
 #include "imukit/samples.h"
@@ -78,50 +79,38 @@ static size_t draws_for(size_t rows)
                                     : draws;
 }
 
-typedef struct arena {
-    char *base; /* NULL: only counted */
-    size_t used;
-} arena;
-
-static void *take(arena *a, size_t count, size_t size)
-{
-    void *place = a->base ? a->base + a->used : NULL;
-    a->used += (count * size + 63) / 64 * 64;
-    return place;
-}
-
-static void lay_out(imki_evaluation *e, arena *a)
+static void lay_out(imki_evaluation *e, imki_arena *a)
 {
     const size_t n = e->rows, runs = e->table->run ? 2 * (size_t)IMK_EVALUATION_RUNS_MAX : 0;
-    e->level_of = take(a, n, sizeof *e->level_of);
-    e->side = take(a, n, sizeof *e->side);
-    e->reading = take(a, n, sizeof *e->reading);
-    e->order = take(a, n, sizeof *e->order);
-    e->reference = take(a, n, sizeof *e->reference);
-    e->cell = take(a, n * IMKI_CELLS, sizeof *e->cell);
-    e->level_sigma = take(a, n, sizeof *e->level_sigma);
-    e->pattern = take(a, n, sizeof *e->pattern);
-    e->noise = take(a, n, sizeof *e->noise);
-    e->shifted = take(a, n, sizeof *e->shifted);
-    e->trial = take(a, n, sizeof *e->trial);
-    e->weight = take(a, n, sizeof *e->weight);
-    e->moment = take(a, n, sizeof *e->moment);
-    e->centred = take(a, n, sizeof *e->centred);
-    e->factor = take(a, e->draws, sizeof *e->factor);
-    e->sorted = take(a, e->draws, sizeof *e->sorted);
-    e->none = take(a, e->draws, sizeof *e->none);
-    e->near = take(a, e->draws, sizeof *e->near);
-    e->draw = take(a, e->draws * n, sizeof *e->draw);
-    e->hull = take(a, 2 * n, sizeof *e->hull);
-    e->matrix = runs > 0 ? take(a, runs * (runs + 1), sizeof *e->matrix) : NULL;
+    e->level_of = imki_take(a, n * sizeof *e->level_of);
+    e->side = imki_take(a, n * sizeof *e->side);
+    e->reading = imki_take(a, n * sizeof *e->reading);
+    e->order = imki_take(a, n * sizeof *e->order);
+    e->reference = imki_take(a, n * sizeof *e->reference);
+    e->cell = imki_take(a, n * IMKI_CELLS * sizeof *e->cell);
+    e->level_sigma = imki_take(a, n * sizeof *e->level_sigma);
+    e->pattern = imki_take(a, n * sizeof *e->pattern);
+    e->noise = imki_take(a, n * sizeof *e->noise);
+    e->shifted = imki_take(a, n * sizeof *e->shifted);
+    e->trial = imki_take(a, n * sizeof *e->trial);
+    e->weight = imki_take(a, n * sizeof *e->weight);
+    e->moment = imki_take(a, n * sizeof *e->moment);
+    e->centred = imki_take(a, n * sizeof *e->centred);
+    e->factor = imki_take(a, e->draws * sizeof *e->factor);
+    e->sorted = imki_take(a, e->draws * sizeof *e->sorted);
+    e->none = imki_take(a, e->draws * sizeof *e->none);
+    e->near = imki_take(a, e->draws * sizeof *e->near);
+    e->draw = imki_take(a, e->draws * n * sizeof *e->draw);
+    e->hull = imki_take(a, 2 * n * sizeof *e->hull);
+    e->matrix = runs > 0 ? imki_take(a, runs * (runs + 1) * sizeof *e->matrix) : NULL;
 }
 
 size_t imk_evaluation_workspace_size(const imk_evaluation_table *table)
 {
     imki_evaluation e = {.table = table, .rows = table->count, .draws = draws_for(table->count)};
-    arena a = {NULL, 0};
+    imki_arena a = imki_arena_of(NULL);
     lay_out(&e, &a);
-    return a.used + 64;
+    return imki_arena_size(&a);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
@@ -226,8 +215,7 @@ imk_status imk_evaluate(const imk_evaluation_table *table, const imk_evaluation_
         return status;
     if (workspace_size < imk_evaluation_workspace_size(table))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL, NULL);
-    const uintptr_t address = (uintptr_t)workspace;
-    arena a = {(char *)workspace + ((address + 63) / 64 * 64 - address), 0};
+    imki_arena a = imki_arena_of(workspace);
     imki_evaluation e = {.table = table,
                          .settings = settings,
                          .result = result,

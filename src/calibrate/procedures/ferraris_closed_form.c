@@ -5,6 +5,7 @@
  *     dK_i = sum over j of R_ij dM_ij,     dR_ij = (dM_ij - R_ij dK_i)/K_i. */
 #include "six_position_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/attitude.h"
 
 #include <math.h>
@@ -98,7 +99,7 @@ static imk_status gather(const imk_test_record *record, size_t count,
 static bool split_rows(double m[3][3], double variance[3][3], imk_ferraris_triad *t)
 {
     for (int i = 0; i < 3; i++) {
-        const double k = sqrt(m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2]);
+        const double k = imki_norm3(m[i]);
         double of_k = 0.0;
         if (!(k > 0.0) || !isfinite(k))
             return false;

@@ -108,12 +108,6 @@ static imk_status find_holds(gathering *g)
     return IMK_OK;
 }
 
-static const imk_triad *triad_of(const gathering *g, int sensor)
-{
-    const imk_model *model = &g->call->calibration->model;
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 /* No step longer than a sample. */
 static bool without_gap(const imk_test_record *record, size_t begin, size_t end)
 {
@@ -128,7 +122,7 @@ static bool within_range(const gathering *g, int sensor, size_t begin, size_t en
 {
     for (int i = 0; i < g->record->axis_count[sensor]; i++) {
         const double *reading = g->record->reading[sensor][i];
-        const double range = triad_of(g, sensor)->range.value[i];
+        const double range = imk_model_triad(&g->call->calibration->model, sensor)->range.value[i];
         /* A hair below full scale is there. */
         const double limit =
             range > 0.0 ? 0.9999 * range / fabs(g->scaling[sensor].unit[i]) : (double)INFINITY;
@@ -181,17 +175,20 @@ static void set_nominal(gathering *g, int sensor, const imki_scaling *found)
 static bool needs_nominal(const gathering *g, int sensor)
 {
     return g->record->counts[sensor] && g->record->axis_count[sensor] > 0 &&
-           triad_of(g, sensor)->sensitivity.value[0] == 0.0;
+           imk_model_triad(&g->call->calibration->model, sensor)->sensitivity.value[0] == 0.0;
 }
 
 static void take_nominal(gathering *g)
 {
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++) {
-            const double sensitivity = triad_of(g, sensor)->sensitivity.value[i];
+            const double sensitivity =
+                imk_model_triad(&g->call->calibration->model, sensor)->sensitivity.value[i];
             const bool counts = g->record->counts[sensor] && sensitivity != 0.0;
             g->scaling[sensor].unit[i] = counts ? 1.0 / sensitivity : 1.0;
-            g->scaling[sensor].zero[i] = counts ? triad_of(g, sensor)->zero_offset.value[i] : 0.0;
+            g->scaling[sensor].zero[i] =
+                counts ? imk_model_triad(&g->call->calibration->model, sensor)->zero_offset.value[i]
+                       : 0.0;
         }
 }
 
@@ -246,7 +243,9 @@ static imk_status find_gyro_nominal(gathering *g)
 /* Step of a reading, in its unit; 0: not known. */
 static double step_of(const gathering *g, int sensor, int axis)
 {
-    return g->record->counts[sensor] ? 1.0 : triad_of(g, sensor)->resolution.value[axis];
+    return g->record->counts[sensor]
+               ? 1.0
+               : imk_model_triad(&g->call->calibration->model, sensor)->resolution.value[axis];
 }
 
 static imki_turn_surroundings surroundings_of(const gathering *g)
@@ -394,8 +393,7 @@ static imk_status append(gathering *g)
     imk_calibration *calibration = call->calibration;
     imk_procedure_findings *findings = call->findings;
     for (int sensor = 0; sensor < 2; sensor++) {
-        imk_triad *triad =
-            sensor == IMK_GYRO ? &calibration->model.gyro : &calibration->model.accel;
+        imk_triad *triad = imk_model_triad_to_set(&calibration->model, sensor);
         for (int i = 0; g->found[sensor] && i < 3; i++) {
             triad->sensitivity.value[i] = four_digits(1.0 / g->scaling[sensor].unit[i]);
             triad->zero_offset.value[i] = g->scaling[sensor].zero[i];

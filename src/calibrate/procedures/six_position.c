@@ -20,11 +20,6 @@ size_t imki_six_position_workspace(const imk_test_record *record,
     return imki_stretches_workspace(record, settings);
 }
 
-static const imk_triad *triad_of(const imk_model *model, int sensor)
-{
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 /* ---- the Earth --------------------------------------------------------------------------------
  */
 
@@ -56,7 +51,7 @@ static double smallest_sigma(const imk_model *model, const imk_test_record *reco
                              int axis)
 {
     static const double uniform = 0.28867513459481287; /* 1/sqrt(12) */
-    const double resolution = triad_of(model, sensor)->resolution.value[axis];
+    const double resolution = imk_model_triad(model, sensor)->resolution.value[axis];
     if (record->counts[sensor])
         return uniform;
     return resolution > 0.0 ? uniform * resolution : 1e-9;

@@ -11,15 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-static const imk_triad *triad_of(const imk_model *model, int sensor)
-{
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 double imki_thermal_reading(const imk_test_record *record, const imk_model *model, int sensor,
                             int axis, size_t sample)
 {
-    const imk_triad *triad = triad_of(model, sensor);
+    const imk_triad *triad = imk_model_triad(model, sensor);
     const double *const *reference =
         sensor == IMK_GYRO ? record->reference_rate : record->reference_force;
     double y = record->reading[sensor][axis][sample];

@@ -44,7 +44,7 @@ static imk_status free_poses(const imki_procedure_call *call, int levels, double
     const int scale = wanted == 0 ? 0 : order_of(wanted, 1, levels);
     imk_status status = IMK_OK;
     for (int sensor = 0; sensor < 2 && status == IMK_OK; sensor++) {
-        imk_triad *triad = imki_thermal_triad(&c->model, sensor);
+        imk_triad *triad = imk_model_triad_to_set(&c->model, sensor);
         const bool scaled = sensor == IMK_ACCEL || has[IMK_GYRO];
         if (record->axis_count[sensor] == 0)
             continue;

@@ -3,6 +3,8 @@
  * and free_gyro_slow.c; closed forms: free_gyro_reduce.c. */
 #include "free_gyro_internal.h"
 
+#include "base/algebra/vector_internal.h"
+
 #include <math.h>
 
 enum { COOKIE = 0x46524759 };
@@ -209,7 +211,7 @@ imk_status imk_free_gyro_validate(const imk_free_gyro *design, imk_error *error)
                       "half the momentum of the wheel at the stop");
     /* weight of 10 m/s^2: the steady precession is real while 4 (A - C) M < H^2 */
     const double *m = parts.moment;
-    const double weight = 10.0 * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    const double weight = 10.0 * imki_norm3(m);
     const double most = parts.h * parts.h / (4.0 * (parts.j_least + fabs(parts.a_c) + parts.b));
     if (!(weight < most))
         return refuse(error, "unbalance.z", weight, most,
