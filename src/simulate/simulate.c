@@ -2,6 +2,7 @@
 /* The simulator: memory, channels, and the order in which rows are made. */
 #include "imukit/simulate.h"
 
+#include "base/refuse_internal.h"
 #include "base/workspace_internal.h"
 #include "simulate_internal.h"
 
@@ -31,10 +32,7 @@ static imk_status range_error(imk_error *error, const char *field, double value,
                               const char *expected)
 {
     imk_status status = isfinite(value) ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
-    imk_error_set(error, status, field, "", expected);
-    if (error)
-        error->value = value;
-    return status;
+    return imki_refuse(error, status, field, value, 0.0, expected);
 }
 
 static imk_status check_simulation(const imk_simulation *simulation, imk_error *error)

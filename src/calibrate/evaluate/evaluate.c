@@ -3,6 +3,7 @@
  * divided, and the figures are made one after the other. */
 #include "evaluate_internal.h"
 
+#include "base/refuse_internal.h"
 #include "base/workspace_internal.h"
 #include "imukit/distributions.h"
 #include "imukit/random.h"
@@ -21,28 +22,22 @@ imk_evaluation_settings imk_evaluation_default(void)
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static imk_status bad_row(imk_status status, size_t row, const char *field, const char *expected,
-                          imk_error *error)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error)
-        error->index = (int)row;
-    return status;
-}
-
 static imk_status check_rows(const imk_evaluation_table *table, imk_error *error)
 {
     for (size_t row = 0; row < table->count; row++) {
         if (!(fabs(table->reference[row]) <= IMK_READING_MAX))
-            return bad_row(IMK_ERROR_NOT_FINITE, row, "reference", "a number up to 1e60", error);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "reference", row, 0.0, 0.0,
+                                  "a number up to 1e60");
         if (!(fabs(table->reading[row]) <= IMK_READING_MAX))
-            return bad_row(IMK_ERROR_NOT_FINITE, row, "reading", "a number up to 1e60", error);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "reading", row, 0.0, 0.0,
+                                  "a number up to 1e60");
         if (table->sigma && !(table->sigma[row] > 0.0 && table->sigma[row] < HUGE_VAL))
-            return bad_row(IMK_ERROR_RANGE, row, "sigma", "above 0", error);
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "sigma", row, 0.0, 0.0, "above 0");
         if (table->direction && (table->direction[row] < -1 || table->direction[row] > 1))
-            return bad_row(IMK_ERROR_RANGE, row, "direction", "-1, 0 or 1", error);
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "direction", row, 0.0, 0.0, "-1, 0 or 1");
         if (table->run && (table->run[row] < 0 || table->run[row] >= IMK_EVALUATION_RUNS_MAX))
-            return bad_row(IMK_ERROR_RANGE, row, "run", "a number from 0 to 63", error);
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "run", row, 0.0, 0.0,
+                                  "a number from 0 to 63");
     }
     return IMK_OK;
 }
@@ -59,12 +54,8 @@ static imk_status check(const imk_evaluation_table *table, const imk_evaluation_
     if (!(settings->level_width >= 0.0 && settings->level_width < HUGE_VAL))
         return imk_error_set(error, IMK_ERROR_RANGE, "level_width", NULL, "0 or more");
     if (table->count < 2) {
-        imk_error_set(error, IMK_ERROR_TOO_SHORT, "readings", NULL, "at least two readings");
-        if (error) {
-            error->value = (double)table->count;
-            error->limit = 2;
-        }
-        return IMK_ERROR_TOO_SHORT;
+        return imki_refuse(error, IMK_ERROR_TOO_SHORT, "readings", (double)table->count, 2,
+                           "at least two readings");
     }
     return check_rows(table, error);
 }

@@ -6,6 +6,7 @@
 #include "six_position_internal.h"
 
 #include "base/algebra/vector_internal.h"
+#include "base/refuse_internal.h"
 #include "imukit/attitude.h"
 
 #include <math.h>
@@ -23,11 +24,8 @@ typedef struct pool {
 
 static imk_status wrong_stretch(size_t k, imk_error *error)
 {
-    imk_error_set(error, IMK_ERROR_ARGUMENT, "stretch", NULL,
-                  "samples of the record, axis 0 to 2, sense 1 or -1");
-    if (error)
-        error->index = (int)k;
-    return IMK_ERROR_ARGUMENT;
+    return imki_refuse_at(error, IMK_ERROR_ARGUMENT, "stretch", k, 0.0, 0.0,
+                          "samples of the record, axis 0 to 2, sense 1 or -1");
 }
 
 static void add_hold(const imk_test_record *record, const imk_ferraris_stretch *at, pool *p)
@@ -76,11 +74,8 @@ static imk_status gather(const imk_test_record *record, size_t count,
         if (!at->turn) {
             add_hold(record, at, p);
         } else if (!add_turn(record, at, turn_angle, p)) {
-            imk_error_set(error, IMK_ERROR_GAP, "turn", NULL,
-                          "a turn without gap and missing readings");
-            if (error)
-                error->index = (int)k;
-            return IMK_ERROR_GAP;
+            return imki_refuse_at(error, IMK_ERROR_GAP, "turn", k, 0.0, 0.0,
+                                  "a turn without gap and missing readings");
         }
     }
     for (int a = 0; a < 3; a++) {

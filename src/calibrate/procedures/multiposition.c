@@ -6,6 +6,7 @@
  * stretch from the end of one to the beginning of the next is a turn. How well both are known:
  * multiposition_sigma.c; what counts stand for when the model does not say: multiposition_start.c.
  */
+#include "base/refuse_internal.h"
 #include "multiposition_internal.h"
 #include "procedure_internal.h"
 
@@ -67,12 +68,7 @@ size_t imki_multiposition_workspace(const imk_test_record *record,
 static imk_status too_few(imk_error *error, const char *field, size_t found, size_t needed,
                           const char *expected)
 {
-    imk_error_set(error, IMK_ERROR_TOO_SHORT, field, NULL, expected);
-    if (error) {
-        error->value = (double)found;
-        error->limit = (double)needed;
-    }
-    return IMK_ERROR_TOO_SHORT;
+    return imki_refuse(error, IMK_ERROR_TOO_SHORT, field, (double)found, (double)needed, expected);
 }
 
 static imk_status find_holds(gathering *g)
@@ -330,14 +326,11 @@ static imk_status check_amount(const gathering *g)
     const size_t observations = calibration->observation_count + g->hold_count;
     if (observations > calibration->observation_capacity || turns > calibration->turn_capacity) {
         const bool of_turns = observations <= calibration->observation_capacity;
-        imk_error_set(error, IMK_ERROR_WORKSPACE, of_turns ? "turn" : "observation", NULL,
-                      "room for them");
-        if (error) {
-            error->value = (double)(of_turns ? turns : observations);
-            error->limit =
-                (double)(of_turns ? calibration->turn_capacity : calibration->observation_capacity);
-        }
-        return IMK_ERROR_WORKSPACE;
+        return imki_refuse(
+            error, IMK_ERROR_WORKSPACE, of_turns ? "turn" : "observation",
+            (double)(of_turns ? turns : observations),
+            (double)(of_turns ? calibration->turn_capacity : calibration->observation_capacity),
+            "room for them");
     }
     return IMK_OK;
 }

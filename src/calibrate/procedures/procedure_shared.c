@@ -62,14 +62,6 @@ bool imki_unit_known(const imk_model *model, const imk_test_record *record, int 
     return true;
 }
 
-void imki_append(char *text, size_t size, const char *more)
-{
-    const size_t length = strlen(text), room = size - 1 - length, wanted = strlen(more);
-    const size_t taken = wanted < room ? wanted : room;
-    memcpy(text + length, more, taken);
-    text[length + taken] = '\0';
-}
-
 double imki_round_digits(double x, int digits)
 {
     if (x == 0.0 || !isfinite(x))

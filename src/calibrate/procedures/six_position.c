@@ -10,6 +10,7 @@
  * W cos(latitude)/sqrt(2) to the sigma of both gyros across the vertical. */
 #include "six_position_internal.h"
 
+#include "base/refuse_internal.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -112,13 +113,9 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_bench_
     const imk_procedure_settings *settings = call->settings;
     const size_t needed = c->observation_count + list->count + more;
     if (needed > c->observation_capacity) {
-        imk_error_set(call->error, IMK_ERROR_WORKSPACE, "observations", NULL,
-                      "room for an observation a hold and turn");
-        if (call->error) {
-            call->error->value = (double)needed;
-            call->error->limit = (double)c->observation_capacity;
-        }
-        return IMK_ERROR_WORKSPACE;
+        return imki_refuse(call->error, IMK_ERROR_WORKSPACE, "observations", (double)needed,
+                           (double)c->observation_capacity,
+                           "room for an observation a hold and turn");
     }
     *fixture = add_fixture(call);
     if (*fixture == -2)

@@ -3,6 +3,7 @@
  * means of its columns is exact, whatever the temperature does within a block; nearly a hundred
  * blocks keep what a polynomial of order 5 and a loop can follow, and are few enough that the
  * covariance of all of them is handled as a whole. */
+#include "base/refuse_internal.h"
 #include "calibrate/standstill/median_internal.h"
 #include "thermal_internal.h"
 
@@ -291,12 +292,7 @@ void imki_thermal_merge(imki_thermal_blocks *blocks)
 static imk_status too_short(imk_error *error, const char *field, double value, double limit,
                             const char *expected)
 {
-    imk_error_set(error, IMK_ERROR_TOO_SHORT, field, NULL, expected);
-    if (error) {
-        error->value = value;
-        error->limit = limit;
-    }
-    return IMK_ERROR_TOO_SHORT;
+    return imki_refuse(error, IMK_ERROR_TOO_SHORT, field, value, limit, expected);
 }
 
 /* 24 blocks of 4 samples: three for each of eight unknowns. */

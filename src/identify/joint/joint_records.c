@@ -7,6 +7,8 @@
  * a set of bands like that of one record, and goes the same way: terms, then intervals. */
 #include "joint_internal.h"
 
+#include "base/refuse_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -103,11 +105,8 @@ static imk_status check(const imk_identify_settings *settings, size_t count,
             return imk_error_set(error, IMK_ERROR_UNINITIALISED, "summary", NULL,
                                  "identify each record with settings.summary first");
         if (!(fabs(summaries[r]->bands.dt / summaries[0]->bands.dt - 1) < 1e-3)) {
-            imk_error_set(error, IMK_ERROR_CONFLICT, "sample interval", NULL,
-                          "records of one sample rate");
-            if (error)
-                error->index = (int)r;
-            return IMK_ERROR_CONFLICT;
+            return imki_refuse_at(error, IMK_ERROR_CONFLICT, "sample interval", r, 0.0, 0.0,
+                                  "records of one sample rate");
         }
     }
     return IMK_OK;

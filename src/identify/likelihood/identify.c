@@ -2,6 +2,7 @@
 /* Identification of one channel: checks and memory, then spectrum and lines (identify_lines.c), the
  * fit and the choice of terms (identify_terms.c), intervals (identify_intervals.c), and how far it
  * agrees with the Allan deviation (identify_verdict.c). */
+#include "base/refuse_internal.h"
 #include "identify/records/missing_internal.h"
 #include "identify_internal.h"
 #include "imukit/fourier.h"
@@ -105,12 +106,10 @@ static imk_status check_arguments(const imk_identify_settings *settings, size_t 
         constant = constant && samples[i] == samples[0];
     }
     if (constant) {
-        imk_error_set(error, IMK_ERROR_CONSTANT, NULL, NULL,
-                      "check its wiring and driver: a working sensor never repeats itself for a "
-                      "whole record");
-        if (error)
-            error->value = samples[0];
-        return IMK_ERROR_CONSTANT;
+        return imki_refuse(
+            error, IMK_ERROR_CONSTANT, NULL, samples[0], 0.0,
+            "check its wiring and driver: a working sensor never repeats itself for a "
+            "whole record");
     }
     if (*missing > missing_maximum(n) || n - *missing < SAMPLES_MIN)
         return imk_error_set(error, IMK_ERROR_TOO_SHORT, NULL, NULL,

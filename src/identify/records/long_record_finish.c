@@ -2,6 +2,7 @@
 /* From what was gathered of a long record to its identification: the last segment, the slow
  * spectrum, Allan deviations, lines; then the same fit, intervals and verdict as for a record that
  * was transformed as a whole. */
+#include "base/refuse_internal.h"
 #include "imukit/fourier.h"
 #include "long_record_internal.h"
 
@@ -95,12 +96,10 @@ static imk_status check_record(const imk_identify_record *r, const imk_identify_
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
                              "imk_identify_record_workspace_size() bytes");
     if (r->checks.high.distinct == 1) {
-        imk_error_set(error, IMK_ERROR_CONSTANT, NULL, NULL,
-                      "check its wiring and driver: a working sensor never repeats itself for a "
-                      "whole record");
-        if (error)
-            error->value = r->checks.high.value[0] / r->scale + r->shift;
-        return IMK_ERROR_CONSTANT;
+        return imki_refuse(
+            error, IMK_ERROR_CONSTANT, NULL, r->checks.high.value[0] / r->scale + r->shift, 0.0,
+            "check its wiring and driver: a working sensor never repeats itself for a "
+            "whole record");
     }
     if (r->segments <= r->skipped || empty > r->mean_count / 20)
         return imk_error_set(error, IMK_ERROR_GAP, NULL, NULL,

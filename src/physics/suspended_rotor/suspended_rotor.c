@@ -177,12 +177,12 @@ imk_status imk_suspended_rotor_validate(const imk_suspended_rotor *design, imk_e
                    {"ball.oblateness", design->oblateness},
                    {"ball.pear", design->pear}};
     if (!(design->hollow < design->diameter))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "ball.hollow", design->hollow,
-                                  design->diameter, "a hollow smaller than ball.diameter");
+        return imki_conflict(error, "ball.hollow", design->hollow, design->diameter,
+                             "a hollow smaller than ball.diameter");
     for (int i = 0; i < 3; i++)
         if (!(fabs(heights[i].value) <= most))
-            return imki_design_refuse(error, IMK_ERROR_CONFLICT, heights[i].field, heights[i].value,
-                                      most, "at most a thousandth of the ball's radius");
+            return imki_conflict(error, heights[i].field, heights[i].value, most,
+                                 "at most a thousandth of the ball's radius");
     return IMK_OK;
 }
 
@@ -285,8 +285,8 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
     choose_across(state->axis, state->across);
     status = start_random(design, settings, state);
     if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", design->torque_instability,
-                                  0.0, NULL);
+        return imki_refuse(error, status, "torque.instability", design->torque_instability, 0.0,
+                           NULL);
     read_axis(state, state->reading);
     return IMK_OK;
 }
