@@ -28,6 +28,17 @@ typedef struct imki_arena {
     size_t used;
 } imki_arena;
 
+/* Of a workspace, which has bytes for imki_arena_size(); NULL: only sizes are wanted. */
+static inline imki_arena imki_arena_of(void *workspace)
+{
+    return (imki_arena){(char *)imki_align(workspace), 0};
+}
+
+static inline size_t imki_arena_size(const imki_arena *arena)
+{
+    return arena->used + IMKI_ALIGNMENT_SLACK;
+}
+
 static inline void *imki_take(imki_arena *arena, size_t size)
 {
     void *part = arena->memory ? arena->memory + arena->used : NULL;

@@ -2,6 +2,7 @@
 /* Preparing the correction of a model: which unknowns there are, how large they can be, whether
  * every reading belongs to one motion, and how many iterations lead to it. */
 #include "base/algebra/vector_internal.h"
+#include "base/text_internal.h"
 #include "correct_internal.h"
 #include "model_internal.h"
 
@@ -19,21 +20,13 @@ static const double nominal_limit[2] = {1.0 /* rad/s */, 10.0 /* m/s^2 */};
 
 static const char *const kind_names[2] = {"gyro", "accel"};
 
-static void append(char *text, size_t size, const char *more)
-{
-    size_t length = strlen(text);
-    while (*more && length + 1 < size)
-        text[length++] = *more++;
-    text[length] = '\0';
-}
-
 static imk_status refuse(imk_error *error, imk_status status, int sensor, const char *key,
                          const char *found, const char *expected)
 {
     char field[64] = "";
-    append(field, sizeof field, kind_names[sensor]);
-    append(field, sizeof field, ".");
-    append(field, sizeof field, key);
+    imki_append_text(field, sizeof field, kind_names[sensor]);
+    imki_append_text(field, sizeof field, ".");
+    imki_append_text(field, sizeof field, key);
     return imk_error_set(error, status, field, found, expected);
 }
 
@@ -249,9 +242,9 @@ static imk_status check_monotonic(const imki_inversion *v, imk_error *error)
                 continue;
             char found[IMK_DECIMAL_SIZE + 96] = "the reading turns back at an input of ";
             imk_decimal_significant(u, 6, found + strlen(found));
-            append(found, sizeof found,
-                   sensor == IMK_GYRO ? " rad/s, which is within the range"
-                                      : " m/s^2, which is within the range");
+            imki_append_text(found, sizeof found,
+                             sensor == IMK_GYRO ? " rad/s, which is within the range"
+                                                : " m/s^2, which is within the range");
             refuse(error, IMK_ERROR_NO_CONVERGENCE, sensor, worst_term(axis, u), found,
                    "state a smaller range, or correct without this term");
             if (error) {

@@ -2,6 +2,7 @@
 /* Validation of a model: every field of the schema against its range, then what the ranges of
  * single fields cannot say: settings that need or exclude one another. */
 #include "base/algebra/vector_internal.h"
+#include "base/refuse_internal.h"
 #include "model_internal.h"
 #include "model_schema_internal.h"
 
@@ -48,13 +49,8 @@ static path path_of(const char *first, const char *second)
 static imk_status refuse(imk_error *error, imk_status status, const path *where, int index,
                          double value, double limit, const char *expected)
 {
-    imk_error_set(error, status, where->text, "", expected);
-    if (error) {
-        error->index = index;
-        error->value = value;
-        error->limit = limit;
-    }
-    return status;
+    return imki_refuse_at(error, status, where->text, index < 0 ? SIZE_MAX : (size_t)index, value,
+                          limit, expected);
 }
 
 static imk_status conflict(imk_error *error, const char *kind, const char *field, int axis,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The kinds of instruments there are. */
+#include "base/text_internal.h"
 #include "imukit/fibre_optic.h"
 #include "imukit/free_gyro.h"
 #include "imukit/mems_accelerometer.h"
@@ -46,11 +47,6 @@ static bool is_separator(char c)
     return c == ' ' || c == '-' || c == '_';
 }
 
-static char lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
 static bool same_name(const char *a, const char *b)
 {
     for (;;) {
@@ -58,7 +54,7 @@ static bool same_name(const char *a, const char *b)
             a++;
         while (is_separator(*b))
             b++;
-        if (lower(*a) != lower(*b))
+        if (imki_lower(*a) != imki_lower(*b))
             return false;
         if (*a == '\0')
             return true;

@@ -4,6 +4,7 @@
 #ifndef IMUKI_PHYSICS_INTERNAL_H
 #define IMUKI_PHYSICS_INTERNAL_H
 
+#include "base/refuse_internal.h"
 #include "imukit/distort.h"
 #include "imukit/instrument.h"
 #include "imukit/noise.h"
@@ -91,9 +92,12 @@ imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *
 imk_status imki_divide_sample(const imk_physics_settings *settings, double longest, double limit,
                               const char *reason, size_t *count, double *step, imk_error *error);
 
-/* Refuse a design: field, value, limit, and what to do. Returns the status. */
-imk_status imki_design_refuse(imk_error *error, imk_status status, const char *field, double value,
-                              double limit, const char *expected);
+/* A design whose numbers do not go together. */
+static inline imk_status imki_conflict(imk_error *error, const char *field, double value,
+                                       double limit, const char *expected)
+{
+    return imki_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
+}
 
 /* Reference and valid range of a polynomial: 60 K to both sides, above absolute zero. */
 static inline void imki_temperature_range(imk_temperature_polynomial *polynomial, double reference)

@@ -3,15 +3,8 @@
  * input, three axes from one. */
 #include "physics_internal.h"
 
+#include "base/text_internal.h"
 #include "model/model_schema_internal.h"
-
-static void copy_text(char *to, size_t size, const char *from)
-{
-    size_t i = 0;
-    for (; from[i] && i + 1 < size; i++)
-        to[i] = from[i];
-    to[i] = '\0';
-}
 
 imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrument)
 {
@@ -24,9 +17,9 @@ imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrume
     triad->axis_count = 1;
     for (int k = 0; k < 3; k++)
         triad->direction[0][k] = k == 0 ? 1.0 : 0.0;
-    copy_text(model->name, sizeof model->name, instrument->title);
-    copy_text(evidence->source, sizeof evidence->source, instrument->source);
-    copy_text(evidence->method, sizeof evidence->method, "design parameters, by closed forms");
+    imki_copy_text(model->name, sizeof model->name, instrument->title);
+    imki_copy_text(evidence->source, sizeof evidence->source, instrument->source);
+    imki_copy_text(evidence->method, sizeof evidence->method, "design parameters, by closed forms");
     return triad;
 }
 

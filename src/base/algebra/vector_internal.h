@@ -1,9 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Three numbers in an array as a vector. */
+/* Numbers in an array as a vector. */
 #ifndef IMUKIT_VECTOR_INTERNAL_H
 #define IMUKIT_VECTOR_INTERNAL_H
 
 #include <math.h>
+#include <stddef.h>
+
+static inline double imki_dot(size_t count, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < count; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
 
 static inline double imki_dot3(const double a[3], const double b[3])
 {

@@ -15,9 +15,9 @@
  * median variance stated for gyro readings at rest. Below that the share that readings and turns
  * have in common is 2 % of a variance at most, 1 % of a sigma, and less where white noise of the
  * turns counts. Above, g-sensitivity, which both tell of, would be stated too well. */
-#include "base/algebra/vector_internal.h"
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/elementary.h"
 
 #include <math.h>

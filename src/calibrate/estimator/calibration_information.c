@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Information about the parameters that observations would hold: the normal matrix at the model's
  * values, attitudes, placements, fixtures and the Earth's unknown part eliminated. */
-#include "base/algebra/vector_internal.h"
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>

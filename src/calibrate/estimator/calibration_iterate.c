@@ -3,8 +3,9 @@
  * a step does not lower the cost, with the turns linearised. Integrating the turns is what costs
  * time; so the solution is iterated to the end with the linearisation at hand, and the turns are
  * integrated again at the solution. */
-#include "base/algebra/vector_internal.h"
 #include "estimator_internal.h"
+
+#include "base/algebra/vector_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -230,8 +231,7 @@ double imki_turns_linearise(imki_estimator *e, double tolerance)
         double before[3];
         moved_by(e, t, before);
         for (int j = 0; j < 3; j++)
-            before[j] += linear->turn[3 * j] * start[0] + linear->turn[3 * j + 1] * start[1] +
-                         linear->turn[3 * j + 2] * start[2];
+            before[j] += imki_dot3(linear->turn + 3 * j, start);
         imki_turn_prediction prediction;
         imki_turn_predict(e->problem, &e->problem->model, turn, start, &prediction, jacobian);
         memcpy(linear->turn, prediction.turn, sizeof linear->turn);

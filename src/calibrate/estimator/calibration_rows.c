@@ -14,9 +14,9 @@
  *
  * A turn carries the vertical n of one rest to e; across the vertical m of the next, with unit
  * vectors a and b, the residual is minus (angle between e and m) (a.e, b.e)/sin(angle). */
-#include "base/algebra/vector_internal.h"
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/attitude.h"
 #include "imukit/elementary.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Before the estimator iterates: checks, the frame it solves in, memory, and where it starts. */
-#include "base/algebra/vector_internal.h"
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "base/workspace_internal.h"
 #include "imukit/attitude.h"
 #include "model/model_internal.h"
@@ -109,9 +109,9 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, imki_arena *a)
 size_t imki_estimator_size(const imk_calibration *calibration)
 {
     imki_estimator unused;
-    imki_arena a = {NULL, 0};
+    imki_arena a = imki_arena_of(NULL);
     lay_out(&unused, calibration, &a);
-    return a.used + IMKI_ALIGNMENT_SLACK;
+    return imki_arena_size(&a);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -423,7 +423,7 @@ imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibr
     imk_status status = check(calibration, workspace_size, error);
     if (status != IMK_OK)
         return status;
-    imki_arena a = {(char *)imki_align(workspace), 0};
+    imki_arena a = imki_arena_of(workspace);
     memset(e, 0, sizeof *e);
     lay_out(e, calibration, &a);
     memcpy(e->problem, calibration, sizeof *calibration);

@@ -26,9 +26,9 @@
  * The Earth turns below the gyros. The vertical part of its rate turns about the direction carried
  * and does not move it; the horizontal part, of unknown heading, belongs to the turn's sigma
  * (multiposition_sigma.c), or is one of the solver's unknowns (calibration_earth.c). */
-#include "base/algebra/vector_internal.h"
 #include "calibration_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/attitude.h"
 #include "imukit/elementary.h"
 
@@ -409,13 +409,10 @@ static void map_parameters(const turn_model *turn, const imk_calibration *calibr
                 v[j] = s[3 * j] * turn->gyro.p[0][parameter.axis] +
                        s[3 * j + 1] * turn->gyro.p[1][parameter.axis] +
                        s[3 * j + 2] * turn->gyro.p[2][parameter.axis];
-            moved[0] = v[1] * start[2] - v[2] * start[1];
-            moved[1] = v[2] * start[0] - v[0] * start[2];
-            moved[2] = v[0] * start[1] - v[1] * start[0];
+            imki_cross3(v, start, moved);
         }
         for (int j = 0; j < 3; j++)
-            jacobian[(size_t)j * count + p] =
-                d[3 * j] * moved[0] + d[3 * j + 1] * moved[1] + d[3 * j + 2] * moved[2];
+            jacobian[(size_t)j * count + p] = imki_dot3(d + 3 * j, moved);
     }
 }
 

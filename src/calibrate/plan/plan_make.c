@@ -103,7 +103,7 @@ static size_t solver_size(imk_calibration *c, const imk_plan_settings *settings)
 size_t imk_plan_workspace_size(imk_calibration *calibration, const imk_plan_settings *settings)
 {
     plan_job unused;
-    imki_arena a = {NULL, 0};
+    imki_arena a = imki_arena_of(NULL);
     if (!calibration || !settings || settings->steps_maximum > STEPS_MOST)
         return 0;
     lay_out(&unused, settings, &a);
@@ -510,7 +510,7 @@ imk_status imk_plan_make(imk_calibration *calibration, const imk_plan_settings *
     if (status != IMK_OK)
         return status;
     plan_job job = {.settings = settings, .step = step, .error = error};
-    imki_arena a = {(char *)imki_align(workspace), 0};
+    imki_arena a = imki_arena_of(workspace);
     lay_out(&job, settings, &a);
     job.plan.settings = settings;
     job.plan.calibration = calibration;

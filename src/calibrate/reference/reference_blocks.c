@@ -5,9 +5,9 @@
  * the mean of u^2 is what counts, not the square of the mean; they differ by the variance of u
  * within the block, (length x slope)^2/12. A block is as long as keeps that below 1e-4 of the
  * variance of u in the log, at least one sample. */
-#include "base/algebra/vector_internal.h"
 #include "reference_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/samples.h"
 
 #include <math.h>

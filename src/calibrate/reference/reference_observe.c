@@ -14,9 +14,9 @@
  *                  Kpo; gyros: bias, g- and g2-sensitivity
  *     centrifuge   the same with Koq and asymmetry; gyros where the rate of the arm is known
  *     spin         accelerometers: lever arms */
-#include "base/algebra/vector_internal.h"
 #include "reference_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "base/workspace_internal.h"
 #include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"

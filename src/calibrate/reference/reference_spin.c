@@ -82,10 +82,9 @@ static void neighbours(const rests *r, size_t k, const imk_reference_stretch *fo
 /* Is the axis of a rotation along what the unit reads at rest? */
 static bool is_upright(const rests *r, const imk_reference_stretch *rest, const double w[3])
 {
-    double f[3];
+    double f[3], across[3];
     imki_reference_own(r->call, IMK_ACCEL, rest->reading.mean[IMK_ACCEL], f);
-    const double across[3] = {w[1] * f[2] - w[2] * f[1], w[2] * f[0] - w[0] * f[2],
-                              w[0] * f[1] - w[1] * f[0]};
+    imki_cross3(w, f, across);
     return imki_norm3(across) <= upright * imki_norm3(w) * imki_norm3(f);
 }
 

@@ -253,7 +253,7 @@ static imk_status write_sensor(tree_writer *w, int kind)
 {
     static const char *const names[2] = {"gyro", "accel"};
     imki_parameters *p = w->p;
-    const imk_triad *triad = kind == IMK_GYRO ? &p->source->gyro : &p->source->accel;
+    const imk_triad *triad = imk_model_triad(p->source, kind);
     const char *const *unit = units[kind];
     const double dt = 1 / p->settings->rate;
     imk_filter_noise noise[3];
@@ -395,7 +395,7 @@ static imk_status read_sensor(imki_parameters *p, const imk_document *document, 
                                         "y",
                                         "z"};
     enum { KNOWN = sizeof known / sizeof known[0] };
-    imk_triad *triad = kind == IMK_GYRO ? &p->model->gyro : &p->model->accel;
+    imk_triad *triad = imk_model_triad_to_set(p->model, kind);
     const char *const *unit = units[kind];
     double white[3] = {0}, quantization[3] = {0}, initial[3] = {0};
     imk_status status = imki_node_accept(p, document, node, "white_noise", kind, IMKI_WHITE,
@@ -438,7 +438,7 @@ imk_status imki_filter_read(imki_parameters *p)
         const int node = imki_document_value(document, 0, names[kind]);
         if (node == IMKI_NONE)
             continue;
-        (kind == IMK_GYRO ? &p->model->gyro : &p->model->accel)->present = true;
+        imk_model_triad_to_set(p->model, kind)->present = true;
         status = document->node[node].kind == IMKI_NODE_MAPPING
                      ? read_sensor(p, document, node, kind)
                      : imki_document_error(document, node, IMK_ERROR_SYNTAX, names[kind],

@@ -112,7 +112,7 @@ imk_status imki_gnss_ins_sim_write(imki_parameters *p)
                                       : "# gnss-ins-sim: the dictionary accuracy of its class IMU; "
                                         "make numpy arrays of the lists\n");
     for (int kind = 0; kind < 2; kind++) {
-        const imk_triad *triad = kind == IMK_GYRO ? &p->source->gyro : &p->source->accel;
+        const imk_triad *triad = imk_model_triad(p->source, kind);
         imk_triad none = {.present = false};
         if (!triad->present)
             triad = &none;

@@ -7,6 +7,8 @@
  * tells only their sum: reading one gives scale factors and misalignment. */
 #include "parameter_internal.h"
 
+#include "base/algebra/vector_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -36,11 +38,6 @@ void imki_multiply(double a[3][3], double b[3][3], double product[3][3])
     memcpy(product, result, sizeof result);
 }
 
-static double norm(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* Misalignments are small angles; beyond this share of the diagonal, the axes are turned. */
 static const double small_share = 0.5;
 
@@ -49,7 +46,7 @@ imk_status imki_response_set(imki_parameters *p, imki_place place, imk_triad *tr
 {
     bool small = true;
     for (int i = 0; i < 3; i++) {
-        double length = norm(matrix[i]);
+        double length = imki_norm3(matrix[i]);
         if (!(length >= 0.05 && length <= 20))
             return imki_place_error(p, place, IMK_ERROR_RANGE, "",
                                     "a matrix near a rotation: rows of a length near 1");
@@ -60,7 +57,7 @@ imk_status imki_response_set(imki_parameters *p, imki_place place, imk_triad *tr
     memset(&triad->misalignment, 0, sizeof triad->misalignment);
     memset(&triad->cross_axis, 0, sizeof triad->cross_axis);
     for (int i = 0; i < 3; i++) {
-        double length = norm(matrix[i]);
+        double length = imki_norm3(matrix[i]);
         triad->scale_factor.fixed.value[i] = (small ? matrix[i][i] : length) - 1;
         for (int j = 0; j < 3; j++) {
             triad->direction[i][j] = small ? i == j : matrix[i][j] / length;
@@ -81,20 +78,19 @@ bool imki_lower_and_rotation(double matrix[3][3], double lower[3][3], double rot
         double rest[3] = {matrix[i][0], matrix[i][1], matrix[i][2]};
         for (int k = 0; k < i; k++) {
             const double *q = rotation[k];
-            lower[i][k] = rest[0] * q[0] + rest[1] * q[1] + rest[2] * q[2];
+            lower[i][k] = imki_dot3(rest, q);
             for (int j = 0; j < 3; j++)
                 rest[j] -= lower[i][k] * q[j];
         }
-        lower[i][i] = norm(rest);
+        lower[i][i] = imki_norm3(rest);
         if (!(lower[i][i] > 1e-6))
             return false;
         for (int j = 0; j < 3; j++)
             rotation[i][j] = rest[j] / lower[i][i];
     }
-    const double *x = rotation[0], *y = rotation[1], *z = rotation[2];
-    return z[0] * (x[1] * y[2] - x[2] * y[1]) + z[1] * (x[2] * y[0] - x[0] * y[2]) +
-               z[2] * (x[0] * y[1] - x[1] * y[0]) >
-           0;
+    double across[3];
+    imki_cross3(rotation[0], rotation[1], across);
+    return imki_dot3(rotation[2], across) > 0;
 }
 
 /* ---- noise ----------------------------------------------------------------------------------- */

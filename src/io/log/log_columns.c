@@ -3,6 +3,8 @@
  * with the option that states it. */
 #include "log_reader_internal.h"
 
+#include "base/text_internal.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -39,15 +41,10 @@ static const kind kinds[] = {{"time", "time", IMK_QUANTITY_TIME, false, false, "
                              {"temp", "temperature", IMK_QUANTITY_TEMPERATURE, false, false, "K",
                               "--temperature-unit", "add --temperature-unit degC"}};
 
-static char lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
 static bool begins_with(const char *text, const char *prefix)
 {
     for (; *prefix; prefix++, text++)
-        if (lower(*text) != *prefix)
+        if (imki_lower(*text) != *prefix)
             return false;
     return true;
 }
@@ -56,7 +53,7 @@ static int axis_of(const char *text)
 {
     if (text[0] == '\0' || text[1] != '\0')
         return -1;
-    const char c = lower(text[0]);
+    const char c = imki_lower(text[0]);
     if (c >= 'x' && c <= 'z')
         return c - 'x';
     return c >= '0' && c <= '7' ? c - '0' : -1;
@@ -170,7 +167,8 @@ imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *set
         }
         return IMK_OK;
     }
-    char suffix[2] = {k->has_axis ? lower(column->name[strlen(column->name) - 1]) : '\0', '\0'};
+    char suffix[2] = {k->has_axis ? imki_lower(column->name[strlen(column->name) - 1]) : '\0',
+                      '\0'};
     snprintf(column->name, sizeof column->name, "%s%s", k->name, suffix);
     column->quantity = k->quantity;
     column->increment = k->increment;

@@ -2,6 +2,7 @@
 /* From the identified terms to a model, and back to a record: the twin. */
 #include "identify_log_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/allan/allan_curve_internal.h"
 #include "jobs/arena_internal.h"
 
@@ -71,12 +72,9 @@ imk_status imk_model_take_noise(imk_model *model, const imk_model *noise, imk_er
 {
     const bool gyros_differ = axes_differ(&model->gyro, &noise->gyro);
     if (gyros_differ || axes_differ(&model->accel, &noise->accel)) {
-        imk_error_set(error, IMK_ERROR_CONFLICT, gyros_differ ? "gyro" : "accel", NULL, NULL);
-        if (error) {
-            error->value = gyros_differ ? model->gyro.axis_count : model->accel.axis_count;
-            error->limit = gyros_differ ? noise->gyro.axis_count : noise->accel.axis_count;
-        }
-        return IMK_ERROR_CONFLICT;
+        return imki_refuse(error, IMK_ERROR_CONFLICT, gyros_differ ? "gyro" : "accel",
+                           gyros_differ ? model->gyro.axis_count : model->accel.axis_count,
+                           gyros_differ ? noise->gyro.axis_count : noise->accel.axis_count, NULL);
     }
     if (noise->gyro.present) {
         take_triad(&model->gyro, &noise->gyro);

@@ -20,6 +20,7 @@
  * that are known are not errors here: they are taken out before, by imk_correct(). */
 #include "alignment_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/elementary.h"
 #include "noise/noise_terms_internal.h"
 
@@ -125,7 +126,7 @@ static double reading_variance(const imk_triad *triad, int axis, imk_vector3 inp
                                const imk_vector3 *force)
 {
     const double *e = triad->direction[axis];
-    const double along = e[0] * input.v[0] + e[1] * input.v[1] + e[2] * input.v[2];
+    const double along = imki_dot3(e, input.v);
     double sum = square(along) * (square(triad->scale_factor.fixed.sigma[axis]) +
                                   square(triad->scale_factor.repeatability.value[axis]));
     for (int j = 0; j < 3; j++) {

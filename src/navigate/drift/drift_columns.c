@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* How an error of the readings enters the error equations at an instant: its column, by the
  * sensitivities of distort.h; and what it makes of a self-alignment. */
-#include "base/algebra/vector_internal.h"
 #include "drift_covariance_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/distort.h"
 #include "model/model_schema_internal.h"
 

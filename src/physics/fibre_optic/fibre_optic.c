@@ -125,31 +125,25 @@ static const imk_design_field fields[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static imk_status refuse(imk_error *error, const char *field, double value, double limit,
-                         const char *expected)
-{
-    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
-}
-
 static imk_status check_optics(const imk_fibre_optic *design, imk_error *error)
 {
     const double turn = IMKI_PI * design->coil_diameter;
     if (!(design->coil_length >= turn))
-        return refuse(error, "coil.length", design->coil_length, turn,
-                      "a length of at least one turn, pi times the diameter");
+        return imki_conflict(error, "coil.length", design->coil_length, turn,
+                             "a length of at least one turn, pi times the diameter");
     if (!(design->linewidth < design->wavelength))
-        return refuse(error, "source.linewidth", design->linewidth, design->wavelength,
-                      "a linewidth below the wavelength");
+        return imki_conflict(error, "source.linewidth", design->linewidth, design->wavelength,
+                             "a linewidth below the wavelength");
     const imki_fibre_optic_point point = imki_fibre_optic_operate(design);
     if (!(point.half_power > 0.0))
-        return refuse(error, "optics.loss", design->optics_loss, 0.0,
-                      "losses that leave some light on the detector");
+        return imki_conflict(error, "optics.loss", design->optics_loss, 0.0,
+                             "losses that leave some light on the detector");
     if (!(point.depth < 3.1))
-        return refuse(error, "modulator.depth_error", design->depth_error, 3.1,
-                      "a depth that stays below 3.1 rad");
+        return imki_conflict(error, "modulator.depth_error", design->depth_error, 3.1,
+                             "a depth that stays below 3.1 rad");
     if (design->converter_bits > 0 && !(design->converter_range > 0.0))
-        return refuse(error, "detector.converter_range", design->converter_range, 0.0,
-                      "a range above 0 for a converter that has bits");
+        return imki_conflict(error, "detector.converter_range", design->converter_range, 0.0,
+                             "a range above 0 for a converter that has bits");
     return IMK_OK;
 }
 
@@ -162,21 +156,23 @@ static imk_status check_converter(const imk_fibre_optic *design, imk_error *erro
     const double sigma = sqrt(imki_fibre_optic_demodulated_noise(design, &point) /
                               (2.0 * transits * imk_fibre_optic_transit_time(design)));
     if (point.count > 2.0 * sigma)
-        return refuse(error, "detector.converter_bits", point.count, 2.0 * sigma,
-                      "so many bits that a step is below two standard deviations of the noise, "
-                      "which is its dither");
+        return imki_conflict(
+            error, "detector.converter_bits", point.count, 2.0 * sigma,
+            "so many bits that a step is below two standard deviations of the noise, "
+            "which is its dither");
     return IMK_OK;
 }
 
 static imk_status check_open_range(const imk_fibre_optic *design, double phase, imk_error *error)
 {
     if (!(phase <= 0.5 * IMKI_PI * (1.0 + 1e-9)))
-        return refuse(error, "loop.range", phase, 0.5 * IMKI_PI,
-                      "a range up to a phase of pi/2, where the open loop's reading turns back");
+        return imki_conflict(
+            error, "loop.range", phase, 0.5 * IMKI_PI,
+            "a range up to a phase of pi/2, where the open loop's reading turns back");
     const double harmonic = imki_fibre_optic_operate(design).slope * imk_sin(phase);
     if (design->converter_range > 0.0 && !(design->converter_range >= harmonic))
-        return refuse(error, "detector.converter_range", design->converter_range, harmonic,
-                      "a range that holds the harmonic at the end of loop.range");
+        return imki_conflict(error, "detector.converter_range", design->converter_range, harmonic,
+                             "a range that holds the harmonic at the end of loop.range");
     return IMK_OK;
 }
 
@@ -187,21 +183,22 @@ static imk_status check_loop(const imk_fibre_optic *design, imk_error *error)
     if (open)
         return check_open_range(design, phase, error);
     if (!(phase < 2.0 * IMKI_PI))
-        return refuse(error, "loop.range", phase, 2.0 * IMKI_PI,
-                      "a range below one fringe, 2 pi per transit of the ramp");
+        return imki_conflict(error, "loop.range", phase, 2.0 * IMKI_PI,
+                             "a range below one fringe, 2 pi per transit of the ramp");
     const double gain = imk_fibre_optic_effective_gain(design);
     if (!(gain < 2.0))
-        return refuse(error, "loop.gain", gain, 2.0,
-                      "an effective gain below 2: beyond it the loop's error grows");
+        return imki_conflict(error, "loop.gain", gain, 2.0,
+                             "an effective gain below 2: beyond it the loop's error grows");
     /* The noise of a pair of transits, through the loop: variance times g/(2 - g). At 0.3 rad a
      * slip of a fringe, pi away, is a 10 sigma event. */
     const double noise = imk_fibre_optic_phase_noise(design);
     const double deviation =
         noise * sqrt(gain / (2.0 - gain) / (4.0 * imk_fibre_optic_transit_time(design)));
     if (!(deviation < 0.3))
-        return refuse(error, "source.power", deviation, 0.3,
-                      "so much light that the loop's phase noise stays below 0.3 rad: it would "
-                      "slip fringes");
+        return imki_conflict(
+            error, "source.power", deviation, 0.3,
+            "so much light that the loop's phase noise stays below 0.3 rad: it would "
+            "slip fringes");
     return IMK_OK;
 }
 

@@ -3,6 +3,8 @@
  * and free_gyro_slow.c; closed forms: free_gyro_reduce.c. */
 #include "free_gyro_internal.h"
 
+#include "base/algebra/vector_internal.h"
+
 #include <math.h>
 
 enum { COOKIE = 0x46524759 };
@@ -153,12 +155,6 @@ static const imk_view views[] = {
 
 /* ---- validation ------------------------------------------------------------------------------ */
 
-static imk_status refuse(imk_error *error, const char *field, double value, double limit,
-                         const char *expected)
-{
-    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
-}
-
 /* No inertia of a body exceeds the sum of the other two. */
 static imk_status check_inertia(const double inertia[3], const char *const names[3],
                                 imk_error *error)
@@ -166,8 +162,8 @@ static imk_status check_inertia(const double inertia[3], const char *const names
     for (int i = 0; i < 3; i++) {
         const double others = inertia[(i + 1) % 3] + inertia[(i + 2) % 3];
         if (!(inertia[i] <= others * (1.0 + 1e-12)))
-            return refuse(error, names[i], inertia[i], others,
-                          "at most the sum of the inertias about the other two axes");
+            return imki_conflict(error, names[i], inertia[i], others,
+                                 "at most the sum of the inertias about the other two axes");
     }
     return IMK_OK;
 }
@@ -181,8 +177,8 @@ static imk_status check_bodies(const imk_free_gyro *design, imk_error *error)
     const double thinnest = 2.0 * design->rotor_transverse * (1.0 + 1e-12);
     const imk_status status = check_inertia(design->inner_inertia, inner, error);
     if (!(design->rotor_polar <= thinnest))
-        return refuse(error, "rotor.polar_inertia", design->rotor_polar, thinnest,
-                      "at most twice the transverse inertia, which a thin disc has");
+        return imki_conflict(error, "rotor.polar_inertia", design->rotor_polar, thinnest,
+                             "at most twice the transverse inertia, which a thin disc has");
     return status == IMK_OK ? check_inertia(design->outer_inertia, outer, error) : status;
 }
 
@@ -198,22 +194,24 @@ imk_status imk_free_gyro_validate(const imk_free_gyro *design, imk_error *error)
         return status;
     const double swing = fabs(design->start_inner) + design->start_nutation;
     if (!(swing < design->stop))
-        return refuse(error, "start.inner", swing, design->stop,
-                      "inner angle and nutation within gimbal.stop");
+        return imki_conflict(error, "start.inner", swing, design->stop,
+                             "inner angle and nutation within gimbal.stop");
     /* cos x >= 1 - 2 x/pi in a quarter turn: no function is needed for a bound */
     const double momentum = imk_free_gyro_momentum(design) * (1.0 - 2.0 / IMKI_PI * design->stop);
     const imki_free_gyro_parts parts = imki_free_gyro_parts_of(design);
     if (!(parts.slope <= 0.5 * momentum))
-        return refuse(error, "friction.coulomb", parts.slope, 0.5 * momentum,
-                      "friction per relative rate (viscous, and coulomb over friction.rate) below "
-                      "half the momentum of the wheel at the stop");
+        return imki_conflict(
+            error, "friction.coulomb", parts.slope, 0.5 * momentum,
+            "friction per relative rate (viscous, and coulomb over friction.rate) below "
+            "half the momentum of the wheel at the stop");
     /* weight of 10 m/s^2: the steady precession is real while 4 (A - C) M < H^2 */
     const double *m = parts.moment;
-    const double weight = 10.0 * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    const double weight = 10.0 * imki_norm3(m);
     const double most = parts.h * parts.h / (4.0 * (parts.j_least + fabs(parts.a_c) + parts.b));
     if (!(weight < most))
-        return refuse(error, "unbalance.z", weight, most,
-                      "a weight times its arm that the wheel can carry: below H^2/4(A + Ao + B)");
+        return imki_conflict(
+            error, "unbalance.z", weight, most,
+            "a weight times its arm that the wheel can carry: below H^2/4(A + Ao + B)");
     return IMK_OK;
 }
 
@@ -325,8 +323,8 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
     imki_free_gyro_trigonometry(&state->gimbals);
     status = start_random(design, settings, state);
     if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", design->torque_instability,
-                                  0.0, NULL);
+        return imki_refuse(error, status, "torque.instability", design->torque_instability, 0.0,
+                           NULL);
     read_angles(state, state->reading);
     return IMK_OK;
 }

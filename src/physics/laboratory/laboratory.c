@@ -2,6 +2,7 @@
 /* The laboratory: checks, and the order of the experiments. */
 #include "laboratory_internal.h"
 
+#include "base/refuse_internal.h"
 #include "base/workspace_internal.h"
 
 #include <math.h>
@@ -40,39 +41,37 @@ size_t imk_laboratory_workspace_size(const imk_laboratory *laboratory)
     return size;
 }
 
-static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
-{
-    imk_error_set(error, IMK_ERROR_RANGE, field, "", expected);
-    if (error) {
-        error->index = -1;
-        error->value = value;
-    }
-    return IMK_ERROR_RANGE;
-}
-
 static imk_status check(const imk_laboratory *l, void *state, imk_error *error)
 {
     if (l->cookie != COOKIE || !l->instrument || !l->design)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "laboratory", NULL,
                              "settings made by imk_laboratory_default(), with an instrument");
     if (!(l->full_scale >= 0.0 && l->full_scale <= 1e9))
-        return refuse(error, "full_scale", l->full_scale, "a full scale above 0");
+        return imki_refuse(error, IMK_ERROR_RANGE, "full_scale", l->full_scale, 0.0,
+                           "a full scale above 0");
     if (l->points != 0 &&
         !(l->points >= 7 && l->points <= IMK_LABORATORY_POINTS_MAX && l->points % 2 == 1))
-        return refuse(error, "points", l->points, "an odd number from 7 to 101");
+        return imki_refuse(error, IMK_ERROR_RANGE, "points", l->points, 0.0,
+                           "an odd number from 7 to 101");
     if (!(l->settle >= 0.0 && l->settle <= 1e6))
-        return refuse(error, "settle", l->settle, "a time from 0 to 1e6 s");
+        return imki_refuse(error, IMK_ERROR_RANGE, "settle", l->settle, 0.0,
+                           "a time from 0 to 1e6 s");
     if (!(l->dwell > 0.0 && l->dwell <= 1e6))
-        return refuse(error, "dwell", l->dwell, "a time above 0, up to 1e6 s");
+        return imki_refuse(error, IMK_ERROR_RANGE, "dwell", l->dwell, 0.0,
+                           "a time above 0, up to 1e6 s");
     if (l->frequencies < 0 || l->frequencies > IMK_LABORATORY_FREQUENCIES_MAX)
-        return refuse(error, "frequencies", l->frequencies, "0 to 48 frequencies");
+        return imki_refuse(error, IMK_ERROR_RANGE, "frequencies", l->frequencies, 0.0,
+                           "0 to 48 frequencies");
     if (!(l->lowest >= 0.0 && l->highest >= 0.0 && l->highest <= 1e9 &&
           (l->highest <= 0.0 || l->lowest < l->highest)))
-        return refuse(error, "highest", l->highest, "a highest frequency above the lowest");
+        return imki_refuse(error, IMK_ERROR_RANGE, "highest", l->highest, 0.0,
+                           "a highest frequency above the lowest");
     if (!(l->record >= 0.0 && l->record * l->physics.rate <= 1e10))
-        return refuse(error, "record", l->record, "at most 1e10 samples");
+        return imki_refuse(error, IMK_ERROR_RANGE, "record", l->record, 0.0,
+                           "at most 1e10 samples");
     if (l->record > 0.0 && record_samples(l) < 256)
-        return refuse(error, "record", l->record, "a record of at least 256 samples");
+        return imki_refuse(error, IMK_ERROR_RANGE, "record", l->record, 0.0,
+                           "a record of at least 256 samples");
     return l->instrument->init(l->design, &l->physics, state, error);
 }
 

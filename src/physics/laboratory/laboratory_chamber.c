@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tumble test and thermal chamber. */
-#include "base/algebra/vector_internal.h"
 #include "laboratory_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/units.h"
 
 #include <math.h>

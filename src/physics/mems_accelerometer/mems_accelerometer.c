@@ -198,21 +198,19 @@ static imk_status check_rest(const imk_mems_accelerometer *d, imk_error *error)
 {
     const double end = d->stop * d->gap, pull_in = imk_mems_accelerometer_pull_in(d);
     if (!(fabs(d->offset) < end))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "electrodes.offset", d->offset, end,
-                                  "springs that rest between the stops");
+        return imki_conflict(error, "electrodes.offset", d->offset, end,
+                             "springs that rest between the stops");
     imk_mems_accelerometer open = *d;
     open.loop = IMK_MEMS_OPEN;
     if (!imki_mems_operating_point(&open).exists)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "electrodes.voltage", d->voltage,
-                                  pull_in,
-                                  "a voltage below pull-in, with the equilibrium off the stops");
+        return imki_conflict(error, "electrodes.voltage", d->voltage, pull_in,
+                             "a voltage below pull-in, with the equilibrium off the stops");
     if (d->loop != IMK_MEMS_OPEN && d->plates == IMK_MEMS_SINGLE)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "electrodes.plates", (double)d->plates,
-                                  (double)IMK_MEMS_DOUBLE,
-                                  "plates on both sides: one plate can only pull");
+        return imki_conflict(error, "electrodes.plates", (double)d->plates, (double)IMK_MEMS_DOUBLE,
+                             "plates on both sides: one plate can only pull");
     if (d->loop != IMK_MEMS_OPEN && !(fabs(d->pickoff_offset) < end))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "pickoff.offset", d->pickoff_offset,
-                                  end, "a null between the stops");
+        return imki_conflict(error, "pickoff.offset", d->pickoff_offset, end,
+                             "a null between the stops");
     return IMK_OK;
 }
 
@@ -220,15 +218,15 @@ static imk_status check_force(const imk_mems_accelerometer *d, imk_error *error)
 {
     const double limit = imk_mems_accelerometer_limit(d);
     if (!(limit > 0.0) || d->range > limit)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "output.range", d->range, limit,
-                                  d->loop == IMK_MEMS_OPEN
-                                      ? "a range within the travel of the mass"
-                                      : "a range that the force of the loop can balance");
+        return imki_conflict(error, "output.range", d->range, limit,
+                             d->loop == IMK_MEMS_OPEN
+                                 ? "a range within the travel of the mass"
+                                 : "a range that the force of the loop can balance");
     const double bias = fabs(d->bias) + 6.0 * d->bias_repeatability;
     if (!(bias < limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "bias.fixed", bias, limit,
-                                  "a bias, and six times its repeatability, within what the mass "
-                                  "or the loop can bear");
+        return imki_conflict(error, "bias.fixed", bias, limit,
+                             "a bias, and six times its repeatability, within what the mass "
+                             "or the loop can bear");
     return IMK_OK;
 }
 
@@ -242,20 +240,19 @@ static imk_status check_analog(const imk_mems_accelerometer *d, imk_error *error
     const double u = force / imk_mems_accelerometer_limit(d) * d->feedback_voltage;
     const double at_full_scale = stiffness - imki_mems_attraction(d, u * u, u * u, 0.0).first;
     if (!p.exists)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "pickoff.offset", d->pickoff_offset,
-                                  d->offset, "a null at which the plates can hold the mass");
+        return imki_conflict(error, "pickoff.offset", d->pickoff_offset, d->offset,
+                             "a null at which the plates can hold the mass");
     if (!(gains.proportional > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "analog.bandwidth", d->bandwidth,
-                                  sqrt(stiffness) / (2.0 * IMKI_PI),
-                                  "a loop stiffer than the softened springs");
+        return imki_conflict(error, "analog.bandwidth", d->bandwidth,
+                             sqrt(stiffness) / (2.0 * IMKI_PI),
+                             "a loop stiffer than the softened springs");
     if (!imki_mems_loop_stable(d, stiffness) || !imki_mems_loop_stable(d, p.a1))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "analog.bandwidth", d->bandwidth,
-                                  d->amplifier,
-                                  "a stable loop: lower bandwidth or reset, a faster amplifier");
+        return imki_conflict(error, "analog.bandwidth", d->bandwidth, d->amplifier,
+                             "a stable loop: lower bandwidth or reset, a faster amplifier");
     if (!imki_mems_loop_stable(d, at_full_scale))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "analog.bandwidth", d->bandwidth, u,
-                                  "a loop that is stable at full scale too, where the control "
-                                  "voltage softens the springs");
+        return imki_conflict(error, "analog.bandwidth", d->bandwidth, u,
+                             "a loop that is stable at full scale too, where the control "
+                             "voltage softens the springs");
     return IMK_OK;
 }
 
@@ -263,24 +260,23 @@ static imk_status check_sigma_delta(const imk_mems_accelerometer *d, imk_error *
 {
     const imki_mems_point p = imki_mems_operating_point(d);
     if (!(fabs(p.rest) < p.unit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "feedback.voltage",
-                                  d->feedback_voltage, 0.0,
-                                  "a force of either sign at the null of the loop");
+        return imki_conflict(error, "feedback.voltage", d->feedback_voltage, 0.0,
+                             "a force of either sign at the null of the loop");
     const imk_mems_limit_cycle cycle = imk_mems_accelerometer_limit_cycle(d);
     if (cycle.half_period == 0 || cycle.half_period > CYCLE_HALF_MAX)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "sigma_delta.lead", d->lead, 0.0,
-                                  "more lead: the loop has no limit cycle of 16 clocks or less, "
-                                  "it swings ever further");
+        return imki_conflict(error, "sigma_delta.lead", d->lead, 0.0,
+                             "more lead: the loop has no limit cycle of 16 clocks or less, "
+                             "it swings ever further");
     if (!(cycle.amplitude < 0.5 * d->stop * d->gap))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "sigma_delta.clock", d->clock, 0.0,
-                                  "a clock whose limit cycle stays within half the stops");
+        return imki_conflict(error, "sigma_delta.clock", d->clock, 0.0,
+                             "a clock whose limit cycle stays within half the stops");
     const imk_mems_quantizer quantizer = imk_mems_accelerometer_quantizer(d);
     if (!isfinite(quantizer.velocity) || !(quantizer.deviation < 0.5 * d->stop * d->gap))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT,
-                                  d->integral > 0.0 ? "sigma_delta.integral" : "sigma_delta.clock",
-                                  d->integral > 0.0 ? d->integral : d->clock, quantizer.deviation,
-                                  "a faster clock, a smaller integral term or less noise: the "
-                                  "compensated position swings as far as half the stops");
+        return imki_refuse(error, IMK_ERROR_CONFLICT,
+                           d->integral > 0.0 ? "sigma_delta.integral" : "sigma_delta.clock",
+                           d->integral > 0.0 ? d->integral : d->clock, quantizer.deviation,
+                           "a faster clock, a smaller integral term or less noise: the "
+                           "compensated position swings as far as half the stops");
     return IMK_OK;
 }
 

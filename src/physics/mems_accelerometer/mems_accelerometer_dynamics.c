@@ -290,12 +290,12 @@ static imk_status divide(mems_state *m, const imk_physics_settings *settings, im
         return IMK_OK;
     if (d->loop == IMK_MEMS_SIGMA_DELTA) {
         if (settings->rate > d->clock * (1.0 + 1e-9))
-            return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->clock,
-                                      "a sample rate not above the clock of the loop");
+            return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->clock,
+                               "a sample rate not above the clock of the loop");
         const double clocks = ceil(d->clock / settings->rate * (1.0 - 1e-9));
         if (!(clocks < 1e12))
-            return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate,
-                                      d->clock * 1e-12, "fewer than 1e12 clocks to a sample");
+            return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->clock * 1e-12,
+                               "fewer than 1e12 clocks to a sample");
         m->clocks = clocks > 1.0 ? (size_t)clocks : 1;
         unit.rate = d->clock = settings->rate * (double)m->clocks;
     }

@@ -103,28 +103,27 @@ static imk_status validate(const void *design, imk_error *error)
         return status;
     const double weakest = 1.0 + d->torquer_error - 6.0 * d->torquer_repeatability;
     if (!(weakest > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "torquer.repeatability",
-                                  d->torquer_repeatability, (1.0 + d->torquer_error) / 6.0,
-                                  "so little that the torquer pulls in every run: less than a "
-                                  "sixth of its constant");
+        return imki_conflict(error, "torquer.repeatability", d->torquer_repeatability,
+                             (1.0 + d->torquer_error) / 6.0,
+                             "so little that the torquer pulls in every run: less than a "
+                             "sixth of its constant");
     const double bend = fabs(d->torquer_quadratic) * d->largest_current;
     if (!(bend < 0.25))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "torquer.quadratic", bend, 0.25,
-                                  "less than a quarter over the largest current: the torque grows "
-                                  "with it");
+        return imki_conflict(error, "torquer.quadratic", bend, 0.25,
+                             "less than a quarter over the largest current: the torque grows "
+                             "with it");
     const double largest = d->torquer_constant * (1.0 + d->torquer_error) * d->largest_current;
     const double error_torque = fabs(d->hinge_torque) + 6.0 * d->hinge_torque_repeatability;
     if (!(error_torque < largest))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "hinge.torque", error_torque, largest,
-                                  "a hinge torque (and six times its repeatability) below the "
-                                  "largest torque of the torquer");
+        return imki_conflict(error, "hinge.torque", error_torque, largest,
+                             "a hinge torque (and six times its repeatability) below the "
+                             "largest torque of the torquer");
     /* Routh: J s^3 + b s^2 + K s + K_i has its roots on the left when b K > J K_i. */
     const double limit = d->damping * imki_servo_stiffness(d) / d->inertia;
     if (d->integral > 0.0 && !(d->integral < limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "controller.integral", d->integral,
-                                  limit,
-                                  "less than damping x stiffness / inertia: the loop would not be "
-                                  "stable");
+        return imki_conflict(error, "controller.integral", d->integral, limit,
+                             "less than damping x stiffness / inertia: the loop would not be "
+                             "stable");
     return IMK_OK;
 }
 

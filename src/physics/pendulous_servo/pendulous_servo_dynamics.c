@@ -82,8 +82,8 @@ imk_status imki_servo_init(const void *design, const imk_physics_settings *setti
     status = imki_wander_start(&s->hinge, settings, WANDER_HINGE, d->hinge_torque_repeatability,
                                d->hinge_torque_instability);
     return status == IMK_OK ? status
-                            : imki_design_refuse(error, status, "hinge.torque_instability",
-                                                 d->hinge_torque_instability, 0.0, NULL);
+                            : imki_refuse(error, status, "hinge.torque_instability",
+                                          d->hinge_torque_instability, 0.0, NULL);
 }
 
 static double angle_torque(const servo *s, double fx, double fz)

@@ -67,14 +67,14 @@ imk_status imk_rate_gyro_validate(const imk_rate_gyro *d, imk_error *error)
     if (status != IMK_OK)
         return status;
     if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "gimbal.output_inertia",
-                                  d->output_inertia, d->input_inertia + d->spin_inertia,
-                                  "moments of inertia none of which exceeds the sum of the others");
+        return imki_conflict(error, "gimbal.output_inertia", d->output_inertia,
+                             d->input_inertia + d->spin_inertia,
+                             "moments of inertia none of which exceeds the sum of the others");
     const double range = d->stop / imk_rate_gyro_sensitivity(d);
     const double softening = (d->spin_inertia - d->input_inertia) * range * range;
     if (!(softening < imki_rate_gyro_stiffness(d)))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "spring.stiffness", d->stiffness,
-                                  softening, "a spring that holds against the anisoinertia");
+        return imki_conflict(error, "spring.stiffness", d->stiffness, softening,
+                             "a spring that holds against the anisoinertia");
     return IMK_OK;
 }
 

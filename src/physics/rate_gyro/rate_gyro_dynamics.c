@@ -89,8 +89,7 @@ imk_status imki_rate_gyro_init(const void *design, const imk_physics_settings *s
     status = imki_wander_start(&s->wander, settings, TORQUE_WANDER, d->torque.repeatability,
                                d->torque.instability);
     if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
-                                  NULL);
+        return imki_refuse(error, status, "torque.instability", d->torque.instability, 0.0, NULL);
     return IMK_OK;
 }
 

@@ -85,16 +85,16 @@ imk_status imk_rate_integrating_gyro_validate(const imk_rate_integrating_gyro *d
     if (status != IMK_OK)
         return status;
     if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "float.output_inertia",
-                                  d->output_inertia, d->input_inertia + d->spin_inertia,
-                                  "moments of inertia none of which exceeds the sum of the others");
+        return imki_conflict(error, "float.output_inertia", d->output_inertia,
+                             d->input_inertia + d->spin_inertia,
+                             "moments of inertia none of which exceeds the sum of the others");
     imk_rate_integrating_gyro_loop(d, &k1, &k2);
     /* Routh: C (K1 + k) > I K2, with the gain of the torquer in both */
     if (d->rebalance == IMK_REBALANCE_ANALOG &&
         !(d->damping * (k1 + d->stiffness / (1.0 + d->torquer_error)) > d->output_inertia * k2)) {
         const double highest = d->loop_frequency * d->damping * k1 / (d->output_inertia * k2);
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "loop.frequency", d->loop_frequency,
-                                  highest, "a loop slow enough for the lag I/C of the float");
+        return imki_conflict(error, "loop.frequency", d->loop_frequency, highest,
+                             "a loop slow enough for the lag I/C of the float");
     }
     return IMK_OK;
 }

@@ -78,8 +78,8 @@ static imk_status divide(gyro *s, const imk_rate_integrating_gyro *d,
     const double pulses = d->pulse_frequency / settings->rate;
     const double whole = floor(pulses + 0.5);
     if (!(whole >= 1.0 && fabs(pulses - whole) <= 1e-9 * whole))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate,
-                                  d->pulse_frequency, "whole pulses of the torquer to a sample");
+        return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->pulse_frequency,
+                           "whole pulses of the torquer to a sample");
     const double parts = ceil((double)s->count / whole * (1.0 - 1e-9));
     s->steps_per_pulse = (size_t)parts;
     s->count = s->steps_per_pulse * (size_t)whole;
@@ -167,8 +167,7 @@ imk_status imki_rate_integrating_gyro_init(const void *design, const imk_physics
     status = imki_wander_start(&s->wander, settings, TORQUE_WANDER, d->torque.repeatability,
                                d->torque.instability);
     if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
-                                  NULL);
+        return imki_refuse(error, status, "torque.instability", d->torque.instability, 0.0, NULL);
     return IMK_OK;
 }
 

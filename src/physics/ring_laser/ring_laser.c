@@ -152,21 +152,20 @@ imk_status imk_ring_laser_validate(const imk_ring_laser *design, imk_error *erro
     if (status != IMK_OK)
         return status;
     if (design->dither.rate > 0.0 && !(design->dither.rate > design->lock_in.rate))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "dither.rate", design->dither.rate,
-                                  design->lock_in.rate,
-                                  "a peak rate above lock_in.rate, or 0 for no dither");
+        return imki_conflict(error, "dither.rate", design->dither.rate, design->lock_in.rate,
+                             "a peak rate above lock_in.rate, or 0 for no dither");
     if (!(design->path_length.stroke >= design->cavity.wavelength))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "path_length.stroke",
-                                  design->path_length.stroke, design->cavity.wavelength,
-                                  "at least the wavelength, or there is no next mode to go to");
+        return imki_conflict(error, "path_length.stroke", design->path_length.stroke,
+                             design->cavity.wavelength,
+                             "at least the wavelength, or there is no next mode to go to");
     if (!(design->temperature.minimum < design->temperature.reference))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.minimum",
-                                  design->temperature.minimum, design->temperature.reference,
-                                  "a temperature below temperature.reference");
+        return imki_conflict(error, "temperature.minimum", design->temperature.minimum,
+                             design->temperature.reference,
+                             "a temperature below temperature.reference");
     if (!(design->temperature.reference < design->temperature.maximum))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.maximum",
-                                  design->temperature.maximum, design->temperature.reference,
-                                  "a temperature above temperature.reference");
+        return imki_conflict(error, "temperature.maximum", design->temperature.maximum,
+                             design->temperature.reference,
+                             "a temperature above temperature.reference");
     return IMK_OK;
 }
 
@@ -207,18 +206,18 @@ static imk_status check_slow(const imk_ring_laser *design, const imk_physics_set
     const double least = 20.0, largest = 0.5; /* [rad] */
     const double phase = dither_phase(design), half_cycle = 0.5 / design->dither.frequency;
     if (!(design->dither.rate > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level,
-                                  0.0, "the full level: without dither there are no kicks");
+        return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level, 0.0,
+                           "the full level: without dither there are no kicks");
     if (!(phase >= least))
-        return imki_design_refuse(error, IMK_ERROR_UNSUPPORTED, "level", phase, least,
-                                  "the full level, or a dither of 20 rad of phase or more");
+        return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", phase, least,
+                           "the full level, or a dither of 20 rad of phase or more");
     const double kick = design->lock_in.rate / design->dither.rate * sqrt(2.0 * IMKI_PI * phase);
     if (!(kick <= largest))
-        return imki_design_refuse(error, IMK_ERROR_UNSUPPORTED, "level", kick, largest,
-                                  "the full level, or kicks of 0.5 rad or less: more dither");
+        return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", kick, largest,
+                           "the full level, or kicks of 0.5 rad or less: more dither");
     if (settings->step > half_cycle)
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "step", settings->step, half_cycle,
-                                  "at most half a cycle of the dither, which is a step of the map");
+        return imki_refuse(error, IMK_ERROR_RANGE, "step", settings->step, half_cycle,
+                           "at most half a cycle of the dither, which is a step of the map");
     return IMK_OK;
 }
 

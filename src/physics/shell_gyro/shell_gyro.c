@@ -127,12 +127,6 @@ imk_shell_gyro imk_shell_gyro_default(void)
         .package = {.misalignment_y = 0.01, .misalignment_z = -0.008}};
 }
 
-static imk_status refuse(imk_error *error, const char *field, double value, double limit,
-                         const char *expected)
-{
-    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
-}
-
 static imk_status check_loops(const imk_shell_gyro *design, imk_error *error)
 {
     const double update = imki_shell_update(design);
@@ -145,19 +139,21 @@ static imk_status check_loops(const imk_shell_gyro *design, imk_error *error)
     if (design->mode == IMK_SHELL_FREE)
         return IMK_OK;
     if (!(update * decay <= 0.25))
-        return refuse(error, "control.cycles", design->control.cycles,
-                      0.25 / (decay * update) * design->control.cycles,
-                      "at least four updates of the loops in the decay time");
+        return imki_conflict(error, "control.cycles", design->control.cycles,
+                             0.25 / (decay * update) * design->control.cycles,
+                             "at least four updates of the loops in the decay time");
     if (!(design->control.support_bandwidth <= fastest))
-        return refuse(error, "control.support_bandwidth", design->control.support_bandwidth,
-                      fastest, "at most a tenth of the update rate: faster loops are not stable");
+        return imki_conflict(error, "control.support_bandwidth", design->control.support_bandwidth,
+                             fastest,
+                             "at most a tenth of the update rate: faster loops are not stable");
     if (design->mode == IMK_SHELL_REBALANCE && !(design->control.rebalance_bandwidth <= fastest))
-        return refuse(error, "control.rebalance_bandwidth", design->control.rebalance_bandwidth,
-                      fastest, "at most a tenth of the update rate: faster loops are not stable");
+        return imki_conflict(error, "control.rebalance_bandwidth",
+                             design->control.rebalance_bandwidth, fastest,
+                             "at most a tenth of the update rate: faster loops are not stable");
     if (!(fabs(steady.rebalance) < limit))
-        return refuse(error, "forcer.limit", design->forcer.limit,
-                      design->forcer.limit * fabs(steady.rebalance) / limit,
-                      "a force above the one that holds the pattern at rest");
+        return imki_conflict(error, "forcer.limit", design->forcer.limit,
+                             design->forcer.limit * fabs(steady.rebalance) / limit,
+                             "a force above the one that holds the pattern at rest");
     return IMK_OK;
 }
 
@@ -179,27 +175,29 @@ imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *erro
         return status;
     const double damping = 2.0 / imk_shell_gyro_decay_time(design);
     if (design->resonator.shape == IMK_SHELL_HEMISPHERE && design->resonator.mode_number != 2)
-        return refuse(error, "resonator.mode_number", design->resonator.mode_number, 2.0,
-                      "2 for a hemisphere; of another shape state the angular gain");
+        return imki_conflict(error, "resonator.mode_number", design->resonator.mode_number, 2.0,
+                             "2 for a hemisphere; of another shape state the angular gain");
     const double drawn =
         6.0 * (design->anisotropy.damping_repeatability + design->anisotropy.damping_instability);
     if (!(drawn < damping))
-        return refuse(error, "anisotropy.damping_repeatability", drawn, damping,
-                      "with the instability less than a sixth of 2/tau: damping is positive in "
-                      "every run");
+        return imki_conflict(
+            error, "anisotropy.damping_repeatability", drawn, damping,
+            "with the instability less than a sixth of 2/tau: damping is positive in "
+            "every run");
     if (!(design->anisotropy.damping_difference < damping))
-        return refuse(error, "anisotropy.damping_difference", design->anisotropy.damping_difference,
-                      damping,
-                      "less than 2/tau = 2 pi f/Q: damping is positive in every direction");
+        return imki_conflict(error, "anisotropy.damping_difference",
+                             design->anisotropy.damping_difference, damping,
+                             "less than 2/tau = 2 pi f/Q: damping is positive in every direction");
     if (!(design->anisotropy.frequency_split <= 0.01 * design->resonator.frequency))
-        return refuse(error, "anisotropy.frequency_split", design->anisotropy.frequency_split,
-                      0.01 * design->resonator.frequency,
-                      "at most a hundredth of the frequency: else these are two resonators");
+        return imki_conflict(error, "anisotropy.frequency_split",
+                             design->anisotropy.frequency_split, 0.01 * design->resonator.frequency,
+                             "at most a hundredth of the frequency: else these are two resonators");
     const double hidden = design->mode == IMK_SHELL_FREE ? 0.0 : smallest_pattern(design);
     if (!(design->pattern.amplitude >= hidden))
-        return refuse(error, "pattern.amplitude", design->pattern.amplitude, hidden,
-                      "at least ten times the thermal motion and the pickoff's noise: else the "
-                      "loops see no pattern");
+        return imki_conflict(
+            error, "pattern.amplitude", design->pattern.amplitude, hidden,
+            "at least ten times the thermal motion and the pickoff's noise: else the "
+            "loops see no pattern");
     return check_loops(design, error);
 }
 
@@ -337,11 +335,11 @@ static imk_status check_level(const imk_shell_gyro *design, const imk_physics_se
     if (settings->level == IMK_LEVEL_FULL)
         return IMK_OK;
     if (design->mode == IMK_SHELL_FREE)
-        return imki_design_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level,
-                                  0.0, "full: a free pattern has no slow form");
+        return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level, 0.0,
+                           "full: a free pattern has no slow form");
     if (design->mode == IMK_SHELL_WHOLE_ANGLE && !(settings->rate <= fastest))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, fastest,
-                                  "at most one sample for an update of the loops");
+        return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, fastest,
+                           "at most one sample for an update of the loops");
     return IMK_OK;
 }
 
@@ -381,8 +379,8 @@ imk_status imki_shell_init(const void *design_pointer, const imk_physics_setting
             &state->wander[i], settings, (uint8_t)(IMKI_SHELL_DAMPING_COSINE + i),
             design->anisotropy.damping_repeatability, design->anisotropy.damping_instability);
     if (status != IMK_OK)
-        return imki_design_refuse(error, status, "anisotropy.damping_instability",
-                                  design->anisotropy.damping_instability, 0.0, NULL);
+        return imki_refuse(error, status, "anisotropy.damping_instability",
+                           design->anisotropy.damping_instability, 0.0, NULL);
     state->cycle.step = step;
     state->slow.count = count;
     if (settings->level == IMK_LEVEL_FULL)

@@ -10,6 +10,7 @@
  * A step is half of the torque's turn, the turn of the case, the other half. s and the direction n
  * across it, from which the phase of the cone counts, are kept in case axes; every turn is a
  * rotation of both, so nothing but rounding changes |s| = 1. */
+#include "base/algebra/vector_internal.h"
 #include "imukit/elementary.h"
 #include "suspended_rotor_internal.h"
 
@@ -176,12 +177,12 @@ imk_status imk_suspended_rotor_validate(const imk_suspended_rotor *design, imk_e
                    {"ball.oblateness", design->oblateness},
                    {"ball.pear", design->pear}};
     if (!(design->hollow < design->diameter))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "ball.hollow", design->hollow,
-                                  design->diameter, "a hollow smaller than ball.diameter");
+        return imki_conflict(error, "ball.hollow", design->hollow, design->diameter,
+                             "a hollow smaller than ball.diameter");
     for (int i = 0; i < 3; i++)
         if (!(fabs(heights[i].value) <= most))
-            return imki_design_refuse(error, IMK_ERROR_CONFLICT, heights[i].field, heights[i].value,
-                                      most, "at most a thousandth of the ball's radius");
+            return imki_conflict(error, heights[i].field, heights[i].value, most,
+                                 "at most a thousandth of the ball's radius");
     return IMK_OK;
 }
 
@@ -284,8 +285,8 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
     choose_across(state->axis, state->across);
     status = start_random(design, settings, state);
     if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", design->torque_instability,
-                                  0.0, NULL);
+        return imki_refuse(error, status, "torque.instability", design->torque_instability, 0.0,
+                           NULL);
     read_axis(state, state->reading);
     return IMK_OK;
 }
@@ -295,7 +296,7 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
 /* v turned by the rotation vector angle n (Rodrigues), given sin and 1 - cos of the angle. */
 static void turn(double v[3], const double n[3], double sine, double versed)
 {
-    const double along = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
+    const double along = imki_dot3(n, v);
     double next[3];
     for (int k = 0; k < 3; k++) {
         const int l = (k + 1) % 3, m = (k + 2) % 3;
@@ -307,8 +308,7 @@ static void turn(double v[3], const double n[3], double sine, double versed)
 
 static void turn_both(suspended_rotor_state *state, const double rotation[3])
 {
-    const double angle =
-        sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2]);
+    const double angle = imki_norm3(rotation);
     double n[3];
     if (!(angle > 0.0))
         return;
@@ -329,7 +329,7 @@ static void turn_by_torque(suspended_rotor_state *state, const double force[3],
     const double weak[3] = {x, 1.5 * x * x - 0.5, x * (2.5 * x * x - 1.5)};
     double g[3], rotation[3];
     imki_suspended_gradient(&state->ball, weak, s, force, g);
-    const double along = s[0] * g[0] + s[1] * g[1] + s[2] * g[2];
+    const double along = imki_dot3(s, g);
     for (int k = 0; k < 3; k++) {
         const int l = (k + 1) % 3, m = (k + 2) % 3;
         rotation[k] =
@@ -342,7 +342,7 @@ static void turn_by_torque(suspended_rotor_state *state, const double force[3],
 static void straighten(suspended_rotor_state *state)
 {
     double *s = state->axis, *n = state->across;
-    const double length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    const double length = imki_norm3(s);
     double along = 0.0, square = 0.0;
     for (int k = 0; k < 3; k++) {
         s[k] /= length;
@@ -405,7 +405,7 @@ static void rate_of(const double before[3], const double now[3], double dt, doub
         square += rate[k] * rate[k];
     }
     const double sine = sqrt(square);
-    const double cosine = before[0] * now[0] + before[1] * now[1] + before[2] * now[2];
+    const double cosine = imki_dot3(before, now);
     const double factor = sine > 0.0 ? -imk_atan2(sine, cosine) / (sine * dt) : 0.0;
     for (int k = 0; k < 3; k++)
         rate[k] *= factor;

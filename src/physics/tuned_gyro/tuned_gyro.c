@@ -104,12 +104,6 @@ static const imk_design_field fields[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static imk_status refuse(imk_error *error, const char *field, double value, double limit,
-                         const char *expected)
-{
-    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
-}
-
 imk_status imk_tuned_gyro_validate(const imk_tuned_gyro *d, imk_error *error)
 {
     if (d->cookie != COOKIE)
@@ -119,29 +113,33 @@ imk_status imk_tuned_gyro_validate(const imk_tuned_gyro *d, imk_error *error)
     if (status != IMK_OK)
         return status;
     if (!(d->axial_inertia <= 2.0 * d->transverse_inertia))
-        return refuse(error, "rotor.axial_inertia", d->axial_inertia, 2.0 * d->transverse_inertia,
-                      "at most twice the transverse inertia, as of every body");
+        return imki_conflict(error, "rotor.axial_inertia", d->axial_inertia,
+                             2.0 * d->transverse_inertia,
+                             "at most twice the transverse inertia, as of every body");
     if (!(d->axial_inertia > d->transverse_inertia))
-        return refuse(error, "rotor.axial_inertia", d->axial_inertia, d->transverse_inertia,
-                      "a flat rotor: a long one does not turn steadily about its axis");
+        return imki_conflict(error, "rotor.axial_inertia", d->axial_inertia, d->transverse_inertia,
+                             "a flat rotor: a long one does not turn steadily about its axis");
     if (!imki_inertias_possible(d->gimbal_inertia_x, d->gimbal_inertia_y, d->gimbal_inertia_z))
-        return refuse(error, "gimbal.inertia_z", d->gimbal_inertia_z,
-                      d->gimbal_inertia_x + d->gimbal_inertia_y,
-                      "moments of inertia none of which exceeds the sum of the others");
+        return imki_conflict(error, "gimbal.inertia_z", d->gimbal_inertia_z,
+                             d->gimbal_inertia_x + d->gimbal_inertia_y,
+                             "moments of inertia none of which exceeds the sum of the others");
     if (!(imki_tuned_gyro_gimbal_sum(d) > 0.0))
-        return refuse(error, "gimbal.inertia_z", d->gimbal_inertia_z,
-                      d->gimbal_inertia_x + d->gimbal_inertia_y,
-                      "a gimbal that nods against the springs: inertia_z below the sum of the "
-                      "others, or no speed tunes it");
+        return imki_conflict(
+            error, "gimbal.inertia_z", d->gimbal_inertia_z,
+            d->gimbal_inertia_x + d->gimbal_inertia_y,
+            "a gimbal that nods against the springs: inertia_z below the sum of the "
+            "others, or no speed tunes it");
     if (!(2.0 * (2.0 * d->transverse_inertia - d->axial_inertia) > imki_tuned_gyro_gimbal_sum(d)))
-        return refuse(error, "rotor.transverse_inertia", d->transverse_inertia,
-                      0.5 * d->axial_inertia + 0.25 * imki_tuned_gyro_gimbal_sum(d),
-                      "a nutation well below twice the speed of the shaft, where the gimbal drives "
-                      "it");
+        return imki_conflict(
+            error, "rotor.transverse_inertia", d->transverse_inertia,
+            0.5 * d->axial_inertia + 0.25 * imki_tuned_gyro_gimbal_sum(d),
+            "a nutation well below twice the speed of the shaft, where the gimbal drives "
+            "it");
     if (d->captured && !imki_capture_loop_stable(d, imki_tuned_gyro_longest_step(d)))
-        return refuse(error, "loop.frequency", d->loop_frequency, d->loop_filter,
-                      "a loop that drives neither itself nor the nutation: lower it, and put its "
-                      "filter between it and the nutation");
+        return imki_conflict(
+            error, "loop.frequency", d->loop_frequency, d->loop_filter,
+            "a loop that drives neither itself nor the nutation: lower it, and put its "
+            "filter between it and the nutation");
     return IMK_OK;
 }
 

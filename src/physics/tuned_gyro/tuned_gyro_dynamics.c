@@ -70,8 +70,8 @@ static imk_status divide(gyro *s, const imk_tuned_gyro *d, const imk_physics_set
         settings, longest, slow ? (double)INFINITY : 2.0 * imki_tuned_gyro_longest_step(d),
         "at least 8 steps to a turn of the shaft", &s->count, &s->step, error);
     if (status == IMK_OK && !slow && d->captured && !imki_capture_loop_stable(d, s->step))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "step", s->step, longest,
-                                  "a shorter step: the loop works once a step");
+        return imki_refuse(error, IMK_ERROR_RANGE, "step", s->step, longest,
+                           "a shorter step: the loop works once a step");
     return status;
 }
 
@@ -95,8 +95,7 @@ imk_status imki_tuned_gyro_init(const void *design, const imk_physics_settings *
                                    d->torque.repeatability, d->torque.instability);
     }
     if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
-                                  NULL);
+        return imki_refuse(error, status, "torque.instability", d->torque.instability, 0.0, NULL);
     return IMK_OK;
 }
 

@@ -147,30 +147,27 @@ static imk_status check_temperature(const imk_tuning_fork *design, double temper
         4.0 * IMKI_PI * design->angular_gain * design->drive.frequency * fabs(design->quadrature);
     const double passive = sqrt(fabs(p.drive_damping * p.sense_damping));
     if (!(p.sense > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "sense.split", design->sense.split,
-                                  -design->drive.frequency,
-                                  "a split that leaves the sense mode a frequency above 0");
+        return imki_conflict(error, "sense.split", design->sense.split, -design->drive.frequency,
+                             "a split that leaves the sense mode a frequency above 0");
     if (!(p.drive_damping > 0.0 && p.sense_damping > 0.0 && q > 0.5))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.q", design->temperature.q,
-                                  0.0, "quality factors above 1/2 from -40 to 125 degC");
+        return imki_conflict(error, "temperature.q", design->temperature.q, 0.0,
+                             "quality factors above 1/2 from -40 to 125 degC");
     if (!(p.amplitude > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.amplitude",
-                                  design->temperature.amplitude, 0.0,
-                                  "an amplitude above 0 from -40 to 125 degC");
+        return imki_conflict(error, "temperature.amplitude", design->temperature.amplitude, 0.0,
+                             "an amplitude above 0 from -40 to 125 degC");
     /* 5 %: what is left for control */
     if (!(force * 1.05 <= design->drive.force_limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "drive.force_limit",
-                                  design->drive.force_limit, force * 1.05,
-                                  "5 % more than m wd^2 x0/Qd, which holds the amplitude");
+        return imki_conflict(error, "drive.force_limit", design->drive.force_limit, force * 1.05,
+                             "5 % more than m wd^2 x0/Qd, which holds the amplitude");
     if (!(coupling <= passive))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "damping_coupling",
-                                  design->damping_coupling, passive / (2.0 * design->angular_gain),
-                                  "a coupling that does not feed a motion: at most sqrt(wd ws/(Qd "
-                                  "Qs))/2k");
+        return imki_conflict(error, "damping_coupling", design->damping_coupling,
+                             passive / (2.0 * design->angular_gain),
+                             "a coupling that does not feed a motion: at most sqrt(wd ws/(Qd "
+                             "Qs))/2k");
     if (!(stiffness < p.drive * p.sense))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "quadrature", design->quadrature,
-                                  p.sense / (2.0 * design->angular_gain),
-                                  "a coupling that leaves the springs stable: below ws/2k");
+        return imki_conflict(error, "quadrature", design->quadrature,
+                             p.sense / (2.0 * design->angular_gain),
+                             "a coupling that leaves the springs stable: below ws/2k");
     return IMK_OK;
 }
 
@@ -181,27 +178,26 @@ static imk_status check_loops(const imk_tuning_fork *design, imk_error *error)
     static const char late[] = "at most a twentieth of the drive frequency: the loop acts once a "
                                "cycle and would be unstable";
     if (!(design->drive.loop_bandwidth <= limit))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "drive.loop_bandwidth",
-                                  design->drive.loop_bandwidth, limit, late);
+        return imki_refuse(error, IMK_ERROR_RANGE, "drive.loop_bandwidth",
+                           design->drive.loop_bandwidth, limit, late);
     if (design->sense.loop == IMK_TUNING_FORK_CLOSED && !(design->sense.bandwidth <= limit))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "sense.bandwidth",
-                                  design->sense.bandwidth, limit, late);
+        return imki_refuse(error, IMK_ERROR_RANGE, "sense.bandwidth", design->sense.bandwidth,
+                           limit, late);
     /* From one action to the next the sense mode turns by the split against the carrier. By
      * experiment at high Q (4000 designs drawn at random): all within this limit are stable, the
      * first that are not were at 1.45 times it. */
     if (design->sense.loop == IMK_TUNING_FORK_CLOSED &&
         !(fabs(design->sense.split) + design->sense.bandwidth <= 2.0 * limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "sense.split", design->sense.split,
-                                  2.0 * limit - design->sense.bandwidth,
-                                  "a closed loop whose split and bandwidth are together at most a "
-                                  "tenth of the drive frequency: it would be unstable");
+        return imki_conflict(error, "sense.split", design->sense.split,
+                             2.0 * limit - design->sense.bandwidth,
+                             "a closed loop whose split and bandwidth are together at most a "
+                             "tenth of the drive frequency: it would be unstable");
     if (!(design->output.bandwidth <= widest))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "output.bandwidth",
-                                  design->output.bandwidth, widest,
-                                  "at most an eighth of the drive frequency");
+        return imki_refuse(error, IMK_ERROR_RANGE, "output.bandwidth", design->output.bandwidth,
+                           widest, "at most an eighth of the drive frequency");
     if (design->output.damping > 0.0 && !(design->output.damping >= 0.05))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "output.damping", design->output.damping,
-                                  0.05, "0, or at least 0.05");
+        return imki_refuse(error, IMK_ERROR_RANGE, "output.damping", design->output.damping, 0.05,
+                           "0, or at least 0.05");
     return IMK_OK;
 }
 

@@ -319,10 +319,10 @@ static imk_status divide(const imk_tuning_fork *design, const imk_physics_settin
         return status;
     if (*step < shortest * (1.0 - 1e-9))
         return settings->step > 0.0 && settings->step < shortest
-                   ? imki_design_refuse(error, IMK_ERROR_RANGE, "step", settings->step, shortest,
-                                        "at most 128 steps to a cycle of the drive")
-                   : imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate,
-                                        1.0 / shortest, "at most 128 samples to a cycle");
+                   ? imki_refuse(error, IMK_ERROR_RANGE, "step", settings->step, shortest,
+                                 "at most 128 steps to a cycle of the drive")
+                   : imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, 1.0 / shortest,
+                                 "at most 128 samples to a cycle");
     const double frames = rint(*step * (double)*count / cycle);
     if (frames >= 4.0) {
         const double wanted = settings->step > 0.0 ? settings->step : longest;

@@ -92,17 +92,16 @@ static imk_status check_beam(const design_type *d, imk_error *error)
     const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
     const double highest = 1.4 * (f1 > f2 ? f1 : f2); /* at the limit of the load */
     if (!(d->thickness <= 0.2 * d->length))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "beam.thickness", d->thickness,
-                                  0.2 * d->length,
-                                  "at most a fifth of the length: a beam is slender");
+        return imki_conflict(error, "beam.thickness", d->thickness, 0.2 * d->length,
+                             "at most a fifth of the length: a beam is slender");
     if (d->clock > 0.0 && !(d->clock >= 4.0 * highest))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "clock", d->clock, 4.0 * highest,
-                                  "0, or at least four ticks to a cycle of the beams");
+        return imki_conflict(error, "clock", d->clock, 4.0 * highest,
+                             "0, or at least four ticks to a cycle of the beams");
     const double thermal = sqrt(IMKI_BOLTZMANN * d->temperature / imki_beam_mass(d)) /
                            (2.0 * IMKI_PI * (f1 < f2 ? f1 : f2));
     if (!(d->amplitude >= 10.0 * thermal))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "beam.amplitude", d->amplitude,
-                                  10.0 * thermal, "at least ten times the thermal motion");
+        return imki_conflict(error, "beam.amplitude", d->amplitude, 10.0 * thermal,
+                             "at least ten times the thermal motion");
     return IMK_OK;
 }
 
@@ -123,8 +122,8 @@ imk_status imk_vibrating_beam_validate(const imk_vibrating_beam *d, imk_error *e
                         6.0 * (d->mount_force_repeatability + d->mount_force_instability);
     const double limit = 0.9 * least * least / imk_vibrating_beam_stiffening(d);
     if (!(load < limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "proof_mass.range", load, limit,
-                                  "a smaller force: a beam would come near buckling (forces in N)");
+        return imki_conflict(error, "proof_mass.range", load, limit,
+                             "a smaller force: a beam would come near buckling (forces in N)");
     return IMK_OK;
 }
 

@@ -107,8 +107,8 @@ imk_status imki_beams_start(const void *design, const imk_physics_settings *sett
     status = imki_wander_start(&s->mount, settings, WANDER_MOUNT, d->mount_force_repeatability,
                                d->mount_force_instability);
     return status == IMK_OK ? status
-                            : imki_design_refuse(error, status, "mount.force_instability",
-                                                 d->mount_force_instability, 0.0, NULL);
+                            : imki_refuse(error, status, "mount.force_instability",
+                                          d->mount_force_instability, 0.0, NULL);
 }
 
 const imk_vibrating_beam *imki_beams_design(const void *state)
