@@ -41,7 +41,7 @@ typedef struct imki_log_codec {
     imk_status (*create)(imki_log_output *log, const char *path, imk_error *error);
     /* Before the first row. NULL: there is no place for comments. */
     void (*comment)(imki_log_output *log, const char *text);
-    /* What stands before the rows. */
+    /* What stands before the rows. NULL: nothing. */
     void (*begin)(imki_log_output *log);
     /* Add rows first … first + count - 1; called by several threads. NULL: it is only read. */
     void (*format)(const imki_row_format *rows, const double *const *columns, size_t first,

@@ -60,14 +60,9 @@ static size_t split_names(const char *names, bool by_line, imki_log_piece *cells
 static imk_status check_count(const imk_log_reader *reader, size_t count, uint64_t due,
                               imk_error *error)
 {
-    char found[96];
-    if (due == 0 || due > IMK_LOG_COLUMNS_MAX) {
-        snprintf(found, sizeof found, "a matrix of %llu columns", (unsigned long long)due);
-        return imk_error_set(error, IMK_ERROR_COLUMN, "", found, "1 to 64 columns");
-    }
+    char found[96], expected[160], file[48];
     if (count == due)
         return IMK_OK;
-    char expected[160], file[48];
     snprintf(file, sizeof file, "a file FILE%s.columns; or ", reader->format->name);
     snprintf(found, sizeof found, "%zu name%s for %llu columns", count, count == 1 ? "" : "s",
              (unsigned long long)due);
@@ -128,6 +123,8 @@ imk_status imki_log_matrix_open(imk_log_reader *reader, uint64_t columns, uint64
     imki_log_piece cells[IMK_LOG_COLUMNS_MAX];
     const size_t count = settings->columns ? split_names(settings->columns, false, cells)
                                            : split_names(names, true, cells);
+    if (columns == 0) /* more names than fit are refused all the same */
+        columns = count < IMK_LOG_COLUMNS_MAX ? count : IMK_LOG_COLUMNS_MAX;
     status = check_count(reader, count, columns, error);
     if (status == IMK_OK)
         status = imki_log_layout_make(cells, count, settings, &reader->layout, error);

@@ -13,6 +13,7 @@ typedef struct imki_matrix {
 } imki_matrix;
 
 /* Open the rows, at which the text stands: names, layout, first times.
+ * @param columns     0: as many as there are names
  * @param value_size  8 (float64) or 4 (float32)
  * @return IMK_ERROR_COLUMN (not as many names as columns), or what the names are refused for */
 imk_status imki_log_matrix_open(imk_log_reader *reader, uint64_t columns, uint64_t rows,

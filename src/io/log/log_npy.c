@@ -23,6 +23,11 @@ static imk_status open_npy(imk_log_reader *reader, imk_error *error)
         status = imki_npy_header_read(text->next, (size_t)(text->end - text->next), &npy, error);
     if (status != IMK_OK)
         return status;
+    if (npy.columns == 0 || npy.columns > IMK_LOG_COLUMNS_MAX) {
+        char found[96];
+        snprintf(found, sizeof found, "a matrix of %llu columns", (unsigned long long)npy.columns);
+        return imk_error_set(error, IMK_ERROR_COLUMN, "", found, "1 to 64 columns");
+    }
     text->next += npy.header_size;
     return imki_log_matrix_open(reader, npy.columns, npy.rows, npy.value_size, error);
 }

@@ -137,7 +137,7 @@ void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup, v
 /* What stands before the rows, once. */
 static void begin(imk_log_writer *writer)
 {
-    if (!writer->begun)
+    if (!writer->begun && writer->codec->begin)
         writer->codec->begin(&writer->log);
     writer->begun = true;
 }
