@@ -70,8 +70,9 @@ const verb allan_verb = {
                  {"imukit allan phase.txt --columns x --rate 1Hz --type phase -o adev.csv",
                   "one column of phase data without header, sampled once a second"}},
     .description =
-        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst), or "
-        ".npy; - is standard input. Without gyro and accelerometer columns every other column is "
+        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
+        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
+        "column is "
         "analysed.\n\nWhich statistic: oadev to look at a sensor; mdev or pdev to tell "
         "quantization from "
         "other fast noise; ohdev when the rate drifts in a straight line; totdev, htot and theo1 "

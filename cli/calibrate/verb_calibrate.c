@@ -153,7 +153,7 @@ const verb calibrate_verb = {
                   "--motion programme.yaml -o model.yaml --report report.html",
                   "two tests solved together; the table ran the programme"}},
     .description =
-        "LOG is CSV (also .gz, .zst) or .npy, in physical units or raw counts. A procedure looks "
+        "LOG is CSV (also .gz, .zst){ or logs}, in physical units or raw counts. A procedure looks "
         "at "
         "each log and adds what it observed; all logs are solved at once, robustly, and every "
         "parameter comes with 1 sigma, a 95 % interval, and correlations. A verdict says in plain "

@@ -12,7 +12,7 @@
 
 static const option compensate_option_table[] = {
     {"output", 'o', OPTION_OUTPUT, "LOG", NULL, NULL,
-     "where to write: .csv (also .gz, .zst) or .npy; - (the default) is standard output",
+     "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output",
      offsetof(compensate_options, output)},
     {"temperature", 0, OPTION_QUANTITY, "TEMPERATURE", "degC", NULL,
      "of the unit, for a log without such a column; overrules one",
@@ -64,7 +64,8 @@ const verb compensate_verb = {
                   "the same for a device: C99 code for one sample, with its error bound and a "
                   "self-test"}},
     .description =
-        "LOG is CSV (also .gz, .zst) or .npy; - is standard input. MODEL is a model file or a name "
+        "LOG is CSV (also .gz, .zst){ or logs}; - is standard input. MODEL is a model file or a "
+        "name "
         "from `imukit devices`. Gyro and accel columns become angular rate and specific force of "
         "the body; other columns are copied.\n\nThe deterministic terms are taken out: bias with "
         "temperature and warm-up, scale factor, nonlinearity, misalignment, cross-axis and "

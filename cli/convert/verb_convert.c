@@ -56,7 +56,8 @@ const verb convert_verb = {
          {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
           "a model becomes a parameter file of another program; without --to the way back"}},
     .description =
-        "A log is .csv (also .gz, .zst) or .npy; - is standard input or output, as CSV. Increments "
+        "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
+        "Increments "
         "become rates. Values keep their units unless an option changes them.\n\n"
         "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
         "Parameter files of "

@@ -105,7 +105,7 @@ const verb identify_verb = {
                   "a log without header and time column; the model's twin is drawn over it"}},
     .description =
         "LOG is a record of a sensor that does not move: CSV with a header such as time [s],gyro_x "
-        "[deg/s],accel_x [g] (also .gz, .zst), or .npy; - is standard input. An hour shows the "
+        "[deg/s],accel_x [g] (also .gz, .zst){, or logs}; - is standard input. An hour shows the "
         "white noise and the bias instability of most sensors, several hours the random walk.\n\n"
         "Estimated for each channel: quantization, white noise (angle or velocity random walk), "
         "bias instability, rate or acceleration random walk and ramp, with spectral lines, "

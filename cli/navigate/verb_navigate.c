@@ -64,7 +64,7 @@ static const option navigate_option_table[] = {
     {"interval", 0, OPTION_QUANTITY, "TIME", "s", NULL, "between rows of the track; default 1s",
      offsetof(navigate_options, interval)},
     {"output", 'o', OPTION_OUTPUT, "TRACK", NULL, NULL,
-     "write the track: .csv (also .gz, .zst) or .npy; - is standard output",
+     "write the track: .csv (also .gz, .zst){ or written}; - is standard output",
      offsetof(navigate_options, output)},
     {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
      "draw the track, and the way from the start against time", offsetof(navigate_options, plot)},
@@ -91,7 +91,7 @@ const verb navigate_verb = {
                   "--model tactical --zero-velocity auto -o track.csv",
                   "a drive with stops, each of which corrects"}},
     .description =
-        "LOG is CSV (also .gz, .zst) or .npy with three gyros and three accelerometers, as rates "
+        "LOG is CSV (also .gz, .zst){ or logs} with three gyros and three accelerometers, as rates "
         "or increments; - is standard input. A strapdown mechanisation on the WGS84 ellipsoid "
         "integrates it from --position on. Nothing but --zero-velocity corrects it, so its error "
         "grows.\n\nWith --model the error is predicted by covariance, alignment included. Errors "

@@ -72,7 +72,8 @@ static const option run_option_table[] = {
 
 static const option output_option_table[] = {
     {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
-     "the log (.csv, also .gz, .zst, or .npy; default: standard output), the model of --reduce, or "
+     "the log (.csv, also .gz, .zst{, or written}; default: standard output), the model of "
+     "--reduce, or "
      "the design of --show",
      offsetof(physics_options, output)},
     {"signals", 0, OPTION_OUTPUT, "FILE.csv", NULL, NULL, "write what happens inside, against time",

@@ -37,7 +37,7 @@ typedef struct option {
                             the most, NULL: any; OPTION_QUANTITY: the same as "-90..90" in `unit`,
                             or "positive", which refuses 0 and less, or "not negative";
                             OPTION_FRACTION: "0.1..0.9" */
-    const char *help;    /* a clause */
+    const char *help;    /* a clause; see `description` */
     size_t offset;       /* of the value in the settings of the group */
 } option;
 
@@ -67,7 +67,9 @@ typedef struct verb {
     bool last_is_written;  /* the last operand is an output */
     bool all_are_evidence; /* one operand given twice would count as two */
     example examples[2];
-    const char *description; /* paragraphs separated by blank lines */
+    const char *description; /* paragraphs separated by blank lines; behind "CSV", "{ or logs}" and
+                                "{, or written}" are the other formats of logs that are read, or
+                                written, with these words before the last */
     option_group groups[GROUPS_MAX];
     int (*run)(int argument_count, char **arguments);
 } verb;

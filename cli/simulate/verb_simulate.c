@@ -20,7 +20,7 @@ static const option simulate_option_table[] = {
     {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
      "length, such as 2h; default: the whole motion", offsetof(simulate_options, duration)},
     {"output", 'o', OPTION_OUTPUT, "LOG", NULL, NULL,
-     "where to write: .csv (also .gz, .zst) or .npy; - (the default) is standard output; a "
+     "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output; a "
      "directory, DIR/, with --runs",
      offsetof(simulate_options, output)},
     {"seed", 's', OPTION_INTEGER, "N", NULL, NULL,

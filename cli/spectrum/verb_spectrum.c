@@ -76,8 +76,9 @@ const verb spectrum_verb = {
                  {"imukit spectrum bench.csv --resolution 0.01Hz --density one-sided -o psd.csv",
                   "finer, and in the convention of most spectrum analysers, as a table"}},
     .description =
-        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst), or "
-        ".npy; - is standard input. Without gyro and accelerometer columns every other column is "
+        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
+        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
+        "column is "
         "analysed.\n\nLines are listed with frequency, amplitude and what they are multiples of. "
         "The noise parameters are a cross-check of imukit identify, which is the better "
         "estimator; where they differ, something that neither models is in the log.",

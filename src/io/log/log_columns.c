@@ -335,3 +335,21 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
             layout->cell_factor[i] = layout->factor[layout->cell_column[i]];
     return IMK_OK;
 }
+
+imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const double time[2],
+                               const char *none, const char *due, imk_error *error)
+{
+    const imki_log_layout_read *layout = &reader->layout;
+    if (rows == 0)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", none, due);
+    if (rows < 2 && layout->has_increments && reader->rate == 0.0)
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "increments in a single row",
+                             "two rows; or add --rate 100Hz (samples per second)");
+    if (layout->time_column >= 0) {
+        const double scale = layout->factor[layout->time_column];
+        if (fabs(time[0]) * scale > 1e6)
+            reader->time_origin = time[0];
+        reader->last_step = (time[1] - time[0]) * scale;
+    }
+    return IMK_OK;
+}
