@@ -89,7 +89,7 @@ static imk_parameter_format recognise_keys(const imk_document *document, int nod
     if (has_any(document, node, 5, openvins))
         return IMK_PARAMETERS_OPENVINS;
     if (has_any(document, node, 2, kalibr) ||
-        has_any(document, node, IMKI_KALIBR_NOISE_KEYS, imki_kalibr_noise_keys))
+        has_any(document, node, IMKI_DENSITIES, imki_kalibr_noise_keys))
         return IMK_PARAMETERS_KALIBR;
     return IMK_PARAMETERS_UNKNOWN;
 }
@@ -119,9 +119,9 @@ static imk_parameter_format recognise_tree(const char *text, size_t size)
 {
     imk_parameter_settings settings = imk_parameter_settings_default();
     imki_parameters p = {.settings = &settings, .text = text, .size = size};
-    imk_document *document = NULL;
-    if (imki_parameters_document(&p, &document) != IMK_OK)
+    if (!imki_parameters_document(&p))
         return recognise_words(text);
+    const imk_document *document = p.document;
     imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
     /* A model file has the last word about itself. */
     if (imki_document_value(document, 0, "imukit") == IMKI_NONE) {
@@ -132,7 +132,7 @@ static imk_parameter_format recognise_tree(const char *text, size_t size)
             key = document->node[document->node[key].next].next;
         }
     }
-    imk_document_free(document);
+    imk_document_free(p.document);
     return format;
 }
 
@@ -273,7 +273,8 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
                          .error = error,
                          .text = text,
                          .size = size,
-                         .model = made};
+                         .model = made,
+                         .triad = {&made->gyro, &made->accel}};
     imk_parameter_format format = settings->format;
     imk_model_default(made);
     if (memchr(text, '\0', size))
@@ -284,12 +285,13 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "",
                              "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, "
                              "openvins, vins, px4, ardupilot or filter (--from says which)");
-    imk_status status = check_density(settings, format, error);
-    if (status == IMK_OK)
-        status = check_sensor(settings, format, error);
-    if (status == IMK_OK)
-        status = formats[format].read(&p);
-    return status == IMK_OK ? imk_model_validate(made, error) : status;
+    p.status = check_density(settings, format, error);
+    if (p.status == IMK_OK)
+        p.status = check_sensor(settings, format, error);
+    if (p.status == IMK_OK)
+        formats[format].read(&p);
+    imk_document_free(p.document);
+    return p.status == IMK_OK ? imk_model_validate(made, error) : p.status;
 }
 
 imk_status imk_parameters_parse(const char *text, size_t size,
@@ -368,16 +370,16 @@ imk_status imk_parameters_print(const char *path, const imk_parameter_settings *
                          .notes = &found,
                          .error = error,
                          .source = model,
+                         .origin = {&model->gyro, &model->accel},
                          .is_json = imk_has_ending(path, ".json")};
-    status = formats[settings->format].write(&p);
-    if (status == IMK_OK && p.out.failed)
-        status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    if (status == IMK_OK)
-        status = imki_parameters_compare(&p, formats[settings->format].read,
-                                         formats[settings->format].name);
-    if (status != IMK_OK) {
+    formats[settings->format].write(&p);
+    if (p.out.failed)
+        imki_refuse(&p, IMK_ERROR_MEMORY, "", "", "");
+    if (p.status == IMK_OK)
+        imki_parameters_compare(&p, formats[settings->format].read, formats[settings->format].name);
+    if (p.status != IMK_OK) {
         free(p.out.bytes);
-        return status;
+        return p.status;
     }
     if (notes)
         *notes = found;
