@@ -6,11 +6,10 @@
 #define _POSIX_C_SOURCE 200809L
 #include "imukit/parameter_file.h"
 
-#include "io/file/input_stream_internal.h"
+#include "io/file/text_file_internal.h"
 #include "parameter_internal.h"
 
 #include "imukit/names.h"
-#include "imukit/output_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -185,31 +184,14 @@ static imk_parameter_format recognise(const char *text, size_t size)
 static imk_status read_all(const char *path, bool reopened, char **text, size_t *size,
                            imk_error *error)
 {
-    enum { CAPACITY = IMKI_DOCUMENT_SIZE_MAX };
-    imki_input *input = NULL;
-    imk_status status =
-        reopened ? imki_input_open_kept(path, &input, error) : imki_input_open(path, &input, error);
-    if (status != IMK_OK)
+    enum { LIMIT = IMKI_DOCUMENT_SIZE_MAX - 1 };
+    const imk_status status = imki_file_read(path, reopened, LIMIT, text, size, error);
+    if (status != IMK_OK || *size <= LIMIT)
         return status;
-    char *buffer = malloc(CAPACITY + 1);
-    if (!buffer)
-        status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    *size = 0;
-    for (size_t got = 1; status == IMK_OK && got > 0 && *size < CAPACITY; *size += got) {
-        got = 0;
-        status = imki_input_read(input, buffer + *size, CAPACITY - *size, &got, error);
-    }
-    imki_input_close(input);
-    if (status == IMK_OK && *size == CAPACITY)
-        status = imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "a file longer than 1 MiB",
-                               "a parameter file");
-    if (status != IMK_OK) {
-        free(buffer);
-        return status;
-    }
-    buffer[*size] = '\0';
-    *text = buffer;
-    return IMK_OK;
+    free(*text);
+    *text = NULL;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "a file longer than 1 MiB",
+                         "a parameter file");
 }
 
 imk_status imk_parameter_format_detect(const char *path, imk_parameter_format *format,
@@ -394,15 +376,9 @@ imk_status imk_parameters_write(const char *path, const imk_parameter_settings *
 {
     char *text = NULL;
     size_t size = 0;
-    imk_output_file *file = NULL;
     imk_status status = imk_parameters_print(path, settings, model, &text, &size, notes, error);
     if (status == IMK_OK)
-        status = imk_output_file_open(path, &file, error);
-    if (status == IMK_OK) {
-        /* A failed write is reported by commit. */
-        (void)imk_output_file_write(file, text, size);
-        status = imk_output_file_commit(file, error);
-    }
+        status = imki_text_file_write(path, text, size, error);
     free(text);
     return status;
 }
