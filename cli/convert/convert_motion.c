@@ -22,25 +22,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(member) offsetof(convert_motion_options, member)
+
 const option convert_motion_option_table[CONVERT_MOTION_OPTIONS] = {
-    {"to-point", 0, OPTION_TEXT, "\"X Y Z UNIT\"", NULL, NULL,
+    {"to-point", 0, A_TEXT("\"X Y Z UNIT\""), AT(to_point),
      "specific force at another point of the body, forward right down of the accelerometers, such "
-     "as \"0.1 0 -0.05 m\"",
-     offsetof(convert_motion_options, to_point)},
-    {"gravity-free", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "as \"0.1 0 -0.05 m\""},
+    {"gravity-free", 0, A_FLAG, AT(gravity_free),
      "acceleration relative to the Earth instead of specific force; needs --latitude, and a unit "
-     "that is still at first",
-     offsetof(convert_motion_options, gravity_free)},
-    {"still", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long it is still, for roll and pitch; default 10s",
-     offsetof(convert_motion_options, still)},
-    {"latitude", 0, OPTION_QUANTITY, "ANGLE", "deg", "-90..90", "geodetic, for gravity",
-     offsetof(convert_motion_options, latitude)},
-    {"height", 0, OPTION_QUANTITY, "LENGTH", "m", "-10000..100000",
-     "above the ellipsoid; default 0m", offsetof(convert_motion_options, height)},
-    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000",
-     "at first, from north to east, for the Earth's rotation; default 0deg",
-     offsetof(convert_motion_options, yaw)},
+     "that is still at first"},
+    {"still", 0, A_QUANTITY("TIME", "s", NULL), AT(still),
+     "how long it is still, for roll and pitch; default 10s"},
+    {"latitude", 0, A_QUANTITY("ANGLE", "deg", "-90..90"), AT(latitude), "geodetic, for gravity"},
+    {"height", 0, A_QUANTITY("LENGTH", "m", "-10000..100000"), AT(height),
+     "above the ellipsoid; default 0m"},
+    {"yaw", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(yaw),
+     "at first, from north to east, for the Earth's rotation; default 0deg"},
 };
 
 convert_motion_options convert_motion_default(void)

@@ -20,25 +20,23 @@ typedef struct convert_options {
     option_integer decimals, threads;
 } convert_options;
 
+#define AT(member) offsetof(convert_options, member)
+
 static const option convert_option_table[] = {
-    {"select", 0, OPTION_TEXT, "NAMES", NULL, NULL,
-     "columns to keep, in this order, such as time,gyro_x; default: all",
-     offsetof(convert_options, select)},
-    {"to-gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the gyro columns written; default: as read", offsetof(convert_options, to_gyro_unit)},
-    {"to-accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the accelerometer columns written; default: as read",
-     offsetof(convert_options, to_accel_unit)},
-    {"to-time-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the time column written; default: as read", offsetof(convert_options, to_time_unit)},
-    {"to-temperature-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the temperature column written; default: as read",
-     offsetof(convert_options, to_temperature_unit)},
-    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
-     "digits after the point, 0 to 17; default: as many as the number needs",
-     offsetof(convert_options, decimals)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
-     offsetof(convert_options, threads)},
+    {"select", 0, A_TEXT("NAMES"), AT(select),
+     "columns to keep, in this order, such as time,gyro_x; default: all"},
+    {"to-gyro-unit", 0, A_TEXT("UNIT"), AT(to_gyro_unit),
+     "of the gyro columns written; default: as read"},
+    {"to-accel-unit", 0, A_TEXT("UNIT"), AT(to_accel_unit),
+     "of the accelerometer columns written; default: as read"},
+    {"to-time-unit", 0, A_TEXT("UNIT"), AT(to_time_unit),
+     "of the time column written; default: as read"},
+    {"to-temperature-unit", 0, A_TEXT("UNIT"), AT(to_temperature_unit),
+     "of the temperature column written; default: as read"},
+    {"decimals", 0, AN_INTEGER("N", "0-17"), AT(decimals),
+     "digits after the point, 0 to 17; default: as many as the number needs"},
+    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
+     "threads to use; default: all processors"},
 };
 
 static int run(int count, char **words);
@@ -65,14 +63,11 @@ const verb convert_verb = {
         "ardupilot "
         "are recognised by their content; what was assumed about units and densities, and what a "
         "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
-    .groups = {{"Options", sizeof convert_option_table / sizeof convert_option_table[0],
-                convert_option_table, 0},
-               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table,
-                offsetof(convert_options, parameters)},
+    .groups = {{A_GROUP("Options", convert_option_table), 0},
+               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
                {"Another point, without gravity", CONVERT_MOTION_OPTIONS,
-                convert_motion_option_table, offsetof(convert_options, motion)},
-               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
-                offsetof(convert_options, log)}},
+                convert_motion_option_table, AT(motion)},
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
     .run = run};
 
 /* What each end is. A name without an ending tells nothing of what is read: its content is looked

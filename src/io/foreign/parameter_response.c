@@ -41,15 +41,16 @@ void imki_multiply(double a[3][3], double b[3][3], double product[3][3])
 /* Misalignments are small angles; beyond this share of the diagonal, the axes are turned. */
 static const double small_share = 0.5;
 
-imk_status imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad,
-                             double matrix[3][3])
+void imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad, double matrix[3][3])
 {
     bool small = true;
     for (int i = 0; i < 3; i++) {
         double length = imki_norm3(matrix[i]);
-        if (!(length >= 0.05 && length <= 20))
-            return imki_place_error(p, place, IMK_ERROR_RANGE, "",
-                                    "a matrix near a rotation: rows of a length near 1");
+        if (!(length >= 0.05 && length <= 20)) {
+            imki_refuse_at(p, place, IMK_ERROR_RANGE, "",
+                           "a matrix near a rotation: rows of a length near 1");
+            return;
+        }
         for (int j = 0; j < 3; j++)
             small = small &&
                     (i == j ? matrix[i][i] > 0 : fabs(matrix[i][j]) <= small_share * matrix[i][i]);
@@ -67,7 +68,6 @@ imk_status imki_response_set(imki_parameters *p, imki_place place, imk_triad *tr
     }
     if (!small)
         imki_note(p, false, "the matrices turn the axes by large angles: written as directions");
-    return IMK_OK;
 }
 
 /* Gram-Schmidt on the rows: exact where the matrix is lower triangular already. */
@@ -95,17 +95,12 @@ bool imki_lower_and_rotation(double matrix[3][3], double lower[3][3], double rot
 
 /* ---- noise ----------------------------------------------------------------------------------- */
 
-void imki_to_axes(const double values[3], imk_axes *axes)
-{
-    memcpy(axes->value, values, 3 * sizeof values[0]);
-}
-
 void imki_add_gauss_markov(imk_triad *triad, const double sigma[3], const double time[3])
 {
     struct imk_gauss_markov_term term = {.sigma = {{0}, {0}}};
-    if (sigma[0] == 0 && sigma[1] == 0 && sigma[2] == 0)
+    if (!imki_any(sigma))
         return;
-    imki_to_axes(sigma, &term.sigma);
+    memcpy(term.sigma.value, sigma, 3 * sizeof sigma[0]);
     for (int i = 0; i < 3; i++)
         term.correlation_time.value[i] = sigma[i] == 0 ? 0 : time[i];
     triad->noise.gauss_markov[triad->noise.gauss_markov_count++] = term;
@@ -120,21 +115,19 @@ void imki_first_gauss_markov(const imk_triad *triad, double sigma[3], double tim
     }
 }
 
-imk_status imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *triad,
-                                     double rate, const char *program, double sigma[3],
-                                     double time[3])
+void imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *triad, double rate,
+                               const char *program, double sigma[3], double time[3])
 {
     for (int i = 0; i < 3; i++) {
         if (sigma[i] != 0 && time[i] == 0)
-            return imki_place_error(p, place, IMK_ERROR_RANGE, "0",
-                                    "a positive correlation time [s]");
+            imki_refuse_at(p, place, IMK_ERROR_RANGE, "0", "a positive correlation time [s]");
         if (sigma[i] == 0 || !isinf(time[i]))
             continue;
         if (!(rate > 0)) {
-            imki_place_error(p, place, IMK_ERROR_KEY_MISSING,
-                             "\"inf\" is white noise per sample, and the sample rate is not known",
-                             "add --rate 100Hz (samples per second)");
-            return IMK_ERROR_KEY_MISSING;
+            imki_refuse_at(p, place, IMK_ERROR_KEY_MISSING,
+                           "\"inf\" is white noise per sample, and the sample rate is not known",
+                           "add --rate 100Hz (samples per second)");
+            return;
         }
         double n = triad->noise.white.value[i];
         triad->noise.white.value[i] = sqrt(n * n + sigma[i] * sigma[i] / rate);
@@ -144,7 +137,6 @@ imk_status imki_white_where_infinite(imki_parameters *p, imki_place place, imk_t
                   "taken as white noise",
                   place.field, program);
     }
-    return IMK_OK;
 }
 
 double imki_largest(imki_parameters *p, const char *name, const imk_axes *axes)
@@ -155,4 +147,21 @@ double imki_largest(imki_parameters *p, const char *name, const imk_axes *axes)
         imki_note(p, true, "%s is one number for all axes: the largest of the three is written",
                   name);
     return largest;
+}
+
+void imki_densities_read(imki_parameters *p, int mapping, const char *const keys[IMKI_DENSITIES],
+                         const imki_unit units[IMKI_DENSITIES])
+{
+    for (int i = 0; i < IMKI_DENSITIES; i++) {
+        imk_noise *noise = &p->triad[i / 2]->noise;
+        const bool white = i % 2 == 0;
+        imki_node_accept(p, mapping, keys[i], i / 2, white ? IMKI_WHITE : IMKI_RANDOM_WALK,
+                         units[i], white ? noise->white.value : noise->random_walk.value);
+    }
+}
+
+double imki_density(imki_parameters *p, int index, const char *key)
+{
+    const imk_noise *noise = &p->origin[index / 2]->noise;
+    return imki_largest(p, key, index % 2 == 0 ? &noise->white : &noise->random_walk);
 }
