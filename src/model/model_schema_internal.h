@@ -181,6 +181,20 @@ static inline double imki_power_at(const imki_power *power, double u)
     return x;
 }
 
+/* Derivative by u of a power with this coefficient (and weight); `side` is the sign of u. */
+static inline double imki_power_slope(const imki_power *power, double coefficient, double u,
+                                      double side)
+{
+    double x = (power->p + power->q) * coefficient;
+    if (power->p == 0)
+        return side * x;
+    if (power->q)
+        x *= fabs(u);
+    for (int k = 1; k < power->p; k++)
+        x *= u;
+    return x;
+}
+
 /* sqrt(2 ln 2/pi): the flat floor of the Allan deviation of flicker noise of instability 1
  * [IEEE952]. */
 #define IMKI_ALLAN_FLOOR 0.66428247026796002
