@@ -173,6 +173,13 @@ static inline int imki_power_of(int term)
     return power;
 }
 
+/* p + q of it */
+static inline int imki_power_degree(int term)
+{
+    const imki_power *power = &imki_input_powers[imki_power_of(term)];
+    return power->p + power->q;
+}
+
 static inline double imki_power_at(const imki_power *power, double u)
 {
     double x = power->q ? power->weight * fabs(u) : power->weight;

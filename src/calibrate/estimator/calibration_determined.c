@@ -45,9 +45,8 @@ static void schur_complement(const imki_normal *n, double *schur)
 static bool is_ratio(imk_model_parameter p)
 {
     const imki_form form = imki_terms[p.term].form;
-    const imki_power *power =
-        form == IMKI_FORM_POWER ? &imki_input_powers[imki_power_of(p.term)] : NULL;
-    return form == IMKI_FORM_INPUT || form == IMKI_FORM_SEEN || (power && power->p + power->q == 1);
+    return form == IMKI_FORM_INPUT || form == IMKI_FORM_SEEN ||
+           (form == IMKI_FORM_POWER && imki_power_degree(p.term) == 1);
 }
 
 imk_status imki_check_determined(imki_estimator *e, double *weakest, imk_error *error)
