@@ -55,14 +55,17 @@ typedef struct imk_run_constants {
 
 /** One axis, compiled. The features of a gyro are w (3), the products of f (6: xx yy zz xy yz zx)
  *  and f (3); of an accelerometer f, the products of w, and alpha. */
-enum { IMK_FEATURES = 12 };
+enum { IMK_FEATURES = 12, IMK_POWERS = 6 };
 typedef struct imk_axis_response {
     double input[IMK_FEATURES]; /**< u */
     double other[IMK_FEATURES]; /**< everything linear besides u and s u */
     double pendulous[IMK_FEATURES], output[IMK_FEATURES];
     bool has_cross_products, has_nonlinearity;
     double bias, scale; /**< fixed and run constant */
-    double k2, koq, k3, half_asymmetry, kip, kio, kpo;
+    /** n(u) = u^2 sum of power[0][k] u^k + |u| sum of power[1][k] u^k, k below `powers` */
+    double power[2][IMK_POWERS];
+    int powers;
+    double kip, kio, kpo;
     double bias_temperature[IMK_TEMPERATURE_ORDER_MAX],
         scale_temperature[IMK_TEMPERATURE_ORDER_MAX];
     int bias_order, scale_order;

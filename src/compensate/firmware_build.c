@@ -291,6 +291,20 @@ static int along(const operations *o, int sensor, int i, const double weights[3]
     return value;
 }
 
+static double number_of(const imk_axis_response *axis, const imki_power *power)
+{
+    return axis->power[power->q][power->p - (power->q ? 0 : 2)];
+}
+
+/* u^(p - 1) |u|^q, of which the size is at hand. */
+static int power_less_one(const operations *o, const imki_power *power, int u, int size)
+{
+    int value = power->q ? size : u;
+    for (int k = 2 - power->q; k < power->p; k++)
+        value = imki_firmware_product(o->builder, value, u, 0);
+    return value;
+}
+
 /* (s(t) - middle) u + n(u). */
 static void add_slope(operations *o, int sensor, int i, int u, imki_sum *rest)
 {
@@ -299,7 +313,7 @@ static void add_slope(operations *o, int sensor, int i, int u, imki_sum *rest)
     const double constant = axis->scale - middle_slope(o->plan, sensor, i);
     imki_sum slope = {.constant = 0};
     int size = -1;
-    if (axis->koq != 0 || axis->half_asymmetry != 0)
+    if (any_of(axis->power[1], axis->powers))
         size = imki_firmware_size(o->builder, u);
     if (p.order > 0) {
         const int scale = horner(o, &p, 1, constant, sensor, i);
@@ -308,10 +322,12 @@ static void add_slope(operations *o, int sensor, int i, int u, imki_sum *rest)
     } else {
         slope.constant = constant + p.coefficient[0];
     }
-    imki_sum_add(&slope, u, axis->k2);
-    imki_sum_add(&slope, size, axis->koq);
-    if (axis->k3 != 0)
-        imki_sum_add(&slope, imki_firmware_product(o->builder, u, u, 0), axis->k3);
+    for (size_t k = 0; k < imki_input_power_count; k++) {
+        const imki_power *power = &imki_input_powers[k];
+        const double number = number_of(axis, power);
+        if (number != 0 && power->p + power->q > 1)
+            imki_sum_add(&slope, power_less_one(o, power, u, size), number);
+    }
     if (slope.count > 0) {
         const int factor = imki_firmware_sum(o->builder, &slope, p.error, -1);
         imki_firmware_name(o->builder, factor, IMK_FIRMWARE_STEP, sensor, i, 0);
@@ -319,7 +335,7 @@ static void add_slope(operations *o, int sensor, int i, int u, imki_sum *rest)
     } else {
         imki_sum_add(rest, u, slope.constant);
     }
-    imki_sum_add(rest, size, axis->half_asymmetry);
+    imki_sum_add(rest, size, axis->power[1][0]);
 }
 
 static void add_cross_products(operations *o, int sensor, int i, int u, imki_sum *rest)

@@ -88,9 +88,14 @@ static double largest_reading(const imk_firmware *f, int sensor, int axis)
     if (!c->solves[sensor])
         along = c->limit[sensor][axis];
     imki_scale_range(r, &coldest, &warmest);
-    const double scale = 1 + fabs(r->scale) + fmax(fabs(coldest), fabs(warmest)) +
-                         fabs(r->half_asymmetry) + (fabs(r->k2) + fabs(r->koq)) * along +
-                         fabs(r->k3) * along * along;
+    double scale = 1 + fabs(r->scale) + fmax(fabs(coldest), fabs(warmest));
+    for (int n = 1; n <= IMK_POWERS + 1; n++) { /* |u|^(n - 1) */
+        double slope = (n > 1 ? fabs(r->power[0][n - 2]) : 0) +
+                       (n <= IMK_POWERS ? fabs(r->power[1][n - 1]) : 0);
+        for (int k = 1; k < n; k++)
+            slope *= along;
+        scale += slope;
+    }
     return fabs(r->bias) + imki_firmware_bias_reach(r) + scale * along + other + force + products +
            fabs(r->kip) * along * p + fabs(r->kio) * along * o + fabs(r->kpo) * p * o;
 }

@@ -5,27 +5,22 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-    SCALE_TEMPERATURE,
-    K2,
-    KOQ,
-    K3,
-    ASYMMETRY,
-    G_SENSITIVITY,
-    G2_SENSITIVITY,
-    CROSS_PRODUCTS,
-    LEVER_ARM,
-    TERMS
-};
+static void append(char *text, size_t size, const char *more)
+{
+    size_t length = strlen(text);
+    while (*more && length + 1 < size)
+        text[length++] = *more++;
+    text[length] = '\0';
+}
 
-static const char *const names[2][TERMS] = {
-    {"gyro.scale_factor.temperature", "gyro.nonlinearity.k2", "gyro.nonlinearity.koq",
-     "gyro.nonlinearity.k3", "gyro.nonlinearity.asymmetry", "gyro.g_sensitivity",
-     "gyro.g2_sensitivity", NULL, NULL},
-    {"accel.scale_factor.temperature", "accel.nonlinearity.k2", "accel.nonlinearity.koq",
-     "accel.nonlinearity.k3", "accel.nonlinearity.asymmetry", NULL, NULL, "accel.cross_products",
-     "accel.lever_arm"},
-};
+imk_status imki_correct_refuse(imk_error *error, imk_status status, int sensor, const char *key,
+                               const char *found, const char *expected)
+{
+    char field[64] = "";
+    append(field, sizeof field, !key ? "" : sensor == IMK_GYRO ? "gyro." : "accel.");
+    append(field, sizeof field, key ? key : "");
+    return imk_error_set(error, status, field, found, expected);
+}
 
 static void clear(double *weight, unsigned features)
 {
@@ -34,68 +29,76 @@ static void clear(double *weight, unsigned features)
             weight[k] = 0.0;
 }
 
-static void remove_term(imk_axis_response *axis, int term)
+/* @return false when the inversion does not depend on how large the term is */
+static bool remove_term(imk_axis_response *axis, int term)
 {
-    switch (term) {
-    case SCALE_TEMPERATURE:
+    switch (imki_terms[term].form) {
+    case IMKI_FORM_WARM_INPUT:
         axis->scale_order = 0;
-        break;
-    case K2:
-        axis->k2 = 0.0;
-        break;
-    case KOQ:
-        axis->koq = 0.0;
-        break;
-    case K3:
-        axis->k3 = 0.0;
-        break;
-    case ASYMMETRY:
-        axis->half_asymmetry = 0.0;
-        break;
-    case G_SENSITIVITY:
+        return true;
+    case IMKI_FORM_POWER:
+        *imki_axis_power(axis, &imki_input_powers[imki_power_of(term)]) = 0.0;
+        return true;
+    case IMKI_FORM_FORCE:
         clear(axis->other, IMKI_THIRD_FEATURES);
-        break;
-    case G2_SENSITIVITY:
+        return true;
+    case IMKI_FORM_PRODUCT:
         clear(axis->other, IMKI_PRODUCT_FEATURES);
-        break;
-    case CROSS_PRODUCTS:
+        return true;
+    case IMKI_FORM_CROSS:
         axis->has_cross_products = false;
-        break;
-    default:
+        return true;
+    case IMKI_FORM_PLACE:
         clear(axis->input, IMKI_PRODUCT_FEATURES);
         clear(axis->other, IMKI_PRODUCT_FEATURES);
         clear(axis->pendulous, IMKI_PRODUCT_FEATURES);
         clear(axis->output, IMKI_PRODUCT_FEATURES);
+        return true;
+    default:
+        return false;
     }
+}
+
+/* The contraction that is left without a term; infinite when it has no part in it. */
+static double contraction_without(const imki_inversion *inversion, imk_distortion *distortion,
+                                  int sensor, int term)
+{
+    imk_axis_response with[IMK_AXES_MAX];
+    imki_inversion trial = *inversion;
+    int singular;
+    memcpy(with, distortion->axis[sensor], sizeof with);
+    if (!remove_term(&distortion->axis[sensor][0], term))
+        return HUGE_VAL;
+    for (int i = 0; i < distortion->axis_count[sensor]; i++)
+        remove_term(&distortion->axis[sensor][i], term);
+    const bool inverted = imki_invert_middle(&trial, &singular) == IMK_OK;
+    const double left = inverted ? imki_contraction(&trial) : HUGE_VAL;
+    memcpy(distortion->axis[sensor], with, sizeof with);
+    return left;
 }
 
 imk_status imki_refuse_inversion(const imki_inversion *inversion, imk_distortion *distortion,
                                  imk_error *error)
 {
     const double contraction = imki_contraction(inversion);
-    const char *worst = "";
+    int worst_sensor = IMK_GYRO, worst = -1;
     double best = INFINITY;
-    for (int k = 0; error && k < 2 * TERMS; k++) {
-        const int sensor = k / TERMS, term = k % TERMS;
-        imk_axis_response with[IMK_AXES_MAX];
-        imki_inversion trial = *inversion;
-        int singular;
-        if (!names[sensor][term])
-            continue;
-        memcpy(with, distortion->axis[sensor], sizeof with);
-        for (int i = 0; i < distortion->axis_count[sensor]; i++)
-            remove_term(&distortion->axis[sensor][i], term);
-        const bool inverted = imki_invert_middle(&trial, &singular) == IMK_OK;
-        const double left = inverted ? imki_contraction(&trial) : HUGE_VAL;
-        memcpy(distortion->axis[sensor], with, sizeof with);
-        if (left < best) {
-            best = left;
-            worst = names[sensor][term];
+    for (int sensor = 0; error && sensor < 2; sensor++) {
+        uint8_t term[IMKI_TERMS];
+        const size_t count = imki_terms_in_order(sensor, term);
+        for (size_t k = 0; k < count; k++) {
+            const double left = contraction_without(inversion, distortion, sensor, term[k]);
+            if (left < best) {
+                best = left;
+                worst = term[k];
+                worst_sensor = sensor;
+            }
         }
     }
-    imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, worst,
-                  "this term is too large to be taken out over the range of the sensors",
-                  "state a smaller range, or correct without this term");
+    imki_correct_refuse(error, IMK_ERROR_NO_CONVERGENCE, worst_sensor,
+                        worst < 0 ? NULL : imki_term_field(worst)->path[worst_sensor],
+                        "this term is too large to be taken out over the range of the sensors",
+                        "state a smaller range, or correct without this term");
     if (error) {
         error->value = contraction;
         error->limit = 1.0;

@@ -18,18 +18,6 @@ static const double range_margin = 1.1;
 /* Limits where everything is linear and none is stated: of these the bound is a fraction. */
 static const double nominal_limit[2] = {1.0 /* rad/s */, 10.0 /* m/s^2 */};
 
-static const char *const kind_names[2] = {"gyro", "accel"};
-
-static imk_status refuse(imk_error *error, imk_status status, int sensor, const char *key,
-                         const char *found, const char *expected)
-{
-    char field[64] = "";
-    imki_append_text(field, sizeof field, kind_names[sensor]);
-    imki_append_text(field, sizeof field, ".");
-    imki_append_text(field, sizeof field, key);
-    return imk_error_set(error, status, field, found, expected);
-}
-
 /* ---- settings -------------------------------------------------------------------------------- */
 
 imk_correction_settings imk_correction_default(void)
@@ -95,24 +83,28 @@ static imk_status check_partners(const imki_inversion *v, imk_error *error)
     const unsigned coupling = IMKI_PRODUCT_FEATURES | IMKI_THIRD_FEATURES;
     const char *key = gyro & IMKI_THIRD_FEATURES ? "g_sensitivity" : "g2_sensitivity";
     if (gyro & coupling && v->outputs[IMK_ACCEL] == 0)
-        return refuse(error, IMK_ERROR_CONFLICT, IMK_GYRO, key,
-                      "the effect of specific force on the gyros cannot be taken out: the unit has "
-                      "no accelerometers",
-                      "remove this term, or add accelerometers");
+        return imki_correct_refuse(
+            error, IMK_ERROR_CONFLICT, IMK_GYRO, key,
+            "the effect of specific force on the gyros cannot be taken out: the unit has "
+            "no accelerometers",
+            "remove this term, or add accelerometers");
     if (gyro & coupling && !v->solves[IMK_ACCEL])
-        return refuse(error, IMK_ERROR_SINGULAR, IMK_ACCEL, "direction",
-                      "the effect of specific force on the gyros needs accelerometers in three "
-                      "directions",
-                      "remove the g-sensitivity of the gyros");
+        return imki_correct_refuse(
+            error, IMK_ERROR_SINGULAR, IMK_ACCEL, "direction",
+            "the effect of specific force on the gyros needs accelerometers in three "
+            "directions",
+            "remove the g-sensitivity of the gyros");
     if (accel & coupling && v->outputs[IMK_GYRO] == 0)
-        return refuse(error, IMK_ERROR_CONFLICT, IMK_ACCEL, "lever_arm",
-                      "the effect of rotation cannot be taken out: the unit has no gyros",
-                      "remove the lever arms, or add gyros");
+        return imki_correct_refuse(
+            error, IMK_ERROR_CONFLICT, IMK_ACCEL, "lever_arm",
+            "the effect of rotation cannot be taken out: the unit has no gyros",
+            "remove the lever arms, or add gyros");
     if (accel & coupling && !v->solves[IMK_GYRO])
-        return refuse(error, IMK_ERROR_SINGULAR, IMK_GYRO, "direction",
-                      "the effect of rotation on the accelerometers needs gyros in three "
-                      "directions",
-                      "remove the lever arms of the accelerometers");
+        return imki_correct_refuse(
+            error, IMK_ERROR_SINGULAR, IMK_GYRO, "direction",
+            "the effect of rotation on the accelerometers needs gyros in three "
+            "directions",
+            "remove the lever arms of the accelerometers");
     return IMK_OK;
 }
 
@@ -139,7 +131,7 @@ static bool has_curvature(const imk_distortion *distortion, int sensor)
 {
     for (int i = 0; i < distortion->axis_count[sensor]; i++) {
         const imk_axis_response *axis = &distortion->axis[sensor][i];
-        if (axis->k2 != 0.0 || axis->koq != 0.0 || axis->k3 != 0.0 || axis->has_cross_products)
+        if (axis->powers > 1 || axis->power[0][0] != 0.0 || axis->has_cross_products)
             return true;
     }
     return false;
@@ -156,7 +148,7 @@ static bool is_one_way(const imk_distortion *distortion)
     for (int sensor = 0; sensor < 2; sensor++) {
         is_simple = is_simple && !has_curvature(distortion, sensor);
         for (int i = 0; i < distortion->axis_count[sensor]; i++)
-            is_simple = is_simple && distortion->axis[sensor][i].half_asymmetry == 0.0 &&
+            is_simple = is_simple && !distortion->axis[sensor][i].has_nonlinearity &&
                         distortion->axis[sensor][i].scale_order == 0;
     }
     return is_simple;
@@ -200,9 +192,10 @@ static imk_status find_limits(imki_inversion *v, const imk_triad *triad, int sen
         return IMK_OK;
     }
     if (!(stated > 0.0) && needs_limit(v->distortion, sensor))
-        return refuse(error, IMK_ERROR_KEY_MISSING, sensor, "range", "",
-                      "add the range: the model has terms that are not linear, and how far they "
-                      "are to be taken out must be known");
+        return imki_correct_refuse(
+            error, IMK_ERROR_KEY_MISSING, sensor, "range", "",
+            "add the range: the model has terms that are not linear, and how far they "
+            "are to be taken out must be known");
     const double limit = stated > 0.0 ? stated : nominal_limit[sensor];
     for (int i = 0; i < triad->axis_count; i++) {
         const double *e = triad->direction[i];
@@ -216,25 +209,28 @@ static imk_status find_limits(imki_inversion *v, const imk_triad *triad, int sen
 /* ---- monotonic responses --------------------------------------------------------------------- */
 
 /* The term that pulls the slope down most at the turning point. */
-static const char *worst_term(const imk_axis_response *axis, double u)
+static const char *worst_term(imk_axis_response *axis, int sensor, double u)
 {
-    const double size = fabs(u), side = u < 0.0 ? -1.0 : 1.0;
-    const double slopes[4] = {2.0 * axis->k2 * u, 2.0 * axis->koq * size, 3.0 * axis->k3 * u * u,
-                              side * axis->half_asymmetry};
-    static const char *const keys[4] = {"nonlinearity.k2", "nonlinearity.koq", "nonlinearity.k3",
-                                        "nonlinearity.asymmetry"};
-    int worst = 0;
-    for (int k = 1; k < 4; k++)
-        if (slopes[k] < slopes[worst])
-            worst = k;
-    return slopes[worst] < 0.0 ? keys[worst] : "scale_factor.temperature";
+    int worst = IMK_MODEL_SCALE_TEMPERATURE;
+    double least = 0.0;
+    for (size_t k = 0; k < imki_input_power_count; k++) {
+        const imki_power *power = &imki_input_powers[k];
+        const double slope =
+            imki_power_slope(power, *imki_axis_power(axis, power), u, u < 0.0 ? -1.0 : 1.0);
+        if (slope < least) {
+            least = slope;
+            worst = power->term;
+        }
+    }
+    return imki_term_field(worst)->path[sensor];
 }
 
-static imk_status check_monotonic(const imki_inversion *v, imk_error *error)
+static imk_status check_monotonic(const imki_inversion *v, imk_distortion *distortion,
+                                  imk_error *error)
 {
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < v->distortion->axis_count[sensor]; i++) {
-            const imk_axis_response *axis = &v->distortion->axis[sensor][i];
+            imk_axis_response *axis = &distortion->axis[sensor][i];
             const double *along = v->along[sensor][i], limit = v->input_limit[sensor][i];
             const double linear = imki_dot3(axis->other, along);
             const double u = imki_turning_point(axis, linear, limit);
@@ -242,11 +238,12 @@ static imk_status check_monotonic(const imki_inversion *v, imk_error *error)
                 continue;
             char found[IMK_DECIMAL_SIZE + 96] = "the reading turns back at an input of ";
             imk_decimal_significant(u, 6, found + strlen(found));
-            imki_append_text(found, sizeof found,
-                             sensor == IMK_GYRO ? " rad/s, which is within the range"
-                                                : " m/s^2, which is within the range");
-            refuse(error, IMK_ERROR_NO_CONVERGENCE, sensor, worst_term(axis, u), found,
-                   "state a smaller range, or correct without this term");
+            const char *unit = sensor == IMK_GYRO ? " rad/s, which is within the range"
+                                                  : " m/s^2, which is within the range";
+            imki_append_text(found, sizeof found, unit);
+            imki_correct_refuse(error, IMK_ERROR_NO_CONVERGENCE, sensor,
+                                worst_term(axis, sensor, u), found,
+                                "state a smaller range, or correct without this term");
             if (error) {
                 error->index = i;
                 error->value = u;
@@ -310,13 +307,13 @@ imk_status imk_correction_start(imk_correction *correction, const imk_model *mod
     if (status == IMK_OK && model->accel.present)
         status = find_limits(&v, &model->accel, IMK_ACCEL, with->force_limit, error);
     if (status == IMK_OK)
-        status = check_monotonic(&v, error);
+        status = check_monotonic(&v, &made.distortion, error);
     if (status != IMK_OK)
         return status;
     if (imki_invert_middle(&v, &singular) != IMK_OK)
-        return refuse(error, IMK_ERROR_SINGULAR, singular, "misalignment",
-                      "the axes with their errors do not span space",
-                      "check direction, misalignment, cross_axis and scale_factor");
+        return imki_correct_refuse(error, IMK_ERROR_SINGULAR, singular, "misalignment",
+                                   "the axes with their errors do not span space",
+                                   "check direction, misalignment, cross_axis and scale_factor");
     status = imki_count_iterations(&v, with->tolerance, &made.iterations, &made.contraction, left);
     if (status != IMK_OK)
         return imki_refuse_inversion(&v, &made.distortion, error);

@@ -53,7 +53,7 @@ static bool same_bytes(const void *a, const void *b, size_t from, size_t to)
 bool imki_axes_alike(const imk_axis_response *a, const imk_axis_response *b)
 {
     return same_bytes(a, b, 0, offsetof(imk_axis_response, bias)) &&
-           same_bytes(a, b, offsetof(imk_axis_response, k2), sizeof *a);
+           same_bytes(a, b, offsetof(imk_axis_response, power), sizeof *a);
 }
 
 enum { ARRAYS = 13 };

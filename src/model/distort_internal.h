@@ -8,6 +8,8 @@
 #ifndef IMUKI_DISTORT_INTERNAL_H
 #define IMUKI_DISTORT_INTERNAL_H
 
+#include "model_schema_internal.h"
+
 #include "imukit/distort.h"
 
 enum {
@@ -19,7 +21,13 @@ enum {
 };
 
 /* Which of the weights of an axis are not zero; index of imk_axis_response.used. */
-enum { IMKI_INPUT, IMKI_OTHER, IMKI_PENDULOUS, IMKI_OUTPUT };
+enum { IMKI_ROW_INPUT, IMKI_ROW_OTHER, IMKI_ROW_PENDULOUS, IMKI_ROW_OUTPUT };
+
+/* The number of an axis that a power has: its coefficient times the power's weight. */
+static inline double *imki_axis_power(imk_axis_response *axis, const imki_power *power)
+{
+    return &axis->power[power->q][power->p - (power->q ? 0 : 2)];
+}
 
 /* One component of the motion, or a chunk of zeros that stays where it is. */
 typedef struct imki_component {

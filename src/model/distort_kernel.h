@@ -4,7 +4,7 @@
  * whatever these are:
  *
  *     b = bias + rate dT/dt + warm_up e + width/2 p + d(c1 + d(c2 + …)),   d = clip(T) - reference
- *     n = |u|(Koq u + asymmetry/2) + u^2 (K2 + K3 u)
+ *     n = |u|(asymmetry/2 + Koq u + …) + u^2 (K2 + K3 u + …)
  *     y = ((b + other) + s u + n + c) + u
  *
  * The largest term comes last, so that the small ones lose nothing among themselves. */
@@ -23,6 +23,7 @@ typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8), may_alia
 typedef long long bits __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
 
 #define VECTOR(array, v) (((const lanes *)(array))[v])
+#define SIZE(x) ((lanes)((bits)(x) & (0x7FFFFFFFFFFFFFFF - (bits){0})))
 
 /* All six products of three components: x (a x + d y + f z) + y (b y + e z) + z c z. */
 KERNEL void add_all_products(lanes sum[VECTORS], const double *weight, const imki_exposure *x,
@@ -159,15 +160,28 @@ KERNEL void add_temperature(lanes bias[VECTORS], lanes scale[VECTORS],
     }
 }
 
+/* What is above the third power, which few models have. */
+KERNEL void add_higher_powers(lanes sum[VECTORS], const lanes u[VECTORS],
+                              const imk_axis_response *axis)
+{
+    lanes of_size[VECTORS] = {{0.0}}, of_square[VECTORS] = {{0.0}};
+    for (int k = axis->powers - 1; k >= 2; k--)
+        for (int v = 0; v < VECTORS; v++) {
+            of_size[v] = (of_size[v] + axis->power[1][k]) * u[v];
+            of_square[v] = (of_square[v] + axis->power[0][k]) * u[v];
+        }
+    for (int v = 0; v < VECTORS; v++)
+        sum[v] += (SIZE(u[v]) * of_size[v] + (u[v] * u[v]) * of_square[v]) * u[v];
+}
+
 KERNEL void add_nonlinearity(lanes sum[VECTORS], const lanes u[VECTORS],
                              const imk_axis_response *axis)
 {
-    const bits no_sign = 0x7FFFFFFFFFFFFFFF - (bits){0};
-    for (int v = 0; v < VECTORS; v++) {
-        const lanes size = (lanes)((bits)u[v] & no_sign);
-        sum[v] += size * (axis->koq * u[v] + axis->half_asymmetry) +
-                  (u[v] * u[v]) * (axis->k2 + axis->k3 * u[v]);
-    }
+    const double *a = axis->power[1], *b = axis->power[0];
+    for (int v = 0; v < VECTORS; v++)
+        sum[v] += SIZE(u[v]) * (a[1] * u[v] + a[0]) + (u[v] * u[v]) * (b[0] + b[1] * u[v]);
+    if (__builtin_expect(axis->powers > 2, 0))
+        add_higher_powers(sum, u, axis);
 }
 
 KERNEL void add_cross_products(lanes sum[VECTORS], const lanes u[VECTORS],
@@ -175,8 +189,8 @@ KERNEL void add_cross_products(lanes sum[VECTORS], const lanes u[VECTORS],
                                lanes (*place)[VECTORS])
 {
     lanes p[VECTORS] = {{0.0}}, o[VECTORS] = {{0.0}};
-    add_row(p, axis->used[IMKI_PENDULOUS], axis->pendulous, x, i, place);
-    add_row(o, axis->used[IMKI_OUTPUT], axis->output, x, i, place);
+    add_row(p, axis->used[IMKI_ROW_PENDULOUS], axis->pendulous, x, i, place);
+    add_row(o, axis->used[IMKI_ROW_OUTPUT], axis->output, x, i, place);
     for (int v = 0; v < VECTORS; v++)
         sum[v] += u[v] * (axis->kip * p[v] + axis->kio * o[v]) + axis->kpo * (p[v] * o[v]);
 }
@@ -200,8 +214,8 @@ KERNEL void distort_step(const imk_axis_response *axis, const imki_exposure *x, 
     lanes force[3][VECTORS], (*place)[VECTORS] = axis->has_place && x->turns ? force : NULL;
     if (place)
         force_at(force, axis->place, x, i);
-    add_row(u, axis->used[IMKI_INPUT], axis->input, x, i, place);
-    add_row(y, axis->used[IMKI_OTHER], axis->other, x, i, place);
+    add_row(u, axis->used[IMKI_ROW_INPUT], axis->input, x, i, place);
+    add_row(y, axis->used[IMKI_ROW_OTHER], axis->other, x, i, place);
     for (int v = 0; v < VECTORS; v++)
         y[v] += scale[v] * u[v];
     if (axis->has_nonlinearity)
@@ -236,15 +250,15 @@ KERNEL size_t still_terms(const imk_axis_response *axis, const imki_exposure *x,
                           lanes term[STILL_TERMS], lanes *input)
 {
     lanes u[VECTORS] = {{0.0}}, force[3][VECTORS], (*place)[VECTORS] = NULL;
-    uint32_t other = axis->used[IMKI_OTHER] & x->available;
+    uint32_t other = axis->used[IMKI_ROW_OTHER] & x->available;
     const uint32_t products = IMKI_PRODUCT_FEATURES;
     size_t count = 0;
     if (axis->has_place && x->turns) {
         place = force;
-        other = axis->used[IMKI_OTHER] & IMKI_OWN_FEATURES;
+        other = axis->used[IMKI_ROW_OTHER] & IMKI_OWN_FEATURES;
         force_at(force, axis->place, x, 0);
     }
-    add_row(u, axis->used[IMKI_INPUT], axis->input, x, 0, place);
+    add_row(u, axis->used[IMKI_ROW_INPUT], axis->input, x, 0, place);
     for (uint32_t rest = other & ~products; rest; rest &= rest - 1)
         still_row(&term[count++], rest & -rest, axis, x, place);
     if ((other & products) == products)
@@ -311,15 +325,15 @@ KERNEL void shared_terms(const imk_axis_response *axis, const imki_exposure *x, 
 {
     lanes force[3][VECTORS], (*place)[VECTORS] = axis->has_place && x->turns ? force : NULL;
     const uint32_t products = IMKI_PRODUCT_FEATURES;
-    uint32_t other = axis->used[IMKI_OTHER] & x->available;
+    uint32_t other = axis->used[IMKI_ROW_OTHER] & x->available;
     step->before = step->after = 0;
     if (place) {
-        other = axis->used[IMKI_OTHER] & IMKI_OWN_FEATURES;
+        other = axis->used[IMKI_ROW_OTHER] & IMKI_OWN_FEATURES;
         force_at(force, axis->place, x, i);
     }
     for (int v = 0; v < VECTORS; v++)
         step->input[v] = (lanes){0.0};
-    add_row(step->input, axis->used[IMKI_INPUT], axis->input, x, i, place);
+    add_row(step->input, axis->used[IMKI_ROW_INPUT], axis->input, x, i, place);
     for (uint32_t rest = other & ~products; rest; rest &= rest - 1)
         add_row(next_term(step, &step->before), rest & -rest, axis->other, x, i, place);
     if ((other & products) == products)

@@ -106,18 +106,25 @@ static uint16_t not_zero(const double weight[IMK_FEATURES])
     return (uint16_t)used;
 }
 
+static void compile_powers(imk_axis_response *axis, const imk_triad *triad, int i)
+{
+    for (size_t k = 0; k < imki_input_power_count; k++) {
+        const imki_power *power = &imki_input_powers[k];
+        double *number = imki_axis_power(axis, power);
+        const int place = (int)(number - axis->power[power->q]);
+        *number = power->weight * imki_term_values(power->term, triad)[i];
+        if (*number != 0.0 && axis->powers <= place)
+            axis->powers = place + 1;
+    }
+    axis->has_nonlinearity = axis->powers > 0;
+}
+
 static void compile_numbers(imk_axis_response *axis, const imk_triad *triad, int i)
 {
-    const imk_nonlinearity *n = &triad->nonlinearity;
     /* Adding +0 turns -0 into +0: no sum that begins so is ever -0. */
     axis->bias = triad->bias.fixed.value[i] + 0.0;
     axis->scale = triad->scale_factor.fixed.value[i];
-    axis->k2 = n->k2.value[i];
-    axis->koq = n->koq.value[i];
-    axis->k3 = n->k3.value[i];
-    axis->half_asymmetry = 0.5 * n->asymmetry.value[i];
-    axis->has_nonlinearity =
-        axis->k2 != 0.0 || axis->koq != 0.0 || axis->k3 != 0.0 || axis->half_asymmetry != 0.0;
+    compile_powers(axis, triad, i);
     axis->bias_order =
         compile_polynomial(&triad->bias.temperature, i, axis->bias_temperature,
                            &axis->bias_reference, &axis->bias_minimum, &axis->bias_maximum);
@@ -157,10 +164,10 @@ imk_status imk_distortion_start(imk_distortion *distortion, const imk_model *mod
                 axis->bias += constants->bias[sensor][i];
                 axis->scale += constants->scale_factor[sensor][i];
             }
-            axis->used[IMKI_INPUT] = not_zero(axis->input);
-            axis->used[IMKI_OTHER] = not_zero(axis->other);
-            axis->used[IMKI_PENDULOUS] = not_zero(axis->pendulous);
-            axis->used[IMKI_OUTPUT] = not_zero(axis->output);
+            axis->used[IMKI_ROW_INPUT] = not_zero(axis->input);
+            axis->used[IMKI_ROW_OTHER] = not_zero(axis->other);
+            axis->used[IMKI_ROW_PENDULOUS] = not_zero(axis->pendulous);
+            axis->used[IMKI_ROW_OUTPUT] = not_zero(axis->output);
         }
     }
     return status;

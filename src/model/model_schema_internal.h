@@ -170,10 +170,31 @@ static inline int imki_power_of(int term)
     return power;
 }
 
+/* p + q of it */
+static inline int imki_power_degree(int term)
+{
+    const imki_power *power = &imki_input_powers[imki_power_of(term)];
+    return power->p + power->q;
+}
+
 static inline double imki_power_at(const imki_power *power, double u)
 {
     double x = power->q ? power->weight * fabs(u) : power->weight;
     for (int k = 0; k < power->p; k++)
+        x *= u;
+    return x;
+}
+
+/* Derivative by u of a power with this coefficient (and weight); `side` is the sign of u. */
+static inline double imki_power_slope(const imki_power *power, double coefficient, double u,
+                                      double side)
+{
+    double x = (power->p + power->q) * coefficient;
+    if (power->p == 0)
+        return side * x;
+    if (power->q)
+        x *= fabs(u);
+    for (int k = 1; k < power->p; k++)
         x *= u;
     return x;
 }

@@ -376,7 +376,7 @@ static void units_alike(void **state)
                     assert_memory_equal(together[k], alone, sizeof alone);
                 }
                 imk_axis_response *const other = &unit[1].axis[sensor][i];
-                double *const changed[] = {&other->input[0], &other->other[11], &other->k2,
+                double *const changed[] = {&other->input[0], &other->other[11], &other->power[0][0],
                                            &other->warm_up, &other->place[2]};
                 *changed[trial % 5] += 1.0;
                 assert_false(imki_axes_alike(axes[0], axes[1]));

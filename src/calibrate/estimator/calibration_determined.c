@@ -4,6 +4,8 @@
  * response known to no better than a third of itself is not known. */
 #include "estimator_internal.h"
 
+#include "model/model_schema_internal.h"
+
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -42,8 +44,9 @@ static void schur_complement(const imki_normal *n, double *schur)
 
 static bool is_ratio(imk_model_parameter p)
 {
-    return p.term == IMK_MODEL_SCALE_FACTOR || p.term == IMK_MODEL_MISALIGNMENT ||
-           p.term == IMK_MODEL_CROSS_AXIS || p.term == IMK_MODEL_ASYMMETRY;
+    const imki_form form = imki_terms[p.term].form;
+    return form == IMKI_FORM_INPUT || form == IMKI_FORM_SEEN ||
+           (form == IMKI_FORM_POWER && imki_power_degree(p.term) == 1);
 }
 
 imk_status imki_check_determined(imki_estimator *e, double *weakest, imk_error *error)

@@ -7,12 +7,14 @@
  * arms are in v = f + alpha x r + w x (w x r) itself, which is linear in them but enters products.
  * By the input:
  *
- *     dy/dv = e (1 + s + 2 K2 u + 2 Koq |u| + 3 K3 u^2 + asymmetry sign(u)/2) + A + X + cross
+ *     dy/dv = e (1 + s + n'(u)) + A + X + cross,   n(u) = K2 u^2 + Koq u|u| + …
  *     dv/dw = (w.r) I + w r^T - 2 r w^T,   dv/dalpha = -[r x],   dv/dr = [alpha x] + w w^T - w^2 I
  */
 #include "axis_reading_internal.h"
 #include "base/algebra/vector_internal.h"
 #include "calibration_internal.h"
+
+#include "model/model_schema_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -106,11 +108,31 @@ static void add_cross_products(const imk_triad *triad, int axis, imki_axis_readi
                          (k[0] * u + k[2] * along_o) * p[j] + (k[1] * u + k[2] * along_p) * o[j];
 }
 
+/* n(u), and n'(u) to the slope. */
+static void add_powers(const imk_triad *triad, int axis, imki_axis_reading *y, double *slope)
+{
+    const double u = y->along, side = (u > 0.0) - (u < 0.0);
+    double of_square = 0.0, of_size = 0.0;
+    for (size_t k = 0; k < imki_input_power_count; k++) {
+        const imki_power *power = &imki_input_powers[k];
+        const double c = power->weight * imki_term_values(power->term, triad)[axis];
+        const int n = power->p + power->q;
+        if (c == 0.0)
+            continue;
+        double x = power->q && n > 1 ? c * copysign(1.0, u) : c;
+        for (int m = 2; m < n; m++)
+            x *= u;
+        *(n > 1 ? &of_square : &of_size) += x;
+        *slope += imki_power_slope(power, c, u, side);
+    }
+    y->value += of_square * u * u;
+    y->value += of_size * fabs(u);
+}
+
 imki_axis_reading imki_axis_read(const imk_model *model, int sensor, int axis,
                                  const imki_input *input)
 {
     const imk_triad *triad = imk_model_triad(model, sensor);
-    const imk_nonlinearity *n = &triad->nonlinearity;
     const double *e = triad->direction[axis];
     imki_axis_reading y;
     y.triad = triad;
@@ -121,17 +143,14 @@ imki_axis_reading imki_axis_read(const imk_model *model, int sensor, int axis,
     else
         force_at(triad->lever_arm.value[axis], input, y.seen);
     const double u = imki_dot3(e, y.seen);
-    const double k2 = n->k2.value[axis], koq = n->koq.value[axis], k3 = n->k3.value[axis],
-                 half_asymmetry = 0.5 * n->asymmetry.value[axis];
     const double scale = triad->scale_factor.fixed.value[axis] +
                          polynomial_at(&triad->scale_factor.temperature, axis, y.scale_warmth);
     y.along = u;
     y.value = triad->bias.fixed.value[axis] +
               polynomial_at(&triad->bias.temperature, axis, y.bias_warmth) +
-              triad->bias.temperature_rate.value[axis] * input->temperature_rate + u + scale * u +
-              (k2 + koq * copysign(1.0, u) + k3 * u) * u * u + half_asymmetry * fabs(u);
-    const double slope = 1.0 + scale + 2.0 * k2 * u + 2.0 * koq * fabs(u) + 3.0 * k3 * u * u +
-                         half_asymmetry * ((u > 0.0) - (u < 0.0));
+              triad->bias.temperature_rate.value[axis] * input->temperature_rate + u + scale * u;
+    double slope = 1.0 + scale;
+    add_powers(triad, axis, &y, &slope);
     for (int j = 0; j < 3; j++) {
         const double row = triad->misalignment.value[axis][j] + triad->cross_axis.value[axis][j];
         y.value += row * y.seen[j];
@@ -182,40 +201,32 @@ double imki_axis_regressor(const imki_axis_reading *y, const imki_input *input,
     static const int first[6] = {0, 1, 2, 0, 1, 2}, second[6] = {0, 1, 2, 1, 2, 0};
     const double u = y->along, *f = input->force;
     const int k = parameter.element;
-    switch ((imk_model_term)parameter.term) {
-    case IMK_MODEL_BIAS:
+    switch (imki_terms[parameter.term].form) {
+    case IMKI_FORM_ONE:
         return 1.0;
-    case IMK_MODEL_SCALE_FACTOR:
+    case IMKI_FORM_INPUT:
         return u;
-    case IMK_MODEL_MISALIGNMENT:
-    case IMK_MODEL_CROSS_AXIS:
+    case IMKI_FORM_SEEN:
         return y->seen[k];
-    case IMK_MODEL_K2:
-        return u * u;
-    case IMK_MODEL_KOQ:
-        return u * fabs(u);
-    case IMK_MODEL_K3:
-        return u * u * u;
-    case IMK_MODEL_ASYMMETRY:
-        return 0.5 * fabs(u);
-    case IMK_MODEL_CROSS_PRODUCTS:
+    case IMKI_FORM_POWER:
+        return imki_power_at(&imki_input_powers[imki_power_of(parameter.term)], u);
+    case IMKI_FORM_CROSS:
         return by_cross_product(y, parameter.axis, k);
-    case IMK_MODEL_G_SENSITIVITY:
+    case IMKI_FORM_FORCE:
         return f[k];
-    case IMK_MODEL_G2_SENSITIVITY:
+    case IMKI_FORM_PRODUCT:
         return f[first[k]] * f[second[k]];
-    case IMK_MODEL_LEVER_ARM:
+    case IMKI_FORM_PLACE:
         return by_lever_arm(y, input, k);
-    case IMK_MODEL_BIAS_TEMPERATURE:
+    case IMKI_FORM_WARMTH:
         return power(y->bias_warmth, k + 1);
-    case IMK_MODEL_SCALE_TEMPERATURE:
+    case IMKI_FORM_WARM_INPUT:
         return u * power(y->scale_warmth, k + 1);
-    case IMK_MODEL_TEMPERATURE_RATE:
+    case IMKI_FORM_WARMING:
         return input->temperature_rate;
-    case IMK_MODEL_TERMS:
-        break;
+    default:
+        return 0.0;
     }
-    return 0.0;
 }
 
 void imki_calibration_regressors(const imk_model *model, size_t count,

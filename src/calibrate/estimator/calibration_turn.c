@@ -29,6 +29,8 @@
 #include "calibration_internal.h"
 
 #include "base/algebra/vector_internal.h"
+#include "model/model_schema_internal.h"
+
 #include "imukit/attitude.h"
 #include "imukit/elementary.h"
 
@@ -41,8 +43,8 @@ enum {
     SUM_FORCE = 4,
     SUM_LINEAR = 7,  /* as many until here */
     SUM_PRODUCT = 7, /* fx^2, fy^2, fz^2, fx fy, fy fz, fz fx */
-    SUM_AXIS = 13,   /* u^2, u |u|, u^3, |u|/2 of each axis */
-    SUM_OF_AXIS = 4,
+    SUM_AXIS = 13,   /* powers of u of each axis: imki_input_powers */
+    SUM_OF_AXIS = IMKI_POWERS_MAX,
     SUMS = SUM_AXIS + SUM_OF_AXIS * IMK_AXES_MAX
 };
 
@@ -112,9 +114,9 @@ static inverse invert(const turn_model *turn, int sensor, const imk_triad *triad
 
 static bool axis_is_nonlinear(const imk_triad *gyro, int i)
 {
-    const imk_nonlinearity *n = &gyro->nonlinearity;
-    bool any = n->k2.value[i] != 0.0 || n->koq.value[i] != 0.0 || n->k3.value[i] != 0.0 ||
-               n->asymmetry.value[i] != 0.0;
+    bool any = false;
+    for (size_t k = 0; k < imki_input_power_count; k++)
+        any = any || imki_term_values(imki_input_powers[k].term, gyro)[i] != 0.0;
     for (int j = 0; j < 6; j++)
         any = any || gyro->g2_sensitivity.value[i][j] != 0.0;
     return any;
@@ -149,11 +151,10 @@ static void prepare(turn_model *turn, const imk_calibration *calibration, const 
         const imk_model_parameter parameter = calibration->parameter[p];
         if (parameter.sensor != IMK_GYRO)
             continue;
-        turn->forces = turn->forces || parameter.term == IMK_MODEL_G_SENSITIVITY ||
-                       parameter.term == IMK_MODEL_G2_SENSITIVITY;
-        turn->force_products = turn->force_products || parameter.term == IMK_MODEL_G2_SENSITIVITY;
-        turn->nonlinear = turn->nonlinear ||
-                          (parameter.term >= IMK_MODEL_K2 && parameter.term <= IMK_MODEL_ASYMMETRY);
+        const imki_form form = imki_terms[parameter.term].form;
+        turn->forces = turn->forces || form == IMKI_FORM_FORCE || form == IMKI_FORM_PRODUCT;
+        turn->force_products = turn->force_products || form == IMKI_FORM_PRODUCT;
+        turn->nonlinear = turn->nonlinear || form == IMKI_FORM_POWER;
     }
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++) {
@@ -198,15 +199,6 @@ static void products_of(const double f[3], double q[6])
     q[5] = f[2] * f[0];
 }
 
-/* u^2, u |u|, u^3, |u|/2 */
-static void powers_of(double u, double power[SUM_OF_AXIS])
-{
-    power[0] = u * u;
-    power[1] = u * fabs(u);
-    power[2] = u * u * u;
-    power[3] = 0.5 * fabs(u);
-}
-
 /* Take the terms that are not linear out of the rates, and say what they were. The fixed point
  * contracts by the slope of the terms, some 1e-3 at most: six rounds reach rounding. */
 static void solve_nonlinear(const turn_model *turn, const double f[3], double w[3],
@@ -219,11 +211,12 @@ static void solve_nonlinear(const turn_model *turn, const double f[3], double w[
         double sum[3] = {0.0, 0.0, 0.0};
         for (int i = 0; i < turn->gyro.count; i++) {
             const double *e = gyro->direction[i];
-            powers_of(imki_dot3(e, w), power[i]);
-            double n = gyro->nonlinearity.k2.value[i] * power[i][0] +
-                       gyro->nonlinearity.koq.value[i] * power[i][1] +
-                       gyro->nonlinearity.k3.value[i] * power[i][2] +
-                       gyro->nonlinearity.asymmetry.value[i] * power[i][3];
+            const double u = imki_dot3(e, w);
+            double n = 0.0;
+            for (size_t k = 0; k < imki_input_power_count; k++) {
+                power[i][k] = imki_power_at(&imki_input_powers[k], u);
+                n += imki_term_values(imki_input_powers[k].term, gyro)[i] * power[i][k];
+            }
             for (int j = 0; j < 6; j++)
                 n += gyro->g2_sensitivity.value[i][j] * product[j];
             for (int j = 0; j < 3; j++)
@@ -279,9 +272,9 @@ static void gather_others(double sum[SUMS][9], const double h[9], const double p
         for (int m = 0; m < 9; m++)
             sum[SUM_PRODUCT + j][m] += h[m] * product[j];
     for (int i = 0; i < axes; i++)
-        for (int j = 0; j < SUM_OF_AXIS; j++)
+        for (size_t j = 0; j < imki_input_power_count; j++)
             for (int m = 0; m < 9; m++)
-                sum[SUM_AXIS + SUM_OF_AXIS * i + j][m] += h[m] * power[i][j];
+                sum[SUM_AXIS + SUM_OF_AXIS * i + (int)j][m] += h[m] * power[i][j];
 }
 
 /* The loop over the samples: c from the body axes at the end to those at the start. */
@@ -351,37 +344,33 @@ static bool basis(const turn_model *turn, imk_model_parameter parameter, const d
     const int axis = parameter.axis, element = parameter.element;
     double factor = 1.0;
     int which = SUM_ONE;
-    switch (parameter.term) {
-    case IMK_MODEL_BIAS:
+    switch (imki_terms[parameter.term].form) {
+    case IMKI_FORM_ONE:
         break;
-    case IMK_MODEL_BIAS_TEMPERATURE:
+    case IMKI_FORM_WARMTH:
         factor = temperature_power(&gyro->bias.temperature, turn->temperature, element + 1);
         break;
-    case IMK_MODEL_TEMPERATURE_RATE:
+    case IMKI_FORM_WARMING:
         factor = turn->temperature_rate;
         break;
-    case IMK_MODEL_SCALE_TEMPERATURE:
+    case IMKI_FORM_WARM_INPUT:
         factor = temperature_power(&gyro->scale_factor.temperature, turn->temperature, element + 1);
         which = -1;
         break;
-    case IMK_MODEL_SCALE_FACTOR:
+    case IMKI_FORM_INPUT:
         which = -1;
         break;
-    case IMK_MODEL_MISALIGNMENT:
-    case IMK_MODEL_CROSS_AXIS:
+    case IMKI_FORM_SEEN:
         which = SUM_RATE + element;
         break;
-    case IMK_MODEL_G_SENSITIVITY:
+    case IMKI_FORM_FORCE:
         which = SUM_FORCE + element;
         break;
-    case IMK_MODEL_G2_SENSITIVITY:
+    case IMKI_FORM_PRODUCT:
         which = SUM_PRODUCT + element;
         break;
-    case IMK_MODEL_K2:
-    case IMK_MODEL_KOQ:
-    case IMK_MODEL_K3:
-    case IMK_MODEL_ASYMMETRY:
-        which = SUM_AXIS + SUM_OF_AXIS * axis + (parameter.term - IMK_MODEL_K2);
+    case IMKI_FORM_POWER:
+        which = SUM_AXIS + SUM_OF_AXIS * axis + imki_power_of(parameter.term);
         break;
     default:
         return false;

@@ -4,6 +4,7 @@
 
 #include "imukit/attitude.h"
 #include "imukit/elementary.h"
+#include "model/model_schema_internal.h"
 
 #include <math.h>
 
@@ -217,22 +218,23 @@ static imk_status free_term(imk_calibration *c, int sensor, int term, int elemen
     return status;
 }
 
-typedef struct term {
-    bool wanted;
-    int sensor, term, elements;
-} term;
+typedef struct term_list {
+    imk_calibration *calibration;
+    imk_status status; /* of the first that did not fit */
+} term_list;
 
-static imk_status free_terms(imk_calibration *c, size_t count, const term *terms, imk_error *error)
+static void add(term_list *list, bool wanted, int sensor, int term, int elements)
 {
-    for (size_t i = 0; i < count; i++)
-        if (terms[i].wanted) {
-            const imk_status status =
-                free_term(c, terms[i].sensor, terms[i].term, terms[i].elements);
-            if (status != IMK_OK)
-                return imk_error_set(error, status, "parameters", NULL,
-                                     "at most 64 free parameters");
-        }
-    return IMK_OK;
+    if (wanted && list->status == IMK_OK)
+        list->status = free_term(list->calibration, sensor, term, elements);
+}
+
+/* Powers with q that procedures look for. */
+static void add_powers(term_list *list, bool wanted, int sensor, int q)
+{
+    for (size_t k = 0; k < imki_input_power_count; k++)
+        add(list, wanted && imki_input_powers[k].sought && imki_input_powers[k].q == q, sensor,
+            imki_input_powers[k].term, 1);
 }
 
 imk_status imki_plan_free(const imk_plan_settings *s, imk_calibration *c, imk_error *error)
@@ -251,28 +253,25 @@ imk_status imki_plan_free(const imk_plan_settings *s, imk_calibration *c, imk_er
     const bool thermal = p == IMK_PROCEDURE_THERMAL;
     if (p != IMK_PROCEDURE_MULTIPOSITION)
         c->frame = IMK_FRAME_REFERENCE;
-    const term terms[] = {
-        {accel, IMK_ACCEL, IMK_MODEL_BIAS, 1},
-        {linear_accel, IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 1},
-        {linear_accel, IMK_ACCEL, IMK_MODEL_MISALIGNMENT, 3},
-        {gyro, IMK_GYRO, IMK_MODEL_BIAS, 1},
-        {turned, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, 1},
-        {turned, IMK_GYRO, IMK_MODEL_MISALIGNMENT, 3},
-        {forces, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, 3},
-        {curved_accel, IMK_ACCEL, IMK_MODEL_K2, 1},
-        {curved_accel, IMK_ACCEL, IMK_MODEL_K3, 1},
-        {curved_accel && centrifuge, IMK_ACCEL, IMK_MODEL_KOQ, 1},
-        {curved_accel && centrifuge, IMK_ACCEL, IMK_MODEL_ASYMMETRY, 1},
-        {s->cross_products && linear_accel, IMK_ACCEL, IMK_MODEL_CROSS_PRODUCTS, 3},
-        {curved_gyro, IMK_GYRO, IMK_MODEL_K2, 1},
-        {curved_gyro, IMK_GYRO, IMK_MODEL_K3, 1},
-        {curved_gyro, IMK_GYRO, IMK_MODEL_KOQ, 1},
-        {curved_gyro, IMK_GYRO, IMK_MODEL_ASYMMETRY, 1},
-        {p == IMK_PROCEDURE_SPIN, IMK_ACCEL, IMK_MODEL_LEVER_ARM, 3},
-        {thermal, IMK_ACCEL, IMK_MODEL_BIAS_TEMPERATURE, s->temperature_order},
-        {thermal, IMK_GYRO, IMK_MODEL_BIAS_TEMPERATURE, s->temperature_order},
-    };
     if (c->parameter_count > 0)
         return IMK_OK;
-    return free_terms(c, sizeof terms / sizeof *terms, terms, error);
+    term_list list = {c, IMK_OK};
+    add(&list, accel, IMK_ACCEL, IMK_MODEL_BIAS, 1);
+    add(&list, linear_accel, IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 1);
+    add(&list, linear_accel, IMK_ACCEL, IMK_MODEL_MISALIGNMENT, 3);
+    add(&list, gyro, IMK_GYRO, IMK_MODEL_BIAS, 1);
+    add(&list, turned, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, 1);
+    add(&list, turned, IMK_GYRO, IMK_MODEL_MISALIGNMENT, 3);
+    add(&list, forces, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, 3);
+    add_powers(&list, curved_accel, IMK_ACCEL, 0);
+    add_powers(&list, curved_accel && centrifuge, IMK_ACCEL, 1);
+    add(&list, s->cross_products && linear_accel, IMK_ACCEL, IMK_MODEL_CROSS_PRODUCTS, 3);
+    add_powers(&list, curved_gyro, IMK_GYRO, 0);
+    add_powers(&list, curved_gyro, IMK_GYRO, 1);
+    add(&list, p == IMK_PROCEDURE_SPIN, IMK_ACCEL, IMK_MODEL_LEVER_ARM, 3);
+    add(&list, thermal, IMK_ACCEL, IMK_MODEL_BIAS_TEMPERATURE, s->temperature_order);
+    add(&list, thermal, IMK_GYRO, IMK_MODEL_BIAS_TEMPERATURE, s->temperature_order);
+    return list.status == IMK_OK ? IMK_OK
+                                 : imk_error_set(error, list.status, "parameters", NULL,
+                                                 "at most 64 free parameters");
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What each procedure with a reference would make free, in the order in which it is tried. */
+#include "model/model_schema_internal.h"
 #include "reference_internal.h"
 
 static void want(imki_candidate *list, size_t *count, int sensor, int term, bool promised)
@@ -7,12 +8,21 @@ static void want(imki_candidate *list, size_t *count, int sensor, int term, bool
     list[(*count)++] = (imki_candidate){(uint8_t)sensor, (uint8_t)term, promised};
 }
 
+/* Powers with q that are looked for: of the first degree alone, or of higher ones. */
+static void want_powers(imki_candidate *list, size_t *count, int sensor, int q, bool first)
+{
+    for (size_t k = 0; k < imki_input_power_count; k++) {
+        const imki_power *power = &imki_input_powers[k];
+        if (power->sought && power->q == q && (power->p + q == 1) == first)
+            want(list, count, sensor, power->term, true);
+    }
+}
+
 static void want_nonlinear(imki_candidate *list, size_t *count, int sensor)
 {
-    want(list, count, sensor, IMK_MODEL_ASYMMETRY, true);
-    want(list, count, sensor, IMK_MODEL_K2, true);
-    want(list, count, sensor, IMK_MODEL_K3, true);
-    want(list, count, sensor, IMK_MODEL_KOQ, true);
+    want_powers(list, count, sensor, 1, true);
+    want_powers(list, count, sensor, 0, false);
+    want_powers(list, count, sensor, 1, false);
 }
 
 static void want_linear(imki_candidate *list, size_t *count, int sensor, bool promised)
@@ -66,8 +76,7 @@ size_t imki_reference_candidates(const imki_procedure_call *call,
         want(list, &count, IMK_ACCEL, IMK_MODEL_BIAS, true);
         want_linear(list, &count, IMK_ACCEL, true);
         if (s->nonlinear && tumble) {
-            want(list, &count, IMK_ACCEL, IMK_MODEL_K2, true);
-            want(list, &count, IMK_ACCEL, IMK_MODEL_K3, true);
+            want_powers(list, &count, IMK_ACCEL, 0, false);
         } else if (s->nonlinear) {
             want_nonlinear(list, &count, IMK_ACCEL);
         }

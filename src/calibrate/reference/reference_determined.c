@@ -14,6 +14,7 @@
  * others and the bias, as in three attitudes only, the others would take it in. */
 #include "base/algebra/vector_internal.h"
 #include "calibrate/estimator/calibration_internal.h"
+#include "model/model_schema_internal.h"
 #include "reference_internal.h"
 
 #include "imukit/linear_algebra.h"
@@ -43,35 +44,31 @@ typedef struct design {
 static void scale_of(const design *d, int term, double *effect, double *limit)
 {
     const double u = d->input, f = fmax(d->force, 1.0);
+    const imki_form form = imki_terms[term].form;
+    int n = form == IMKI_FORM_CROSS ? 2 : 1; /* of u^n */
     *effect = 1.0;
     *limit = HUGE_VAL;
-    switch (term) {
-    case IMK_MODEL_SCALE_FACTOR:
-    case IMK_MODEL_MISALIGNMENT:
-    case IMK_MODEL_CROSS_AXIS:
-    case IMK_MODEL_ASYMMETRY:
-        *effect = u;
-        *limit = 0.01;
+    switch (form) {
+    case IMKI_FORM_POWER:
+        n = imki_power_degree(term);
+        /* fall through */
+    case IMKI_FORM_INPUT:
+    case IMKI_FORM_SEEN:
+    case IMKI_FORM_CROSS:
+        for (int k = 1; k < n; k++)
+            *effect *= u;
+        *limit = 0.01 / *effect;
+        *effect *= u;
         break;
-    case IMK_MODEL_K2:
-    case IMK_MODEL_KOQ:
-    case IMK_MODEL_CROSS_PRODUCTS:
-        *effect = u * u;
-        *limit = 0.01 / u;
-        break;
-    case IMK_MODEL_K3:
-        *effect = u * u * u;
-        *limit = 0.01 / (u * u);
-        break;
-    case IMK_MODEL_G_SENSITIVITY:
+    case IMKI_FORM_FORCE:
         *effect = f;
         *limit = 0.01;
         break;
-    case IMK_MODEL_G2_SENSITIVITY:
+    case IMKI_FORM_PRODUCT:
         *effect = f * f;
         *limit = 0.01;
         break;
-    case IMK_MODEL_LEVER_ARM:
+    case IMKI_FORM_PLACE:
         *effect = d->spin;
         *limit = 0.05;
         break;
