@@ -81,8 +81,26 @@ static inline double imki_wander_next(imki_wander *wander)
     .outputs = outputs, .signal_count = IMKI_LENGTH(signals), .signals = signals,                  \
     .view_count = IMKI_LENGTH(views), .views = views
 
-/* Settings as they must be: cookie, a finite rate > 0, a known level, a step >= 0. */
-imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *error);
+/* The functions of an instrument that differ in the type of the design only: they call
+ * imk_NAME_default(), imki_NAME_reduce() and what imk_NAME_instrument lists. */
+#define IMKI_DESIGN_FUNCTIONS(name)                                                                \
+    static void set_default(void *design)                                                          \
+    {                                                                                              \
+        *(imk_##name *)design = imk_##name##_default();                                            \
+    }                                                                                              \
+    static void reduce(const void *design, imk_triad *triad)                                       \
+    {                                                                                              \
+        imki_##name##_reduce(design, triad);                                                       \
+    }                                                                                              \
+    imk_status imk_##name##_validate(const imk_##name *design, imk_error *error)                   \
+    {                                                                                              \
+        return imk_design_check(&imk_##name##_instrument, design, error);                          \
+    }                                                                                              \
+    void imk_##name##_reduce(const imk_##name *design, imk_model *model)                           \
+    {                                                                                              \
+        imk_instrument_reduce(&imk_##name##_instrument, design, model);                            \
+    }                                                                                              \
+    extern const imk_instrument imk_##name##_instrument
 
 /* Divide a sample of 1/rate into equal internal steps no longer than settings.step, or than
  * `longest` when that is 0.
@@ -113,10 +131,6 @@ static inline double imki_model_damping(double damping)
 {
     return damping > 50.0 ? 0.0 : damping < 0.05 ? 0.05 : damping;
 }
-
-/* A model of one axis of this kind of sensor along x, nothing else in it, which says where it comes
- * from. @return the triad to fill */
-imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrument);
 
 /* An error u that acts like an input, such as a force on the mass, with its slope per kelvin: what
  * the triad states of scale factor, K2, K3 and their temperature slopes, about no input, becomes

@@ -674,17 +674,17 @@ static void test_refused_steps(void **unused)
     void *state = aligned_alloc(64, (gyro->state_size + 63) / 64 * 64);
     assert_non_null(state);
     settings.step = 1.0 / (15.0 * 14e3);
-    CHECK_STATUS(gyro->init(&design, &settings, state, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &design, &settings, state, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     settings.step = 1.0 / (200.0 * 14e3);
-    CHECK_STATUS(gyro->init(&design, &settings, state, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &design, &settings, state, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     settings.step = 0.0;
     settings.rate = 200.0 * 14e3;
-    CHECK_STATUS(gyro->init(&design, &settings, state, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &design, &settings, state, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "rate");
     settings.rate = 100.0;
-    CHECK_OK(gyro->init(&design, &settings, state, &error));
+    CHECK_OK(imk_instrument_init(gyro, &design, &settings, state, &error));
     CHECK_RELATIVE(gyro->step_length(&design, &settings), 1.0 / (16.0 * 14e3), 1e-12);
     free(state);
 }

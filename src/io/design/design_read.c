@@ -290,7 +290,7 @@ imk_status imki_design_read_fields(const imk_document *document, const imk_instr
     imk_status status = read_group(&r, 0, "");
     if (status != IMK_OK)
         return status;
-    status = instrument->validate(design, error);
+    status = imk_design_check(instrument, design, error);
     if (status != IMK_OK) {
         place_error(document, error);
         imk_design_error_in_units(instrument, design, error);

@@ -202,14 +202,10 @@ static imk_status check_loop(const imk_fibre_optic *design, imk_error *error)
     return IMK_OK;
 }
 
-imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_fibre_optic_default()");
-    imk_status status = imk_design_check(&imk_fibre_optic_instrument, design, error);
-    if (status == IMK_OK)
-        status = check_optics(design, error);
+    const imk_fibre_optic *design = given;
+    imk_status status = check_optics(design, error);
     if (status == IMK_OK)
         status = check_converter(design, error);
     if (status == IMK_OK)
@@ -218,33 +214,6 @@ imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_error *er
 }
 
 /* ---- the instrument -------------------------------------------------------------------------- */
-
-static void set_default(void *design)
-{
-    *(imk_fibre_optic *)design = imk_fibre_optic_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_fibre_optic_validate(design, error);
-}
-
-void imk_fibre_optic_reduce(const imk_fibre_optic *design, imk_model *model)
-{
-    imki_fibre_optic_reduce(design, imki_reduction_begin(model, &imk_fibre_optic_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_fibre_optic_validate(design, error);
-    return status == IMK_OK ? imki_fibre_optic_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_fibre_optic_reduce(design, model);
-}
 
 static const imk_signal outputs[] = {
     {"angular_rate", "rad/s", "deg/s", "measured rate about the coil's axis"},
@@ -306,6 +275,8 @@ static const imk_view views[] = {
      .input = 10.0 * IMKI_PI / 180.0},
 };
 
+IMKI_DESIGN_FUNCTIONS(fibre_optic);
+
 const imk_instrument imk_fibre_optic_instrument = {
     .name = "fibre_optic",
     .title = "fibre-optic gyro",
@@ -313,12 +284,13 @@ const imk_instrument imk_fibre_optic_instrument = {
     .source = "coil, loss, noise, bias and scale factor of Moeller, Burns, Frigo, J. Lightwave "
               "Technol. 7 (1989) 262, doi:10.1109/50.17765; closed loop and electronics chosen",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_fibre_optic),
     .state_size = sizeof(imki_fibre_optic_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_fibre_optic_init,
     .step = imki_fibre_optic_step,
     .observe = imki_fibre_optic_observe,
     .reduce = reduce,

@@ -320,18 +320,15 @@ imk_status imki_fibre_optic_init(const void *design, const imk_physics_settings 
     const imk_fibre_optic *d = design;
     size_t count;
     double step;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
     const double longest = imki_fibre_optic_step_length(d, settings);
-    status = imki_divide_sample(settings, longest, longest * (1.0 + 1e-9),
-                                "at most the transit time: the light is modulated and read once a "
-                                "transit (slow level: the sample)",
-                                &count, &step, error);
+    imk_status status =
+        imki_divide_sample(settings, longest, longest * (1.0 + 1e-9),
+                           "at most the transit time: the light is modulated and read once a "
+                           "transit (slow level: the sample)",
+                           &count, &step, error);
     if (status != IMK_OK)
         return status;
     gyro *g = state;
-    memset(g, 0, sizeof *g);
     g->design = *d;
     g->open = d->loop == IMK_FIBRE_OPTIC_OPEN;
     g->slow = settings->level == IMK_LEVEL_SLOW;

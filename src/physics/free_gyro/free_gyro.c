@@ -39,11 +39,6 @@ imk_free_gyro imk_free_gyro_default(void)
     };
 }
 
-static void set_default(void *design)
-{
-    *(imk_free_gyro *)design = imk_free_gyro_default();
-}
-
 #define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
     {                                                                                              \
         path, IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, member), unit, minimum, maximum, open,    \
@@ -182,14 +177,10 @@ static imk_status check_bodies(const imk_free_gyro *design, imk_error *error)
     return status == IMK_OK ? check_inertia(design->outer_inertia, outer, error) : status;
 }
 
-imk_status imk_free_gyro_validate(const imk_free_gyro *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_free_gyro_default()");
-    imk_status status = imk_design_check(&imk_free_gyro_instrument, design, error);
-    if (status == IMK_OK)
-        status = check_bodies(design, error);
+    const imk_free_gyro *design = given;
+    imk_status status = check_bodies(design, error);
     if (status != IMK_OK)
         return status;
     const double swing = fabs(design->start_inner) + design->start_nutation;
@@ -213,11 +204,6 @@ imk_status imk_free_gyro_validate(const imk_free_gyro *design, imk_error *error)
             error, "unbalance.z", weight, most,
             "a weight times its arm that the wheel can carry: below H^2/4(A + Ao + B)");
     return IMK_OK;
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_free_gyro_validate(design, error);
 }
 
 /* ---- start ----------------------------------------------------------------------------------- */
@@ -293,17 +279,13 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
     imki_free_gyro_state *state = memory;
     size_t steps = 0;
     double step = 0.0;
-    imk_status status = imk_free_gyro_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
-    if (status == IMK_OK)
-        status = imki_divide_sample(settings, step_within(design, settings->level, false),
-                                    step_within(design, settings->level, true),
-                                    settings->level == IMK_LEVEL_FULL
-                                        ? "at least 6 steps to a cycle of the nutation, and 5 to "
-                                          "its decay by friction"
-                                        : "at most 0.1 s: the case turns between",
-                                    &steps, &step, error);
+    imk_status status = imki_divide_sample(
+        settings, step_within(design, settings->level, false),
+        step_within(design, settings->level, true),
+        settings->level == IMK_LEVEL_FULL ? "at least 6 steps to a cycle of the nutation, and 5 to "
+                                            "its decay by friction"
+                                          : "at most 0.1 s: the case turns between",
+        &steps, &step, error);
     if (status != IMK_OK)
         return status;
     *state = (imki_free_gyro_state){
@@ -384,15 +366,7 @@ static void observe(const void *memory, double *values)
     values[STOP] = state->on_stop ? 1.0 : 0.0;
 }
 
-void imk_free_gyro_reduce(const imk_free_gyro *design, imk_model *model)
-{
-    imki_free_gyro_reduce(design, imki_reduction_begin(model, &imk_free_gyro_instrument));
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_free_gyro_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(free_gyro);
 
 const imk_instrument imk_free_gyro_instrument = {
     .name = "free_gyro",
@@ -401,11 +375,12 @@ const imk_instrument imk_free_gyro_instrument = {
     .source = "wheel speed and travel of an electric attitude gyro (training notes, "
               "flyingpilots.com p=264); inertias, friction and torques chosen: free_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_free_gyro),
     .state_size = sizeof(imki_free_gyro_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
+    .check = check,
     .init = init,
     .step = step,
     .observe = observe,

@@ -64,11 +64,6 @@ imk_mems_accelerometer imk_mems_accelerometer_sigma_delta(void)
     return design;
 }
 
-static void set_default(void *design)
-{
-    *(imk_mems_accelerometer *)design = imk_mems_accelerometer_default();
-}
-
 /* ---- table ----------------------------------------------------------------------------------- */
 
 #define NUMBER(path, member, unit, minimum, maximum, help)                                         \
@@ -280,14 +275,10 @@ static imk_status check_sigma_delta(const imk_mems_accelerometer *d, imk_error *
     return IMK_OK;
 }
 
-imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (d->cookie != DESIGN_COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_mems_accelerometer_default()");
-    imk_status status = imk_design_check(&imk_mems_accelerometer_instrument, d, error);
-    if (status == IMK_OK)
-        status = check_rest(d, error);
+    const imk_mems_accelerometer *d = given;
+    imk_status status = check_rest(d, error);
     if (status == IMK_OK)
         status = check_force(d, error);
     if (status == IMK_OK && d->loop == IMK_MEMS_ANALOG)
@@ -299,28 +290,7 @@ imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer *d, imk_
 
 /* ---- the instrument -------------------------------------------------------------------------- */
 
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_mems_accelerometer_validate(design, error);
-}
-
-void imk_mems_accelerometer_reduce(const imk_mems_accelerometer *design, imk_model *model)
-{
-    imki_mems_accelerometer_reduce(design,
-                                   imki_reduction_begin(model, &imk_mems_accelerometer_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_mems_accelerometer_validate(design, error);
-    return status == IMK_OK ? imki_mems_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_mems_accelerometer_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(mems_accelerometer);
 
 const imk_instrument imk_mems_accelerometer_instrument = {
     .name = "mems_accelerometer",
@@ -328,12 +298,13 @@ const imk_instrument imk_mems_accelerometer_instrument = {
     .technology = "MEMS",
     .source = "Safran Colibrys MS1000 datasheet, MS1005 (2016); mass, plates and voltages chosen",
     .sensor = IMK_ACCEL,
+    .cookie = DESIGN_COOKIE,
     .design_size = sizeof(imk_mems_accelerometer),
     .state_size = sizeof(imki_mems_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_mems_init,
     .step = imki_mems_step,
     .observe = imki_mems_observe,
     .reduce = reduce,

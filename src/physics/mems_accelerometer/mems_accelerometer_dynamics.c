@@ -327,14 +327,10 @@ imk_status imki_mems_init(const void *design, const imk_physics_settings *settin
                           imk_error *error)
 {
     mems_state *m = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(m, 0, sizeof *m);
     m->design = *(const imk_mems_accelerometer *)design;
     m->slow = settings->level == IMK_LEVEL_SLOW;
     m->sample = 1.0 / settings->rate;
-    status = divide(m, settings, error);
+    imk_status status = divide(m, settings, error);
     if (status != IMK_OK)
         return status;
     m->point = imki_mems_operating_point(&m->design);

@@ -92,15 +92,9 @@ static const imk_design_field fields[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static imk_status validate(const void *design, imk_error *error)
+static imk_status check(const void *design, imk_error *error)
 {
     const design_type *d = design;
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "pendulous_servo", NULL,
-                             "a design made by imk_pendulous_servo_default()");
-    const imk_status status = imk_design_check(&imk_pendulous_servo_instrument, d, error);
-    if (status != IMK_OK)
-        return status;
     const double weakest = 1.0 + d->torquer_error - 6.0 * d->torquer_repeatability;
     if (!(weakest > 0.0))
         return imki_conflict(error, "torquer.repeatability", d->torquer_repeatability,
@@ -125,34 +119,6 @@ static imk_status validate(const void *design, imk_error *error)
                              "less than damping x stiffness / inertia: the loop would not be "
                              "stable");
     return IMK_OK;
-}
-
-imk_status imk_pendulous_servo_validate(const imk_pendulous_servo *design, imk_error *error)
-{
-    return validate(design, error);
-}
-
-static void set_default(void *design)
-{
-    *(design_type *)design = imk_pendulous_servo_default();
-}
-
-void imk_pendulous_servo_reduce(const imk_pendulous_servo *design, imk_model *model)
-{
-    imki_pendulous_servo_reduce(design,
-                                imki_reduction_begin(model, &imk_pendulous_servo_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_pendulous_servo_validate(design, error);
-    return status == IMK_OK ? imki_servo_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_pendulous_servo_reduce(design, model);
 }
 
 static const imk_signal outputs[] = {
@@ -185,18 +151,21 @@ static const imk_view views[] = {
      .input = IMK_STANDARD_GRAVITY},
 };
 
+IMKI_DESIGN_FUNCTIONS(pendulous_servo);
+
 const imk_instrument imk_pendulous_servo_instrument = {
     .name = "pendulous_servo",
     .title = "pendulous servo accelerometer",
     .technology = "servo",
     .source = "datasheet Honeywell QA-3000; pendulum and loop chosen",
     .sensor = IMK_ACCEL,
+    .cookie = COOKIE,
     .design_size = sizeof(design_type),
     .state_size = sizeof(imki_servo),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_servo_init,
     .step = imki_servo_step,
     .observe = imki_servo_observe,
     .reduce = reduce,

@@ -61,16 +61,12 @@ imk_status imki_servo_init(const void *design, const imk_physics_settings *setti
                            imk_error *error)
 {
     servo *s = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
     const design_type *d = design;
-    memset(s, 0, sizeof *s);
     s->slow = settings->level == IMK_LEVEL_SLOW;
     const double longest = imki_servo_step_length(d, settings);
-    status = imki_divide_sample(settings, longest, s->slow ? longest * 1.000001 : 4.0 * longest,
-                                "at least 8 steps to a cycle of the captured pendulum", &s->steps,
-                                &s->h, error);
+    imk_status status = imki_divide_sample(
+        settings, longest, s->slow ? longest * 1.000001 : 4.0 * longest,
+        "at least 8 steps to a cycle of the captured pendulum", &s->steps, &s->h, error);
     if (status != IMK_OK)
         return status;
     s->d = *d;

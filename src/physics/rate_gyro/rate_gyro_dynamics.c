@@ -59,13 +59,9 @@ imk_status imki_rate_gyro_init(const void *design, const imk_physics_settings *s
 {
     const imk_rate_gyro *d = design;
     imki_rate_gyro_state *s = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(s, 0, sizeof *s);
     const bool slow = settings->level == IMK_LEVEL_SLOW;
     const double sample = 1.0 / settings->rate;
-    status =
+    imk_status status =
         imki_divide_sample(settings, slow ? sample : cycle(d) / steps_per_cycle,
                            slow ? (double)INFINITY : cycle(d) / fewest_steps,
                            "at least 8 steps to a cycle of the gimbal", &s->count, &s->step, error);

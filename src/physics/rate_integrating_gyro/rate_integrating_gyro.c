@@ -75,15 +75,10 @@ static const imk_design_field fields[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-imk_status imk_rate_integrating_gyro_validate(const imk_rate_integrating_gyro *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
+    const imk_rate_integrating_gyro *d = given;
     double k1, k2;
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "rate_integrating_gyro", NULL,
-                             "a design made by imk_rate_integrating_gyro_default()");
-    const imk_status status = imk_design_check(&imk_rate_integrating_gyro_instrument, d, error);
-    if (status != IMK_OK)
-        return status;
     if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
         return imki_conflict(error, "float.output_inertia", d->output_inertia,
                              d->input_inertia + d->spin_inertia,
@@ -133,34 +128,7 @@ static const imk_view views[] = {
      .input = 10.0 * IMKI_PI / 180.0},
 };
 
-static void set_default(void *design)
-{
-    *(imk_rate_integrating_gyro *)design = imk_rate_integrating_gyro_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_rate_integrating_gyro_validate(design, error);
-}
-
-void imk_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *design, imk_model *model)
-{
-    imki_rate_integrating_gyro_reduce(
-        design, imki_reduction_begin(model, &imk_rate_integrating_gyro_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_rate_integrating_gyro_validate(design, error);
-    return status == IMK_OK ? imki_rate_integrating_gyro_init(design, settings, state, error)
-                            : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_rate_integrating_gyro_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(rate_integrating_gyro);
 
 const imk_instrument imk_rate_integrating_gyro_instrument = {
     .name = "rate_integrating_gyro",
@@ -170,12 +138,13 @@ const imk_instrument imk_rate_integrating_gyro_instrument = {
         "drift of the floated gyros in R. A. Harris, Navigation 21 (1974); dimensions chosen, see "
         "rate_integrating_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_rate_integrating_gyro),
     .state_size = sizeof(imki_rate_integrating_gyro_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_rate_integrating_gyro_init,
     .step = imki_rate_integrating_gyro_step,
     .observe = imki_rate_integrating_gyro_observe,
     .reduce = reduce,

@@ -154,11 +154,7 @@ imk_status imki_rate_integrating_gyro_init(const void *design, const imk_physics
 {
     const imk_rate_integrating_gyro *d = design;
     gyro *s = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(s, 0, sizeof *s);
-    status = divide(s, d, settings, error);
+    imk_status status = divide(s, d, settings, error);
     if (status != IMK_OK)
         return status;
     start_constants(s, d, settings);

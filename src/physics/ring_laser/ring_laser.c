@@ -143,14 +143,9 @@ static const imk_view views[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-imk_status imk_ring_laser_validate(const imk_ring_laser *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_ring_laser_default()");
-    const imk_status status = imk_design_check(&imk_ring_laser_instrument, design, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_ring_laser *design = given;
     if (design->dither.rate > 0.0 && !(design->dither.rate > design->lock_in.rate))
         return imki_conflict(error, "dither.rate", design->dither.rate, design->lock_in.rate,
                              "a peak rate above lock_in.rate, or 0 for no dither");
@@ -286,15 +281,12 @@ static void start_kicks(imki_ring_laser *gyro)
         0.25 * ratio * ratio / phase * (imk_ln(4.0 * phase) + euler) / (2.0 * IMKI_PI);
 }
 
-static imk_status start(const imk_ring_laser *design, const imk_physics_settings *settings,
-                        imki_ring_laser *gyro, imk_error *error)
+static imk_status init(const void *given, const imk_physics_settings *settings, void *state,
+                       imk_error *error)
 {
-    imk_status status = imk_ring_laser_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(gyro, 0, sizeof *gyro);
+    const imk_ring_laser *design = given;
+    imki_ring_laser *gyro = state;
+    imk_status status;
     gyro->design = *design;
     gyro->level = settings->level;
     gyro->dt = 1.0 / settings->rate;
@@ -328,12 +320,6 @@ static imk_status start(const imk_ring_laser *design, const imk_physics_settings
     gyro->counts = imki_ring_laser_count(gyro, gyro->beat);
     gyro->latched[0] = gyro->latched[1] = gyro->stripped = gyro->counts;
     return IMK_OK;
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    return start(design, settings, state, error);
 }
 
 /* ---- a sample -------------------------------------------------------------------------------- */
@@ -440,26 +426,7 @@ static void observe(const void *state, double *values)
     values[MODE] = gyro->mode;
 }
 
-static void set_default(void *design)
-{
-    const imk_ring_laser chosen = imk_ring_laser_default();
-    memcpy(design, &chosen, sizeof chosen);
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_ring_laser_validate(design, error);
-}
-
-void imk_ring_laser_reduce(const imk_ring_laser *design, imk_model *model)
-{
-    imki_ring_laser_reduce(design, imki_reduction_begin(model, &imk_ring_laser_instrument));
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_ring_laser_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(ring_laser);
 
 const imk_instrument imk_ring_laser_instrument = {
     .name = "ring_laser",
@@ -469,11 +436,12 @@ const imk_instrument imk_ring_laser_instrument = {
         "Honeywell GG1320AN data sheet: bias stability 0.0035 deg/h, angle random walk 0.0035 "
         "deg/sqrt(h), scale factor 5 ppm; the rest chosen (ring_laser.h)",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_ring_laser),
     .state_size = sizeof(imki_ring_laser),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
+    .check = check,
     .init = init,
     .step = step,
     .observe = observe,

@@ -165,14 +165,9 @@ static double smallest_pattern(const imk_shell_gyro *design)
     return 10.0 * (sqrt(thermal) / omega + measured);
 }
 
-imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != IMKI_SHELL_COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_shell_gyro_default()");
-    const imk_status status = imk_design_check(&imk_shell_gyro_instrument, design, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_shell_gyro *design = given;
     const double damping = 2.0 / imk_shell_gyro_decay_time(design);
     if (design->resonator.shape == IMK_SHELL_HEMISPHERE && design->resonator.mode_number != 2)
         return imki_conflict(error, "resonator.mode_number", design->resonator.mode_number, 2.0,
@@ -202,26 +197,6 @@ imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *erro
 }
 
 /* ---- interface ------------------------------------------------------------------------------- */
-
-static void set_default(void *design)
-{
-    *(imk_shell_gyro *)design = imk_shell_gyro_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_shell_gyro_validate(design, error);
-}
-
-void imk_shell_gyro_reduce(const imk_shell_gyro *design, imk_model *model)
-{
-    imki_shell_gyro_reduce(design, imki_reduction_begin(model, &imk_shell_gyro_instrument));
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_shell_gyro_reduce(design, model);
-}
 
 static const imk_signal outputs[] = {
     {"rate", "rad/s", "deg/s", "measured rate"},
@@ -295,6 +270,8 @@ static const imk_view views[] = {
      .rate = 1000.0},
 };
 
+IMKI_DESIGN_FUNCTIONS(shell_gyro);
+
 const imk_instrument imk_shell_gyro_instrument = {
     .name = "shell_gyro",
     .title = "vibrating shell gyro",
@@ -302,11 +279,12 @@ const imk_instrument imk_shell_gyro_instrument = {
     .source = "Silicon Sensing CRG20 data sheet DCR620000255 (ring, closed loop, 55 Hz, cross axis "
               "2 %); resonator and noise chosen, see shell_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = IMKI_SHELL_COOKIE,
     .design_size = sizeof(imk_shell_gyro),
     .state_size = sizeof(imki_shell_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
+    .check = check,
     .init = imki_shell_init,
     .step = imki_shell_step,
     .observe = imki_shell_observe,
@@ -350,16 +328,11 @@ imk_status imki_shell_init(const void *design_pointer, const imk_physics_setting
     imki_shell_state *state = state_pointer;
     size_t count;
     double step;
-    imk_status status = imk_shell_gyro_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
-    if (status == IMK_OK)
-        status = check_level(design, settings, error);
+    imk_status status = check_level(design, settings, error);
     if (status == IMK_OK)
         status = divide(design, settings, &count, &step, error);
     if (status != IMK_OK)
         return status;
-    memset(state, 0, sizeof *state);
     state->design = *design;
     state->level = settings->level;
     state->sample = 1.0 / settings->rate;

@@ -63,11 +63,6 @@ imk_suspended_rotor imk_suspended_rotor_default(void)
     };
 }
 
-static void set_default(void *design)
-{
-    *(imk_suspended_rotor *)design = imk_suspended_rotor_default();
-}
-
 #define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
     {                                                                                              \
         path, IMK_DESIGN_NUMBER, offsetof(imk_suspended_rotor, member), unit, minimum, maximum,    \
@@ -161,14 +156,9 @@ static const imk_view views[] = {
 /* Heights of the shape's harmonics beyond this part of the radius are not first-order any more. */
 #define LARGEST_HEIGHT 1e-3
 
-imk_status imk_suspended_rotor_validate(const imk_suspended_rotor *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_suspended_rotor_default()");
-    const imk_status status = imk_design_check(&imk_suspended_rotor_instrument, design, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_suspended_rotor *design = given;
     const double most = LARGEST_HEIGHT * 0.5 * design->diameter;
     const struct {
         const char *field;
@@ -184,11 +174,6 @@ imk_status imk_suspended_rotor_validate(const imk_suspended_rotor *design, imk_e
             return imki_conflict(error, heights[i].field, heights[i].value, most,
                                  "at most a thousandth of the ball's radius");
     return IMK_OK;
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_suspended_rotor_validate(design, error);
 }
 
 /* The error of a step goes with the square of the turn of the case within it, times the drift. */
@@ -258,12 +243,9 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
     suspended_rotor_state *state = memory;
     size_t steps = 0;
     double step = 0.0;
-    imk_status status = imk_suspended_rotor_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
-    if (status == IMK_OK)
-        status = imki_divide_sample(settings, LONGEST_STEP, STEP_LIMIT,
-                                    "at most 0.1 s: the case turns between", &steps, &step, error);
+    imk_status status =
+        imki_divide_sample(settings, LONGEST_STEP, STEP_LIMIT,
+                           "at most 0.1 s: the case turns between", &steps, &step, error);
     if (status != IMK_OK)
         return status;
     const bool full = settings->level == IMK_LEVEL_FULL;
@@ -451,16 +433,7 @@ static void observe(const void *memory, double *values)
     values[FALLEN] = state->fallen ? 1.0 : 0.0;
 }
 
-void imk_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_model *model)
-{
-    imki_suspended_rotor_reduce(design,
-                                imki_reduction_begin(model, &imk_suspended_rotor_instrument));
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_suspended_rotor_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(suspended_rotor);
 
 const imk_instrument imk_suspended_rotor_instrument = {
     .name = "suspended_rotor",
@@ -469,11 +442,12 @@ const imk_instrument imk_suspended_rotor_instrument = {
     .source = "Autonetics MICRON (N57A): solid beryllium ball of 10 mm at 2500 rev/s [Lawrence "
               "1998]; shape, torques and readout chosen: suspended_rotor.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_suspended_rotor),
     .state_size = sizeof(suspended_rotor_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
+    .check = check,
     .init = init,
     .step = step,
     .observe = observe,

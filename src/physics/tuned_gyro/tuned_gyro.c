@@ -104,14 +104,9 @@ static const imk_design_field fields[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-imk_status imk_tuned_gyro_validate(const imk_tuned_gyro *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "tuned_gyro", NULL,
-                             "a design made by imk_tuned_gyro_default()");
-    const imk_status status = imk_design_check(&imk_tuned_gyro_instrument, d, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_tuned_gyro *d = given;
     if (!(d->axial_inertia <= 2.0 * d->transverse_inertia))
         return imki_conflict(error, "rotor.axial_inertia", d->axial_inertia,
                              2.0 * d->transverse_inertia,
@@ -184,32 +179,7 @@ static const imk_view views[] = {
      .input = 10.0 * IMKI_PI / 180.0},
 };
 
-static void set_default(void *design)
-{
-    *(imk_tuned_gyro *)design = imk_tuned_gyro_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_tuned_gyro_validate(design, error);
-}
-
-void imk_tuned_gyro_reduce(const imk_tuned_gyro *design, imk_model *model)
-{
-    imki_tuned_gyro_reduce(design, imki_reduction_begin(model, &imk_tuned_gyro_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_tuned_gyro_validate(design, error);
-    return status == IMK_OK ? imki_tuned_gyro_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_tuned_gyro_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(tuned_gyro);
 
 const imk_instrument imk_tuned_gyro_instrument = {
     .name = "tuned_gyro",
@@ -217,12 +187,13 @@ const imk_instrument imk_tuned_gyro_instrument = {
     .technology = "",
     .source = "figures chosen, of the size of small strapdown tuned gyros; see tuned_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_tuned_gyro),
     .state_size = sizeof(imki_tuned_gyro_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_tuned_gyro_init,
     .step = imki_tuned_gyro_step,
     .observe = imki_tuned_gyro_observe,
     .reduce = reduce,

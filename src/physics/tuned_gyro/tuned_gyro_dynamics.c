@@ -80,11 +80,7 @@ imk_status imki_tuned_gyro_init(const void *design, const imk_physics_settings *
 {
     const imk_tuned_gyro *d = design;
     gyro *s = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(s, 0, sizeof *s);
-    status = divide(s, d, settings, error);
+    imk_status status = divide(s, d, settings, error);
     if (status != IMK_OK)
         return status;
     start_constants(s, d, settings);

@@ -44,11 +44,6 @@ imk_tuning_fork imk_tuning_fork_default(void)
         .output = {.bandwidth = 40.0, .range = 150.0 * DEGREE}};
 }
 
-static void set_default(void *design)
-{
-    *(imk_tuning_fork *)design = imk_tuning_fork_default();
-}
-
 /* ---- the table ------------------------------------------------------------------------------- */
 
 #define NUMBER(path, member, unit, low, high, help)                                                \
@@ -201,40 +196,14 @@ static imk_status check_loops(const imk_tuning_fork *design, imk_error *error)
     return IMK_OK;
 }
 
-imk_status imk_tuning_fork_validate(const imk_tuning_fork *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "tuning_fork", NULL,
-                             "a design made by imk_tuning_fork_default()");
-    imk_status status = imk_design_check(&imk_tuning_fork_instrument, design, error);
-    if (status == IMK_OK)
-        status = check_loops(design, error);
+    const imk_tuning_fork *design = given;
+    imk_status status = check_loops(design, error);
     const double temperatures[] = {IMKI_FORK_REFERENCE, IMKI_FORK_COLDEST, IMKI_FORK_HOTTEST};
     for (int i = 0; status == IMK_OK && i < 3; i++)
         status = check_temperature(design, temperatures[i], error);
     return status;
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_tuning_fork_validate(design, error);
-}
-
-void imk_tuning_fork_reduce(const imk_tuning_fork *design, imk_model *model)
-{
-    imki_tuning_fork_reduce(design, imki_reduction_begin(model, &imk_tuning_fork_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_tuning_fork_validate(design, error);
-    return status == IMK_OK ? imki_fork_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_tuning_fork_reduce(design, model);
 }
 
 /* ---- description ----------------------------------------------------------------------------- */
@@ -309,6 +278,8 @@ static const imk_view views[] = {
      .input = 50.0 * IMKI_PI / 180.0},
 };
 
+IMKI_DESIGN_FUNCTIONS(tuning_fork);
+
 const imk_instrument imk_tuning_fork_instrument = {
     .name = "tuning_fork",
     .title = "tuning fork gyro",
@@ -317,12 +288,13 @@ const imk_instrument imk_tuning_fork_instrument = {
         "ADXRS150 data sheet; J. A. Geen et al., IEEE J. Solid-State Circuits 37 (2002) 1860; "
         "mass, Q, split, quadrature and temperature coefficients chosen",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_tuning_fork),
     .state_size = sizeof(imki_fork_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_fork_init,
     .step = imki_fork_step,
     .observe = imki_fork_observe,
     .reduce = reduce,

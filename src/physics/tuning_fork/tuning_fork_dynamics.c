@@ -356,12 +356,11 @@ imk_status imki_fork_init(const void *place, const imk_physics_settings *setting
     size_t count = 0;
     double step = 0.0;
     int steps = 0;
-    imk_status status = imki_settings_check(settings, error);
-    if (status == IMK_OK && settings->level == IMK_LEVEL_FULL)
+    imk_status status = IMK_OK;
+    if (settings->level == IMK_LEVEL_FULL)
         status = divide(design, settings, &count, &step, &steps, error);
     if (status != IMK_OK)
         return status;
-    memset(state, 0, sizeof *state);
     state->design = *design;
     state->full = settings->level == IMK_LEVEL_FULL;
     state->noise = settings->noise;

@@ -105,14 +105,10 @@ static imk_status check_beam(const design_type *d, imk_error *error)
     return IMK_OK;
 }
 
-imk_status imk_vibrating_beam_validate(const imk_vibrating_beam *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "vibrating_beam", NULL,
-                             "a design made by imk_vibrating_beam_default()");
-    imk_status status = imk_design_check(&imk_vibrating_beam_instrument, d, error);
-    if (status == IMK_OK)
-        status = check_beam(d, error);
+    const imk_vibrating_beam *d = given;
+    imk_status status = check_beam(d, error);
     if (status != IMK_OK)
         return status;
     const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
@@ -128,33 +124,6 @@ imk_status imk_vibrating_beam_validate(const imk_vibrating_beam *d, imk_error *e
 }
 
 /* ---- the instrument -------------------------------------------------------------------------- */
-
-static void set_default(void *design)
-{
-    *(design_type *)design = imk_vibrating_beam_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_vibrating_beam_validate(design, error);
-}
-
-void imk_vibrating_beam_reduce(const imk_vibrating_beam *design, imk_model *model)
-{
-    imki_vibrating_beam_reduce(design, imki_reduction_begin(model, &imk_vibrating_beam_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_vibrating_beam_validate(design, error);
-    return status == IMK_OK ? imki_beams_start(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_vibrating_beam_reduce(design, model);
-}
 
 static void step(void *state, const imk_exposure *exposure, double *outputs)
 {
@@ -217,18 +186,21 @@ static const imk_view views[] = {
      .input = 10.0 * IMK_STANDARD_GRAVITY},
 };
 
+IMKI_DESIGN_FUNCTIONS(vibrating_beam);
+
 const imk_instrument imk_vibrating_beam_instrument = {
     .name = "vibrating_beam",
     .title = "vibrating beam accelerometer",
     .technology = "vibrating beam",
     .source = "40 kHz, 80 Hz/g, 70 g of the RBA-500 family; the mechanics chosen to give them",
     .sensor = IMK_ACCEL,
+    .cookie = COOKIE,
     .design_size = sizeof(design_type),
     .state_size = sizeof(imki_beams),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_beams_start,
     .step = step,
     .observe = imki_beams_observe,
     .reduce = reduce,

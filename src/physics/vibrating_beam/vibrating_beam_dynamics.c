@@ -82,13 +82,9 @@ imk_status imki_beams_start(const void *design, const imk_physics_settings *sett
 {
     const imk_vibrating_beam *d = design;
     imki_beams *s = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(s, 0, sizeof *s);
     s->d = *d;
     s->slow = settings->level == IMK_LEVEL_SLOW;
-    status = divide(s, settings, error);
+    imk_status status = divide(s, settings, error);
     if (status != IMK_OK)
         return status;
     start_suspension(s);
