@@ -5,6 +5,7 @@
 
 #include "fibre_optic_internal.h"
 #include "imukit/elementary.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -55,23 +56,9 @@ imk_fibre_optic imk_fibre_optic_default(void)
 
 /* ---- the design table ------------------------------------------------------------------------ */
 
-#define AT(field) offsetof(imk_fibre_optic, field)
-#define NUMBER(path, field, unit, minimum, maximum, help)                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(field), unit, minimum, maximum, false, NULL, help              \
-    }
-#define ABOVE(path, field, unit, minimum, maximum, help)                                           \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(field), unit, minimum, maximum, true, NULL, help               \
-    }
-#define COUNT(path, field, maximum, help)                                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_COUNT, AT(field), "1", 0, maximum, false, NULL, help                      \
-    }
-
+#define DESIGN imk_fibre_optic
 static const imk_design_field fields[] = {
-    {"loop.mode", IMK_DESIGN_CHOICE, AT(loop), "1", 0, 1, false, "closed|open",
-     "how the phase is read"},
+    CHOICE("loop.mode", loop, "closed|open", "how the phase is read"),
     ABOVE("loop.gain", loop_gain, "1", 0, 2,
           "share of the phase error that each step of the loop takes away"),
     NUMBER("loop.crosstalk", crosstalk, "urad", 0, 1,
@@ -105,15 +92,15 @@ static const imk_design_field fields[] = {
     NUMBER("modulator.gain_error", gain_error, "ppm", -0.1, 0.1, "error of the ramp's phase"),
     NUMBER("modulator.reset_error", reset_error, "ppm", -0.1, 0.1,
            "departure of the ramp's reset from 2 pi"),
-    COUNT("modulator.bits", ramp_bits, 30, "of the ramp's converter, to 2 pi; 0: continuous"),
+    COUNT("modulator.bits", ramp_bits, 0, 30, "of the ramp's converter, to 2 pi; 0: continuous"),
     ABOVE("detector.responsivity", responsivity, "A/W", 0, 10, "current per power"),
     ABOVE("detector.load", load_resistance, "ohm", 0, 1e12, "resistor that the current flows into"),
     NUMBER("detector.converter_range", converter_range, "uW", 0, 10,
            "departure from the operating point that saturates the amplifier; 0: none"),
-    COUNT("detector.converter_bits", converter_bits, 30, "to both sides of it; 0: continuous"),
+    COUNT("detector.converter_bits", converter_bits, 0, 30, "to both sides of it; 0: continuous"),
     NUMBER("detector.demodulation_error", demodulation_error, "%", -0.9, 10,
            "departure of the demodulator's gain"),
-    COUNT("output.bits", output_bits, 30, "counts of the angle to a fringe; 0: not rounded"),
+    COUNT("output.bits", output_bits, 0, 30, "counts of the angle to a fringe; 0: not rounded"),
     NUMBER("phase.fixed", phase_fixed, "urad", -1, 1, "nonreciprocal phase"),
     NUMBER("phase.temperature", phase_temperature, "urad/K", -1e-2, 1e-2,
            "change of that phase with temperature"),

@@ -4,6 +4,7 @@
 #include "free_gyro_internal.h"
 
 #include "base/algebra/vector_internal.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -39,20 +40,16 @@ imk_free_gyro imk_free_gyro_default(void)
     };
 }
 
-#define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, member), unit, minimum, maximum, open,    \
-            NULL, help                                                                             \
-    }
-#define INERTIA(path, member, help) NUMBER(path, member, "kg*m^2", 0.0, 10.0, false, help)
+#define INERTIA(path, member, help) NUMBER(path, member, "kg*m^2", 0.0, 10.0, help)
 
+#define DESIGN imk_free_gyro
 static const imk_design_field fields[] = {
-    NUMBER("spin.rate", spin_rate, "rpm", 1.0, 1e6, false, "nominal speed of the wheel"),
-    NUMBER("spin.error", spin_error, "1", -0.9, 9.0, false, "relative error of that speed"),
-    {"rotor.polar_inertia", IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, rotor_polar), "kg*m^2",
-     1e-12, 10.0, false, NULL, "inertia of the wheel about its axis"},
-    {"rotor.transverse_inertia", IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, rotor_transverse),
-     "kg*m^2", 1e-12, 10.0, false, NULL, "inertia of the wheel across its axis"},
+    NUMBER("spin.rate", spin_rate, "rpm", 1.0, 1e6, "nominal speed of the wheel"),
+    NUMBER("spin.error", spin_error, "1", -0.9, 9.0, "relative error of that speed"),
+    NUMBER("rotor.polar_inertia", rotor_polar, "kg*m^2", 1e-12, 10.0,
+           "inertia of the wheel about its axis"),
+    NUMBER("rotor.transverse_inertia", rotor_transverse, "kg*m^2", 1e-12, 10.0,
+           "inertia of the wheel across its axis"),
     INERTIA("inner_gimbal.inertia_x", inner_inertia[0], "inertia of the inner gimbal about its x"),
     INERTIA("inner_gimbal.inertia_y", inner_inertia[1], "the same about y, its bearing axis"),
     INERTIA("inner_gimbal.inertia_z", inner_inertia[2], "the same about z, the spin axis"),
@@ -61,44 +58,43 @@ static const imk_design_field fields[] = {
     INERTIA("outer_gimbal.inertia_y", outer_inertia[1],
             "the same about y, the inner gimbal's bearing axis"),
     INERTIA("outer_gimbal.inertia_z", outer_inertia[2], "the same about z"),
-    NUMBER("suspended.mass", mass, "kg", 0.0, 1e4, false, "mass of wheel and inner gimbal"),
-    NUMBER("unbalance.x", unbalance[0], "um", -1.0, 1.0, false,
+    NUMBER("suspended.mass", mass, "kg", 0.0, 1e4, "mass of wheel and inner gimbal"),
+    NUMBER("unbalance.x", unbalance[0], "um", -1.0, 1.0,
            "centre of that mass along the inner gimbal's x"),
-    NUMBER("unbalance.y", unbalance[1], "um", -1.0, 1.0, false, "the same along y"),
-    NUMBER("unbalance.z", unbalance[2], "um", -1.0, 1.0, false, "the same along the spin axis"),
-    NUMBER("compliance.x", compliance[0], "nm/N", 0.0, 1e-4, false,
+    NUMBER("unbalance.y", unbalance[1], "um", -1.0, 1.0, "the same along y"),
+    NUMBER("unbalance.z", unbalance[2], "um", -1.0, 1.0, "the same along the spin axis"),
+    NUMBER("compliance.x", compliance[0], "nm/N", 0.0, 1e-4,
            "yielding of the suspension along the inner gimbal's x"),
-    NUMBER("compliance.y", compliance[1], "nm/N", 0.0, 1e-4, false, "the same along y"),
-    NUMBER("compliance.z", compliance[2], "nm/N", 0.0, 1e-4, false, "the same along the spin axis"),
-    NUMBER("friction.viscous", viscous_friction, "N*m*s/rad", 0.0, 1.0, false,
+    NUMBER("compliance.y", compliance[1], "nm/N", 0.0, 1e-4, "the same along y"),
+    NUMBER("compliance.z", compliance[2], "nm/N", 0.0, 1e-4, "the same along the spin axis"),
+    NUMBER("friction.viscous", viscous_friction, "N*m*s/rad", 0.0, 1.0,
            "viscous friction of each gimbal's bearings"),
-    NUMBER("friction.coulomb", coulomb_friction, "N*m", 0.0, 1e-2, false,
+    NUMBER("friction.coulomb", coulomb_friction, "N*m", 0.0, 1e-2,
            "dry friction of each gimbal's bearings"),
-    NUMBER("friction.rate", friction_rate, "deg/s", 1e-9, 1e6, false,
+    NUMBER("friction.rate", friction_rate, "deg/s", 1e-9, 1e6,
            "relative rate over which the dry friction turns over"),
-    NUMBER("gimbal.stop", stop, "deg", 0.0, 89.0 * DEGREE, true,
-           "travel of the inner gimbal either way, at most 89 deg"),
-    NUMBER("torque.inner", torque_inner, "N*m", -1e-2, 1e-2, false,
+    ABOVE("gimbal.stop", stop, "deg", 0.0, 89.0 * DEGREE,
+          "travel of the inner gimbal either way, at most 89 deg"),
+    NUMBER("torque.inner", torque_inner, "N*m", -1e-2, 1e-2,
            "constant error torque about the inner axis"),
-    NUMBER("torque.outer", torque_outer, "N*m", -1e-2, 1e-2, false,
-           "the same about the outer axis"),
-    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1e-4, 1e-4, false,
+    NUMBER("torque.outer", torque_outer, "N*m", -1e-2, 1e-2, "the same about the outer axis"),
+    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1e-4, 1e-4,
            "change of both with temperature, from 20 degC"),
-    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1e-2, false,
+    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1e-2,
            "1 sigma per run of the error torque about each axis"),
-    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1e-2, false,
+    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1e-2,
            "flicker (bias instability B) of those torques"),
-    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1e-2, false,
+    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1e-2,
            "white part of those torques, two-sided density"),
-    NUMBER("pickoff.resolution", pickoff_resolution, "arcsec", 0.0, 1.0, false,
+    NUMBER("pickoff.resolution", pickoff_resolution, "arcsec", 0.0, 1.0,
            "step of the readings, 0 for none"),
-    NUMBER("pickoff.noise", pickoff_noise, "arcsec", 0.0, 1.0, false, "1 sigma of a reading"),
-    NUMBER("pickoff.scale_error", pickoff_scale_error, "ppm", -0.5, 0.5, false,
+    NUMBER("pickoff.noise", pickoff_noise, "arcsec", 0.0, 1.0, "1 sigma of a reading"),
+    NUMBER("pickoff.scale_error", pickoff_scale_error, "ppm", -0.5, 0.5,
            "relative error of the readings"),
-    NUMBER("start.outer", start_outer, "deg", -1e3, 1e3, false, "outer angle at the start"),
-    NUMBER("start.inner", start_inner, "deg", -89.0 * DEGREE, 89.0 * DEGREE, false,
+    NUMBER("start.outer", start_outer, "deg", -1e3, 1e3, "outer angle at the start"),
+    NUMBER("start.inner", start_inner, "deg", -89.0 * DEGREE, 89.0 * DEGREE,
            "inner angle at the start"),
-    NUMBER("start.nutation", start_nutation, "arcsec", 0.0, 89.0 * DEGREE, false,
+    NUMBER("start.nutation", start_nutation, "arcsec", 0.0, 89.0 * DEGREE,
            "amplitude of the nutation at the start, of the inner angle"),
 };
 

@@ -4,6 +4,7 @@
 
 #include "imukit/units.h"
 #include "mems_accelerometer_internal.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -66,22 +67,7 @@ imk_mems_accelerometer imk_mems_accelerometer_sigma_delta(void)
 
 /* ---- table ----------------------------------------------------------------------------------- */
 
-#define NUMBER(path, member, unit, minimum, maximum, help)                                         \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_mems_accelerometer, member), unit, minimum, maximum, \
-            false, NULL, help                                                                      \
-    }
-#define ABOVE(path, member, unit, minimum, maximum, help)                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_mems_accelerometer, member), unit, minimum, maximum, \
-            true, NULL, help                                                                       \
-    }
-#define CHOICE(path, member, choices, help)                                                        \
-    {                                                                                              \
-        path, IMK_DESIGN_CHOICE, offsetof(imk_mems_accelerometer, member), "1", 0, 0, false,       \
-            choices, help                                                                          \
-    }
-
+#define DESIGN imk_mems_accelerometer
 static const imk_design_field fields[] = {
     CHOICE("loop", loop, "open|analog|sigma_delta", "what holds the mass"),
     ABOVE("temperature", temperature, "degC", 100.0, 600.0, "temperature of calibration"),
@@ -90,8 +76,7 @@ static const imk_design_field fields[] = {
           "frequency of the mass on its springs alone"),
     NUMBER("proof_mass.quality", quality, "1", 1e-2, 1e8,
            "quality factor in the middle of the gap"),
-    {"proof_mass.squeeze_film", IMK_DESIGN_SWITCH, offsetof(imk_mems_accelerometer, squeeze_film),
-     "1", 0, 0, false, NULL, "damping grows with the displacement"},
+    SWITCH("proof_mass.squeeze_film", squeeze_film, "damping grows with the displacement"),
     NUMBER("spring.quadratic", spring_quadratic, "1/m", -1e6, 1e6,
            "relative stiffening, even: q of k x (1 + q x + r x^2)"),
     NUMBER("spring.cubic", spring_cubic, "1/m^2", -1e12, 1e12,

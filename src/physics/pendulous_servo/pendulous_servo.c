@@ -3,6 +3,7 @@
 #include "pendulous_servo_internal.h"
 
 #include "imukit/units.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -41,52 +42,44 @@ imk_pendulous_servo imk_pendulous_servo_default(void)
                                  .temperature = 293.15};
 }
 
-#define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_pendulous_servo, member), unit, minimum, maximum,    \
-            open, NULL, help                                                                       \
-    }
-
+#define DESIGN imk_pendulous_servo
 static const imk_design_field fields[] = {
-    NUMBER("pendulum.pendulosity", pendulosity, "kg m", 1e-12, 1.0, false,
+    NUMBER("pendulum.pendulosity", pendulosity, "kg m", 1e-12, 1.0,
            "mass times its distance from the hinge"),
-    NUMBER("pendulum.inertia", inertia, "kg m^2", 0.0, 1.0, true,
-           "moment of inertia about the hinge"),
-    NUMBER("pendulum.damping", damping, "N m s", 0.0, 1.0, false, "torque per angular rate"),
-    NUMBER("pendulum.stop", stop, "rad", 0.0, 0.5, true, "largest angle"),
-    NUMBER("pendulum.misalignment_y", misalignment_y, "mrad", -0.1, 0.1, false,
+    ABOVE("pendulum.inertia", inertia, "kg m^2", 0.0, 1.0, "moment of inertia about the hinge"),
+    NUMBER("pendulum.damping", damping, "N m s", 0.0, 1.0, "torque per angular rate"),
+    ABOVE("pendulum.stop", stop, "rad", 0.0, 0.5, "largest angle"),
+    NUMBER("pendulum.misalignment_y", misalignment_y, "mrad", -0.1, 0.1,
            "input axis towards the output axis y"),
-    NUMBER("pendulum.misalignment_z", misalignment_z, "mrad", -0.1, 0.1, false,
+    NUMBER("pendulum.misalignment_z", misalignment_z, "mrad", -0.1, 0.1,
            "input axis towards the pendulous axis z"),
-    NUMBER("hinge.stiffness", hinge_stiffness, "N m/rad", 0.0, 1e3, false, "torque per angle"),
-    NUMBER("hinge.torque", hinge_torque, "N m", -1.0, 1.0, false, "constant error torque"),
-    NUMBER("hinge.torque_temperature", hinge_torque_temperature, "N m/K", -1.0, 1.0, false,
+    NUMBER("hinge.stiffness", hinge_stiffness, "N m/rad", 0.0, 1e3, "torque per angle"),
+    NUMBER("hinge.torque", hinge_torque, "N m", -1.0, 1.0, "constant error torque"),
+    NUMBER("hinge.torque_temperature", hinge_torque_temperature, "N m/K", -1.0, 1.0,
            "its change with temperature"),
-    NUMBER("hinge.torque_repeatability", hinge_torque_repeatability, "N m", 0.0, 1.0, false,
+    NUMBER("hinge.torque_repeatability", hinge_torque_repeatability, "N m", 0.0, 1.0,
            "1 sigma from run to run"),
-    NUMBER("hinge.torque_instability", hinge_torque_instability, "N m", 0.0, 1.0, false,
+    NUMBER("hinge.torque_instability", hinge_torque_instability, "N m", 0.0, 1.0,
            "flicker B within a run"),
-    NUMBER("controller.proportional", proportional, "N m/rad", 0.0, 1e6, true,
-           "torque per angle of the pickoff"),
-    NUMBER("controller.integral", integral, "N m/(rad s)", 0.0, 1e12, false,
+    ABOVE("controller.proportional", proportional, "N m/rad", 0.0, 1e6,
+          "torque per angle of the pickoff"),
+    NUMBER("controller.integral", integral, "N m/(rad s)", 0.0, 1e12,
            "torque per integral of that angle"),
-    NUMBER("controller.pickoff_noise", pickoff_noise, "rad/sqrt(Hz)", 0.0, 1.0, false,
+    NUMBER("controller.pickoff_noise", pickoff_noise, "rad/sqrt(Hz)", 0.0, 1.0,
            "two-sided density of the pickoff's noise"),
-    NUMBER("torquer.constant", torquer_constant, "N m/A", 0.0, 1e3, true,
-           "nominal torque per current"),
-    NUMBER("torquer.error", torquer_error, "ppm", -0.5, 0.5, false,
-           "relative error of the constant"),
-    NUMBER("torquer.temperature", torquer_temperature, "ppm/K", -0.01, 0.01, false,
+    ABOVE("torquer.constant", torquer_constant, "N m/A", 0.0, 1e3, "nominal torque per current"),
+    NUMBER("torquer.error", torquer_error, "ppm", -0.5, 0.5, "relative error of the constant"),
+    NUMBER("torquer.temperature", torquer_temperature, "ppm/K", -0.01, 0.01,
            "relative change with temperature"),
-    NUMBER("torquer.repeatability", torquer_repeatability, "ppm", 0.0, 0.5, false,
+    NUMBER("torquer.repeatability", torquer_repeatability, "ppm", 0.0, 0.5,
            "1 sigma from run to run, relative"),
-    NUMBER("torquer.quadratic", torquer_quadratic, "1/A", -10.0, 10.0, false,
+    NUMBER("torquer.quadratic", torquer_quadratic, "1/A", -10.0, 10.0,
            "relative change with current"),
-    NUMBER("torquer.largest_current", largest_current, "mA", 0.0, 1e3, true, "limit of the driver"),
-    NUMBER("readout.noise", readout_noise, "A/sqrt(Hz)", 0.0, 1.0, false,
+    ABOVE("torquer.largest_current", largest_current, "mA", 0.0, 1e3, "limit of the driver"),
+    NUMBER("readout.noise", readout_noise, "A/sqrt(Hz)", 0.0, 1.0,
            "two-sided density of the current's noise"),
-    NUMBER("readout.step", readout_step, "A", 0.0, 1.0, false, "resolution of the sampled current"),
-    NUMBER("temperature", temperature, "degC", 1.0, 1000.0, false,
+    NUMBER("readout.step", readout_step, "A", 0.0, 1.0, "resolution of the sampled current"),
+    NUMBER("temperature", temperature, "degC", 1.0, 1000.0,
            "temperature of the gas, and where errors are stated"),
 };
 

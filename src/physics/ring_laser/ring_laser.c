@@ -3,6 +3,8 @@
  * ring_laser_dynamics.c. */
 #include "ring_laser_internal.h"
 
+#include "physics/design_rows_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -29,61 +31,48 @@ imk_ring_laser imk_ring_laser_default(void)
 
 /* ---- tables ---------------------------------------------------------------------------------- */
 
-#define FIELD(name, member, text, low, high, excluded, line)                                       \
-    {                                                                                              \
-        .path = name, .kind = IMK_DESIGN_NUMBER, .offset = offsetof(imk_ring_laser, member),       \
-        .unit = text, .minimum = low, .maximum = high, .open = excluded, .help = line              \
-    }
-#define CHOICE(name, member, words, line)                                                          \
-    {                                                                                              \
-        .path = name, .kind = IMK_DESIGN_CHOICE, .offset = offsetof(imk_ring_laser, member),       \
-        .choices = words, .help = line                                                             \
-    }
-
 /* The limits keep what is computed finite; rates up to 1e4 deg/s, cavities from chips to rooms. */
+#define DESIGN imk_ring_laser
 static const imk_design_field fields[] = {
     CHOICE("cavity.shape", cavity.shape, "triangle|square", "path of the beams"),
-    FIELD("cavity.perimeter", cavity.perimeter, "m", 1e-3, 1e3, false, "length of the path"),
-    FIELD("cavity.wavelength", cavity.wavelength, "nm", 1e-7, 1e-5, false, "of the light"),
-    FIELD("cavity.loss", cavity.loss, "ppm", 0.0, 0.5, true,
+    NUMBER("cavity.perimeter", cavity.perimeter, "m", 1e-3, 1e3, "length of the path"),
+    NUMBER("cavity.wavelength", cavity.wavelength, "nm", 1e-7, 1e-5, "of the light"),
+    ABOVE("cavity.loss", cavity.loss, "ppm", 0.0, 0.5,
           "part of a beam's energy lost in a round trip"),
-    FIELD("cavity.power", cavity.power, "mW", 0.0, 1e6, true, "circulating in each beam"),
-    FIELD("lock_in.rate", lock_in.rate, "deg/h", 0.0, 175.0, false,
-          "without dither, rates below read 0"),
-    FIELD("lock_in.phase", lock_in.phase, "deg", -10.0, 10.0, false,
-          "phase of the backscattered light"),
-    FIELD("dither.frequency", dither.frequency, "Hz", 1.0, 1e5, false, "of the oscillation"),
-    FIELD("dither.rate", dither.rate, "deg/s", 0.0, 175.0, false, "peak rate; 0: no dither"),
-    FIELD("dither.randomness", dither.randomness, "%", 0.0, 0.1, false,
-          "1 sigma of the amplitude from half cycle to half cycle"),
-    FIELD("null_shift.fixed", null_shift.fixed, "deg/h", -1.0, 1.0, false, "bias of the beat"),
-    FIELD("null_shift.repeatability", null_shift.repeatability, "deg/h", 0.0, 1.0, false,
-          "1 sigma from run to run"),
-    FIELD("null_shift.instability", null_shift.instability, "deg/h", 0.0, 1.0, false,
-          "flicker B within a run"),
-    FIELD("null_shift.temperature", null_shift.temperature, "deg/h/K", -0.01, 0.01, false,
-          "change per kelvin"),
-    FIELD("scale_factor.error", scale_factor.error, "ppm", -0.1, 0.1, false,
-          "of the geometry against its nominal value"),
-    FIELD("scale_factor.repeatability", scale_factor.repeatability, "ppm", 0.0, 0.1, false,
-          "1 sigma from run to run"),
-    FIELD("path_length.expansion", path_length.expansion, "ppm/K", -1e-4, 1e-4, false,
-          "relative change of the perimeter with temperature"),
-    FIELD("path_length.stroke", path_length.stroke, "um", 0.0, 1e-2, false,
-          "change of the perimeter that its control can make, end to end"),
-    FIELD("alignment.y", alignment.y, "mrad", -0.1, 0.1, false, "response to rates about y"),
-    FIELD("alignment.z", alignment.z, "mrad", -0.1, 0.1, false, "response to rates about z"),
+    ABOVE("cavity.power", cavity.power, "mW", 0.0, 1e6, "circulating in each beam"),
+    NUMBER("lock_in.rate", lock_in.rate, "deg/h", 0.0, 175.0, "without dither, rates below read 0"),
+    NUMBER("lock_in.phase", lock_in.phase, "deg", -10.0, 10.0, "phase of the backscattered light"),
+    NUMBER("dither.frequency", dither.frequency, "Hz", 1.0, 1e5, "of the oscillation"),
+    NUMBER("dither.rate", dither.rate, "deg/s", 0.0, 175.0, "peak rate; 0: no dither"),
+    NUMBER("dither.randomness", dither.randomness, "%", 0.0, 0.1,
+           "1 sigma of the amplitude from half cycle to half cycle"),
+    NUMBER("null_shift.fixed", null_shift.fixed, "deg/h", -1.0, 1.0, "bias of the beat"),
+    NUMBER("null_shift.repeatability", null_shift.repeatability, "deg/h", 0.0, 1.0,
+           "1 sigma from run to run"),
+    NUMBER("null_shift.instability", null_shift.instability, "deg/h", 0.0, 1.0,
+           "flicker B within a run"),
+    NUMBER("null_shift.temperature", null_shift.temperature, "deg/h/K", -0.01, 0.01,
+           "change per kelvin"),
+    NUMBER("scale_factor.error", scale_factor.error, "ppm", -0.1, 0.1,
+           "of the geometry against its nominal value"),
+    NUMBER("scale_factor.repeatability", scale_factor.repeatability, "ppm", 0.0, 0.1,
+           "1 sigma from run to run"),
+    NUMBER("path_length.expansion", path_length.expansion, "ppm/K", -1e-4, 1e-4,
+           "relative change of the perimeter with temperature"),
+    NUMBER("path_length.stroke", path_length.stroke, "um", 0.0, 1e-2,
+           "change of the perimeter that its control can make, end to end"),
+    NUMBER("alignment.y", alignment.y, "mrad", -0.1, 0.1, "response to rates about y"),
+    NUMBER("alignment.z", alignment.z, "mrad", -0.1, 0.1, "response to rates about z"),
     CHOICE("readout.decoding", readout.decoding, "fringes|halves|quarters", "what makes one count"),
     CHOICE("readout.stripping", readout.stripping, "pickoff|periods",
            "how the dither is taken out of the reading"),
-    FIELD("readout.pickoff_error", readout.pickoff_error, "%", -1.0, 1.0, false,
-          "gain of the dither pickoff less 1"),
-    FIELD("readout.range", readout.range, "deg/s", 0.0, 1e4, true,
-          "larger rates are put out as this"),
-    FIELD("temperature.reference", temperature.reference, "degC", 1.0, 1000.0, false,
-          "where null shift and path length are set"),
-    FIELD("temperature.minimum", temperature.minimum, "degC", 1.0, 1000.0, false, "of operation"),
-    FIELD("temperature.maximum", temperature.maximum, "degC", 1.0, 1000.0, false, "of operation"),
+    NUMBER("readout.pickoff_error", readout.pickoff_error, "%", -1.0, 1.0,
+           "gain of the dither pickoff less 1"),
+    ABOVE("readout.range", readout.range, "deg/s", 0.0, 1e4, "larger rates are put out as this"),
+    NUMBER("temperature.reference", temperature.reference, "degC", 1.0, 1000.0,
+           "where null shift and path length are set"),
+    NUMBER("temperature.minimum", temperature.minimum, "degC", 1.0, 1000.0, "of operation"),
+    NUMBER("temperature.maximum", temperature.maximum, "degC", 1.0, 1000.0, "of operation"),
 };
 
 static const imk_signal outputs[] = {

@@ -4,29 +4,13 @@
  * electronics of shell_gyro_loops.c, averaged dynamics shell_gyro_slow.c, error model
  * shell_gyro_reduce.c. */
 #include "imukit/elementary.h"
+#include "physics/design_rows_internal.h"
 #include "shell_gyro_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-#define AT(member) offsetof(imk_shell_gyro, member)
-#define NUMBER(path, member, unit, low, high, help)                                                \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(member), unit, low, high, false, NULL, help                    \
-    }
-#define ABOVE(path, member, unit, low, high, help)                                                 \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(member), unit, low, high, true, NULL, help                     \
-    }
-#define COUNT(path, member, low, high, help)                                                       \
-    {                                                                                              \
-        path, IMK_DESIGN_COUNT, AT(member), "1", low, high, false, NULL, help                      \
-    }
-#define CHOICE(path, member, choices, help)                                                        \
-    {                                                                                              \
-        path, IMK_DESIGN_CHOICE, AT(member), "1", 0.0, 0.0, false, choices, help                   \
-    }
-
+#define DESIGN imk_shell_gyro
 static const imk_design_field fields[] = {
     CHOICE("mode", mode, "force_to_rebalance|whole_angle|free",
            "what is done with the pattern: held, read as it turns, or left alone"),

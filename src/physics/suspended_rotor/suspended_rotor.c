@@ -12,6 +12,7 @@
  * rotation of both, so nothing but rounding changes |s| = 1. */
 #include "base/algebra/vector_internal.h"
 #include "imukit/elementary.h"
+#include "physics/design_rows_internal.h"
 #include "suspended_rotor_internal.h"
 
 #include <math.h>
@@ -63,54 +64,46 @@ imk_suspended_rotor imk_suspended_rotor_default(void)
     };
 }
 
-#define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_suspended_rotor, member), unit, minimum, maximum,    \
-            open, NULL, help                                                                       \
-    }
-
+#define DESIGN imk_suspended_rotor
 static const imk_design_field fields[] = {
-    NUMBER("spin.rate", spin_rate, "rpm", 0.0, 1e6, true, "speed of the ball"),
-    NUMBER("ball.diameter", diameter, "mm", 0.0, 1.0, true, "diameter of the ball"),
-    NUMBER("ball.hollow", hollow, "mm", 0.0, 1.0, false, "diameter of its hollow, 0 for solid"),
-    NUMBER("ball.density", density, "kg/m^3", 0.0, 1e5, true, "density of its metal"),
-    NUMBER("ball.inertia_difference", inertia_difference, "1", 0.0, 1.0, true,
-           "polar less transverse inertia over transverse, above 0"),
-    NUMBER("ball.unbalance", unbalance, "nm", -1e-3, 1e-3, false,
+    ABOVE("spin.rate", spin_rate, "rpm", 0.0, 1e6, "speed of the ball"),
+    ABOVE("ball.diameter", diameter, "mm", 0.0, 1.0, "diameter of the ball"),
+    NUMBER("ball.hollow", hollow, "mm", 0.0, 1.0, "diameter of its hollow, 0 for solid"),
+    ABOVE("ball.density", density, "kg/m^3", 0.0, 1e5, "density of its metal"),
+    ABOVE("ball.inertia_difference", inertia_difference, "1", 0.0, 1.0,
+          "polar less transverse inertia over transverse, above 0"),
+    NUMBER("ball.unbalance", unbalance, "nm", -1e-3, 1e-3,
            "centre of mass from the centre, along the spin"),
-    NUMBER("ball.oblateness", oblateness, "nm", -1e-3, 1e-3, false,
+    NUMBER("ball.oblateness", oblateness, "nm", -1e-3, 1e-3,
            "height of the second harmonic of the spinning shape"),
-    NUMBER("ball.pear", pear, "nm", -1e-3, 1e-3, false, "height of the third harmonic"),
-    NUMBER("suspension.limit", limit, "g", 0.0, 1e6, true,
-           "specific force the suspension carries along each axis"),
-    NUMBER("suspension.preload_error_x", preload_error[0], "1", -0.9, 9.0, false,
+    NUMBER("ball.pear", pear, "nm", -1e-3, 1e-3, "height of the third harmonic"),
+    ABOVE("suspension.limit", limit, "g", 0.0, 1e6,
+          "specific force the suspension carries along each axis"),
+    NUMBER("suspension.preload_error_x", preload_error[0], "1", -0.9, 9.0,
            "relative error of the preload of the electrodes along x"),
-    NUMBER("suspension.preload_error_y", preload_error[1], "1", -0.9, 9.0, false,
-           "the same along y"),
-    NUMBER("suspension.preload_error_z", preload_error[2], "1", -0.9, 9.0, false,
-           "the same along z"),
-    NUMBER("torque.x", torque[0], "N*m", -1.0, 1.0, false, "constant error torque about case x"),
-    NUMBER("torque.y", torque[1], "N*m", -1.0, 1.0, false, "the same about y"),
-    NUMBER("torque.z", torque[2], "N*m", -1.0, 1.0, false, "the same about z"),
-    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1.0, 1.0, false,
+    NUMBER("suspension.preload_error_y", preload_error[1], "1", -0.9, 9.0, "the same along y"),
+    NUMBER("suspension.preload_error_z", preload_error[2], "1", -0.9, 9.0, "the same along z"),
+    NUMBER("torque.x", torque[0], "N*m", -1.0, 1.0, "constant error torque about case x"),
+    NUMBER("torque.y", torque[1], "N*m", -1.0, 1.0, "the same about y"),
+    NUMBER("torque.z", torque[2], "N*m", -1.0, 1.0, "the same about z"),
+    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1.0, 1.0,
            "change of each component with temperature, from 20 degC"),
-    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1.0, false,
+    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1.0,
            "1 sigma per run of each component of the error torque"),
-    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1.0, false,
+    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1.0,
            "flicker (bias instability B) of each component"),
-    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1.0, false,
+    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1.0,
            "white part of each component, two-sided density"),
-    NUMBER("readout.resolution", readout_resolution, "arcsec", 0.0, 0.1, false,
+    NUMBER("readout.resolution", readout_resolution, "arcsec", 0.0, 0.1,
            "step of the direction cosines, 0 for none"),
-    NUMBER("readout.noise", readout_noise, "arcsec", 0.0, 0.1, false,
-           "1 sigma of each direction cosine"),
-    NUMBER("start.tilt", start_tilt, "deg", 0.0, IMKI_PI, false,
+    NUMBER("readout.noise", readout_noise, "arcsec", 0.0, 0.1, "1 sigma of each direction cosine"),
+    NUMBER("start.tilt", start_tilt, "deg", 0.0, IMKI_PI,
            "angle of the spin axis from case z at the start"),
-    NUMBER("start.azimuth", start_azimuth, "deg", -2.0 * IMKI_PI, 2.0 * IMKI_PI, false,
+    NUMBER("start.azimuth", start_azimuth, "deg", -2.0 * IMKI_PI, 2.0 * IMKI_PI,
            "direction of that tilt, from x towards y"),
-    NUMBER("wobble.start", start_wobble, "arcsec", 0.0, 0.5, false,
+    NUMBER("wobble.start", start_wobble, "arcsec", 0.0, 0.5,
            "angle of the axis of figure from the angular momentum at the start"),
-    NUMBER("wobble.time", wobble_time, "s", 0.0, 1e9, true, "time in which it falls by e"),
+    ABOVE("wobble.time", wobble_time, "s", 0.0, 1e9, "time in which it falls by e"),
 };
 
 static const imk_signal outputs[] = {

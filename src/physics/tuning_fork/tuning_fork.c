@@ -3,6 +3,8 @@
  * possible. */
 #include "tuning_fork_internal.h"
 
+#include "physics/design_rows_internal.h"
+
 #include <float.h>
 #include <math.h>
 
@@ -46,22 +48,7 @@ imk_tuning_fork imk_tuning_fork_default(void)
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
-#define NUMBER(path, member, unit, low, high, help)                                                \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_tuning_fork, member), unit, low, high, false, NULL,  \
-            help                                                                                   \
-    }
-#define ABOVE(path, member, unit, low, high, help)                                                 \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_tuning_fork, member), unit, low, high, true, NULL,   \
-            help                                                                                   \
-    }
-#define CHOICE(path, member, choices, help)                                                        \
-    {                                                                                              \
-        path, IMK_DESIGN_CHOICE, offsetof(imk_tuning_fork, member), "1", 0.0, 0.0, false, choices, \
-            help                                                                                   \
-    }
-
+#define DESIGN imk_tuning_fork
 static const imk_design_field fields[] = {
     CHOICE("arrangement", arrangement, "in-plane|out-of-plane",
            "whether the sense motion stays in the plane of the chip"),
