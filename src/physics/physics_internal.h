@@ -9,10 +9,14 @@
 #include "imukit/instrument.h"
 #include "imukit/noise.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
 #define IMKI_PI 3.14159265358979323846
+#define IMKI_DEGREE (IMKI_PI / 180.0)
+/* The temperature at which designs are stated, if they do not say another [K]. */
+#define IMKI_DESIGN_TEMPERATURE 293.15
 /* Exact by definition of the SI [SI2019]. */
 #define IMKI_LIGHT_SPEED 299792458.0
 #define IMKI_PLANCK 6.62607015e-34
@@ -47,7 +51,8 @@ static inline double imki_draw(imki_draws *draws)
 
 /* A quantity that differs from run to run and wanders within one: a constant drawn once with the
  * 1 sigma `repeatability` and flicker noise of the instability B (model.h) at the sample rate.
- * imki_wander_next() gives the value for the next sample. */
+ * imki_wander_next() gives the value for the next sample. Of a design and settings that are valid.
+ */
 enum { IMKI_WANDER_BLOCK = 64 };
 typedef struct imki_wander {
     double constant;
@@ -60,8 +65,8 @@ typedef struct imki_wander {
 /* The constant by itself, of a quantity that does not wander. */
 double imki_run_constant(const imk_physics_settings *settings, uint8_t source,
                          double repeatability);
-imk_status imki_wander_start(imki_wander *wander, const imk_physics_settings *settings,
-                             uint8_t source, double repeatability, double instability);
+void imki_wander_start(imki_wander *wander, const imk_physics_settings *settings, uint8_t source,
+                       double repeatability, double instability);
 void imki_wander_fill(imki_wander *wander);
 
 static inline double imki_wander_next(imki_wander *wander)
@@ -71,6 +76,17 @@ static inline double imki_wander_next(imki_wander *wander)
     if (wander->position == IMKI_WANDER_BLOCK)
         imki_wander_fill(wander);
     return wander->constant + wander->buffer[wander->position++];
+}
+
+static inline double imki_clamped(double x, double limit)
+{
+    return x > limit ? limit : x < -limit ? -limit : x;
+}
+
+/* The nearest multiple of a step; 0: no step. */
+static inline double imki_quantised(double x, double step)
+{
+    return step > 0.0 ? step * floor(x / step + 0.5) : x;
 }
 
 #define IMKI_LENGTH(array) (sizeof(array) / sizeof((array)[0]))

@@ -13,7 +13,6 @@ enum { COOKIE = 0x494D4B31 };
 
 /* The numbers as a design file has them, so that they are printed as they stand here. */
 #define DECIBEL 0.23025850929940458 /* ln(10)/10, as an exponent of power */
-#define DEGREE (IMKI_PI / 180.0)
 #define PARTS_PER_MILLION 1e-6
 #define MICRO 1e-6
 #define NANO 1e-9
@@ -37,7 +36,7 @@ imk_fibre_optic imk_fibre_optic_default(void)
         .linewidth = 19.35 * NANO,
         .optics_loss = 13 * DECIBEL, /* with the coil 14 dB */
         .visibility = 0.98,
-        .modulation_depth = 120 * DEGREE, /* 120 deg: less noise than 90 deg when the source's
+        .modulation_depth = 120 * IMKI_DEGREE, /* 120 deg: less noise than 90 deg when the source's
                                           intensity noise dominates [LEFEVRE2014] */
         .ramp_bits = 12,
         .responsivity = 0.9,
@@ -46,7 +45,7 @@ imk_fibre_optic imk_fibre_optic_default(void)
                                           switched on at a high rate */
         .converter_bits = 15,
         .loop_gain = 0.1,
-        .range = 80 * DEGREE, /* a fringe is 83.2 deg/s */
+        .range = 80 * IMKI_DEGREE, /* a fringe is 83.2 deg/s */
         .output_bits = 10,
         .phase_temperature = 0.005 * MICRO,
         .phase_repeatability = 0.21 * MICRO, /* 0.01 deg/h */
@@ -229,7 +228,7 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_POWER},
      .duration = 600e-6,
      .rate = 1e6,
-     .input = 25.0 * IMKI_PI / 180.0,
+     .input = 25.0 * IMKI_DEGREE,
      .points = true},
     {.title = "The ramp and its resets",
      .caption = "The phase of the digital ramp: its slope cancels the rotation, and it falls back "
@@ -240,7 +239,7 @@ static const imk_view views[] = {
      .duration = 400e-6,
      .rate = 1e6,
      .settle = 2e-3,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "The loop locks",
      .caption =
          "From switching on: the rate of the coil and the rate that the feedback stands for.",
@@ -249,7 +248,7 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_FEEDBACK, IMKI_FIBRE_OPTIC_INPUT},
      .duration = 1e-3,
      .rate = 400e3,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "What the detector sees",
      .caption = "Power on the detector, transit by transit: square waves while the loop is not "
                 "locked, noise "
@@ -259,7 +258,7 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_POWER},
      .duration = 400e-6,
      .rate = 1e6,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
 };
 
 IMKI_DESIGN_FUNCTIONS(fibre_optic);

@@ -210,7 +210,7 @@ void imki_fibre_optic_step(void *state, const imk_exposure *exposure, double *ou
     g->scale_error = ratio - 1.0;
     g->nonreciprocal =
         design->phase_fixed +
-        design->phase_temperature * (exposure->temperature - IMKI_FIBRE_OPTIC_REFERENCE) +
+        design->phase_temperature * (exposure->temperature - IMKI_DESIGN_TEMPERATURE) +
         imk_fibre_optic_shupe_coefficient(design) * g->scale * exposure->temperature_rate +
         imki_wander_next(&g->phase);
     g->input = exposure->angular_rate[0];
@@ -340,8 +340,8 @@ imk_status imki_fibre_optic_init(const void *design, const imk_physics_settings 
     start_loop(g);
     start_slow(g, settings);
     g->wavelength_run = imki_run_constant(settings, SOURCE_WAVELENGTH, d->wavelength_repeatability);
-    status = imki_wander_start(&g->phase, settings, SOURCE_PHASE, d->phase_repeatability,
-                               d->phase_instability);
+    imki_wander_start(&g->phase, settings, SOURCE_PHASE, d->phase_repeatability,
+                      d->phase_instability);
     imki_draws_start(&g->draws, settings, SOURCE_DETECTOR);
-    return status;
+    return IMK_OK;
 }

@@ -92,7 +92,7 @@ static const imk_view views[] = {
      .y = {0},
      .duration = 0.2,
      .rate = 2000.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "Phase portrait of the gimbal",
      .caption = "Rate against angle: a spiral into the balance, an ellipse without a damper.",
      .x = 0,
@@ -100,7 +100,7 @@ static const imk_view views[] = {
      .y = {1},
      .duration = 0.2,
      .rate = 4000.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
 };
 
 IMKI_DESIGN_FUNCTIONS(rate_gyro);

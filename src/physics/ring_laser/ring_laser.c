@@ -10,7 +10,6 @@
 
 enum { COOKIE = 0x524C4731 };
 
-#define DEGREE (IMKI_PI / 180.0)
 #define DEGREE_PER_HOUR (IMKI_PI / 180.0 / 3600.0)
 
 imk_ring_laser imk_ring_laser_default(void)
@@ -20,12 +19,12 @@ imk_ring_laser imk_ring_laser_default(void)
         .cookie = COOKIE,
         .cavity = {.perimeter = 0.16, .wavelength = 632.8e-9, .loss = 300e-6, .power = 10e-3},
         .lock_in = {.rate = 152.5 * DEGREE_PER_HOUR},
-        .dither = {.frequency = 517.0, .rate = 150.0 * DEGREE, .randomness = 0.02},
+        .dither = {.frequency = 517.0, .rate = 150.0 * IMKI_DEGREE, .randomness = 0.02},
         .null_shift = {.repeatability = 0.003 * DEGREE_PER_HOUR,
                        .instability = 0.0035 / floor_per_b * DEGREE_PER_HOUR},
         .scale_factor = {.repeatability = 5.0 * 1e-6},
         .path_length = {.expansion = 2e-8, .stroke = 2e-6},
-        .readout = {.decoding = IMK_RING_LASER_QUARTERS, .range = 900.0 * DEGREE},
+        .readout = {.decoding = IMK_RING_LASER_QUARTERS, .range = 900.0 * IMKI_DEGREE},
         .temperature = {.reference = 293.15, .minimum = -54.0 + 273.15, .maximum = 344.15}};
 }
 
@@ -208,16 +207,13 @@ static imk_status check_slow(const imk_ring_laser *design, const imk_physics_set
 /* ---- start ----------------------------------------------------------------------------------- */
 
 /* Random numbers and what they begin with. */
-static imk_status start_random(imki_ring_laser *gyro, const imk_physics_settings *settings)
+static void start_random(imki_ring_laser *gyro, const imk_physics_settings *settings)
 {
     const imk_ring_laser *design = &gyro->design;
     imki_draws_start(&gyro->quantum_draws, settings, IMKI_RING_LASER_QUANTUM);
     imki_draws_start(&gyro->dither_draws, settings, IMKI_RING_LASER_DITHER);
-    const imk_status status =
-        imki_wander_start(&gyro->null_wander, settings, IMKI_RING_LASER_NULL,
-                          design->null_shift.repeatability, design->null_shift.instability);
-    if (status != IMK_OK)
-        return status;
+    imki_wander_start(&gyro->null_wander, settings, IMKI_RING_LASER_NULL,
+                      design->null_shift.repeatability, design->null_shift.instability);
     gyro->fringes =
         imk_ring_laser_fringes_per_radian(design) *
         (1.0 + design->scale_factor.error +
@@ -225,7 +221,6 @@ static imk_status start_random(imki_ring_laser *gyro, const imk_physics_settings
     /* a normal of ten fringes is a uniform phase to one in 1e85 */
     imki_fringes_add(&gyro->beat, imki_run_constant(settings, IMKI_RING_LASER_START, 10.0));
     gyro->beat.whole = 0;
-    return IMK_OK;
 }
 
 /* 2^64 times the fractional part of x >= 0. */
@@ -291,10 +286,9 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
                                     "steps that follow the turns of the dither and lock-in",
                                     &gyro->steps, &gyro->step, error);
     }
-    if (status == IMK_OK)
-        status = start_random(gyro, settings);
     if (status != IMK_OK)
         return status;
+    start_random(gyro, settings);
     gyro->kappa = 2.0 * IMKI_PI * gyro->fringes * design->lock_in.rate;
     gyro->scatter = design->lock_in.phase / (2.0 * IMKI_PI);
     gyro->noise = settings->noise ? gyro->fringes * imk_ring_laser_quantum_noise(design) : 0.0;

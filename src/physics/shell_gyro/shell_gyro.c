@@ -119,7 +119,7 @@ static imk_status check_loops(const imk_shell_gyro *design, imk_error *error)
     const double fastest = 0.1 / update;
     const double limit = imki_shell_command_limit(design);
     const imki_shell_balance steady =
-        imki_shell_balance_at(design, IMKI_SHELL_REFERENCE, 0.0, design->pattern.angle);
+        imki_shell_balance_at(design, IMKI_DESIGN_TEMPERATURE, 0.0, design->pattern.angle);
     if (design->mode == IMK_SHELL_FREE)
         return IMK_OK;
     if (!(update * decay <= 0.25))
@@ -144,7 +144,7 @@ static imk_status check_loops(const imk_shell_gyro *design, imk_error *error)
 static double smallest_pattern(const imk_shell_gyro *design)
 {
     const double omega = 2.0 * IMKI_PI * design->resonator.frequency;
-    const double thermal = IMKI_BOLTZMANN * IMKI_SHELL_REFERENCE / design->resonator.mass;
+    const double thermal = IMKI_BOLTZMANN * IMKI_DESIGN_TEMPERATURE / design->resonator.mass;
     const double measured = imki_shell_angle_noise(design) * design->pattern.amplitude;
     return 10.0 * (sqrt(thermal) / omega + measured);
 }
@@ -235,7 +235,7 @@ static const imk_view views[] = {
      .y = {MODAL_ANGLE},
      .duration = 2.0,
      .rate = 100.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "Forces of the loops",
      .caption = "What keeps the amplitude, holds the pattern and cancels the "
                 "quadrature: the second of them is the reading of a force-to-rebalance gyro.",
@@ -244,7 +244,7 @@ static const imk_view views[] = {
      .y = {DRIVE_FORCE, REBALANCE_FORCE, QUADRATURE_FORCE},
      .duration = 0.5,
      .rate = 1000.0,
-     .input = 50.0 * IMKI_PI / 180.0},
+     .input = 50.0 * IMKI_DEGREE},
     {.title = "Quadrature",
      .caption = "The short axis of the ellipse, which the quadrature loop keeps near zero.",
      .x = -1,
@@ -331,13 +331,10 @@ imk_status imki_shell_init(const void *design_pointer, const imk_physics_setting
     state->omega = 2.0 * IMKI_PI * design->resonator.frequency;
     imki_draws_start(&state->thermal, settings, IMKI_SHELL_THERMAL);
     imki_draws_start(&state->pickoff, settings, IMKI_SHELL_PICKOFF);
-    for (int i = 0; i < 2 && status == IMK_OK; i++)
-        status = imki_wander_start(
-            &state->wander[i], settings, (uint8_t)(IMKI_SHELL_DAMPING_COSINE + i),
-            design->anisotropy.damping_repeatability, design->anisotropy.damping_instability);
-    if (status != IMK_OK)
-        return imki_refuse(error, status, "anisotropy.damping_instability",
-                           design->anisotropy.damping_instability, 0.0, NULL);
+    for (int i = 0; i < 2; i++)
+        imki_wander_start(&state->wander[i], settings, (uint8_t)(IMKI_SHELL_DAMPING_COSINE + i),
+                          design->anisotropy.damping_repeatability,
+                          design->anisotropy.damping_instability);
     state->cycle.step = step;
     state->slow.count = count;
     if (settings->level == IMK_LEVEL_FULL)

@@ -15,9 +15,6 @@
 #include "imukit/spinning_mass.h"
 #include "physics/physics_internal.h"
 
-/* The temperature at which designs are stated [K]. */
-#define IMKI_DESIGN_TEMPERATURE 293.15
-
 /* Parts of a design that load the gimbal. */
 typedef struct imki_gimbal {
     double momentum;           /* the true H [N m s] */

@@ -19,10 +19,8 @@
 
 enum { COOKIE = 0x53524F54 };
 
-#define DEGREE (IMKI_PI / 180.0)
-#define ARCSECOND (DEGREE / 3600.0)
+#define ARCSECOND (IMKI_DEGREE / 3600.0)
 #define STANDARD_GRAVITY 9.80665
-#define REFERENCE_TEMPERATURE 293.15
 
 typedef struct suspended_rotor_state {
     double axis[3], across[3]; /* s, n */
@@ -132,7 +130,7 @@ static const imk_view views[] = {
      .y = {AXIS_Y, AXIS_Z, AXIS_X},
      .duration = 36.0,
      .rate = 20.0,
-     .input = 10.0 * DEGREE},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "Drift by the shape of the ball",
      .caption = "Preloads that are not equal turn an oblate ball: not where its axis is along or "
                 "across their field, most in between",
@@ -141,7 +139,7 @@ static const imk_view views[] = {
      .y = {DRIFT},
      .duration = 36.0,
      .rate = 20.0,
-     .input = 10.0 * DEGREE},
+     .input = 10.0 * IMKI_DEGREE},
 };
 
 /* ---- validation and start -------------------------------------------------------------------- */
@@ -180,11 +178,6 @@ static double step_length(const void *design, const imk_physics_settings *settin
     return sample < LONGEST_STEP ? sample : LONGEST_STEP;
 }
 
-static double quantised(double x, double step)
-{
-    return step > 0.0 ? step * floor(x / step + 0.5) : x;
-}
-
 /* The readout sees the axis of figure. */
 static void read_axis(suspended_rotor_state *state, double reading[3])
 {
@@ -197,7 +190,7 @@ static void read_axis(suspended_rotor_state *state, double reading[3])
         const double figure = cosine * s[k] + first * n[k] + second * (s[l] * n[m] - s[m] * n[l]);
         const double noise =
             state->reading_noise > 0.0 ? state->reading_noise * imki_draw(&state->readout[k]) : 0.0;
-        reading[k] = quantised(figure + noise, state->resolution);
+        reading[k] = imki_quantised(figure + noise, state->resolution);
     }
 }
 
@@ -212,21 +205,17 @@ static void choose_across(const double s[3], double n[3])
         n[i] = ((i == k ? 1.0 : 0.0) - s[k] * s[i]) / length;
 }
 
-static imk_status start_random(const imk_suspended_rotor *design,
-                               const imk_physics_settings *settings, suspended_rotor_state *state)
+static void start_random(const imk_suspended_rotor *design, const imk_physics_settings *settings,
+                         suspended_rotor_state *state)
 {
-    imk_status status = IMK_OK;
     for (int k = 0; k < 3; k++) {
         imki_draws_start(&state->white[k], settings, (uint8_t)(IMKI_SUSPENDED_ROTOR_TORQUE + k));
         imki_draws_start(&state->readout[k], settings, (uint8_t)(IMKI_SUSPENDED_ROTOR_READING + k));
-        if (status == IMK_OK)
-            status = imki_wander_start(&state->error[k], settings,
-                                       (uint8_t)(IMKI_SUSPENDED_ROTOR_TORQUE + k),
-                                       design->torque_repeatability, design->torque_instability);
+        imki_wander_start(&state->error[k], settings, (uint8_t)(IMKI_SUSPENDED_ROTOR_TORQUE + k),
+                          design->torque_repeatability, design->torque_instability);
     }
     state->torque_sigma = settings->noise ? design->torque_noise / sqrt(state->step) : 0.0;
     state->reading_noise = settings->noise ? design->readout_noise : 0.0;
-    return status;
 }
 
 static imk_status init(const void *given, const imk_physics_settings *settings, void *memory,
@@ -258,10 +247,7 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
         state->torque[k] = design->torque[k];
     imki_suspended_start(design, state->axis);
     choose_across(state->axis, state->across);
-    status = start_random(design, settings, state);
-    if (status != IMK_OK)
-        return imki_refuse(error, status, "torque.instability", design->torque_instability, 0.0,
-                           NULL);
+    start_random(design, settings, state);
     read_axis(state, state->reading);
     return IMK_OK;
 }
@@ -396,7 +382,7 @@ static void step(void *memory, const imk_exposure *exposure, double *out)
 {
     suspended_rotor_state *state = memory;
     const double thermal =
-        state->torque_temperature * (exposure->temperature - REFERENCE_TEMPERATURE);
+        state->torque_temperature * (exposure->temperature - IMKI_DESIGN_TEMPERATURE);
     double torque[3], reading[3], rate[3];
     for (int k = 0; k < 3; k++)
         torque[k] = state->torque[k] + thermal + imki_wander_next(&state->error[k]);

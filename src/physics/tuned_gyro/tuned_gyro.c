@@ -151,7 +151,7 @@ static const imk_view views[] = {
      .y = {0, 1},
      .duration = 0.1,
      .rate = 6400.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "Path of the rotor",
      .caption = "Tilt about y against tilt about x: nutation on the way back.",
      .x = 0,
@@ -159,7 +159,7 @@ static const imk_view views[] = {
      .y = {1},
      .duration = 0.1,
      .rate = 12800.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "What the flexures see",
      .caption = "Angles of the two pairs of flexures, in axes that turn with the shaft.",
      .x = -1,
@@ -167,7 +167,7 @@ static const imk_view views[] = {
      .y = {2, 3},
      .duration = 0.05,
      .rate = 12800.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
 };
 
 IMKI_DESIGN_FUNCTIONS(tuned_gyro);

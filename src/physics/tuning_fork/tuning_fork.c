@@ -10,8 +10,6 @@
 
 enum { COOKIE = 0x494D4B28 };
 
-#define DEGREE (IMKI_PI / 180.0)
-
 imk_tuning_fork imk_tuning_fork_default(void)
 {
     return (imk_tuning_fork){
@@ -33,8 +31,8 @@ imk_tuning_fork imk_tuning_fork_default(void)
                   .bandwidth = 100.0,
                   /* with the Brownian motion 0.05 deg/s/sqrt(Hz), one-sided */
                   .pickoff_noise = 0.4617 * 1e-12},
-        .quadrature = 20.0 * DEGREE,
-        .damping_coupling = 0.5 * DEGREE,
+        .quadrature = 20.0 * IMKI_DEGREE,
+        .damping_coupling = 0.5 * IMKI_DEGREE,
         /* of 20 deg/s: 100 deg/h from run to run, and a floor of 50 deg/h = 0.664 B */
         .phase = {.error = 5e-3, .repeatability = 1.39e-3, .instability = 1.046e-3},
         /* 0.2 deg/s/g */
@@ -43,7 +41,7 @@ imk_tuning_fork imk_tuning_fork_default(void)
                         .q = -1.5e-3,
                         .amplitude = 100.0 * 1e-6,
                         .phase = 30e-6},
-        .output = {.bandwidth = 40.0, .range = 150.0 * DEGREE}};
+        .output = {.bandwidth = 40.0, .range = 150.0 * IMKI_DEGREE}};
 }
 
 /* ---- the table ------------------------------------------------------------------------------- */
@@ -187,7 +185,7 @@ static imk_status check(const void *given, imk_error *error)
 {
     const imk_tuning_fork *design = given;
     imk_status status = check_loops(design, error);
-    const double temperatures[] = {IMKI_FORK_REFERENCE, IMKI_FORK_COLDEST, IMKI_FORK_HOTTEST};
+    const double temperatures[] = {IMKI_DESIGN_TEMPERATURE, IMKI_FORK_COLDEST, IMKI_FORK_HOTTEST};
     for (int i = 0; status == IMK_OK && i < 3; i++)
         status = check_temperature(design, temperatures[i], error);
     return status;
@@ -240,7 +238,7 @@ static const imk_view views[] = {
      .duration = 286e-6,
      .rate = 560e3,
      .settle = 0.05,
-     .input = 100.0 * IMKI_PI / 180.0},
+     .input = 100.0 * IMKI_DEGREE},
     {.title = "Start of the drive",
      .caption = "From rest: the amplitude control is a loop of first order, of 100 Hz.",
      .x = -1,
@@ -262,7 +260,7 @@ static const imk_view views[] = {
      .y = {RATE, QUADRATURE},
      .duration = 60e-3,
      .rate = 3.5e3,
-     .input = 50.0 * IMKI_PI / 180.0},
+     .input = 50.0 * IMKI_DEGREE},
 };
 
 IMKI_DESIGN_FUNCTIONS(tuning_fork);
