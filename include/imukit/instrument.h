@@ -168,10 +168,9 @@ IMK_API const imk_instrument *imk_instrument_find(const char *name);
 IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void *design,
                                     imk_error *error);
 
-/** Check design and settings, and start in the state the instrument is in when it has been switched
- *  on.
+/** Check design and settings, and start in the state the instrument is in when it is switched on.
  *  @param state state_size bytes, 64-byte aligned; plain data that may be copied; of no use after
- * an error
+ *               an error
  *  @return errors of imk_design_check(); IMK_ERROR_RANGE for a step (field "step") or rate that
  *          would give wrong results; IMK_ERROR_UNSUPPORTED for a level it does not have */
 IMK_API imk_status imk_instrument_init(const imk_instrument *instrument, const void *design,
@@ -183,9 +182,9 @@ IMK_API imk_status imk_instrument_init(const imk_instrument *instrument, const v
 IMK_API void imk_instrument_reduce(const imk_instrument *instrument, const void *design,
                                    imk_model *model);
 
-/** Make a model of one axis (from imk_instrument_reduce()) one of three such instruments along body
- * x, y and z; the case axes y and z of each are the next body axes in turn. Evidence is kept for
- * axis x only. */
+/** Make a model of one axis, from imk_instrument_reduce(), one of three such instruments along body
+ *  x, y and z; the case axes y and z of each are the next body axes in turn. Evidence is kept for
+ *  axis x only. */
 IMK_API void imk_model_three_axes(imk_model *model);
 
 #ifdef __cplusplus
