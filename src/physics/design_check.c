@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is checked of any design, by its table, and of the settings it is run with. */
+/* What is checked of any design, by its table, and of the settings it is run with; its start. */
 #include "physics_internal.h"
 
 #include <math.h>
@@ -64,17 +64,23 @@ static imk_status check_field(const imk_design_field *field, const void *design,
 
 imk_status imk_design_check(const imk_instrument *instrument, const void *design, imk_error *error)
 {
+    uint32_t cookie;
+    memcpy(&cookie, design, sizeof cookie);
+    if (cookie != instrument->cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
+                             "a design made by the instrument's _default()");
     for (size_t i = 0; i < instrument->field_count; i++) {
         const imk_status status = check_field(&instrument->fields[i], design, error);
         if (status != IMK_OK)
             return status;
     }
-    return IMK_OK;
+    return instrument->check ? instrument->check(design, error) : IMK_OK;
 }
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
-imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *error)
+/* A cookie, a finite rate above 0, a known level, a step of 0 or more. */
+static imk_status check_settings(const imk_physics_settings *settings, imk_error *error)
 {
     if (settings->cookie != SETTINGS_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
@@ -93,6 +99,18 @@ imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *
         return imki_refuse(error, IMK_ERROR_RANGE, "level", (double)settings->level, 1.0,
                            "full or slow");
     return IMK_OK;
+}
+
+imk_status imk_instrument_init(const imk_instrument *instrument, const void *design,
+                               const imk_physics_settings *settings, void *state, imk_error *error)
+{
+    imk_status status = imk_design_check(instrument, design, error);
+    if (status == IMK_OK)
+        status = check_settings(settings, error);
+    if (status != IMK_OK)
+        return status;
+    memset(state, 0, instrument->state_size);
+    return instrument->init(design, settings, state, error);
 }
 
 imk_status imki_divide_sample(const imk_physics_settings *settings, double longest, double limit,

@@ -6,21 +6,18 @@
 #include "base/text_internal.h"
 #include "model/model_schema_internal.h"
 
-imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrument)
+void imk_instrument_reduce(const imk_instrument *instrument, const void *design, imk_model *model)
 {
+    const int sensor = instrument->sensor;
     imk_model_default(model);
-    const bool gyro = instrument->sensor == IMK_GYRO;
-    imk_triad *triad = gyro ? &model->gyro : &model->accel;
-    imk_evidence *evidence = gyro ? &model->gyro_evidence : &model->accel_evidence;
-    (gyro ? &model->accel : &model->gyro)->present = false;
-    triad->present = true;
+    imk_triad *triad = imk_model_triad_to_set(model, sensor);
+    imk_evidence *evidence = sensor == IMK_GYRO ? &model->gyro_evidence : &model->accel_evidence;
+    imk_model_triad_to_set(model, sensor == IMK_GYRO ? IMK_ACCEL : IMK_GYRO)->present = false;
     triad->axis_count = 1;
-    for (int k = 0; k < 3; k++)
-        triad->direction[0][k] = k == 0 ? 1.0 : 0.0;
     imki_copy_text(model->name, sizeof model->name, instrument->title);
     imki_copy_text(evidence->source, sizeof evidence->source, instrument->source);
     imki_copy_text(evidence->method, sizeof evidence->method, "design parameters, by closed forms");
-    return triad;
+    instrument->reduce(design, triad);
 }
 
 double imki_reduction_offset(imk_triad *triad, double u, double per_kelvin)

@@ -235,7 +235,7 @@ void imki_design_read_fields(imki_reading *reading, const imk_instrument *instru
     read_group(&r, 0, "");
     if (reading->status != IMK_OK)
         return;
-    reading->status = instrument->validate(design, reading->error);
+    reading->status = imk_design_check(instrument, design, reading->error);
     if (reading->status != IMK_OK) {
         place_error(reading->document, reading->error);
         imk_design_error_in_units(instrument, design, reading->error);

@@ -235,7 +235,8 @@ static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error
     void *state = imki_arena_take(arena, size > 256 ? size : 256); /* a cache line begins there */
     if (!state)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    imk_status status = instrument->init(w->log->settings.design, &settings, state, error);
+    imk_status status =
+        imk_instrument_init(instrument, w->log->settings.design, &settings, state, error);
     for (uint64_t k = 0; k < samples && status == IMK_OK; k++) {
         status = take_sample(w, state, k, error);
         if (status == IMK_OK)
@@ -287,7 +288,7 @@ static imk_physics_log *create(const imk_physics_log_settings *settings,
     for (size_t i = 0; i < outputs; i++)
         log->curve[i] = log->time + (1 + i) * size;
     log->input = log->time + (1 + outputs) * size;
-    settings->instrument->reduce(settings->design, &log->model);
+    imk_instrument_reduce(settings->instrument, settings->design, &log->model);
     return log;
 }
 

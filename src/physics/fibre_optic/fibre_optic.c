@@ -5,6 +5,7 @@
 
 #include "fibre_optic_internal.h"
 #include "imukit/elementary.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -12,7 +13,6 @@ enum { COOKIE = 0x494D4B31 };
 
 /* The numbers as a design file has them, so that they are printed as they stand here. */
 #define DECIBEL 0.23025850929940458 /* ln(10)/10, as an exponent of power */
-#define DEGREE (IMKI_PI / 180.0)
 #define PARTS_PER_MILLION 1e-6
 #define MICRO 1e-6
 #define NANO 1e-9
@@ -36,7 +36,7 @@ imk_fibre_optic imk_fibre_optic_default(void)
         .linewidth = 19.35 * NANO,
         .optics_loss = 13 * DECIBEL, /* with the coil 14 dB */
         .visibility = 0.98,
-        .modulation_depth = 120 * DEGREE, /* 120 deg: less noise than 90 deg when the source's
+        .modulation_depth = 120 * IMKI_DEGREE, /* 120 deg: less noise than 90 deg when the source's
                                           intensity noise dominates [LEFEVRE2014] */
         .ramp_bits = 12,
         .responsivity = 0.9,
@@ -45,7 +45,7 @@ imk_fibre_optic imk_fibre_optic_default(void)
                                           switched on at a high rate */
         .converter_bits = 15,
         .loop_gain = 0.1,
-        .range = 80 * DEGREE, /* a fringe is 83.2 deg/s */
+        .range = 80 * IMKI_DEGREE, /* a fringe is 83.2 deg/s */
         .output_bits = 10,
         .phase_temperature = 0.005 * MICRO,
         .phase_repeatability = 0.21 * MICRO, /* 0.01 deg/h */
@@ -55,23 +55,9 @@ imk_fibre_optic imk_fibre_optic_default(void)
 
 /* ---- the design table ------------------------------------------------------------------------ */
 
-#define AT(field) offsetof(imk_fibre_optic, field)
-#define NUMBER(path, field, unit, minimum, maximum, help)                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(field), unit, minimum, maximum, false, NULL, help              \
-    }
-#define ABOVE(path, field, unit, minimum, maximum, help)                                           \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(field), unit, minimum, maximum, true, NULL, help               \
-    }
-#define COUNT(path, field, maximum, help)                                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_COUNT, AT(field), "1", 0, maximum, false, NULL, help                      \
-    }
-
+#define DESIGN imk_fibre_optic
 static const imk_design_field fields[] = {
-    {"loop.mode", IMK_DESIGN_CHOICE, AT(loop), "1", 0, 1, false, "closed|open",
-     "how the phase is read"},
+    CHOICE("loop.mode", loop, "closed|open", "how the phase is read"),
     ABOVE("loop.gain", loop_gain, "1", 0, 2,
           "share of the phase error that each step of the loop takes away"),
     NUMBER("loop.crosstalk", crosstalk, "urad", 0, 1,
@@ -105,15 +91,15 @@ static const imk_design_field fields[] = {
     NUMBER("modulator.gain_error", gain_error, "ppm", -0.1, 0.1, "error of the ramp's phase"),
     NUMBER("modulator.reset_error", reset_error, "ppm", -0.1, 0.1,
            "departure of the ramp's reset from 2 pi"),
-    COUNT("modulator.bits", ramp_bits, 30, "of the ramp's converter, to 2 pi; 0: continuous"),
+    COUNT("modulator.bits", ramp_bits, 0, 30, "of the ramp's converter, to 2 pi; 0: continuous"),
     ABOVE("detector.responsivity", responsivity, "A/W", 0, 10, "current per power"),
     ABOVE("detector.load", load_resistance, "ohm", 0, 1e12, "resistor that the current flows into"),
     NUMBER("detector.converter_range", converter_range, "uW", 0, 10,
            "departure from the operating point that saturates the amplifier; 0: none"),
-    COUNT("detector.converter_bits", converter_bits, 30, "to both sides of it; 0: continuous"),
+    COUNT("detector.converter_bits", converter_bits, 0, 30, "to both sides of it; 0: continuous"),
     NUMBER("detector.demodulation_error", demodulation_error, "%", -0.9, 10,
            "departure of the demodulator's gain"),
-    COUNT("output.bits", output_bits, 30, "counts of the angle to a fringe; 0: not rounded"),
+    COUNT("output.bits", output_bits, 0, 30, "counts of the angle to a fringe; 0: not rounded"),
     NUMBER("phase.fixed", phase_fixed, "urad", -1, 1, "nonreciprocal phase"),
     NUMBER("phase.temperature", phase_temperature, "urad/K", -1e-2, 1e-2,
            "change of that phase with temperature"),
@@ -202,14 +188,10 @@ static imk_status check_loop(const imk_fibre_optic *design, imk_error *error)
     return IMK_OK;
 }
 
-imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_fibre_optic_default()");
-    imk_status status = imk_design_check(&imk_fibre_optic_instrument, design, error);
-    if (status == IMK_OK)
-        status = check_optics(design, error);
+    const imk_fibre_optic *design = given;
+    imk_status status = check_optics(design, error);
     if (status == IMK_OK)
         status = check_converter(design, error);
     if (status == IMK_OK)
@@ -218,33 +200,6 @@ imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_error *er
 }
 
 /* ---- the instrument -------------------------------------------------------------------------- */
-
-static void set_default(void *design)
-{
-    *(imk_fibre_optic *)design = imk_fibre_optic_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_fibre_optic_validate(design, error);
-}
-
-void imk_fibre_optic_reduce(const imk_fibre_optic *design, imk_model *model)
-{
-    imki_fibre_optic_reduce(design, imki_reduction_begin(model, &imk_fibre_optic_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_fibre_optic_validate(design, error);
-    return status == IMK_OK ? imki_fibre_optic_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_fibre_optic_reduce(design, model);
-}
 
 static const imk_signal outputs[] = {
     {"angular_rate", "rad/s", "deg/s", "measured rate about the coil's axis"},
@@ -273,7 +228,7 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_POWER},
      .duration = 600e-6,
      .rate = 1e6,
-     .input = 25.0 * IMKI_PI / 180.0,
+     .input = 25.0 * IMKI_DEGREE,
      .points = true},
     {.title = "The ramp and its resets",
      .caption = "The phase of the digital ramp: its slope cancels the rotation, and it falls back "
@@ -284,7 +239,7 @@ static const imk_view views[] = {
      .duration = 400e-6,
      .rate = 1e6,
      .settle = 2e-3,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "The loop locks",
      .caption =
          "From switching on: the rate of the coil and the rate that the feedback stands for.",
@@ -293,7 +248,7 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_FEEDBACK, IMKI_FIBRE_OPTIC_INPUT},
      .duration = 1e-3,
      .rate = 400e3,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "What the detector sees",
      .caption = "Power on the detector, transit by transit: square waves while the loop is not "
                 "locked, noise "
@@ -303,8 +258,10 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_POWER},
      .duration = 400e-6,
      .rate = 1e6,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
 };
+
+IMKI_DESIGN_FUNCTIONS(fibre_optic);
 
 const imk_instrument imk_fibre_optic_instrument = {
     .name = "fibre_optic",
@@ -313,12 +270,13 @@ const imk_instrument imk_fibre_optic_instrument = {
     .source = "coil, loss, noise, bias and scale factor of Moeller, Burns, Frigo, J. Lightwave "
               "Technol. 7 (1989) 262, doi:10.1109/50.17765; closed loop and electronics chosen",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_fibre_optic),
     .state_size = sizeof(imki_fibre_optic_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_fibre_optic_init,
     .step = imki_fibre_optic_step,
     .observe = imki_fibre_optic_observe,
     .reduce = reduce,

@@ -72,7 +72,7 @@ static imk_status check(const imk_laboratory *l, void *state, imk_error *error)
     if (l->record > 0.0 && record_samples(l) < 256)
         return imki_refuse(error, IMK_ERROR_RANGE, "record", l->record, 0.0,
                            "a record of at least 256 samples");
-    return l->instrument->init(l->design, &l->physics, state, error);
+    return imk_instrument_init(l->instrument, l->design, &l->physics, state, error);
 }
 
 static double full_scale_of(const imk_laboratory *laboratory, double range)
@@ -93,7 +93,8 @@ static void static_record(const imk_laboratory *laboratory, char *state, double 
     imk_identify_settings settings = imk_identify_default();
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX];
     settings.dt = 1.0 / laboratory->physics.rate;
-    if (instrument->init(laboratory->design, &laboratory->physics, state, NULL) != IMK_OK)
+    if (imk_instrument_init(instrument, laboratory->design, &laboratory->physics, state, NULL) !=
+        IMK_OK)
         return;
     for (size_t i = imki_samples_in(laboratory->settle, laboratory->physics.rate); i > 0; i--)
         instrument->step(state, &laboratory->surroundings, outputs);
@@ -130,7 +131,7 @@ static stated_axes begin_model(const imk_laboratory *laboratory, imk_laboratory_
 {
     const imk_instrument *instrument = laboratory->instrument;
     imk_model *model = &result->model;
-    instrument->reduce(laboratory->design, model);
+    imk_instrument_reduce(instrument, laboratory->design, model);
     imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     stated_axes stated = {.range = triad->range, .bandwidth = triad->bandwidth.value[0]};
     memcpy(stated.direction, triad->direction, sizeof stated.direction);

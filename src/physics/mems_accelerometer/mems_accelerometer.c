@@ -4,6 +4,7 @@
 
 #include "imukit/units.h"
 #include "mems_accelerometer_internal.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -64,29 +65,9 @@ imk_mems_accelerometer imk_mems_accelerometer_sigma_delta(void)
     return design;
 }
 
-static void set_default(void *design)
-{
-    *(imk_mems_accelerometer *)design = imk_mems_accelerometer_default();
-}
-
 /* ---- table ----------------------------------------------------------------------------------- */
 
-#define NUMBER(path, member, unit, minimum, maximum, help)                                         \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_mems_accelerometer, member), unit, minimum, maximum, \
-            false, NULL, help                                                                      \
-    }
-#define ABOVE(path, member, unit, minimum, maximum, help)                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_mems_accelerometer, member), unit, minimum, maximum, \
-            true, NULL, help                                                                       \
-    }
-#define CHOICE(path, member, choices, help)                                                        \
-    {                                                                                              \
-        path, IMK_DESIGN_CHOICE, offsetof(imk_mems_accelerometer, member), "1", 0, 0, false,       \
-            choices, help                                                                          \
-    }
-
+#define DESIGN imk_mems_accelerometer
 static const imk_design_field fields[] = {
     CHOICE("loop", loop, "open|analog|sigma_delta", "what holds the mass"),
     ABOVE("temperature", temperature, "degC", 100.0, 600.0, "temperature of calibration"),
@@ -95,8 +76,7 @@ static const imk_design_field fields[] = {
           "frequency of the mass on its springs alone"),
     NUMBER("proof_mass.quality", quality, "1", 1e-2, 1e8,
            "quality factor in the middle of the gap"),
-    {"proof_mass.squeeze_film", IMK_DESIGN_SWITCH, offsetof(imk_mems_accelerometer, squeeze_film),
-     "1", 0, 0, false, NULL, "damping grows with the displacement"},
+    SWITCH("proof_mass.squeeze_film", squeeze_film, "damping grows with the displacement"),
     NUMBER("spring.quadratic", spring_quadratic, "1/m", -1e6, 1e6,
            "relative stiffening, even: q of k x (1 + q x + r x^2)"),
     NUMBER("spring.cubic", spring_cubic, "1/m^2", -1e12, 1e12,
@@ -280,14 +260,10 @@ static imk_status check_sigma_delta(const imk_mems_accelerometer *d, imk_error *
     return IMK_OK;
 }
 
-imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (d->cookie != DESIGN_COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_mems_accelerometer_default()");
-    imk_status status = imk_design_check(&imk_mems_accelerometer_instrument, d, error);
-    if (status == IMK_OK)
-        status = check_rest(d, error);
+    const imk_mems_accelerometer *d = given;
+    imk_status status = check_rest(d, error);
     if (status == IMK_OK)
         status = check_force(d, error);
     if (status == IMK_OK && d->loop == IMK_MEMS_ANALOG)
@@ -299,28 +275,7 @@ imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer *d, imk_
 
 /* ---- the instrument -------------------------------------------------------------------------- */
 
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_mems_accelerometer_validate(design, error);
-}
-
-void imk_mems_accelerometer_reduce(const imk_mems_accelerometer *design, imk_model *model)
-{
-    imki_mems_accelerometer_reduce(design,
-                                   imki_reduction_begin(model, &imk_mems_accelerometer_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_mems_accelerometer_validate(design, error);
-    return status == IMK_OK ? imki_mems_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_mems_accelerometer_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(mems_accelerometer);
 
 const imk_instrument imk_mems_accelerometer_instrument = {
     .name = "mems_accelerometer",
@@ -328,12 +283,13 @@ const imk_instrument imk_mems_accelerometer_instrument = {
     .technology = "MEMS",
     .source = "Safran Colibrys MS1000 datasheet, MS1005 (2016); mass, plates and voltages chosen",
     .sensor = IMK_ACCEL,
+    .cookie = DESIGN_COOKIE,
     .design_size = sizeof(imk_mems_accelerometer),
     .state_size = sizeof(imki_mems_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_mems_init,
     .step = imki_mems_step,
     .observe = imki_mems_observe,
     .reduce = reduce,

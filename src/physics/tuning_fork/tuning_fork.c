@@ -3,12 +3,12 @@
  * possible. */
 #include "tuning_fork_internal.h"
 
+#include "physics/design_rows_internal.h"
+
 #include <float.h>
 #include <math.h>
 
 enum { COOKIE = 0x494D4B28 };
-
-#define DEGREE (IMKI_PI / 180.0)
 
 imk_tuning_fork imk_tuning_fork_default(void)
 {
@@ -31,8 +31,8 @@ imk_tuning_fork imk_tuning_fork_default(void)
                   .bandwidth = 100.0,
                   /* with the Brownian motion 0.05 deg/s/sqrt(Hz), one-sided */
                   .pickoff_noise = 0.4617 * 1e-12},
-        .quadrature = 20.0 * DEGREE,
-        .damping_coupling = 0.5 * DEGREE,
+        .quadrature = 20.0 * IMKI_DEGREE,
+        .damping_coupling = 0.5 * IMKI_DEGREE,
         /* of 20 deg/s: 100 deg/h from run to run, and a floor of 50 deg/h = 0.664 B */
         .phase = {.error = 5e-3, .repeatability = 1.39e-3, .instability = 1.046e-3},
         /* 0.2 deg/s/g */
@@ -41,32 +41,12 @@ imk_tuning_fork imk_tuning_fork_default(void)
                         .q = -1.5e-3,
                         .amplitude = 100.0 * 1e-6,
                         .phase = 30e-6},
-        .output = {.bandwidth = 40.0, .range = 150.0 * DEGREE}};
-}
-
-static void set_default(void *design)
-{
-    *(imk_tuning_fork *)design = imk_tuning_fork_default();
+        .output = {.bandwidth = 40.0, .range = 150.0 * IMKI_DEGREE}};
 }
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
-#define NUMBER(path, member, unit, low, high, help)                                                \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_tuning_fork, member), unit, low, high, false, NULL,  \
-            help                                                                                   \
-    }
-#define ABOVE(path, member, unit, low, high, help)                                                 \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_tuning_fork, member), unit, low, high, true, NULL,   \
-            help                                                                                   \
-    }
-#define CHOICE(path, member, choices, help)                                                        \
-    {                                                                                              \
-        path, IMK_DESIGN_CHOICE, offsetof(imk_tuning_fork, member), "1", 0.0, 0.0, false, choices, \
-            help                                                                                   \
-    }
-
+#define DESIGN imk_tuning_fork
 static const imk_design_field fields[] = {
     CHOICE("arrangement", arrangement, "in-plane|out-of-plane",
            "whether the sense motion stays in the plane of the chip"),
@@ -201,40 +181,14 @@ static imk_status check_loops(const imk_tuning_fork *design, imk_error *error)
     return IMK_OK;
 }
 
-imk_status imk_tuning_fork_validate(const imk_tuning_fork *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "tuning_fork", NULL,
-                             "a design made by imk_tuning_fork_default()");
-    imk_status status = imk_design_check(&imk_tuning_fork_instrument, design, error);
-    if (status == IMK_OK)
-        status = check_loops(design, error);
-    const double temperatures[] = {IMKI_FORK_REFERENCE, IMKI_FORK_COLDEST, IMKI_FORK_HOTTEST};
+    const imk_tuning_fork *design = given;
+    imk_status status = check_loops(design, error);
+    const double temperatures[] = {IMKI_DESIGN_TEMPERATURE, IMKI_FORK_COLDEST, IMKI_FORK_HOTTEST};
     for (int i = 0; status == IMK_OK && i < 3; i++)
         status = check_temperature(design, temperatures[i], error);
     return status;
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_tuning_fork_validate(design, error);
-}
-
-void imk_tuning_fork_reduce(const imk_tuning_fork *design, imk_model *model)
-{
-    imki_tuning_fork_reduce(design, imki_reduction_begin(model, &imk_tuning_fork_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_tuning_fork_validate(design, error);
-    return status == IMK_OK ? imki_fork_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_tuning_fork_reduce(design, model);
 }
 
 /* ---- description ----------------------------------------------------------------------------- */
@@ -284,7 +238,7 @@ static const imk_view views[] = {
      .duration = 286e-6,
      .rate = 560e3,
      .settle = 0.05,
-     .input = 100.0 * IMKI_PI / 180.0},
+     .input = 100.0 * IMKI_DEGREE},
     {.title = "Start of the drive",
      .caption = "From rest: the amplitude control is a loop of first order, of 100 Hz.",
      .x = -1,
@@ -306,8 +260,10 @@ static const imk_view views[] = {
      .y = {RATE, QUADRATURE},
      .duration = 60e-3,
      .rate = 3.5e3,
-     .input = 50.0 * IMKI_PI / 180.0},
+     .input = 50.0 * IMKI_DEGREE},
 };
+
+IMKI_DESIGN_FUNCTIONS(tuning_fork);
 
 const imk_instrument imk_tuning_fork_instrument = {
     .name = "tuning_fork",
@@ -317,12 +273,13 @@ const imk_instrument imk_tuning_fork_instrument = {
         "ADXRS150 data sheet; J. A. Geen et al., IEEE J. Solid-State Circuits 37 (2002) 1860; "
         "mass, Q, split, quadrature and temperature coefficients chosen",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_tuning_fork),
     .state_size = sizeof(imki_fork_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_fork_init,
     .step = imki_fork_step,
     .observe = imki_fork_observe,
     .reduce = reduce,
