@@ -42,8 +42,8 @@ PUBLIC = {
     "physics": "fibre_optic free_gyro instrument laboratory mems_accelerometer pendulous_servo "
                "rate_gyro rate_integrating_gyro ring_laser shell_gyro spinning_mass "
                "suspended_rotor tuned_gyro tuning_fork vibrating_beam",
-    "jobs": "allan_log allocator calibrate_log channel_units compensate_log drift_models "
-            "evaluate_sheet even_record grade_position identify_curve identify_log "
+    "jobs": "allan_log allocator calibrate_log channel_units compensate_log convert_log "
+            "drift_models evaluate_sheet even_record grade_position identify_curve identify_log "
             "identify_several job navigate_log physics_log readable record record_plan "
             "simulate_log spectrum_log",
     "report": "report result show",
