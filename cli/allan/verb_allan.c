@@ -20,41 +20,37 @@ typedef struct allan_options {
     option_integer threads;
 } allan_options;
 
+#define AT(field) offsetof(allan_options, field)
+
 static const option allan_option_table[] = {
     {"statistic", 0, OPTION_TEXT, "NAME,NAME…|all", NULL, NULL,
      "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, haar; "
      "theo1 takes seconds a million samples",
-     offsetof(allan_options, statistic)},
+     AT(statistic)},
     {"tau", 0, OPTION_TEXT, "octave|decade|many|all|LIST", NULL, NULL,
      "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, then 32 "
      "to the octave), every one, or a list such as 1,10,100 in seconds",
-     offsetof(allan_options, tau)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
-     "of the two-sided intervals; default 0.95", offsetof(allan_options, confidence)},
+     AT(tau)},
+    CONFIDENCE_OPTION(AT(confidence), "of the two-sided intervals; default 0.95"),
     {"edf", 0, OPTION_CHOICE, "CHOICE", NULL, "exact|greenhall-riley",
      "degrees of freedom behind the intervals: of the sampled process (the default), or by the "
      "published formulas for the continuous one",
-     offsetof(allan_options, edf)},
+     AT(edf)},
     {"bias", 0, OPTION_CHOICE, "CHOICE", NULL, "removed|published|left",
      "the bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: taken off for the "
      "noise "
      "found (the default), the same with the factors in print, or left in",
-     offsetof(allan_options, bias)},
+     AT(bias)},
     {"type", 0, OPTION_CHOICE, "CHOICE", NULL, "rate|phase",
-     "what the columns hold: rates (the default), or their integral (phase, angle)",
-     offsetof(allan_options, type)},
+     "what the columns hold: rates (the default), or their integral (phase, angle)", AT(type)},
     {"output", 'o', OPTION_OUTPUT, "FILE.csv", NULL, NULL,
      "write the long table (one line per channel and averaging time, SI) here; - is standard "
      "output",
-     offsetof(allan_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
-     "draw the deviations with their intervals", offsetof(allan_options, plot)},
-    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
-     "write one self-contained page: plot and tables", offsetof(allan_options, report)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of a table",
-     offsetof(allan_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
-     offsetof(allan_options, threads)},
+     AT(output)},
+    PLOT_OPTION(AT(plot), "draw the deviations with their intervals"),
+    REPORT_OPTION(AT(report), "write one self-contained page: plot and tables"),
+    JSON_OPTION(AT(json), "print the result as JSON instead of a table"),
+    THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static int run(int count, char **words);
@@ -81,10 +77,7 @@ const verb allan_verb = {
         "finite keep their places empty: oadev of rates is then taken of what is there, and the "
         "share of the record's pairs behind each point is shown. The other statistics, and phase, "
         "need a complete record: --gaps bridge or --gaps longest.",
-    .groups = {{"Options", sizeof allan_option_table / sizeof allan_option_table[0],
-                allan_option_table, 0},
-               {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
-                offsetof(allan_options, log)}},
+    .groups = {OPTION_GROUP("Options", allan_option_table, 0), LOG_INPUT_GROUP(AT(log))},
     .run = run};
 
 /* Names of --statistic. @return -1 or the exit code */
@@ -265,7 +258,7 @@ static int analyse(const allan_options *o, const char *path, const imk_allan_log
 
 static int run(int count, char **words)
 {
-    allan_options o = {.confidence = 0.95, .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
+    allan_options o = {.confidence = 0.95, .log = {.gaps = IMK_GAPS_KEEP, .missing_allowed = true}};
     const char *operands[OPERANDS_MAX];
     imk_allan_log_settings settings = imk_allan_log_default();
     double *times = NULL;

@@ -8,18 +8,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(field) offsetof(compensate_emission, field)
+
 const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
     {"emit-c", 0, OPTION_FILE, "DIR", NULL, NULL,
-     "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c",
-     offsetof(compensate_emission, directory)},
+     "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c", AT(directory)},
     {"arithmetic", 0, OPTION_CHOICE, "KIND", NULL, "float|double|fixed",
      "of that code: float (default), double, or fixed: 32-bit integers, for parts without an FPU",
-     offsetof(compensate_emission, arithmetic)},
+     AT(arithmetic)},
     {"prefix", 0, OPTION_TEXT, "NAME", NULL, NULL,
-     "of its files and names; default: imukit_ and the name of the model",
-     offsetof(compensate_emission, prefix)},
+     "of its files and names; default: imukit_ and the name of the model", AT(prefix)},
     {"vectors", 0, OPTION_INTEGER, "N", NULL, "1-1000000",
-     "samples in its self-test, 1 to 1000000; default 64", offsetof(compensate_emission, vectors)},
+     "samples in its self-test, 1 to 1000000; default 64", AT(vectors)},
 };
 
 static const char *const arithmetics[3] = {"float", "double", "fixed"};

@@ -10,43 +10,35 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(field) offsetof(compensate_options, field)
+
 static const option compensate_option_table[] = {
     {"output", 'o', OPTION_OUTPUT, "LOG", NULL, NULL,
      "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output",
-     offsetof(compensate_options, output)},
+     AT(output)},
     {"temperature", 0, OPTION_QUANTITY, "TEMPERATURE", "degC", NULL,
-     "of the unit, for a log without such a column; overrules one",
-     offsetof(compensate_options, temperature)},
+     "of the unit, for a log without such a column; overrules one", AT(temperature)},
     {"temperature-time", 0, OPTION_QUANTITY, "TIME", "s", NULL,
      "over which the rate of temperature is smoothed, where the model needs it; default 30s",
-     offsetof(compensate_options, temperature_time)},
+     AT(temperature_time)},
     {"powered-for", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long the unit was on before the first row, for warm-up; default 0s",
-     offsetof(compensate_options, powered_for)},
+     "how long the unit was on before the first row, for warm-up; default 0s", AT(powered_for)},
     {"rate-limit", 0, OPTION_QUANTITY, "RATE", "deg/s", "positive",
-     "largest rate, where the model has nonlinear terms and no range",
-     offsetof(compensate_options, rate_limit)},
+     "largest rate, where the model has nonlinear terms and no range", AT(rate_limit)},
     {"force-limit", 0, OPTION_QUANTITY, "FORCE", "g", "positive",
-     "largest specific force, likewise", offsetof(compensate_options, force_limit)},
+     "largest specific force, likewise", AT(force_limit)},
     {"to-gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the rates written; default: as read, rad/s for counts",
-     offsetof(compensate_options, to_gyro_unit)},
+     "of the rates written; default: as read, rad/s for counts", AT(to_gyro_unit)},
     {"to-accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the forces written; default: as read, m/s^2 for counts",
-     offsetof(compensate_options, to_accel_unit)},
-    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
-     "digits after the point, 0 to 17; default: as many as the number needs",
-     offsetof(compensate_options, decimals)},
+     "of the forces written; default: as read, m/s^2 for counts", AT(to_accel_unit)},
+    DECIMALS_OPTION(AT(decimals)),
     {"flags", 0, OPTION_FLAG, NULL, NULL, NULL,
      "add a column of flags: 1 saturated, 2 temperature, 4 limit, 8 not finite, 16 acceleration",
-     offsetof(compensate_options, flags)},
-    {"strict", 0, OPTION_FLAG, NULL, NULL, NULL, "exit with 1 when there is a warning",
-     offsetof(compensate_options, strict)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "print the summary as JSON; the log goes to a file then", offsetof(compensate_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
-     "threads to use; default: all processors. The bytes do not depend on it",
-     offsetof(compensate_options, threads)},
+     AT(flags)},
+    STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
+    JSON_OPTION(AT(json), "print the summary as JSON; the log goes to a file then"),
+    THREADS_OPTION(AT(threads),
+                   "threads to use; default: all processors. The bytes do not depend on it"),
 };
 
 static int run(int count, char **words);
@@ -74,13 +66,11 @@ const verb compensate_verb = {
         "acceleration is the central difference of the rates. A gap in time begins anew.\n\nWith "
         "--emit-c and no LOG, the correction is written as C99 code without loops, heap or libm. "
         "Lever arms, warm-up and the rate of temperature stay in there.",
-    .groups = {{"Options", sizeof compensate_option_table / sizeof compensate_option_table[0],
-                compensate_option_table, 0},
+    .groups = {OPTION_GROUP("Options", compensate_option_table, 0),
                {"Code for a device", COMPENSATE_EMIT_OPTIONS, compensate_emit_options,
-                offsetof(compensate_options, emission)},
-               {"Terms", TERM_OPTIONS, term_options, offsetof(compensate_options, terms)},
-               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
-                offsetof(compensate_options, log)}},
+                AT(emission)},
+               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
     .run = run};
 
 int compensate_models(const compensate_options *o, const char *name, imk_model *whole,

@@ -19,27 +19,25 @@ static const char formats[] =
 static const char target_formats[] =
     "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
 
+#define AT(field) offsetof(parameter_options, field)
+
 const option parameter_option_table[PARAMETER_OPTIONS] = {
     {"from", 0, OPTION_CHOICE, "FORMAT", NULL, formats,
-     "of the parameter file read; default: by its content", offsetof(parameter_options, from)},
+     "of the parameter file read; default: by its content", AT(from)},
     {"to", 0, OPTION_CHOICE, "FORMAT", NULL, target_formats,
-     "of the parameter file written; default: a model file", offsetof(parameter_options, to)},
+     "of the parameter file written; default: a model file", AT(to)},
     {"density", 0, OPTION_CHOICE, "SIDES", NULL, "as-the-program|two-sided|one-sided",
-     "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)",
-     offsetof(parameter_options, density)},
+     "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)", AT(density)},
     {"sensor", 0, OPTION_TEXT, "NAME", NULL, NULL, "which of several in the parameter file",
-     offsetof(parameter_options, sensor)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print what was assumed and left out as JSON",
-     offsetof(parameter_options, json)},
+     AT(sensor)},
+    JSON_OPTION(AT(json), "print what was assumed and left out as JSON"),
     {"flicker", 0, OPTION_CHOICE, "CHOICE", NULL,
      "random-walk|gauss-markov|two-gauss-markov|left-out",
-     "--to filter: what stands for bias instability, which no filter state is",
-     offsetof(parameter_options, flicker)},
+     "--to filter: what stands for bias instability, which no filter state is", AT(flicker)},
     {"tau-from", 0, OPTION_QUANTITY, "TIME", "s", "1e-9..1e9",
-     "--to filter: shortest averaging time at which that has to hold; default 1 s",
-     offsetof(parameter_options, tau_from)},
+     "--to filter: shortest averaging time at which that has to hold; default 1 s", AT(tau_from)},
     {"tau-to", 0, OPTION_QUANTITY, "TIME", "s", "1e-9..1e9",
-     "--to filter: the longest; default 1000 s", offsetof(parameter_options, tau_to)},
+     "--to filter: the longest; default 1000 s", AT(tau_to)},
 };
 
 bool parameters_or_model(const char *path)

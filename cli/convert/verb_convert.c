@@ -24,45 +24,38 @@ typedef struct convert_options {
     option_integer decimals, threads;
 } convert_options;
 
+#define AT(field) offsetof(convert_options, field)
+
 static const option convert_option_table[] = {
     {"select", 0, OPTION_TEXT, "NAMES", NULL, NULL,
-     "columns to keep, in this order, such as time,gyro_x; default: all",
-     offsetof(convert_options, to.select)},
+     "columns to keep, in this order, such as time,gyro_x; default: all", AT(to.select)},
     {"to-gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the gyro columns written; default: as read", offsetof(convert_options, unit[GYRO_UNIT])},
+     "of the gyro columns written; default: as read", AT(unit[GYRO_UNIT])},
     {"to-accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the accelerometer columns written; default: as read",
-     offsetof(convert_options, unit[ACCEL_UNIT])},
+     "of the accelerometer columns written; default: as read", AT(unit[ACCEL_UNIT])},
     {"to-time-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the time column written; default: as read", offsetof(convert_options, unit[TIME_UNIT])},
+     "of the time column written; default: as read", AT(unit[TIME_UNIT])},
     {"to-temperature-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the temperature column written; default: as read",
-     offsetof(convert_options, unit[TEMPERATURE_UNIT])},
-    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
-     "digits after the point, 0 to 17; default: as many as the number needs",
-     offsetof(convert_options, decimals)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
-     offsetof(convert_options, threads)},
+     "of the temperature column written; default: as read", AT(unit[TEMPERATURE_UNIT])},
+    DECIMALS_OPTION(AT(decimals)),
+    THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static const option motion_option_table[] = {
     {"to-point", 0, OPTION_TEXT, "\"X Y Z UNIT\"", NULL, NULL,
      "specific force at another point of the body, forward right down of the accelerometers, such "
      "as \"0.1 0 -0.05 m\"",
-     offsetof(convert_options, to_point)},
+     AT(to_point)},
     {"gravity-free", 0, OPTION_FLAG, NULL, NULL, NULL,
      "acceleration relative to the Earth instead of specific force; needs --latitude, and a unit "
      "that is still at first",
-     offsetof(convert_options, to.gravity_free)},
+     AT(to.gravity_free)},
     {"still", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long it is still, for roll and pitch; default 10s", offsetof(convert_options, to.still)},
-    {"latitude", 0, OPTION_QUANTITY, "ANGLE", "deg", "-90..90", "geodetic, for gravity",
-     offsetof(convert_options, to.latitude)},
-    {"height", 0, OPTION_QUANTITY, "LENGTH", "m", "-10000..100000",
-     "above the ellipsoid; default 0m", offsetof(convert_options, to.height)},
-    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000",
-     "at first, from north to east, for the Earth's rotation; default 0deg",
-     offsetof(convert_options, to.yaw)},
+     "how long it is still, for roll and pitch; default 10s", AT(to.still)},
+    LATITUDE_OPTION(AT(to.latitude), "geodetic, for gravity"),
+    HEIGHT_OPTION(AT(to.height)),
+    ANGLE_OPTION("yaw", AT(to.yaw),
+                 "at first, from north to east, for the Earth's rotation; default 0deg"),
 };
 
 static int run(int count, char **words);
@@ -89,14 +82,10 @@ const verb convert_verb = {
         "ardupilot "
         "are recognised by their content; what was assumed about units and densities, and what a "
         "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
-    .groups = {{"Options", sizeof convert_option_table / sizeof convert_option_table[0],
-                convert_option_table, 0},
-               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table,
-                offsetof(convert_options, parameters)},
-               {"Another point, without gravity",
-                sizeof motion_option_table / sizeof motion_option_table[0], motion_option_table, 0},
-               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
-                offsetof(convert_options, log)}},
+    .groups = {OPTION_GROUP("Options", convert_option_table, 0),
+               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
+               OPTION_GROUP("Another point, without gravity", motion_option_table, 0),
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
     .run = run};
 
 /* What each end is. A name without an ending tells nothing of what is read: its content is looked

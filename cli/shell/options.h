@@ -52,8 +52,62 @@ typedef struct example {
     const char *command, *meaning;
 } example;
 
+/* All options of a table as a group. */
+#define OPTION_GROUP(title, table, offset)                                                         \
+    {                                                                                              \
+        title, sizeof(table) / sizeof(table)[0], table, offset                                     \
+    }
+
 /* OPTION_FRACTION of a confidence: beyond, its quantiles have no digits. */
 #define CONFIDENCE_RANGE "0.001..0.999999999"
+
+/* Options that several verbs have, each with its own words. */
+#define PLOT_OPTION(at, help)                                                                      \
+    {                                                                                              \
+        "plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL, help, at                  \
+    }
+#define REPORT_OPTION(at, help)                                                                    \
+    {                                                                                              \
+        "report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, help, at                              \
+    }
+#define JSON_OPTION(at, help)                                                                      \
+    {                                                                                              \
+        "json", 0, OPTION_FLAG, NULL, NULL, NULL, help, at                                         \
+    }
+#define STRICT_OPTION(at, help)                                                                    \
+    {                                                                                              \
+        "strict", 0, OPTION_FLAG, NULL, NULL, NULL, help, at                                       \
+    }
+#define THREADS_OPTION(at, help)                                                                   \
+    {                                                                                              \
+        "threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", help, at                               \
+    }
+#define SEED_OPTION(at, help)                                                                      \
+    {                                                                                              \
+        "seed", 's', OPTION_INTEGER, "N", NULL, NULL, help, at                                     \
+    }
+#define CONFIDENCE_OPTION(at, help)                                                                \
+    {                                                                                              \
+        "confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE, help, at             \
+    }
+#define DECIMALS_OPTION(at)                                                                        \
+    {                                                                                              \
+        "decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",                                          \
+            "digits after the point, 0 to 17; default: as many as the number needs", at            \
+    }
+#define LATITUDE_OPTION(at, help)                                                                  \
+    {                                                                                              \
+        "latitude", 0, OPTION_QUANTITY, "ANGLE", "deg", "-90..90", help, at                        \
+    }
+#define HEIGHT_OPTION(at)                                                                          \
+    {                                                                                              \
+        "height", 0, OPTION_QUANTITY, "LENGTH", "m", "-10000..100000",                             \
+            "above the ellipsoid; default 0m", at                                                  \
+    }
+#define ANGLE_OPTION(name, at, help)                                                               \
+    {                                                                                              \
+        name, 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", help, at                        \
+    }
 
 /* OPERANDS_MAX is room for the operands of most verbs; one that takes more makes its own. */
 enum { OPERANDS_MAX = 8, GROUPS_MAX = 4 };

@@ -18,49 +18,40 @@ typedef struct spectrum_options {
     option_integer threads;
 } spectrum_options;
 
+#define AT(field) offsetof(spectrum_options, field)
+
 static const option spectrum_option_table[] = {
     {"method", 0, OPTION_CHOICE, "CHOICE", NULL, "welch|multitaper",
      "averaged windowed segments (the default), or Slepian tapers, for records too short to be "
      "cut up",
-     offsetof(spectrum_options, method)},
+     AT(method)},
     {"resolution", 0, OPTION_QUANTITY, "BANDWIDTH", "Hz", "positive",
      "how far two lines must be apart to be told from each other; default: 31 segments, or one for "
      "multitaper",
-     offsetof(spectrum_options, resolution)},
+     AT(resolution)},
     {"window", 0, OPTION_CHOICE, "CHOICE", NULL, "hann|blackman-harris|kaiser",
-     "of the segments; the latter two for weak lines beside strong ones",
-     offsetof(spectrum_options, window)},
+     "of the segments; the latter two for weak lines beside strong ones", AT(window)},
     {"trend", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "remove a straight line from each segment, not its mean only",
-     offsetof(spectrum_options, trend)},
+     "remove a straight line from each segment, not its mean only", AT(trend)},
     {"density", 0, OPTION_CHOICE, "SIDES", NULL, "two-sided|one-sided",
      "of the densities shown: IEEE's convention (the default), or twice that as many data sheets "
      "and analysers have it; parameters are always two-sided",
-     offsetof(spectrum_options, density)},
+     AT(density)},
     {"false-alarm", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
-     "chance that a channel without lines shows any; default 0.001",
-     offsetof(spectrum_options, false_alarm)},
+     "chance that a channel without lines shows any; default 0.001", AT(false_alarm)},
     {"from", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "not negative",
-     "lowest frequency the noise parameters are fitted to; default: the lowest resolved",
-     offsetof(spectrum_options, from)},
+     "lowest frequency the noise parameters are fitted to; default: the lowest resolved", AT(from)},
     {"to", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "positive",
-     "highest; set it below the sensor's own filter; default: half the sample rate",
-     offsetof(spectrum_options, to)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
-     "of the two-sided intervals; default 0.95", offsetof(spectrum_options, confidence)},
+     "highest; set it below the sensor's own filter; default: half the sample rate", AT(to)},
+    CONFIDENCE_OPTION(AT(confidence), "of the two-sided intervals; default 0.95"),
     {"output", 'o', OPTION_OUTPUT, "FILE.csv", NULL, NULL,
      "write the densities (100 per decade, one line per channel and frequency, SI) here; - is "
      "standard output",
-     offsetof(spectrum_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
-     "draw the root densities with their intervals, lines marked",
-     offsetof(spectrum_options, plot)},
-    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
-     "write one self-contained page: plot and tables", offsetof(spectrum_options, report)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
-     offsetof(spectrum_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
-     offsetof(spectrum_options, threads)},
+     AT(output)},
+    PLOT_OPTION(AT(plot), "draw the root densities with their intervals, lines marked"),
+    REPORT_OPTION(AT(report), "write one self-contained page: plot and tables"),
+    JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
+    THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static int run(int count, char **words);
@@ -82,10 +73,7 @@ const verb spectrum_verb = {
         "analysed.\n\nLines are listed with frequency, amplitude and what they are multiples of. "
         "The noise parameters are a cross-check of imukit identify, which is the better "
         "estimator; where they differ, something that neither models is in the log.",
-    .groups = {{"Options", sizeof spectrum_option_table / sizeof spectrum_option_table[0],
-                spectrum_option_table, 0},
-               {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
-                offsetof(spectrum_options, log)}},
+    .groups = {OPTION_GROUP("Options", spectrum_option_table, 0), LOG_INPUT_GROUP(AT(log))},
     .run = run};
 
 static void write_rows(const imk_spectrum_log *s, size_t channel, imk_output_file *file)
