@@ -224,7 +224,6 @@ imk_status imk_convert_log_run(const imk_record_source *source,
                                const imk_record_sink *sink, const imk_job *job,
                                imk_findings *findings, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
     imk_findings unheard = {.count = 0};
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
@@ -232,7 +231,7 @@ imk_status imk_convert_log_run(const imk_record_source *source,
     conversion c = {.source = source,
                     .settings = settings,
                     .sink = sink,
-                    .job = job ? job : &alone,
+                    .job = imki_job_of(job),
                     .findings = findings ? findings : &unheard};
     c.motion = (imki_convert_motion){.settings = settings, .findings = c.findings, .data = c.data};
     c.findings->count = 0;
