@@ -25,7 +25,8 @@ LAYERS = [["base"], ["model"], ["noise", "motion"], ["simulate", "identify", "co
           ["calibrate", "navigate", "physics"], ["jobs"], ["report"], ["io"], ["cli"]]
 RANK = {module: rank for rank, modules in enumerate(LAYERS) for module in modules}
 
-# Module of each public header. A new one must be added here, unless it is an instrument's.
+# Module of each public header. A new one must be added here, but for those of instruments, and of
+# jobs, which are what imukit/jobs.h gathers besides.
 PUBLIC = {
     "base": "attitude decimal distributions elementary executor fourier least_squares "
             "linear_algebra names random samples status units utf8",
@@ -40,10 +41,6 @@ PUBLIC = {
                  "repeatability static_detection test_record thermal",
     "navigate": "alignment drift navigate zero_velocity",
     "physics": "instrument laboratory",  # and of each folder of src/physics
-    "jobs": "allan_log allocator calibrate_log channel_units compensate_log drift_models "
-            "evaluate_sheet even_record grade_position identify_curve identify_log "
-            "identify_several job navigate_log physics_log readable record record_plan "
-            "simulate_log spectrum_log",
     "report": "report result show",
     "io": "campaign design_file figure_file firmware_file io log memory_limit model_file "
           "motion_file output_file parameter_file thread_pool",
@@ -63,6 +60,12 @@ MODULE_OF |= {folder.name: "physics" for folder in (ROOT / "src/physics").iterdi
               if folder.is_dir()}
 BUILD = ROOT / os.environ.get("BUILD", "build")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+
+
+def gather_jobs():
+    """Add what imukit/jobs.h gathers to the modules of public headers."""
+    for _, target in includes(ROOT / "include/imukit/jobs.h"):
+        MODULE_OF.setdefault(pathlib.Path(target).stem, "jobs")
 
 
 def code_files():
@@ -207,6 +210,7 @@ def describe(loop, graph):
 
 def main():
     failed = False
+    gather_jobs()
     for line in [*check_layers(), *check_rooms()]:
         print(line, flush=True)
         failed = True

@@ -242,14 +242,11 @@ static int analyse(const allan_options *o, const char *path, const imk_allan_log
         return code;
     imk_allan_log *a;
     imk_error error;
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    job_progress shown = job_progress_begin(path);
-    const imk_job job = job_progress_job(&shown, &executor);
+    threaded_job t;
+    threaded_job_begin(&t, path, o->threads.value);
     const imk_record_source source = imk_log_source(reader);
-    const imk_status status = imk_allan_log_run(&source, settings, &job, &a, &error);
-    job_progress_end(&shown);
-    imk_thread_pool_destroy(pool);
+    const imk_status status = imk_allan_log_run(&source, settings, &t.job, &a, &error);
+    threaded_job_end(&t);
     imk_log_close(reader);
     code = tell(o, path, a, status, &error);
     if (code < 0)
@@ -260,7 +257,7 @@ static int analyse(const allan_options *o, const char *path, const imk_allan_log
 
 static int run(int count, char **words)
 {
-    allan_options o = {.confidence = 0.95, .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
+    allan_options o = {.confidence = 0.95, .log = {.gaps = IMK_GAPS_KEEP, .missing_allowed = true}};
     const char *operands[OPERANDS_MAX];
     imk_allan_log_settings settings = imk_allan_log_default();
     double *times = NULL;

@@ -159,15 +159,12 @@ static int compensate(const compensate_options *o, const char *const *operands,
     int code = check_axes(o, settings->terms ? settings->terms : whole, &source);
     if (code >= 0)
         return code;
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    job_progress shown = job_progress_begin(operands[0]);
-    const imk_job job = job_progress_job(&shown, &executor);
+    threaded_job t;
+    threaded_job_begin(&t, operands[0], o->threads.value);
     imk_compensate_log *log;
     const imk_status status =
-        imk_compensate_log_run(&source, whole, settings, &sink, &job, &log, &error);
-    job_progress_end(&shown);
-    imk_thread_pool_destroy(pool);
+        imk_compensate_log_run(&source, whole, settings, &sink, &t.job, &log, &error);
+    threaded_job_end(&t);
     const imk_status ended = imk_log_sink_end(&written, status, &error);
     code = status == IMK_OK && ended != IMK_OK ? command_error(&error, NULL)
                                                : tell(operands, log, ended, &error);

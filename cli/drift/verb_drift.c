@@ -73,11 +73,6 @@ static const option output_option_table[] = {
     {"json", 0, A_FLAG, AT(json), "print as JSON"},
 };
 
-#define GROUP(title, table)                                                                        \
-    {                                                                                              \
-        title, sizeof(table) / sizeof(table)[0], table, 0                                          \
-    }
-
 static int run(int count, char **words);
 
 const verb drift_verb = {
@@ -100,10 +95,10 @@ const verb drift_verb = {
         "size is known (repeatability, noise) scatter. The covariance is linear: ~ marks where "
         "attitude errors are too large for it.\n\nRESULTS.h5 is what --monte-carlo or imukit merge "
         "wrote: its statistics are printed.",
-    .groups = {GROUP("Navigation", navigation_option_table),
+    .groups = {{A_GROUP("Navigation", navigation_option_table), 0},
                {A_GROUP("Terms", term_options), AT(terms)},
-               GROUP("Motion and place", place_option_table),
-               GROUP("Runs and output", output_option_table)},
+               {A_GROUP("Motion and place", place_option_table), 0},
+               {A_GROUP("Runs and output", output_option_table), 0}},
     .run = run};
 
 /* ---- checks ---- */

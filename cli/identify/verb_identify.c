@@ -279,7 +279,7 @@ static int run(int count, char **words)
     identify_options o = {.confidence = 0.95,
                           .significance = 0.01,
                           .seed = {.value = 1},
-                          .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
+                          .log = {.gaps = IMK_GAPS_KEEP, .missing_allowed = true}};
     const char *operands[IMK_JOINT_RECORDS_MAX];
     size_t logs = 0;
     int code = options_parse(&identify_verb, count, words, &o, operands);

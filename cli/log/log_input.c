@@ -46,7 +46,7 @@ imk_log_settings log_input_settings(const log_input *input)
 
 int log_input_check(const log_input *input)
 {
-    if (input->gaps == GAPS_KEEP && !input->missing_allowed)
+    if (input->gaps == IMK_GAPS_KEEP && !input->missing_allowed)
         return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
                                "bridge or --gaps longest");
     return -1;
@@ -99,7 +99,7 @@ int log_input_tell(const char *path, const imk_findings *findings, imk_status st
     return log_input_tell_model(path, "the model", findings, status, error);
 }
 
-int log_input_load(const log_input *input, const char *path, log_channels *channels)
+int log_input_load(const log_input *input, const char *path, imk_even_record *channels)
 {
     imk_error error;
     imk_log_reader *reader;

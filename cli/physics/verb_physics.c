@@ -78,11 +78,6 @@ static const option output_option_table[] = {
     {"json", 0, A_FLAG, AT(json), "print the result as JSON"},
 };
 
-#define GROUP(title, table)                                                                        \
-    {                                                                                              \
-        title, sizeof(table) / sizeof(table)[0], table, 0                                          \
-    }
-
 static int run(int count, char **words);
 
 const verb physics_verb = {
@@ -104,8 +99,10 @@ const verb physics_verb = {
         "time; the input is held over a sample. x is the input axis; what y and z are stands in "
         "the documentation of each instrument. The views are drawn under the input of --rate and "
         "--acceleration, else each under an input that shows something.",
-    .groups = {GROUP("What to do", task_option_table), GROUP("Input", input_option_table),
-               GROUP("Running", run_option_table), GROUP("Output", output_option_table)},
+    .groups = {{A_GROUP("What to do", task_option_table), 0},
+               {A_GROUP("Input", input_option_table), 0},
+               {A_GROUP("Running", run_option_table), 0},
+               {A_GROUP("Output", output_option_table), 0}},
     .run = run};
 
 /* ---- checks ---------------------------------------------------------------------------------- */

@@ -153,14 +153,11 @@ static int analyse(const spectrum_options *o, const char *path,
         return code;
     imk_spectrum_log *s;
     imk_error error;
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    job_progress shown = job_progress_begin(path);
-    const imk_job job = job_progress_job(&shown, &executor);
+    threaded_job t;
+    threaded_job_begin(&t, path, o->threads.value);
     const imk_record_source source = imk_log_source(reader);
-    const imk_status status = imk_spectrum_log_run(&source, settings, &job, &s, &error);
-    job_progress_end(&shown);
-    imk_thread_pool_destroy(pool);
+    const imk_status status = imk_spectrum_log_run(&source, settings, &t.job, &s, &error);
+    threaded_job_end(&t);
     imk_log_close(reader);
     code = tell(o, path, s, status, &error);
     if (code < 0)

@@ -12,7 +12,6 @@
 #include "imukit/samples.h"
 
 #include <math.h>
-#include <string.h>
 
 static const uint32_t settings_cookie = 0x434F4D31; /* "COM1" */
 
@@ -319,16 +318,14 @@ imk_status imk_compensate_log_run(const imk_record_source *source, const imk_mod
                                   const imk_record_sink *sink, const imk_job *job,
                                   imk_compensate_log **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    imk_status status;
     *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_compensate_log_default()");
-    imk_compensate_log *log = imki_resize(&job->allocator, NULL, sizeof *log);
+    job = imki_job_of(job);
+    imk_compensate_log *log = imki_result_new(
+        job, settings->cookie == settings_cookie ? NULL : "imk_compensate_log_default()",
+        sizeof *log, &status, error);
     if (!log)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    memset(log, 0, sizeof *log);
+        return status;
     log->settings = *settings;
     log->model = settings->terms ? *settings->terms : *model;
     log->counts.stretches = 1;
@@ -337,7 +334,7 @@ imk_status imk_compensate_log_run(const imk_record_source *source, const imk_mod
     imk_compensation_model(model, &log->model);
     imki_arena arena = {.allocator = job->allocator};
     stream *s = allocate(source, &arena);
-    imk_status status = IMK_ERROR_MEMORY;
+    status = IMK_ERROR_MEMORY;
     if (s) {
         s->source = source;
         s->sink = sink;

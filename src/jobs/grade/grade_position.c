@@ -170,8 +170,7 @@ static imk_status find_position(imk_graded *one, const imk_job *job, imk_error *
 imk_status imk_grade_run(const imk_model *model, const imk_job *job, imk_graded **result,
                          imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     *result = NULL;
     imk_graded *one = imki_resize(&job->allocator, NULL, sizeof *one);
     if (!one)

@@ -296,8 +296,7 @@ imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                const imk_record_sink *outputs, const imk_record_sink *signals,
                                const imk_job *job, imk_physics_log **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     *result = NULL;
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,

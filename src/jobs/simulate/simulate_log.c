@@ -179,8 +179,7 @@ imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_s
                                 const imk_record_sink *sink, const char *stage, const imk_job *job,
                                 imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
                              "imk_simulate_log_default()");
