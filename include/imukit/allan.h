@@ -9,9 +9,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Which statistic, what it estimates, and the averaging factors m a record of n rate samples
  * allows (docs/theory/allan-deviation.md says which to use for what; equations of [RILEY2008]). */
@@ -202,7 +200,5 @@ IMK_API imk_status imk_allan_points(const imk_allan_settings *settings, size_t n
                                     const double *sums, size_t factor_count, const size_t *factors,
                                     imk_allan_point *points, const imk_executor *executor);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

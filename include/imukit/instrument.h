@@ -24,9 +24,7 @@
 #include "imukit/model.h"
 #include "imukit/random.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_INSTRUMENT_OUTPUTS_MAX = 8, IMK_INSTRUMENT_SIGNALS_MAX = 16, IMK_VIEW_CURVES_MAX = 4 };
 
@@ -173,7 +171,5 @@ IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void
  *  case axes y and z of each are the next body axes in turn. Evidence is kept for axis x only. */
 IMK_API void imk_model_three_axes(imk_model *model);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

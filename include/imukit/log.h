@@ -17,9 +17,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** How to read a file. Start from imk_log_settings_default(). Texts may be NULL: taken from the
  *  header. */
@@ -188,7 +186,5 @@ IMK_API imk_status imk_log_sink_end(imk_log_sink *log, imk_status status, imk_er
 /** Give up: nothing appears. Frees the writer; NULL is allowed. */
 IMK_API void imk_log_abandon(imk_log_writer *writer);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -6,9 +6,7 @@
 
 #include "imukit/model.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** The deterministic terms that have numbers of their own. Values are fixed for ever. */
 typedef enum imk_model_term {
@@ -55,7 +53,5 @@ IMK_API imk_status imk_model_parameter_parse(const char *name, imk_model_paramet
 /** SI unit as the model file writes it: "rad/s", "1", "rad", "1/(m/s^2)", "rad/s/(m/s^2)" … */
 IMK_API const char *imk_model_parameter_unit(imk_model_parameter parameter);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif
