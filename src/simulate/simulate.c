@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The simulator: memory, channels, and the order in which rows are made. */
 #include "imukit/simulate.h"
+#include "base/workspace_internal.h"
 
 #include "simulate_internal.h"
 
@@ -63,40 +64,29 @@ static size_t axes_of(const imk_triad *triad)
     return triad->present ? (size_t)triad->axis_count : 0;
 }
 
-static size_t aligned(size_t size)
-{
-    return (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-}
-
 /* Bytes of the lists of one channel. */
 static size_t list_size(const imk_noise *noise)
 {
-    return aligned((size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state)) +
-           aligned((size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state)) +
-           aligned((size_t)noise->resonance_count * sizeof(imk_arma_state));
+    return imki_lines((size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state)) +
+           imki_lines((size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state)) +
+           imki_lines((size_t)noise->resonance_count * sizeof(imk_arma_state));
 }
 
 size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
 {
     size_t gyros = axes_of(&model->gyro), accels = axes_of(&model->accel);
-    return aligned(sizeof(imk_simulator)) + aligned((gyros + accels) * sizeof(imki_channel)) +
+    return imki_lines(sizeof(imk_simulator)) + imki_lines((gyros + accels) * sizeof(imki_channel)) +
            gyros * list_size(&model->gyro.noise) + accels * list_size(&model->accel.noise) +
-           aligned(imki_scene_size(model, simulation) * sizeof(double));
-}
-
-static void *take(unsigned char **memory, size_t size)
-{
-    void *taken = *memory;
-    *memory += aligned(size);
-    return taken;
+           imki_lines(imki_scene_size(model, simulation) * sizeof(double));
 }
 
 static void assign_lists(imki_channel *channel, const imk_noise *noise, unsigned char **memory)
 {
     channel->gauss_markov =
-        take(memory, (size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state));
-    channel->sinusoid = take(memory, (size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state));
-    channel->resonance = take(memory, (size_t)noise->resonance_count * sizeof(imk_arma_state));
+        imki_take(memory, (size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state));
+    channel->sinusoid =
+        imki_take(memory, (size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state));
+    channel->resonance = imki_take(memory, (size_t)noise->resonance_count * sizeof(imk_arma_state));
 }
 
 /* ---- start ---- */
@@ -182,15 +172,15 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
                              "imk_simulator_size() bytes");
     if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
-    const size_t columns_size = aligned(imki_scene_size(model, simulation) * sizeof(double));
+    const size_t columns_size = imki_lines(imki_scene_size(model, simulation) * sizeof(double));
     memset(memory, 0, imk_simulator_size(model, simulation) - columns_size);
     unsigned char *rest = memory;
-    imk_simulator *made = take(&rest, sizeof *made);
+    imk_simulator *made = imki_take(&rest, sizeof *made);
     made->random = imk_random_seeded(simulation->seed);
     made->drops = model->timing.drops.value;
     made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
     made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
-    made->channel = take(&rest, made->channels * sizeof *made->channel);
+    made->channel = imki_take(&rest, made->channels * sizeof *made->channel);
     /* The columns of the scene come last. */
     double *columns = (double *)(void *)((unsigned char *)memory +
                                          imk_simulator_size(model, simulation) - columns_size);

@@ -5,6 +5,7 @@
  * lowest frequencies, are kept from every record, with the length of its transform; bands of
  * several whose centres agree to 1 % are averaged, degrees of freedom as weights. What comes out is
  * a set of bands like that of one record, and goes the same way: terms, then intervals. */
+#include "base/workspace_internal.h"
 #include "joint_internal.h"
 
 #include <math.h>
@@ -134,21 +135,9 @@ static void gather_resonances(size_t count, const imk_identification *single,
         }
 }
 
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
-
 size_t imk_identify_joint_workspace_size(void)
 {
-    return 64 + 2 * aligned(sizeof(imki_bands)) + 3 * aligned(sizeof(imki_fit));
-}
-
-static void *take(char **memory, size_t size)
-{
-    void *start = *memory;
-    *memory += aligned(size);
-    return start;
+    return 64 + 2 * imki_lines(sizeof(imki_bands)) + 3 * imki_lines(sizeof(imki_fit));
 }
 
 imk_status imk_identify_joint(const imk_identify_settings *settings, size_t count,
@@ -160,13 +149,13 @@ imk_status imk_identify_joint(const imk_identify_settings *settings, size_t coun
     const imk_status status = check(settings, count, summaries, workspace_size, error);
     if (status != IMK_OK)
         return status;
-    char *memory = (char *)workspace + (64 - (uintptr_t)workspace % 64) % 64;
+    unsigned char *memory = imki_align(workspace);
     imki_work work = {.settings = settings, .scale = summaries[0]->scale, .bands_given = true};
-    work.bands = take(&memory, sizeof(imki_bands));
-    imki_bands *other = take(&memory, sizeof(imki_bands));
-    work.fit = take(&memory, sizeof(imki_fit));
-    work.trial = take(&memory, sizeof(imki_fit));
-    work.chosen = take(&memory, sizeof(imki_fit));
+    work.bands = imki_take(&memory, sizeof(imki_bands));
+    imki_bands *other = imki_take(&memory, sizeof(imki_bands));
+    work.fit = imki_take(&memory, sizeof(imki_fit));
+    work.trial = imki_take(&memory, sizeof(imki_fit));
+    work.chosen = imki_take(&memory, sizeof(imki_fit));
     if (!join(count, summaries, work.bands, other))
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "records", NULL,
                              "fewer of them, or of the same length");

@@ -2,6 +2,7 @@
 /* Identification of one channel: checks and memory, then spectrum and lines (identify_lines.c), the
  * fit and the choice of terms (identify_terms.c), intervals (identify_intervals.c), and how far it
  * agrees with the Allan deviation (identify_verdict.c). */
+#include "base/workspace_internal.h"
 #include "identify/records/missing_internal.h"
 #include "identify_internal.h"
 #include "imukit/fourier.h"
@@ -16,11 +17,6 @@ imk_identify_settings imk_identify_default(void)
         .cookie = COOKIE, .confidence = 0.95, .significance = 0.01, .shape = true};
 }
 
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
-
 /* At most three quarters of a record may be missing. */
 static size_t missing_maximum(size_t n)
 {
@@ -29,9 +25,10 @@ static size_t missing_maximum(size_t n)
 
 size_t imk_identify_workspace_size(size_t n)
 {
-    return 64 + 3 * aligned((n + 1) * sizeof(double)) + aligned(sizeof(imki_bands)) +
-           aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) + 3 * aligned(sizeof(imki_fit)) +
-           aligned(imk_cosine_workspace_size(n)) + imki_missing_size(missing_maximum(n));
+    return 64 + 3 * imki_lines((n + 1) * sizeof(double)) + imki_lines(sizeof(imki_bands)) +
+           imki_lines(IMKI_POINTS_MAX * sizeof(imk_allan_point)) +
+           3 * imki_lines(sizeof(imki_fit)) + imki_lines(imk_cosine_workspace_size(n)) +
+           imki_missing_size(missing_maximum(n));
 }
 
 /* Cut NaN off the ends of a record; returns how many at its start. A length with large prime
@@ -55,26 +52,19 @@ static size_t trim(size_t *n, const double **samples)
     return before;
 }
 
-static void *take(char **memory, size_t size)
-{
-    void *start = *memory;
-    *memory += aligned(size);
-    return start;
-}
-
 static void lay_out(imki_work *w, void *workspace, size_t missing)
 {
-    char *memory = (char *)workspace + (64 - (uintptr_t)workspace % 64) % 64;
-    w->samples = take(&memory, (w->n + 1) * sizeof(double));
-    w->coefficients = take(&memory, (w->n + 1) * sizeof(double));
-    w->cumulative = take(&memory, (w->n + 1) * sizeof(double));
-    w->points = take(&memory, IMKI_POINTS_MAX * sizeof(imk_allan_point));
-    w->bands = take(&memory, sizeof(imki_bands));
-    w->fit = take(&memory, sizeof(imki_fit));
-    w->trial = take(&memory, sizeof(imki_fit));
-    w->chosen = take(&memory, sizeof(imki_fit));
+    unsigned char *memory = imki_align(workspace);
+    w->samples = imki_take(&memory, (w->n + 1) * sizeof(double));
+    w->coefficients = imki_take(&memory, (w->n + 1) * sizeof(double));
+    w->cumulative = imki_take(&memory, (w->n + 1) * sizeof(double));
+    w->points = imki_take(&memory, IMKI_POINTS_MAX * sizeof(imk_allan_point));
+    w->bands = imki_take(&memory, sizeof(imki_bands));
+    w->fit = imki_take(&memory, sizeof(imki_fit));
+    w->trial = imki_take(&memory, sizeof(imki_fit));
+    w->chosen = imki_take(&memory, sizeof(imki_fit));
     w->transform_size = imk_cosine_workspace_size(w->n);
-    w->transform = take(&memory, w->transform_size);
+    w->transform = imki_take(&memory, w->transform_size);
     w->missing = missing > 0 ? imki_missing_place(memory, missing) : NULL;
 }
 

@@ -2,6 +2,7 @@
 /* A long record, gathered as its samples come in: what is kept of them has the size of a segment
  * and of the means, not of the record. Samples are handled a chunk at a time, at the same places
  * however they were handed over. */
+#include "base/workspace_internal.h"
 #include "imukit/fourier.h"
 #include "long_record_internal.h"
 
@@ -13,11 +14,6 @@ enum {
     CAPACITY_LEAST = 1 << 20, /* means */
     MISSING_SHARE = 100       /* a segment with more than a hundredth missing is left out */
 };
-
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
 
 /* Blocks of at most 128 samples, so that the slow spectrum and the fast one overlap well. */
 imki_record_sizes imki_record_sizes_for(size_t expected)
@@ -41,33 +37,27 @@ static size_t sums_size(const imki_record_sizes *sizes)
 size_t imki_record_memory(const imki_record_sizes *sizes)
 {
     const size_t segment = (sizes->segment + 1) * sizeof(double);
-    return 64 + aligned(sizeof(imk_identify_record)) + 3 * aligned(segment) +
-           aligned(imk_cosine_workspace_size(sizes->segment)) +
-           aligned(sizes->capacity * sizeof(double)) + aligned(sums_size(sizes) * sizeof(double));
-}
-
-static void *take(char **memory, size_t size)
-{
-    void *start = *memory;
-    *memory += aligned(size);
-    return start;
+    return 64 + imki_lines(sizeof(imk_identify_record)) + 3 * imki_lines(segment) +
+           imki_lines(imk_cosine_workspace_size(sizes->segment)) +
+           imki_lines(sizes->capacity * sizeof(double)) +
+           imki_lines(sums_size(sizes) * sizeof(double));
 }
 
 imk_identify_record *imki_record_start(const imki_record_sizes *sizes, void *memory)
 {
     const size_t segment = (sizes->segment + 1) * sizeof(double);
-    char *place = (char *)memory + (64 - (uintptr_t)memory % 64) % 64;
-    imk_identify_record *r = take(&place, sizeof *r);
+    unsigned char *place = imki_align(memory);
+    imk_identify_record *r = imki_take(&place, sizeof *r);
     memset(r, 0, sizeof *r);
     r->sizes = *sizes;
     r->chunk = chunk_of(sizes);
-    r->buffer = take(&place, segment);
-    r->spectrum = take(&place, segment);
-    r->power = take(&place, segment);
+    r->buffer = imki_take(&place, segment);
+    r->spectrum = imki_take(&place, segment);
+    r->power = imki_take(&place, segment);
     r->transform_size = imk_cosine_workspace_size(sizes->segment);
-    r->transform = take(&place, r->transform_size);
-    r->means = take(&place, sizes->capacity * sizeof(double));
-    r->sums = take(&place, sums_size(sizes) * sizeof(double));
+    r->transform = imki_take(&place, r->transform_size);
+    r->means = imki_take(&place, sizes->capacity * sizeof(double));
+    r->sums = imki_take(&place, sums_size(sizes) * sizeof(double));
     memset(r->power, 0, segment);
     r->block = IMKI_BLOCK_LEAST;
     r->scale = 1;

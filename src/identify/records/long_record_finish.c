@@ -2,6 +2,7 @@
 /* From what was gathered of a long record to its identification: the last segment, the slow
  * spectrum, Allan deviations, lines; then the same fit, intervals and verdict as for a record that
  * was transformed as a whole. */
+#include "base/workspace_internal.h"
 #include "imukit/fourier.h"
 #include "long_record_internal.h"
 
@@ -9,11 +10,6 @@
 #include <string.h>
 
 enum { SEGMENTS_LEAST = 8, LARGEST_PRIME = 13 };
-
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
 
 /* Has n no prime factor above 13? Other lengths take the transform ten times as long. */
 static bool is_smooth(size_t n)
@@ -51,22 +47,16 @@ static parts parts_of(const imk_identify_record *r)
     const size_t means = means_at_end(r);
     parts p = {.points = transform_length(means)};
     p.transform_size = imk_cosine_workspace_size(p.points);
-    p.total = 64 + 2 * aligned((means + 1) * sizeof(double)) + aligned(p.transform_size) +
-              aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) + aligned(sizeof(imki_bands)) +
-              3 * aligned(sizeof(imki_fit)) + aligned(sizeof(imki_record_spectra));
+    p.total = 64 + 2 * imki_lines((means + 1) * sizeof(double)) + imki_lines(p.transform_size) +
+              imki_lines(IMKI_POINTS_MAX * sizeof(imk_allan_point)) +
+              imki_lines(sizeof(imki_bands)) + 3 * imki_lines(sizeof(imki_fit)) +
+              imki_lines(sizeof(imki_record_spectra));
     return p;
 }
 
 size_t imk_identify_record_workspace_size(const imk_identify_record *record)
 {
     return parts_of(record).total;
-}
-
-static void *take(char **memory, size_t size)
-{
-    void *start = *memory;
-    *memory += aligned(size);
-    return start;
 }
 
 /* Weight and degrees of the segments' powers. The samples behind the last whole segment make one
@@ -173,21 +163,21 @@ imk_status imk_identify_record_finish(imk_identify_record *r, const imk_identify
     describe_samples(r, &found);
 
     const parts p = parts_of(r);
-    char *memory = (char *)workspace + (64 - (uintptr_t)workspace % 64) % 64;
-    double *coefficients = take(&memory, (r->mean_count + 1) * sizeof(double));
-    double *cumulative = take(&memory, (r->mean_count + 1) * sizeof(double));
-    void *transform = take(&memory, p.transform_size);
-    imki_record_spectra *spectra = take(&memory, sizeof *spectra);
+    unsigned char *memory = imki_align(workspace);
+    double *coefficients = imki_take(&memory, (r->mean_count + 1) * sizeof(double));
+    double *cumulative = imki_take(&memory, (r->mean_count + 1) * sizeof(double));
+    void *transform = imki_take(&memory, p.transform_size);
+    imki_record_spectra *spectra = imki_take(&memory, sizeof *spectra);
     imki_work work = {.settings = settings, .n = p.points * r->block, .scale = r->scale};
-    work.points = take(&memory, IMKI_POINTS_MAX * sizeof(imk_allan_point));
+    work.points = imki_take(&memory, IMKI_POINTS_MAX * sizeof(imk_allan_point));
     work.point_count = transform_means(r, settings, p.points, coefficients, cumulative, transform,
                                        p.transform_size, work.points);
     work.spectrum_count = 2;
     work.spectra = spectra->part;
-    work.bands = take(&memory, sizeof(imki_bands));
-    work.fit = take(&memory, sizeof(imki_fit));
-    work.trial = take(&memory, sizeof(imki_fit));
-    work.chosen = take(&memory, sizeof(imki_fit));
+    work.bands = imki_take(&memory, sizeof(imki_bands));
+    work.fit = imki_take(&memory, sizeof(imki_fit));
+    work.trial = imki_take(&memory, sizeof(imki_fit));
+    work.chosen = imki_take(&memory, sizeof(imki_fit));
 
     double weight, degrees;
     add_last_segment(r, &weight, &degrees);

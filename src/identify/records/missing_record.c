@@ -12,6 +12,7 @@
  * (missing_spectrum.c). Then the terms are chosen and fitted as ever, the record is filled with
  * their spectrum, and the terms again, until they stay: a spectrum free in every band would be
  * known less well than its terms, and lend its errors to the filling. */
+#include "base/workspace_internal.h"
 #include "missing_internal.h"
 
 #include "imukit/fourier.h"
@@ -31,15 +32,10 @@ static const double LOST_DEGREES = 400;
  * of it. */
 static const double BANDS_SETTLED = 1, FIT_SETTLED = 0.01;
 
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
-
 size_t imki_missing_size(size_t count)
 {
-    return aligned(sizeof(imki_missing)) + aligned(count * sizeof(uint32_t)) +
-           3 * aligned(count * sizeof(double));
+    return imki_lines(sizeof(imki_missing)) + imki_lines(count * sizeof(uint32_t)) +
+           3 * imki_lines(count * sizeof(double));
 }
 
 imki_missing *imki_missing_place(void *memory, size_t count)
@@ -48,8 +44,8 @@ imki_missing *imki_missing_place(void *memory, size_t count)
     imki_missing *m = memory;
     memset(m, 0, offsetof(imki_missing, scratch));
     m->count = count;
-    next += aligned(sizeof *m);
-    for (int i = 0; i < 3; i++, next += aligned(count * sizeof(double)))
+    next += imki_lines(sizeof *m);
+    for (int i = 0; i < 3; i++, next += imki_lines(count * sizeof(double)))
         m->vector[i] = (double *)next;
     m->index = (uint32_t *)next;
     return m;

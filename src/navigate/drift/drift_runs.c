@@ -9,6 +9,7 @@
  * + floor(t rate + 1e-6), and compared with the truth at the instant when that row truly ended.
  *
  * Counts are divided by the sensitivity. A row that is lost repeats the one before it. */
+#include "base/workspace_internal.h"
 #include "drift_runs_internal.h"
 
 #include "drift_settings_internal.h"
@@ -64,11 +65,6 @@ typedef struct crew {
 
 /* ---- memory ---- */
 
-static size_t aligned(size_t size)
-{
-    return (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-}
-
 static imk_simulation simulation_of(const imk_drift_settings *settings,
                                     const imk_trajectory *trajectory)
 {
@@ -92,7 +88,7 @@ static size_t simulator_size(const imk_model *model, const imk_drift_settings *s
     if (settings->compensated &&
         (model->gyro.bias.warm_up_time.value > 0.0 || model->accel.bias.warm_up_time.value > 0.0))
         simulation.temperature = &any;
-    return aligned(imk_simulator_size(model, &simulation));
+    return imki_lines(imk_simulator_size(model, &simulation));
 }
 
 static size_t piece_count(const imk_drift_settings *settings)
@@ -105,17 +101,10 @@ static size_t piece_count(const imk_drift_settings *settings)
 size_t imk_drift_runs_size(const imk_model *model, const imk_drift_settings *settings)
 {
     const size_t run_size =
-        aligned(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
-    return aligned(sizeof(crew)) + aligned(sizeof(imk_model)) +
-           aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
-           aligned(3 * ROWS * sizeof(double)) + LANES * run_size;
-}
-
-static void *take(unsigned char **memory, size_t size)
-{
-    void *taken = *memory;
-    *memory += aligned(size);
-    return taken;
+        imki_lines(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
+    return imki_lines(sizeof(crew)) + imki_lines(sizeof(imk_model)) +
+           imki_lines(piece_count(settings) * sizeof(imk_trajectory_piece)) +
+           imki_lines(3 * ROWS * sizeof(double)) + LANES * run_size;
 }
 
 /* ---- start ---- */
@@ -147,7 +136,7 @@ static void add_standstill(crew *c, imk_trajectory_piece *piece)
 static imk_status start_motion(crew *c, unsigned char **memory, imk_error *error)
 {
     const size_t pieces = piece_count(c->settings);
-    imk_trajectory_piece *piece = take(memory, pieces * sizeof *piece);
+    imk_trajectory_piece *piece = imki_take(memory, pieces * sizeof *piece);
     const imk_status status = imki_drift_motion(c->settings, &c->motion, error);
     c->moves = c->settings->motion != NULL;
     c->trajectory = &c->motion.trajectory;
@@ -162,7 +151,7 @@ static imk_status start_run(crew *c, run *r, unsigned char **memory, imk_error *
     const imk_drift_settings *s = c->settings;
     const imk_model *model = c->model;
     const bool given = s->alignment == IMK_ALIGNED_GIVEN;
-    double *columns = take(memory, CHANNELS * ROWS * sizeof(double));
+    double *columns = imki_take(memory, CHANNELS * ROWS * sizeof(double));
     for (size_t i = 0; i < CHANNELS; i++)
         r->column[i] = columns + i * ROWS;
     if (s->compensated) {
@@ -177,8 +166,8 @@ static imk_status start_run(crew *c, run *r, unsigned char **memory, imk_error *
     const size_t size = simulator_size(c->model, s);
     /* The motion is that of the settings, which are valid, or has been checked by the first run. */
     const bool checked = r != c->run || c->trajectory == &c->motion.trajectory;
-    imk_status status = imki_simulator_start(take(memory, size), size, model, &simulation, checked,
-                                             &r->simulator, error);
+    imk_status status = imki_simulator_start(imki_take(memory, size), size, model, &simulation,
+                                             checked, &r->simulator, error);
     if (status != IMK_OK)
         return status;
     const double begin = imk_simulator_true_time(r->simulator, (int64_t)c->alignment_rows);
@@ -191,8 +180,8 @@ static imk_status start_run(crew *c, run *r, unsigned char **memory, imk_error *
 static imk_status start(crew *c, uint32_t first, unsigned char *memory, imk_error *error)
 {
     const imk_drift_settings *s = c->settings;
-    c->drawn = take(&memory, sizeof *c->drawn);
-    c->height = take(&memory, 3 * ROWS * sizeof(double));
+    c->drawn = imki_take(&memory, sizeof *c->drawn);
+    c->height = imki_take(&memory, 3 * ROWS * sizeof(double));
     c->climb = c->height + ROWS;
     c->time = c->climb + ROWS;
     c->kernel = c->random.kernel;
@@ -420,7 +409,7 @@ imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *sett
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_drift_runs_size() bytes");
     unsigned char *rest = memory;
-    crew *c = take(&rest, sizeof *c);
+    crew *c = imki_take(&rest, sizeof *c);
     memset(c, 0, sizeof *c);
     c->model = model;
     c->settings = settings;
