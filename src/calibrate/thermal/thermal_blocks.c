@@ -3,6 +3,7 @@
  * means of its columns is exact, whatever the temperature does within a block; nearly a hundred
  * blocks keep what a polynomial of order 5 and a loop can follow, and are few enough that the
  * covariance of all of them is handled as a whole. */
+#include "base/error_internal.h"
 #include "calibrate/standstill/median_internal.h"
 #include "thermal_internal.h"
 
@@ -293,17 +294,6 @@ void imki_thermal_merge(imki_thermal_blocks *blocks)
             centre(blocks, a);
 }
 
-static imk_status too_short(imk_error *error, const char *field, double value, double limit,
-                            const char *expected)
-{
-    imk_error_set(error, IMK_ERROR_TOO_SHORT, field, NULL, expected);
-    if (error) {
-        error->value = value;
-        error->limit = limit;
-    }
-    return IMK_ERROR_TOO_SHORT;
-}
-
 /* 24 blocks of 4 samples: three for each of eight unknowns. */
 enum { FEWEST_BLOCKS = 24, FEWEST_SAMPLES = 4 * FEWEST_BLOCKS, BLOCK_SAMPLES = 8 };
 static const double least_range = 2.0;     /* [K], below which nothing is worth a polynomial */
@@ -316,11 +306,13 @@ imk_status imki_thermal_divide(const imk_test_record *record, const imk_model *m
     find_axes(record, model, blocks);
     find_range(record, model, blocks);
     if (blocks->samples < FEWEST_SAMPLES)
-        return too_short(error, "samples", (double)blocks->samples, FEWEST_SAMPLES,
-                         "a longer log with a temperature in each row");
+        return imki_error_number(error, IMK_ERROR_TOO_SHORT, "samples", IMKI_NO_INDEX,
+                                 (double)blocks->samples, FEWEST_SAMPLES,
+                                 "a longer log with a temperature in each row");
     if (!(blocks->maximum - blocks->minimum >= least_range))
-        return too_short(error, "temperature", blocks->maximum - blocks->minimum, least_range,
-                         "a log over a wider range of temperature");
+        return imki_error_number(error, IMK_ERROR_TOO_SHORT, "temperature", IMKI_NO_INDEX,
+                                 blocks->maximum - blocks->minimum, least_range,
+                                 "a log over a wider range of temperature");
     const size_t count = blocks->samples / BLOCK_SAMPLES;
     blocks->count = IMKI_THERMAL_PARTS * (count > IMKI_THERMAL_BLOCKS ? IMKI_THERMAL_BLOCKS
                                           : count < FEWEST_BLOCKS     ? FEWEST_BLOCKS
