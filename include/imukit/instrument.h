@@ -24,9 +24,7 @@
 #include "imukit/model.h"
 #include "imukit/random.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_INSTRUMENT_OUTPUTS_MAX = 8, IMK_INSTRUMENT_SIGNALS_MAX = 16, IMK_VIEW_CURVES_MAX = 4 };
 
@@ -187,7 +185,5 @@ IMK_API void imk_instrument_reduce(const imk_instrument *instrument, const void 
  *  axis x only. */
 IMK_API void imk_model_three_axes(imk_model *model);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -17,9 +17,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A format of logs. */
 typedef struct imk_log_format {
@@ -210,7 +208,5 @@ IMK_API imk_status imk_log_sink_end(imk_log_sink *log, imk_status status, imk_er
 /** Give up: nothing appears. Frees the writer; NULL is allowed. */
 IMK_API void imk_log_abandon(imk_log_writer *writer);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

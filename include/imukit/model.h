@@ -13,9 +13,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_AXES_MAX = 8,              /**< sensing axes of one kind: 3 in a triad, more if redundant */
@@ -318,7 +316,5 @@ IMK_API imk_grade_result imk_grade_model(const imk_model *model);
  * none: IMK_GRADE_NONE. */
 IMK_API imk_grade imk_grade_of_position(double hour, double day);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif
