@@ -146,7 +146,7 @@ const imki_term imki_terms[IMKI_TERMS] = {
                         UNITS("gyro rate ramp", "accelerometer ramp")},
 };
 
-/* In the order of their fields. */
+/* In the order in which they are summed: that of their fields. */
 const imki_power imki_input_powers[] = {
     {IMK_MODEL_K2, 2, 0, true, 1.0},
     {IMK_MODEL_KOQ, 1, 1, true, 1.0},
