@@ -131,6 +131,19 @@ static void collect_term(const bench *b, int sensor, int term, parameter_list *l
         }
 }
 
+/* "k2, koq, " and so on. */
+static void name_powers(char *text, size_t size)
+{
+    static const char group[] = "nonlinearity.";
+    size_t length = 0;
+    for (int term = 0; term < IMK_MODEL_TERMS && length < size; term++) {
+        char path[IMK_MODEL_PARAMETER_NAME];
+        if (term_path(0, term, path, sizeof path) && strncmp(path, group, sizeof group - 1) == 0)
+            length +=
+                (size_t)snprintf(text + length, size - length, "%s, ", path + sizeof group - 1);
+    }
+}
+
 static int collect_item(const bench *b, const char *option_name, const char *item,
                         parameter_list *list)
 {
@@ -159,12 +172,14 @@ static int collect_item(const bench *b, const char *option_name, const char *ite
     }
     if (found)
         return -1;
+    char powers[128];
+    name_powers(powers, sizeof powers);
     return command_misused("--%s %s: no such term; expected bias, scale_factor, misalignment, "
-                           "nonlinearity, k2, koq, k3, asymmetry, cross_products, g_sensitivity, "
-                           "g2_sensitivity, lever_arm, bias.temperature, scale_factor.temperature "
-                           "or temperature_rate, with gyro. or accel. before it for one sensor "
-                           "only, or a single number such as accel.bias.fixed.x",
-                           option_name, item);
+                           "nonlinearity, %scross_products, g_sensitivity, g2_sensitivity, "
+                           "lever_arm, bias.temperature, scale_factor.temperature or "
+                           "temperature_rate, with gyro. or accel. before it for one sensor only, "
+                           "or a single number such as accel.bias.fixed.x",
+                           option_name, item, powers);
 }
 
 int bench_list_terms(const bench *b, const char *option_name, const char *item, size_t capacity,

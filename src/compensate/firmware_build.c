@@ -291,11 +291,6 @@ static int along(const operations *o, int sensor, int i, const double weights[3]
     return value;
 }
 
-static double number_of(const imk_axis_response *axis, const imki_power *power)
-{
-    return axis->power[power->q][power->p - (power->q ? 0 : 2)];
-}
-
 /* u^(p - 1) |u|^q, of which the size is at hand. */
 static int power_less_one(const operations *o, const imki_power *power, int u, int size)
 {
@@ -324,7 +319,7 @@ static void add_slope(operations *o, int sensor, int i, int u, imki_sum *rest)
     }
     for (size_t k = 0; k < imki_input_power_count; k++) {
         const imki_power *power = &imki_input_powers[k];
-        const double number = number_of(axis, power);
+        const double number = imki_axis_power(axis, power);
         if (number != 0 && power->p + power->q > 1)
             imki_sum_add(&slope, power_less_one(o, power, u, size), number);
     }

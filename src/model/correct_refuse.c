@@ -32,12 +32,14 @@ static void clear(double *weight, unsigned features)
 /* @return false when the inversion does not depend on how large the term is */
 static bool remove_term(imk_axis_response *axis, int term)
 {
+    const imki_power *power;
     switch (imki_terms[term].form) {
     case IMKI_FORM_WARM_INPUT:
         axis->scale_order = 0;
         return true;
     case IMKI_FORM_POWER:
-        *imki_axis_power(axis, &imki_input_powers[imki_power_of(term)]) = 0.0;
+        power = &imki_input_powers[imki_power_of(term)];
+        axis->power[power->q][imki_power_place(power)] = 0.0;
         return true;
     case IMKI_FORM_FORCE:
         clear(axis->other, IMKI_THIRD_FEATURES);

@@ -209,14 +209,14 @@ static imk_status find_limits(imki_inversion *v, const imk_triad *triad, int sen
 /* ---- monotonic responses --------------------------------------------------------------------- */
 
 /* The term that pulls the slope down most at the turning point. */
-static const char *worst_term(imk_axis_response *axis, int sensor, double u)
+static const char *worst_term(const imk_axis_response *axis, int sensor, double u)
 {
     int worst = IMK_MODEL_SCALE_TEMPERATURE;
     double least = 0.0;
     for (size_t k = 0; k < imki_input_power_count; k++) {
         const imki_power *power = &imki_input_powers[k];
         const double slope =
-            imki_power_slope(power, *imki_axis_power(axis, power), u, u < 0.0 ? -1.0 : 1.0);
+            imki_power_slope(power, imki_axis_power(axis, power), u, u < 0.0 ? -1.0 : 1.0);
         if (slope < least) {
             least = slope;
             worst = power->term;
@@ -225,12 +225,11 @@ static const char *worst_term(imk_axis_response *axis, int sensor, double u)
     return imki_term_field(worst)->path[sensor];
 }
 
-static imk_status check_monotonic(const imki_inversion *v, imk_distortion *distortion,
-                                  imk_error *error)
+static imk_status check_monotonic(const imki_inversion *v, imk_error *error)
 {
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < v->distortion->axis_count[sensor]; i++) {
-            imk_axis_response *axis = &distortion->axis[sensor][i];
+            const imk_axis_response *axis = &v->distortion->axis[sensor][i];
             const double *along = v->along[sensor][i], limit = v->input_limit[sensor][i];
             const double linear = imki_dot3(axis->other, along);
             const double u = imki_turning_point(axis, linear, limit);
@@ -307,7 +306,7 @@ imk_status imk_correction_start(imk_correction *correction, const imk_model *mod
     if (status == IMK_OK && model->accel.present)
         status = find_limits(&v, &model->accel, IMK_ACCEL, with->force_limit, error);
     if (status == IMK_OK)
-        status = check_monotonic(&v, &made.distortion, error);
+        status = check_monotonic(&v, error);
     if (status != IMK_OK)
         return status;
     if (imki_invert_middle(&v, &singular) != IMK_OK)

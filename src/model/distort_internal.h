@@ -23,10 +23,15 @@ enum {
 /* Which of the weights of an axis are not zero; index of imk_axis_response.used. */
 enum { IMKI_ROW_INPUT, IMKI_ROW_OTHER, IMKI_ROW_PENDULOUS, IMKI_ROW_OUTPUT };
 
-/* The number of an axis that a power has: its coefficient times the power's weight. */
-static inline double *imki_axis_power(imk_axis_response *axis, const imki_power *power)
+/* Where an axis has the coefficient of a power, times its weight. */
+static inline size_t imki_power_place(const imki_power *power)
 {
-    return &axis->power[power->q][power->p - (power->q ? 0 : 2)];
+    return power->p - (power->q ? 0u : 2u);
+}
+
+static inline double imki_axis_power(const imk_axis_response *axis, const imki_power *power)
+{
+    return axis->power[power->q][imki_power_place(power)];
 }
 
 /* One component of the motion, or a chunk of zeros that stays where it is. */

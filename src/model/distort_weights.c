@@ -27,16 +27,14 @@ static void place_row(const double a[3], const double r[3], double weight[IMK_FE
     imki_cross3(r, a, weight + THIRD);
 }
 
-/* The body axis two places on, for a sensor along a body axis. */
-static bool default_pendulous(const double e[3], double p[3])
+bool imki_pendulous_axis(const imk_triad *triad, int axis, double p[3])
 {
-    for (int k = 0; k < 3; k++)
-        if (e[(k + 1) % 3] == 0.0 && e[(k + 2) % 3] == 0.0) {
-            p[k] = p[(k + 1) % 3] = 0.0;
+    const double *e = triad->direction[axis];
+    memcpy(p, triad->nonlinearity.pendulous_axis[axis], 3 * sizeof *p);
+    for (int k = 0; k < 3 && p[0] == 0.0 && p[1] == 0.0 && p[2] == 0.0; k++)
+        if (e[(k + 1) % 3] == 0.0 && e[(k + 2) % 3] == 0.0)
             p[(k + 2) % 3] = 1.0;
-            return true;
-        }
-    return false;
+    return p[0] != 0.0 || p[1] != 0.0 || p[2] != 0.0;
 }
 
 static imk_status compile_cross_products(imk_axis_response *axis, const imk_triad *triad, int i,
@@ -50,8 +48,7 @@ static imk_status compile_cross_products(imk_axis_response *axis, const imk_tria
     axis->has_cross_products = k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0;
     if (!axis->has_cross_products)
         return IMK_OK;
-    memcpy(p, triad->nonlinearity.pendulous_axis[i], sizeof p);
-    if (p[0] == 0.0 && p[1] == 0.0 && p[2] == 0.0 && !default_pendulous(e, p)) {
+    if (!imki_pendulous_axis(triad, i, p)) {
         imk_error_set(error, IMK_ERROR_CONFLICT, "accel.cross_products",
                       "cross_products of a sensor that is along no body axis need a pendulous axis",
                       "add pendulous_axis, a row x y z for each axis");
@@ -110,10 +107,10 @@ static void compile_powers(imk_axis_response *axis, const imk_triad *triad, int 
 {
     for (size_t k = 0; k < imki_input_power_count; k++) {
         const imki_power *power = &imki_input_powers[k];
-        double *number = imki_axis_power(axis, power);
-        const int place = (int)(number - axis->power[power->q]);
-        *number = power->weight * imki_term_values(power->term, triad)[i];
-        if (*number != 0.0 && axis->powers <= place)
+        const int place = (int)imki_power_place(power);
+        const double number = power->weight * imki_term_values(power->term, triad)[i];
+        axis->power[power->q][place] = number;
+        if (number != 0.0 && axis->powers <= place)
             axis->powers = place + 1;
     }
     axis->has_nonlinearity = axis->powers > 0;

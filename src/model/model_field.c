@@ -10,17 +10,9 @@
 
 int imki_row_length(imki_shape shape)
 {
-    switch (shape) {
-    case IMKI_OFF_DIAGONAL:
-    case IMKI_ROWS:
-    case IMKI_DIRECTION:
-    case IMKI_PENDULOUS:
-        return 3;
-    case IMKI_QUADRATIC:
-        return 6;
-    default:
-        return 1;
-    }
+    const bool three = shape == IMKI_OFF_DIAGONAL || shape == IMKI_ROWS ||
+                       shape == IMKI_DIRECTION || shape == IMKI_PENDULOUS;
+    return shape == IMKI_QUADRATIC ? 6 : three ? 3 : 1;
 }
 
 const double *imki_field_values(const imki_field *field, const void *base)
@@ -31,18 +23,9 @@ const double *imki_field_values(const imki_field *field, const void *base)
 
 const double *imki_field_sigmas(const imki_field *field, const void *base)
 {
-    const char *start = (const char *)base + field->offset;
-    switch (field->shape) {
-    case IMKI_SCALAR:
-        return (const double *)(const void *)(start + offsetof(imk_scalar, sigma));
-    case IMKI_QUADRATIC:
-        return (const double *)(const void *)(start + offsetof(imk_quadratic_rows, sigma));
-    case IMKI_OFF_DIAGONAL:
-    case IMKI_ROWS:
-        return (const double *)(const void *)(start + offsetof(imk_rows, sigma));
-    default:
-        return (const double *)(const void *)(start + offsetof(imk_axes, sigma));
-    }
+    const int between =
+        field->shape == IMKI_SCALAR ? 1 : IMK_AXES_MAX * imki_row_length(field->shape);
+    return imki_field_values(field, base) + between;
 }
 
 int imki_field_rows(const imki_field *field, int axis_count)

@@ -12,6 +12,10 @@
 #define IMKI_CORRECTION_SETTINGS_COOKIE 0x494D4B12u
 #define IMKI_CORRECTION_COOKIE 0x494D4B13u
 
+/* The pendulous axis that the model states, or for a sensor along a body axis the one two places on
+ * (distort.h). @return false when there is neither */
+bool imki_pendulous_axis(const imk_triad *triad, int axis, double p[3]);
+
 /* True when the model has such a number. */
 bool imki_model_parameter_exists(const imk_model *model, imk_model_parameter parameter);
 

@@ -6,30 +6,15 @@
 #include <stddef.h>
 #include <string.h>
 
-#define BOTH(path)                                                                                 \
-    {                                                                                              \
-        path, path                                                                                 \
-    }
-#define GYRO(path)                                                                                 \
-    {                                                                                              \
-        path, NULL                                                                                 \
-    }
-#define ACCEL(path)                                                                                \
-    {                                                                                              \
-        NULL, path                                                                                 \
-    }
-#define NO_UNITS                                                                                   \
-    {                                                                                              \
-        NULL, NULL                                                                                 \
-    }
 #define UNITS(gyro, accel)                                                                         \
     {                                                                                              \
         gyro, accel                                                                                \
     }
-#define UNIT(both)                                                                                 \
-    {                                                                                              \
-        both, both                                                                                 \
-    }
+#define UNIT(both) UNITS(both, both)
+#define NO_UNITS UNITS(NULL, NULL)
+#define BOTH(path) UNITS(path, path)
+#define GYRO(path) UNITS(path, NULL)
+#define ACCEL(path) UNITS(NULL, path)
 #define ANY -DBL_MAX, DBL_MAX
 #define NOT_NEGATIVE 0.0, DBL_MAX
 #define AT(member) offsetof(imk_triad, member)
@@ -124,11 +109,7 @@ const size_t imki_triad_field_count = sizeof imki_triad_fields / sizeof imki_tri
 
 /* ---- terms ----------------------------------------------------------------------------------- */
 
-#define TEXTS(words)                                                                               \
-    {                                                                                              \
-        "gyro " words, "accelerometer " words                                                      \
-    }
-#define NO_TEXTS NO_UNITS
+#define TEXTS(words) UNITS("gyro " words, "accelerometer " words)
 /* Numbers of draws that no row has: 4 bias.hysteresis, 18 and 19 of the timing. */
 const imki_term imki_terms[IMKI_TERMS] = {
     [IMK_MODEL_BIAS] = {AT(bias.fixed), IMKI_FORM_ONE, 0, "bias", TEXTS("bias, fixed")},
@@ -154,18 +135,18 @@ const imki_term imki_terms[IMKI_TERMS] = {
                                   TEXTS("g2-sensitivity")},
     [IMK_MODEL_LEVER_ARM] = {AT(lever_arm), IMKI_FORM_PLACE, 16, "place", TEXTS("lever arms")},
     [IMK_MODEL_BIAS_TEMPERATURE] = {AT(bias.temperature), IMKI_FORM_WARMTH, 1,
-                                    "bias over temperature", NO_TEXTS},
+                                    "bias over temperature", NO_UNITS},
     [IMK_MODEL_SCALE_TEMPERATURE] = {AT(scale_factor.temperature), IMKI_FORM_WARM_INPUT, 6,
-                                     "scale factor over temperature", NO_TEXTS},
+                                     "scale factor over temperature", NO_UNITS},
     [IMK_MODEL_TEMPERATURE_RATE] = {AT(bias.temperature_rate), IMKI_FORM_WARMING, 2,
-                                    "bias by temperature rate", NO_TEXTS},
+                                    "bias by temperature rate", NO_UNITS},
     [IMKI_TERM_WARM_UP] = {AT(bias.warm_up_amplitude), IMKI_FORM_DECAY, 3, "warm-up",
                            TEXTS("warm-up")},
     [IMKI_TERM_RAMP] = {AT(noise.ramp), IMKI_FORM_TIME, 17, "ramp",
                         UNITS("gyro rate ramp", "accelerometer ramp")},
 };
 
-/* In the order of their fields. */
+/* In the order in which they are summed: that of their fields. */
 const imki_power imki_input_powers[] = {
     {IMK_MODEL_K2, 2, 0, true, 1.0},
     {IMK_MODEL_KOQ, 1, 1, true, 1.0},
@@ -222,20 +203,15 @@ size_t imki_terms_in_order(int kind, uint8_t term[IMKI_TERMS])
 
 int imki_form_elements(imki_form form)
 {
-    switch (form) {
-    case IMKI_FORM_SEEN:
-    case IMKI_FORM_CROSS:
-    case IMKI_FORM_FORCE:
-    case IMKI_FORM_PLACE:
-        return 3;
-    case IMKI_FORM_PRODUCT:
-        return 6;
-    case IMKI_FORM_WARMTH:
-    case IMKI_FORM_WARM_INPUT:
-        return IMK_TEMPERATURE_ORDER_MAX;
-    default:
-        return 1;
-    }
+    static const uint8_t elements[] = {[IMKI_FORM_SEEN] = 3,
+                                       [IMKI_FORM_CROSS] = 3,
+                                       [IMKI_FORM_FORCE] = 3,
+                                       [IMKI_FORM_PRODUCT] = 6,
+                                       [IMKI_FORM_PLACE] = 3,
+                                       [IMKI_FORM_WARMTH] = IMK_TEMPERATURE_ORDER_MAX,
+                                       [IMKI_FORM_WARM_INPUT] = IMK_TEMPERATURE_ORDER_MAX,
+                                       [IMKI_FORM_TIME] = 1};
+    return elements[form] > 0 ? elements[form] : 1;
 }
 
 const char *imki_form_element(imki_form form, int element)

@@ -4,6 +4,7 @@
 #include "check.h"
 
 #include "imukit/units.h"
+#include "model/distort_internal.h"
 #include "model/model_schema_internal.h"
 
 #include <string.h>
@@ -70,6 +71,31 @@ static void paths_are_unique_and_found(void **state)
     assert_null(imki_field_find("g_sensitivity", IMK_ACCEL, &list));
 }
 
+/* A term has a field and draws of its own; a power has a term of that form, and exponents that an
+ * axis has a place for, of its own. */
+static void terms_are_rows(void **state)
+{
+    (void)state;
+    unsigned draws = 1u << 4 | 1u << 18 | 1u << 19, powers = 0; /* 4, 18, 19: drift_residual.c */
+    size_t of_form = 0;
+    for (int term = 0; term < IMKI_TERMS; term++) {
+        assert_int_equal(imki_field_term(imki_term_field(term)), term);
+        assert_false(draws >> imki_terms[term].draw & 1u);
+        draws |= 1u << imki_terms[term].draw;
+        of_form += imki_terms[term].form == IMKI_FORM_POWER;
+    }
+    assert_int_equal(of_form, imki_input_power_count);
+    assert_true(imki_input_power_count <= IMKI_POWERS_MAX);
+    for (size_t k = 0; k < imki_input_power_count; k++) {
+        const imki_power *power = &imki_input_powers[k];
+        const size_t place = imki_power_place(power);
+        assert_int_equal(imki_terms[power->term].form, IMKI_FORM_POWER);
+        assert_true(power->q <= 1 && place < IMK_POWERS);
+        assert_false(powers >> (power->q * IMK_POWERS + place) & 1u);
+        powers |= 1u << (power->q * IMK_POWERS + place);
+    }
+}
+
 /* sqrt(2 ln 2/pi) = 0.66428247026796001914… by 40-digit decimal arithmetic. */
 static void allan_floor_is_exact(void **state)
 {
@@ -83,6 +109,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(units_are_consistent),
         cmocka_unit_test(paths_are_unique_and_found),
+        cmocka_unit_test(terms_are_rows),
         cmocka_unit_test(allan_floor_is_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

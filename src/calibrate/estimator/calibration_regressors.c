@@ -14,6 +14,7 @@
 #include "base/algebra/vector_internal.h"
 #include "calibration_internal.h"
 
+#include "model/model_internal.h"
 #include "model/model_schema_internal.h"
 
 #include <math.h>
@@ -32,24 +33,24 @@ static double warmth(const imk_temperature_polynomial *polynomial, double temper
     return t - polynomial->reference;
 }
 
-static double polynomial_at(const imk_temperature_polynomial *polynomial, int axis, double x)
+double imki_polynomial_at(const imk_temperature_polynomial *polynomial, int axis,
+                          double temperature)
 {
+    const double x = warmth(polynomial, temperature);
     double sum = 0.0;
     for (int k = polynomial->order - 1; k >= 0; k--)
         sum = (sum + polynomial->coefficient[k].value[axis]) * x;
     return sum;
 }
 
-/* The pendulous axis the model states, or the body axis two places on (distort.h). */
-static void pendulous_axis(const imk_triad *triad, int i, double p[3])
+double imki_power_of_warmth(const imk_temperature_polynomial *polynomial, double temperature,
+                            int power)
 {
-    const double *e = triad->direction[i];
-    memcpy(p, triad->nonlinearity.pendulous_axis[i], 3 * sizeof *p);
-    if (p[0] != 0.0 || p[1] != 0.0 || p[2] != 0.0)
-        return;
-    for (int k = 0; k < 3; k++)
-        if (e[(k + 1) % 3] == 0.0 && e[(k + 2) % 3] == 0.0)
-            p[(k + 2) % 3] = 1.0;
+    const double x = warmth(polynomial, temperature);
+    double product = x;
+    for (int k = 1; k < power; k++)
+        product *= x;
+    return product;
 }
 
 /* The force at the place of an accelerometer. */
@@ -99,7 +100,7 @@ static void add_cross_products(const imk_triad *triad, int axis, imki_axis_readi
     if (k[0] == 0.0 && k[1] == 0.0 && k[2] == 0.0)
         return;
     double p[3], o[3];
-    pendulous_axis(triad, axis, p);
+    (void)imki_pendulous_axis(triad, axis, p);
     imki_cross3(p, e, o);
     const double along_p = imki_dot3(p, y->seen), along_o = imki_dot3(o, y->seen);
     y->value += k[0] * u * along_p + k[1] * u * along_o + k[2] * along_p * along_o;
@@ -136,18 +137,17 @@ imki_axis_reading imki_axis_read(const imk_model *model, int sensor, int axis,
     const double *e = triad->direction[axis];
     imki_axis_reading y;
     y.triad = triad;
-    y.bias_warmth = warmth(&triad->bias.temperature, input->temperature);
-    y.scale_warmth = warmth(&triad->scale_factor.temperature, input->temperature);
     if (sensor == IMK_GYRO)
         memcpy(y.seen, input->rate, sizeof y.seen);
     else
         force_at(triad->lever_arm.value[axis], input, y.seen);
     const double u = imki_dot3(e, y.seen);
-    const double scale = triad->scale_factor.fixed.value[axis] +
-                         polynomial_at(&triad->scale_factor.temperature, axis, y.scale_warmth);
+    const double scale =
+        triad->scale_factor.fixed.value[axis] +
+        imki_polynomial_at(&triad->scale_factor.temperature, axis, input->temperature);
     y.along = u;
     y.value = triad->bias.fixed.value[axis] +
-              polynomial_at(&triad->bias.temperature, axis, y.bias_warmth) +
+              imki_polynomial_at(&triad->bias.temperature, axis, input->temperature) +
               triad->bias.temperature_rate.value[axis] * input->temperature_rate + u + scale * u;
     double slope = 1.0 + scale;
     add_powers(triad, axis, &y, &slope);
@@ -181,18 +181,10 @@ static double by_lever_arm(const imki_axis_reading *y, const imki_input *input, 
 static double by_cross_product(const imki_axis_reading *y, int axis, int k)
 {
     double p[3], o[3];
-    pendulous_axis(y->triad, axis, p);
+    (void)imki_pendulous_axis(y->triad, axis, p);
     imki_cross3(p, y->triad->direction[axis], o);
     const double along_p = imki_dot3(p, y->seen), along_o = imki_dot3(o, y->seen);
     return k == 0 ? y->along * along_p : k == 1 ? y->along * along_o : along_p * along_o;
-}
-
-static double power(double x, int exponent)
-{
-    double product = x;
-    for (int k = 1; k < exponent; k++)
-        product *= x;
-    return product;
 }
 
 double imki_axis_regressor(const imki_axis_reading *y, const imki_input *input,
@@ -219,9 +211,10 @@ double imki_axis_regressor(const imki_axis_reading *y, const imki_input *input,
     case IMKI_FORM_PLACE:
         return by_lever_arm(y, input, k);
     case IMKI_FORM_WARMTH:
-        return power(y->bias_warmth, k + 1);
+        return imki_power_of_warmth(&y->triad->bias.temperature, input->temperature, k + 1);
     case IMKI_FORM_WARM_INPUT:
-        return u * power(y->scale_warmth, k + 1);
+        return u *
+               imki_power_of_warmth(&y->triad->scale_factor.temperature, input->temperature, k + 1);
     case IMKI_FORM_WARMING:
         return input->temperature_rate;
     default:

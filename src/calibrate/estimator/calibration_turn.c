@@ -26,6 +26,7 @@
  * The Earth turns below the gyros. The vertical part of its rate turns about the direction carried
  * and does not move it; the horizontal part, of unknown heading, belongs to the turn's sigma
  * (multiposition_sigma.c), or is one of the solver's unknowns (calibration_earth.c). */
+#include "axis_reading_internal.h"
 #include "calibration_internal.h"
 
 #include "base/algebra/vector_internal.h"
@@ -67,17 +68,6 @@ typedef struct turn_model {
     double temperature, temperature_rate;
 } turn_model;
 
-static double polynomial(const imk_temperature_polynomial *p, int axis, double temperature)
-{
-    if (p->order == 0 || isnan(temperature))
-        return 0.0;
-    const double x = fmin(fmax(temperature, p->minimum), p->maximum) - p->reference;
-    double sum = 0.0;
-    for (int i = p->order; i-- > 0;)
-        sum = (sum + p->coefficient[i].value[axis]) * x;
-    return sum;
-}
-
 /* P of a triad, scaled for the record's readings. Not a number when its axes span no space. */
 static inverse invert(const turn_model *turn, int sensor, const imk_triad *triad)
 {
@@ -87,11 +77,11 @@ static inverse invert(const turn_model *turn, int sensor, const imk_triad *triad
     imk_matrix3 normal = {{{0.0}}}, inverse_normal;
     for (int i = 0; i < count; i++) {
         const double s = triad->scale_factor.fixed.value[i] +
-                         polynomial(&triad->scale_factor.temperature, i, turn->temperature);
+                         imki_polynomial_at(&triad->scale_factor.temperature, i, turn->temperature);
         const bool counts = record->counts[sensor] && triad->sensitivity.value[i] != 0.0;
         unit[i] = counts ? 1.0 / triad->sensitivity.value[i] : 1.0;
         offset[i] = triad->bias.fixed.value[i] +
-                    polynomial(&triad->bias.temperature, i, turn->temperature) +
+                    imki_polynomial_at(&triad->bias.temperature, i, turn->temperature) +
                     triad->bias.temperature_rate.value[i] * turn->temperature_rate +
                     (counts ? triad->zero_offset.value[i] * unit[i] : 0.0);
         for (int j = 0; j < 3; j++)
@@ -324,18 +314,6 @@ static void integrate(const turn_model *turn, size_t begin, size_t end, bool sum
     }
 }
 
-/* Power of the temperature that multiplies a coefficient of a polynomial. */
-static double temperature_power(const imk_temperature_polynomial *p, double temperature, int power)
-{
-    if (isnan(temperature))
-        return 0.0;
-    const double x = fmin(fmax(temperature, p->minimum), p->maximum) - p->reference;
-    double product = 1.0;
-    for (int i = 0; i < power; i++)
-        product *= x;
-    return product;
-}
-
 /* factor S_phi of a parameter's basis function; false when it does not act on the gyros. */
 static bool basis(const turn_model *turn, imk_model_parameter parameter, const double sum[SUMS][9],
                   double s[9])
@@ -348,13 +326,14 @@ static bool basis(const turn_model *turn, imk_model_parameter parameter, const d
     case IMKI_FORM_ONE:
         break;
     case IMKI_FORM_WARMTH:
-        factor = temperature_power(&gyro->bias.temperature, turn->temperature, element + 1);
+        factor = imki_power_of_warmth(&gyro->bias.temperature, turn->temperature, element + 1);
         break;
     case IMKI_FORM_WARMING:
         factor = turn->temperature_rate;
         break;
     case IMKI_FORM_WARM_INPUT:
-        factor = temperature_power(&gyro->scale_factor.temperature, turn->temperature, element + 1);
+        factor =
+            imki_power_of_warmth(&gyro->scale_factor.temperature, turn->temperature, element + 1);
         which = -1;
         break;
     case IMKI_FORM_INPUT:

@@ -96,29 +96,24 @@ static void add_term(list *l, const imk_triad *t, int kind, int term)
 }
 
 #define AT(member) offsetof(imk_triad, member)
-/* In units of a sheet. */
+enum { KEY = 0, SI = 2, UNIT = 4 };
+/* What is no term: key, SI unit and unit of a sheet, each for gyros and accelerometers. */
 static const struct {
-    const char *key[2], *si[2], *unit[2];
     size_t offset;
+    const char *text[6];
 } outputs[] = {
-    {{"dead_band", "dead_band"}, {"rad/s", "m/s^2"}, {"deg/h", "ug"}, AT(dead_band)},
-    {{"bandwidth", "bandwidth"}, {"Hz", "Hz"}, {"Hz", "Hz"}, AT(bandwidth)},
-    {{"noise.quantization", "noise.quantization"},
-     {"rad", "m/s"},
-     {"arcsec", "mm/s"},
-     AT(noise.quantization)},
-    {{"noise.angle_random_walk", "noise.velocity_random_walk"},
-     {"rad/s/sqrt(Hz)", "m/s^2/sqrt(Hz)"},
-     {"deg/sqrt(h)", "ug/sqrt(Hz)"},
-     AT(noise.white)},
-    {{"noise.bias_instability", "noise.bias_instability"},
-     {"rad/s", "m/s^2"},
-     {"deg/h", "ug"},
-     AT(noise.bias_instability)},
-    {{"noise.rate_random_walk", "noise.acceleration_random_walk"},
-     {"rad/s/sqrt(s)", "m/s^2/sqrt(s)"},
-     {"deg/h/sqrt(h)", "ug/sqrt(h)"},
-     AT(noise.random_walk)},
+    {AT(dead_band), {"dead_band", "dead_band", "rad/s", "m/s^2", "deg/h", "ug"}},
+    {AT(bandwidth), {"bandwidth", "bandwidth", "Hz", "Hz", "Hz", "Hz"}},
+    {AT(noise.quantization),
+     {"noise.quantization", "noise.quantization", "rad", "m/s", "arcsec", "mm/s"}},
+    {AT(noise.white),
+     {"noise.angle_random_walk", "noise.velocity_random_walk", "rad/s/sqrt(Hz)", "m/s^2/sqrt(Hz)",
+      "deg/sqrt(h)", "ug/sqrt(Hz)"}},
+    {AT(noise.bias_instability),
+     {"noise.bias_instability", "noise.bias_instability", "rad/s", "m/s^2", "deg/h", "ug"}},
+    {AT(noise.random_walk),
+     {"noise.rate_random_walk", "noise.acceleration_random_walk", "rad/s/sqrt(s)", "m/s^2/sqrt(s)",
+      "deg/h/sqrt(h)", "ug/sqrt(h)"}},
 };
 
 size_t imk_laboratory_figures(const imk_model *model, int sensor, imk_laboratory_figure *figures)
@@ -131,8 +126,8 @@ size_t imk_laboratory_figures(const imk_model *model, int sensor, imk_laboratory
         add_term(&l, t, sensor, term[i]);
     for (size_t i = 0; i < sizeof outputs / sizeof outputs[0]; i++) {
         const imk_axes *axes = (const void *)((const char *)t + outputs[i].offset);
-        add(&l, outputs[i].key[sensor], outputs[i].si[sensor], outputs[i].unit[sensor],
-            axes->value[0], axes->sigma[0]);
+        const char *const *text = outputs[i].text + sensor;
+        add(&l, text[KEY], text[SI], text[UNIT], axes->value[0], axes->sigma[0]);
     }
     return l.count;
 }
