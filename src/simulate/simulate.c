@@ -76,10 +76,10 @@ size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulati
     return imki_aligned(sizeof(imk_simulator)) +
            imki_aligned((gyros + accels) * sizeof(imki_channel)) +
            gyros * list_size(&model->gyro.noise) + accels * list_size(&model->accel.noise) +
-           imki_aligned(imki_scene_size(model, simulation) * sizeof(double));
+           imki_aligned(imki_scene_size(model, simulation) * sizeof(double)) + IMKI_ALIGNMENT_SLACK;
 }
 
-static void assign_lists(imki_channel *channel, const imk_noise *noise, imki_arena *memory)
+static void assign_lists(imki_channel *channel, const imk_noise *noise, imki_parts *memory)
 {
     channel->gauss_markov =
         imki_take(memory, (size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state));
@@ -139,7 +139,7 @@ static double constant_response(const imk_simulator *made, const imki_channel *c
     return response;
 }
 
-static imk_status start_channels(imk_simulator *made, imki_arena *memory, const imk_model *model,
+static imk_status start_channels(imk_simulator *made, imki_parts *memory, const imk_model *model,
                                  const imk_simulation *simulation, imk_error *error)
 {
     for (size_t i = 0; i < made->channels; i++) {
@@ -166,23 +166,24 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
         status = check_simulation(simulation, error);
     if (status != IMK_OK)
         return status;
-    if (size < imk_simulator_size(model, simulation))
+    const size_t whole = imk_simulator_size(model, simulation);
+    if (size < whole)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_simulator_size() bytes");
-    if (!memory || (uintptr_t)memory % 64 != 0)
-        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
+    if (!memory)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory");
     const size_t columns_size = imki_aligned(imki_scene_size(model, simulation) * sizeof(double));
-    memset(memory, 0, imk_simulator_size(model, simulation) - columns_size);
-    imki_arena rest = {memory, 0};
+    imki_parts rest = imki_parts_of(memory);
+    /* The columns of the scene come last. */
+    const size_t columns_at = whole - IMKI_ALIGNMENT_SLACK - columns_size;
+    double *columns = (double *)(void *)(rest.memory + columns_at);
+    memset(rest.memory, 0, columns_at);
     imk_simulator *made = imki_take(&rest, sizeof *made);
     made->random = imk_random_seeded(simulation->seed);
     made->drops = model->timing.drops.value;
     made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
     made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
     made->channel = imki_take(&rest, made->channels * sizeof *made->channel);
-    /* The columns of the scene come last. */
-    double *columns = (double *)(void *)((unsigned char *)memory +
-                                         imk_simulator_size(model, simulation) - columns_size);
     status = imki_scene_start(&made->scene, model, simulation, checked, columns, error);
     if (status == IMK_OK)
         status = start_distortion(made, model, simulation, error);
@@ -193,11 +194,11 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
     return status;
 }
 
-imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model,
-                               const imk_simulation *simulation, imk_simulator **simulator,
+imk_status imk_simulator_start(const imk_model *model, const imk_simulation *simulation,
+                               imk_simulator **simulator, void *memory, size_t memory_size,
                                imk_error *error)
 {
-    return imki_simulator_start(memory, size, model, simulation, false, simulator, error);
+    return imki_simulator_start(memory, memory_size, model, simulation, false, simulator, error);
 }
 
 size_t imk_simulator_channels(const imk_simulator *simulator)
