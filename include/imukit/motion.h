@@ -145,7 +145,7 @@ IMK_API size_t imk_trajectory_substeps(const imk_trajectory *trajectory, double 
  *  @param piece      count - 1 pieces
  *  @return IMK_ERROR_TOO_SHORT (fewer than two), IMK_ERROR_TIME_ORDER (error.index: the row),
  *          IMK_ERROR_NOT_FINITE, IMK_ERROR_WORKSPACE, IMK_ERROR_RANGE (a step of time; two
- * attitudes more than 120 deg apart: the turn between them is not known) */
+ *          attitudes more than 120 deg apart: the turn between them is not known) */
 IMK_API imk_status imk_trajectory_from_poses(size_t count, const double *time,
                                              const double *const position[3],
                                              const imk_quaternion *attitude,
