@@ -64,13 +64,13 @@ static void calibrate(void *context)
     size_t size = imk_procedure_workspace_size(IMK_PROCEDURE_MULTIPOSITION, &record, &settings);
     void *workspace = malloc(size);
     j->status = imk_procedure_observe(IMK_PROCEDURE_MULTIPOSITION, c, &record, &settings, false,
-                                      workspace, size, NULL, NULL);
+                                      NULL, workspace, size, NULL);
     free(workspace);
     const double observed = bench_now();
     if (j->status == IMK_OK) {
         size = imk_calibration_workspace_size(c);
         workspace = malloc(size);
-        j->status = imk_calibration_solve(c, workspace, size, &j->result, NULL);
+        j->status = imk_calibration_solve(c, &j->result, workspace, size, NULL);
         free(workspace);
     }
     const double solved = bench_now();

@@ -131,7 +131,7 @@ static void gather(void *context)
 {
     const gather_run *g = context;
     imk_identify_record *record;
-    imk_identify_record_begin(SAMPLES, g->memory, imk_identify_record_size(SAMPLES), &record, NULL);
+    imk_identify_record_begin(SAMPLES, &record, g->memory, imk_identify_record_size(SAMPLES), NULL);
     imk_identify_record_add(record, SAMPLES, g->samples, NULL);
 }
 

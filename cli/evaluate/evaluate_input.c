@@ -194,8 +194,8 @@ static int find_stretches(const calibrate_options *o, const bench_log *log,
     for (size_t capacity = 0; status == IMK_OK && *count > capacity && capacity <= most;) {
         capacity = *count;
         *stretch = command_memory(*stretch, capacity * sizeof **stretch);
-        status = imk_reference_stretches(record, &settings, workspace, size, *stretch, capacity,
-                                         count, &error);
+        status = imk_reference_stretches(record, &settings, *stretch, capacity, count, workspace,
+                                         size, &error);
     }
     free(workspace);
     if (status != IMK_OK)

@@ -218,7 +218,7 @@ static int evaluate_channel_table(const evaluate_options *o, imk_evaluate_channe
     void *workspace = command_memory(NULL, size);
     c->level = command_memory(NULL, c->count * sizeof *c->level);
     const imk_status status =
-        imk_evaluate(&table, &c->settings, workspace, size, c->level, c->count, &c->result, &error);
+        imk_evaluate(&table, &c->settings, c->level, c->count, &c->result, workspace, size, &error);
     free(workspace);
     if (status != IMK_OK)
         return command_error(&error, c->name);
