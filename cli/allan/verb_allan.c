@@ -23,30 +23,24 @@ typedef struct allan_options {
 #define AT(field) offsetof(allan_options, field)
 
 static const option allan_option_table[] = {
-    {"statistic", 0, OPTION_TEXT, "NAME,NAME…|all", NULL, NULL,
-     "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, haar; "
-     "theo1 takes seconds a million samples",
-     AT(statistic)},
-    {"tau", 0, OPTION_TEXT, "octave|decade|many|all|LIST", NULL, NULL,
-     "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, then 32 "
-     "to the octave), every one, or a list such as 1,10,100 in seconds",
-     AT(tau)},
+    {"statistic", OPTION_TEXT, AT(statistic), .value = "NAME,NAME…|all",
+     .help = "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, "
+             "haar; theo1 takes seconds a million samples"},
+    {"tau", OPTION_TEXT, AT(tau), .value = "octave|decade|many|all|LIST",
+     .help = "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, "
+             "then 32 to the octave), every one, or a list such as 1,10,100 in seconds"},
     CONFIDENCE_OPTION(AT(confidence), "of the two-sided intervals; default 0.95"),
-    {"edf", 0, OPTION_CHOICE, "CHOICE", NULL, "exact|greenhall-riley",
-     "degrees of freedom behind the intervals: of the sampled process (the default), or by the "
-     "published formulas for the continuous one",
-     AT(edf)},
-    {"bias", 0, OPTION_CHOICE, "CHOICE", NULL, "removed|published|left",
-     "the bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: taken off for the "
-     "noise "
-     "found (the default), the same with the factors in print, or left in",
-     AT(bias)},
-    {"type", 0, OPTION_CHOICE, "CHOICE", NULL, "rate|phase",
-     "what the columns hold: rates (the default), or their integral (phase, angle)", AT(type)},
-    {"output", 'o', OPTION_OUTPUT, "FILE.csv", NULL, NULL,
-     "write the long table (one line per channel and averaging time, SI) here; - is standard "
-     "output",
-     AT(output)},
+    {"edf", OPTION_CHOICE, AT(edf), .value = "CHOICE", .choices = "exact|greenhall-riley",
+     .help = "degrees of freedom behind the intervals: of the sampled process (the default), or by "
+             "the published formulas for the continuous one"},
+    {"bias", OPTION_CHOICE, AT(bias), .value = "CHOICE", .choices = "removed|published|left",
+     .help = "the bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: taken off for "
+             "the noise found (the default), the same with the factors in print, or left in"},
+    {"type", OPTION_CHOICE, AT(type), .value = "CHOICE", .choices = "rate|phase",
+     .help = "what the columns hold: rates (the default), or their integral (phase, angle)"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE.csv",
+     .help = "write the long table (one line per channel and averaging time, SI) here; - is "
+             "standard output"},
     PLOT_OPTION(AT(plot), "draw the deviations with their intervals"),
     REPORT_OPTION(AT(report), "write one self-contained page: plot and tables"),
     JSON_OPTION(AT(json), "print the result as JSON instead of a table"),

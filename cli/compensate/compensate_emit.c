@@ -11,15 +11,15 @@
 #define AT(field) offsetof(compensate_emission, field)
 
 const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
-    {"emit-c", 0, OPTION_FILE, "DIR", NULL, NULL,
-     "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c", AT(directory)},
-    {"arithmetic", 0, OPTION_CHOICE, "KIND", NULL, "float|double|fixed",
-     "of that code: float (default), double, or fixed: 32-bit integers, for parts without an FPU",
-     AT(arithmetic)},
-    {"prefix", 0, OPTION_TEXT, "NAME", NULL, NULL,
-     "of its files and names; default: imukit_ and the name of the model", AT(prefix)},
-    {"vectors", 0, OPTION_INTEGER, "N", NULL, "1-1000000",
-     "samples in its self-test, 1 to 1000000; default 64", AT(vectors)},
+    {"emit-c", OPTION_FILE, AT(directory), .value = "DIR",
+     .help = "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c"},
+    {"arithmetic", OPTION_CHOICE, AT(arithmetic), .value = "KIND", .choices = "float|double|fixed",
+     .help = "of that code: float (default), double, or fixed: 32-bit integers, for parts without "
+             "an FPU"},
+    {"prefix", OPTION_TEXT, AT(prefix), .value = "NAME",
+     .help = "of its files and names; default: imukit_ and the name of the model"},
+    {"vectors", OPTION_INTEGER, AT(vectors), .value = "N", .choices = "1-1000000",
+     .help = "samples in its self-test, 1 to 1000000; default 64"},
 };
 
 static const char *const arithmetics[3] = {"float", "double", "fixed"};

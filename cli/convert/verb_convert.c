@@ -27,35 +27,33 @@ typedef struct convert_options {
 #define AT(field) offsetof(convert_options, field)
 
 static const option convert_option_table[] = {
-    {"select", 0, OPTION_TEXT, "NAMES", NULL, NULL,
-     "columns to keep, in this order, such as time,gyro_x; default: all", AT(to.select)},
-    {"to-gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the gyro columns written; default: as read", AT(unit[GYRO_UNIT])},
-    {"to-accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the accelerometer columns written; default: as read", AT(unit[ACCEL_UNIT])},
-    {"to-time-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the time column written; default: as read", AT(unit[TIME_UNIT])},
-    {"to-temperature-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the temperature column written; default: as read", AT(unit[TEMPERATURE_UNIT])},
+    {"select", OPTION_TEXT, AT(to.select), .value = "NAMES",
+     .help = "columns to keep, in this order, such as time,gyro_x; default: all"},
+    {"to-gyro-unit", OPTION_TEXT, AT(unit[GYRO_UNIT]), .value = "UNIT",
+     .help = "of the gyro columns written; default: as read"},
+    {"to-accel-unit", OPTION_TEXT, AT(unit[ACCEL_UNIT]), .value = "UNIT",
+     .help = "of the accelerometer columns written; default: as read"},
+    {"to-time-unit", OPTION_TEXT, AT(unit[TIME_UNIT]), .value = "UNIT",
+     .help = "of the time column written; default: as read"},
+    {"to-temperature-unit", OPTION_TEXT, AT(unit[TEMPERATURE_UNIT]), .value = "UNIT",
+     .help = "of the temperature column written; default: as read"},
     DECIMALS_OPTION(AT(decimals)),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static const option motion_option_table[] = {
-    {"to-point", 0, OPTION_TEXT, "\"X Y Z UNIT\"", NULL, NULL,
-     "specific force at another point of the body, forward right down of the accelerometers, such "
-     "as \"0.1 0 -0.05 m\"",
-     AT(to_point)},
-    {"gravity-free", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "acceleration relative to the Earth instead of specific force; needs --latitude, and a unit "
-     "that is still at first",
-     AT(to.gravity_free)},
-    {"still", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long it is still, for roll and pitch; default 10s", AT(to.still)},
+    {"to-point", OPTION_TEXT, AT(to_point), .value = "\"X Y Z UNIT\"",
+     .help = "specific force at another point of the body, forward right down of the "
+             "accelerometers, such as \"0.1 0 -0.05 m\""},
+    {"gravity-free", OPTION_FLAG, AT(to.gravity_free),
+     .help = "acceleration relative to the Earth instead of specific force; needs --latitude, and "
+             "a unit that is still at first"},
+    {"still", OPTION_QUANTITY, AT(to.still), .value = "TIME", .unit = "s",
+     .help = "how long it is still, for roll and pitch; default 10s"},
     LATITUDE_OPTION(AT(to.latitude), "geodetic, for gravity"),
     HEIGHT_OPTION(AT(to.height)),
-    ANGLE_OPTION("yaw", AT(to.yaw),
-                 "at first, from north to east, for the Earth's rotation; default 0deg"),
+    TURN_OPTION("yaw", AT(to.yaw),
+                "at first, from north to east, for the Earth's rotation; default 0deg"),
 };
 
 static int run(int count, char **words);

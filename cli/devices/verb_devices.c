@@ -12,7 +12,7 @@ typedef struct devices_options {
 } devices_options;
 
 static const option devices_option_table[] = {
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(devices_options, json)},
+    {"json", OPTION_FLAG, offsetof(devices_options, json), .help = "print as JSON"},
 };
 
 static int run(int count, char **words);

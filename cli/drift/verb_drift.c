@@ -16,63 +16,59 @@
 #define AT(field) offsetof(drift_options, field)
 
 static const option navigation_option_table[] = {
-    {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long; default: 24h, with --motion its length, with --want its time", AT(duration)},
-    {"times", 0, OPTION_TEXT, "TIMES", NULL, NULL,
-     "when to look instead, such as \"1min, 10min, 1h\"", AT(times)},
-    {"aligned", 0, OPTION_CHOICE, "HOW", NULL, "given|self",
-     "given (the default): the attitude at the start is true, but for --initial-attitude; self: "
-     "the unit finds it at rest from its own readings",
-     AT(aligned)},
-    {"align-time", 0, OPTION_QUANTITY, "TIME", "s", NULL, "length of that alignment; default 300s",
-     AT(align_time)},
-    {"initial-attitude", 0, OPTION_TEXT, "ANGLES", NULL, NULL,
-     "1 sigma of the error at the start: \"0.05 deg\", or about north, east and down, \"0.01 0.01 "
-     "0.1 deg\"; default 0",
-     AT(initial_attitude)},
-    {"initial-velocity", 0, OPTION_TEXT, "SPEEDS", NULL, NULL, "likewise, \"0.1 m/s\"; default 0",
-     AT(initial_velocity)},
-    {"initial-position", 0, OPTION_TEXT, "LENGTHS", NULL, NULL, "likewise, \"10 m\"; default 0",
-     AT(initial_position)},
-    {"vertical", 0, OPTION_CHOICE, "HOW", NULL, "slaved|free",
-     "slaved (the default): height follows the truth, as with a barometer; free: it grows without "
-     "bound",
-     AT(vertical)},
-    {"compensated", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "beside it the same after calibration: values that the model knows are taken out, their "
-     "uncertainty stays",
-     AT(compensated)},
-    {"want", 0, OPTION_TEXT, "WISH", NULL, NULL,
-     "the inverse question, \"CEP 1 nmi @ 1h\": what each term must become, and which devices "
-     "would do; also R95, DRMS, height, velocity, tilt, heading",
-     AT(want)},
+    {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
+     .help = "how long; default: 24h, with --motion its length, with --want its time"},
+    {"times", OPTION_TEXT, AT(times), .value = "TIMES",
+     .help = "when to look instead, such as \"1min, 10min, 1h\""},
+    {"aligned", OPTION_CHOICE, AT(aligned), .value = "HOW", .choices = "given|self",
+     .help = "given (the default): the attitude at the start is true, but for --initial-attitude; "
+             "self: the unit finds it at rest from its own readings"},
+    {"align-time", OPTION_QUANTITY, AT(align_time), .value = "TIME", .unit = "s",
+     .help = "length of that alignment; default 300s"},
+    {"initial-attitude", OPTION_TEXT, AT(initial_attitude), .value = "ANGLES",
+     .help = "1 sigma of the error at the start: \"0.05 deg\", or about north, east and down, "
+             "\"0.01 0.01 0.1 deg\"; default 0"},
+    {"initial-velocity", OPTION_TEXT, AT(initial_velocity), .value = "SPEEDS",
+     .help = "likewise, \"0.1 m/s\"; default 0"},
+    {"initial-position", OPTION_TEXT, AT(initial_position), .value = "LENGTHS",
+     .help = "likewise, \"10 m\"; default 0"},
+    {"vertical", OPTION_CHOICE, AT(vertical), .value = "HOW", .choices = "slaved|free",
+     .help = "slaved (the default): height follows the truth, as with a barometer; free: it grows "
+             "without bound"},
+    {"compensated", OPTION_FLAG, AT(compensated),
+     .help = "beside it the same after calibration: values that the model knows are taken out, "
+             "their uncertainty stays"},
+    {"want", OPTION_TEXT, AT(want), .value = "WISH",
+     .help = "the inverse question, \"CEP 1 nmi @ 1h\": what each term must become, and which "
+             "devices would do; also R95, DRMS, height, velocity, tilt, heading"},
 };
 
 static const option place_option_table[] = {
-    {"motion", 'm', OPTION_FILE, "MOTION", NULL, NULL,
-     "a motion script (.yaml) or a table of poses; default: at rest as the options below say",
-     AT(motion)},
-    {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", NULL, "of the samples; default 100Hz", AT(rate)},
+    {"motion", OPTION_FILE, AT(motion), .letter = 'm', .value = "MOTION",
+     .help =
+         "a motion script (.yaml) or a table of poses; default: at rest as the options below say"},
+    {"rate", OPTION_QUANTITY, AT(rate), .letter = 'r', .value = "RATE", .unit = "Hz",
+     .help = "of the samples; default 100Hz"},
     LATITUDE_OPTION(AT(latitude), "geodetic; default 45deg"),
     HEIGHT_OPTION(AT(height)),
-    ANGLE_OPTION("roll", AT(roll), "default 0deg: level"),
-    ANGLE_OPTION("pitch", AT(pitch), "default 0deg: level"),
-    ANGLE_OPTION("yaw", AT(yaw), "from north to east; default 0deg"),
+    TURN_OPTION("roll", AT(roll), "default 0deg: level"),
+    TURN_OPTION("pitch", AT(pitch), "default 0deg: level"),
+    TURN_OPTION("yaw", AT(yaw), "from north to east; default 0deg"),
 };
 
 static const option output_option_table[] = {
-    {"monte-carlo", 'n', OPTION_INTEGER, "N", NULL, "1-4294967295",
-     "simulate and navigate so many runs as well, without linearising", AT(monte_carlo)},
+    {"monte-carlo", OPTION_INTEGER, AT(monte_carlo), .letter = 'n', .value = "N",
+     .choices = "1-4294967295",
+     .help = "simulate and navigate so many runs as well, without linearising"},
     SEED_OPTION(AT(seed),
                 "of the runs: the same seed makes the same bytes on every machine; default 1"),
-    {"shard", 0, OPTION_TEXT, "I/N", NULL, NULL,
-     "only part I of N of the runs, for imukit merge; with -o PART.h5", AT(shard)},
+    {"shard", OPTION_TEXT, AT(shard), .value = "I/N",
+     .help = "only part I of N of the runs, for imukit merge; with -o PART.h5"},
     THREADS_OPTION(AT(threads),
                    "threads to use; default: all processors. The results do not depend on it"),
-    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
-     "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started again, it "
-     "goes on. Else figures and terms against time (.csv)",
-     AT(output)},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
+     .help = "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started "
+             "again, it goes on. Else figures and terms against time (.csv)"},
     PLOT_OPTION(AT(plot), "draw the growth and the shares of the terms"),
     REPORT_OPTION(AT(report), "write one self-contained page"),
     JSON_OPTION(AT(json), "print as JSON"),

@@ -21,8 +21,8 @@ typedef struct grade_options {
 static const option grade_option_table[] = {
     PLOT_OPTION(AT(plot), "draw the maps: stability of bias against that of scale factor, of gyros "
                           "and of accelerometers, and cost against performance"),
-    {"map", 0, OPTION_CHOICE, "WHICH", NULL, "all|gyro|accel|cost",
-     "the one to draw; default: all, with --plot term gyro", AT(map)},
+    {"map", OPTION_CHOICE, AT(map), .value = "WHICH", .choices = "all|gyro|accel|cost",
+     .help = "the one to draw; default: all, with --plot term gyro"},
     REPORT_OPTION(AT(report), "write one self-contained page"),
     JSON_OPTION(AT(json), "print as JSON"),
 };

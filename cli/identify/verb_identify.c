@@ -8,75 +8,66 @@
 #define AT(field) offsetof(identify_options, field)
 
 static const option identify_option_table[] = {
-    {"output", 'o', OPTION_OUTPUT, "MODEL", NULL, NULL, "write the model here (.yaml or .json)",
-     AT(output)},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "MODEL",
+     .help = "write the model here (.yaml or .json)"},
     REPORT_OPTION(AT(report),
                   "write one self-contained page: verdict, parameters, Allan plots, model"),
     PLOT_OPTION(AT(plot),
                 "draw the Allan deviation of each channel with the model, and how far it is off"),
-    {"twin", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "simulate the model over the length of the log and draw its Allan deviation over the log's",
-     AT(twin)},
-    {"seed", 0, OPTION_INTEGER, "N", NULL, NULL, "of the twin; default 1", AT(seed)},
-    {"into", 0, OPTION_INTO, "MODEL", NULL, NULL,
-     "start from this model and replace only what is identified: noise and output filter; the "
-     "changes are printed",
-     AT(into)},
-    {"name", 0, OPTION_TEXT, "TEXT", NULL, NULL, "name of the model; default: that of the log file",
-     AT(name)},
-    {"truth", 0, OPTION_FILE, "MODEL", NULL, NULL,
-     "print these true values beside the estimates, for logs that were simulated", AT(truth)},
+    {"twin", OPTION_FLAG, AT(twin),
+     .help = "simulate the model over the length of the log and draw its Allan deviation over the "
+             "log's"},
+    {"seed", OPTION_INTEGER, AT(seed), .value = "N", .help = "of the twin; default 1"},
+    {"into", OPTION_INTO, AT(into), .value = "MODEL",
+     .help = "start from this model and replace only what is identified: noise and output filter; "
+             "the changes are printed"},
+    {"name", OPTION_TEXT, AT(name), .value = "TEXT",
+     .help = "name of the model; default: that of the log file"},
+    {"truth", OPTION_FILE, AT(truth), .value = "MODEL",
+     .help = "print these true values beside the estimates, for logs that were simulated"},
     CONFIDENCE_OPTION(AT(confidence), "of intervals and bounds; default 0.95"),
-    {"significance", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
-     "chance that a term which is not there is called present; default 0.01", AT(significance)},
-    {"keep", 0, OPTION_TEXT, "LIST", NULL, NULL,
-     "leave these in the log: outliers, stuck, saturated (samples), warm-up, temperature, all; "
-     "otherwise what is found of them is taken out, and told",
-     AT(keep)},
-    {"runs", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "several logs are runs of one sensor: one joint model, do they agree, and how much the mean "
-     "differs from run to run",
-     AT(runs)},
-    {"devices", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "several logs are of different sensors: mean and spread of each term, and which of them "
-     "differ",
-     AT(devices)},
+    {"significance", OPTION_FRACTION, AT(significance), .value = "FRACTION",
+     .help = "chance that a term which is not there is called present; default 0.01"},
+    {"keep", OPTION_TEXT, AT(keep), .value = "LIST",
+     .help = "leave these in the log: outliers, stuck, saturated (samples), warm-up, temperature, "
+             "all; otherwise what is found of them is taken out, and told"},
+    {"runs", OPTION_FLAG, AT(runs),
+     .help = "several logs are runs of one sensor: one joint model, do they agree, and how much "
+             "the mean differs from run to run"},
+    {"devices", OPTION_FLAG, AT(devices),
+     .help = "several logs are of different sensors: mean and spread of each term, and which of "
+             "them differ"},
     STRICT_OPTION(AT(strict), "exit with 1 when the verdict holds a warning"),
     JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static const option plan_option_table[] = {
-    {"plan", 0, OPTION_FILE, "MODEL", NULL, NULL,
-     "no LOG: how well a record of this noise (a file or a catalogue name) will tell each term; "
-     "with --rate",
-     AT(plan)},
-    {"want", 0, OPTION_TEXT, "LIST", NULL, NULL,
-     "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected 95%\"",
-     AT(want)},
-    {"duration", 0, OPTION_QUANTITY, "TIME", "s", "positive",
-     "of the planned record, or of the one behind a curve", AT(duration)},
+    {"plan", OPTION_FILE, AT(plan), .value = "MODEL",
+     .help = "no LOG: how well a record of this noise (a file or a catalogue name) will tell each "
+             "term; with --rate"},
+    {"want", OPTION_TEXT, AT(want), .value = "LIST",
+     .help = "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected "
+             "95%\""},
+    {"duration", OPTION_QUANTITY, AT(duration), .value = "TIME", .unit = "s", .choices = "positive",
+     .help = "of the planned record, or of the one behind a curve"},
 };
 
 static const option allan_option_table[] = {
-    {"method", 0, OPTION_CHOICE, "CHOICE", NULL, "likelihood|allan",
-     "likelihood of the spectrum (default), which loses nothing; or generalised least squares on "
-     "the Allan deviations, for what a plot holds",
-     AT(method)},
-    {"curve", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "LOG is a table of Allan deviations instead: columns tau [s], gyro_x [deg/s] and so on; with "
-     "--rate and --duration",
-     AT(curve)},
-    {"plain", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "the clusters of the curve do not overlap; default: they do", AT(plain)},
-    {"tolerance", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
-     "error of the model admitted in each deviation, beside what chance explains: 2% for a curve "
-     "read from a page",
-     AT(tolerance)},
-    {"gauss-markov", 0, OPTION_INTEGER, "N", NULL, "0-8",
-     "Gauss-Markov terms looked for in the Allan deviations; default 0 (the likelihood looks by "
-     "itself)",
-     AT(gauss_markov)},
+    {"method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "likelihood|allan",
+     .help = "likelihood of the spectrum (default), which loses nothing; or generalised least "
+             "squares on the Allan deviations, for what a plot holds"},
+    {"curve", OPTION_FLAG, AT(curve),
+     .help = "LOG is a table of Allan deviations instead: columns tau [s], gyro_x [deg/s] and so "
+             "on; with --rate and --duration"},
+    {"plain", OPTION_FLAG, AT(plain),
+     .help = "the clusters of the curve do not overlap; default: they do"},
+    {"tolerance", OPTION_FRACTION, AT(tolerance), .value = "FRACTION",
+     .help = "error of the model admitted in each deviation, beside what chance explains: 2% for a "
+             "curve read from a page"},
+    {"gauss-markov", OPTION_INTEGER, AT(gauss_markov), .value = "N", .choices = "0-8",
+     .help = "Gauss-Markov terms looked for in the Allan deviations; default 0 (the likelihood "
+             "looks by itself)"},
 };
 
 _Static_assert(IMK_TERMS_MAX == 8, "as the range of --gauss-markov says");

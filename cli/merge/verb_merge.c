@@ -18,10 +18,9 @@ typedef struct merge_options {
 #define AT(field) offsetof(merge_options, field)
 
 static const option merge_option_table[] = {
-    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
-     "results file: .h5 or .csv (.csv.gz, .csv.zst)", AT(output)},
-    {"partial", 0, OPTION_FLAG, NULL, NULL, NULL, "write what is there although runs are missing",
-     AT(partial)},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
+     .help = "results file: .h5 or .csv (.csv.gz, .csv.zst)"},
+    {"partial", OPTION_FLAG, AT(partial), .help = "write what is there although runs are missing"},
     JSON_OPTION(AT(json), "print as JSON"),
 };
 

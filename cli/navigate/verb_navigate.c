@@ -13,56 +13,48 @@
 #define AT(field) offsetof(navigate_options, field)
 
 static const option navigate_option_table[] = {
-    {"position", 'p', OPTION_TEXT, "POSITION", NULL, NULL,
-     "latitude, longitude and height above the ellipsoid at the start, such as \"34.25 deg, 108.91 "
-     "deg, 380 m\"",
-     AT(position)},
-    {"align", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long the unit stands at the start, to find its attitude by itself", AT(align)},
-    {"align-method", 0, OPTION_CHOICE, "CHOICE", NULL, "means|inertial|fine",
-     "from the means of force and rate (the default for gyros that read more than 1.5 times the "
-     "Earth's rotation); from gravity's turn in inertial axes (the default for others: the unit "
-     "may rock); the same and an estimate of the rest",
-     AT(method)},
-    {"heading", 0, OPTION_TEXT, "ANGLE", NULL, NULL,
-     "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 deg\"",
-     AT(heading)},
-    {"attitude", 0, OPTION_TEXT, "ANGLES", NULL, NULL,
-     "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\"",
-     AT(attitude)},
-    {"model", 'm', OPTION_FILE, "MODEL", NULL, NULL,
-     "errors of the sensors, a file or a name from imukit devices: predicts the error, and weighs "
-     "updates",
-     AT(model)},
-    {"zero-velocity", 0, OPTION_TEXT, "auto|TIME", NULL, NULL,
-     "correct by standing still: whenever it is seen to, or known to at the end of each TIME, such "
-     "as 60s",
-     AT(zero_velocity)},
-    {"stop", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "length of the stops that --zero-velocity TIME knows of; default 5s", AT(stop)},
-    {"still-velocity", 0, OPTION_QUANTITY, "VELOCITY", "m/s", NULL,
-     "1 sigma of what moves in a unit that stands; default 0.01m/s", AT(still_velocity)},
-    {"still-rotation", 0, OPTION_QUANTITY, "RATE", "deg/h", NULL,
-     "use that a standing unit does not turn either, to this 1 sigma of the mean rate over a "
-     "stand; "
-     "default: not used",
-     AT(still_rotation)},
-    {"vertical", 0, OPTION_CHOICE, "CHOICE", NULL, "slaved|free",
-     "height held as at the start (the default), or free: it then runs away within minutes",
-     AT(vertical)},
-    {"coning", 0, OPTION_INTEGER, "N", NULL, "1-4",
-     "samples that coning and sculling are computed from, 1 to 4; default 3", AT(samples)},
-    {"standard-gravity", 0, OPTION_QUANTITY, "G", "m/s^2", NULL,
-     "what g stands for in accelerometer columns in g, mg or ug; default 9.80665m/s^2",
-     AT(standard_gravity)},
-    {"gravity-free", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "put the acceleration relative to the Earth into the track: mean since the row before; north, "
-     "east, down",
-     AT(gravity_free)},
-    {"interval", 0, OPTION_QUANTITY, "TIME", "s", NULL, "between rows of the track; default 1s",
-     AT(interval)},
-    {"output", 'o', OPTION_OUTPUT, "TRACK", NULL, NULL,
-     "write the track: .csv (also .gz, .zst){ or written}; - is standard output", AT(output)},
+    {"position", OPTION_TEXT, AT(position), .letter = 'p', .value = "POSITION",
+     .help = "latitude, longitude and height above the ellipsoid at the start, such as \"34.25 "
+             "deg, 108.91 deg, 380 m\""},
+    {"align", OPTION_QUANTITY, AT(align), .value = "TIME", .unit = "s",
+     .help = "how long the unit stands at the start, to find its attitude by itself"},
+    {"align-method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "means|inertial|fine",
+     .help = "from the means of force and rate (the default for gyros that read more than 1.5 "
+             "times the Earth's rotation); from gravity's turn in inertial axes (the default for "
+             "others: the unit may rock); the same and an estimate of the rest"},
+    {"heading", OPTION_TEXT, AT(heading), .value = "ANGLE",
+     .help = "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 "
+             "deg\""},
+    {"attitude", OPTION_TEXT, AT(attitude), .value = "ANGLES",
+     .help =
+         "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\""},
+    {"model", OPTION_FILE, AT(model), .letter = 'm', .value = "MODEL",
+     .help = "errors of the sensors, a file or a name from imukit devices: predicts the error, and "
+             "weighs updates"},
+    {"zero-velocity", OPTION_TEXT, AT(zero_velocity), .value = "auto|TIME",
+     .help = "correct by standing still: whenever it is seen to, or known to at the end of each "
+             "TIME, such as 60s"},
+    {"stop", OPTION_QUANTITY, AT(stop), .value = "TIME", .unit = "s",
+     .help = "length of the stops that --zero-velocity TIME knows of; default 5s"},
+    {"still-velocity", OPTION_QUANTITY, AT(still_velocity), .value = "VELOCITY", .unit = "m/s",
+     .help = "1 sigma of what moves in a unit that stands; default 0.01m/s"},
+    {"still-rotation", OPTION_QUANTITY, AT(still_rotation), .value = "RATE", .unit = "deg/h",
+     .help = "use that a standing unit does not turn either, to this 1 sigma of the mean rate over "
+             "a stand; default: not used"},
+    {"vertical", OPTION_CHOICE, AT(vertical), .value = "CHOICE", .choices = "slaved|free",
+     .help =
+         "height held as at the start (the default), or free: it then runs away within minutes"},
+    {"coning", OPTION_INTEGER, AT(samples), .value = "N", .choices = "1-4",
+     .help = "samples that coning and sculling are computed from, 1 to 4; default 3"},
+    {"standard-gravity", OPTION_QUANTITY, AT(standard_gravity), .value = "G", .unit = "m/s^2",
+     .help = "what g stands for in accelerometer columns in g, mg or ug; default 9.80665m/s^2"},
+    {"gravity-free", OPTION_FLAG, AT(gravity_free),
+     .help = "put the acceleration relative to the Earth into the track: mean since the row "
+             "before; north, east, down"},
+    {"interval", OPTION_QUANTITY, AT(interval), .value = "TIME", .unit = "s",
+     .help = "between rows of the track; default 1s"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "TRACK",
+     .help = "write the track: .csv (also .gz, .zst){ or written}; - is standard output"},
     PLOT_OPTION(AT(plot), "draw the track, and the way from the start against time"),
     REPORT_OPTION(AT(report), "write one self-contained page"),
     JSON_OPTION(AT(json), "print the summary as JSON"),

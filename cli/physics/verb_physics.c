@@ -13,79 +13,69 @@
 #define AT(field) offsetof(physics_options, field)
 
 static const option task_option_table[] = {
-    {"list", 0, OPTION_FLAG, NULL, NULL, NULL, "the instruments there are; also without INSTRUMENT",
-     AT(list)},
-    {"show", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "print the design as a file with units and comments, the way to begin a design of your own",
-     AT(show)},
-    {"reduce", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "the error model by closed forms, as a table; -o MODEL.yaml writes it", AT(reduce)},
-    {"sweep", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "find the error model by the experiments of a laboratory and compare it with the closed "
-     "forms; -o MODEL.yaml without --reduce writes what was measured",
-     AT(sweep)},
-    {"single-axis", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "write a model of one instrument along x, not of three", AT(single_axis)},
+    {"list", OPTION_FLAG, AT(list), .help = "the instruments there are; also without INSTRUMENT"},
+    {"show", OPTION_FLAG, AT(show),
+     .help = "print the design as a file with units and comments, the way to begin a design of "
+             "your own"},
+    {"reduce", OPTION_FLAG, AT(reduce),
+     .help = "the error model by closed forms, as a table; -o MODEL.yaml writes it"},
+    {"sweep", OPTION_FLAG, AT(sweep),
+     .help = "find the error model by the experiments of a laboratory and compare it with the "
+             "closed forms; -o MODEL.yaml without --reduce writes what was measured"},
+    {"single-axis", OPTION_FLAG, AT(single_axis),
+     .help = "write a model of one instrument along x, not of three"},
 };
 
 static const option input_option_table[] = {
-    {"rate", 'r', OPTION_TEXT, "RATE", NULL, NULL,
-     "angular rate about x, \"10 deg/s\", or about all axes of the case, \"1 2 3 deg/s\"",
-     AT(rate)},
-    {"acceleration", 'a', OPTION_TEXT, "FORCE", NULL, NULL,
-     "specific force along x, \"1 g\", or along all axes of the case, \"0 0 -9.81 m/s^2\"",
-     AT(acceleration)},
-    {"sine", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", NULL,
-     "makes the rate or force given the amplitude of a sine", AT(sine)},
-    {"temperature", 't', OPTION_QUANTITY, "TEMPERATURE", "degC", NULL, "default 20degC",
-     AT(temperature)},
-    {"temperature-rate", 0, OPTION_QUANTITY, "RATE", "degC/min", NULL,
-     "lets it rise or fall from there", AT(temperature_rate)},
+    {"rate", OPTION_TEXT, AT(rate), .letter = 'r', .value = "RATE",
+     .help = "angular rate about x, \"10 deg/s\", or about all axes of the case, \"1 2 3 deg/s\""},
+    {"acceleration", OPTION_TEXT, AT(acceleration), .letter = 'a', .value = "FORCE",
+     .help = "specific force along x, \"1 g\", or along all axes of the case, \"0 0 -9.81 m/s^2\""},
+    {"sine", OPTION_QUANTITY, AT(sine), .value = "FREQUENCY", .unit = "Hz",
+     .help = "makes the rate or force given the amplitude of a sine"},
+    {"temperature", OPTION_QUANTITY, AT(temperature), .letter = 't', .value = "TEMPERATURE",
+     .unit = "degC", .help = "default 20degC"},
+    {"temperature-rate", OPTION_QUANTITY, AT(temperature_rate), .value = "RATE", .unit = "degC/min",
+     .help = "lets it rise or fall from there"},
 };
 
 static const option run_option_table[] = {
-    {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
-     "run so long and write the log; with --view: draw the view for so long", AT(duration)},
-    {"output-rate", 0, OPTION_QUANTITY, "RATE", "Hz", NULL,
-     "samples per second; default 100Hz. With --view: points per second of the view",
-     AT(output_rate)},
-    {"level", 0, OPTION_CHOICE, "LEVEL", NULL, "full|slow",
-     "the dynamics of all parts (the default), or a map or envelope without the fast part",
-     AT(level)},
-    {"step", 0, OPTION_QUANTITY, "TIME", "s", "positive",
-     "longest internal step; default: what the instrument's accuracy needs. A step that would give "
-     "wrong results is refused",
-     AT(step)},
-    {"no-noise", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "nothing random: no noise and no constants of the run", AT(no_noise)},
+    {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
+     .help = "run so long and write the log; with --view: draw the view for so long"},
+    {"output-rate", OPTION_QUANTITY, AT(output_rate), .value = "RATE", .unit = "Hz",
+     .help = "samples per second; default 100Hz. With --view: points per second of the view"},
+    {"level", OPTION_CHOICE, AT(level), .value = "LEVEL", .choices = "full|slow",
+     .help = "the dynamics of all parts (the default), or a map or envelope without the fast part"},
+    {"step", OPTION_QUANTITY, AT(step), .value = "TIME", .unit = "s", .choices = "positive",
+     .help = "longest internal step; default: what the instrument's accuracy needs. A step that "
+             "would give wrong results is refused"},
+    {"no-noise", OPTION_FLAG, AT(no_noise),
+     .help = "nothing random: no noise and no constants of the run"},
     SEED_OPTION(AT(seed), "the same seed makes the same bytes on every machine; default 1"),
-    {"run", 0, OPTION_INTEGER, "N", NULL, "0-4294967295",
-     "another run of the same instrument: other noise, other constants of the run; default 0",
-     AT(run)},
+    {"run", OPTION_INTEGER, AT(run), .value = "N", .choices = "0-4294967295",
+     .help =
+         "another run of the same instrument: other noise, other constants of the run; default 0"},
     THREADS_OPTION(AT(threads),
                    "threads of --sweep; default: all processors. The result does not depend on it"),
 };
 
 static const option output_option_table[] = {
-    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
-     "the log (.csv, also .gz, .zst{, or written}; default: standard output), the model of "
-     "--reduce, or "
-     "the design of --show",
-     AT(output)},
-    {"signals", 0, OPTION_OUTPUT, "FILE.csv", NULL, NULL, "write what happens inside, against time",
-     AT(signals)},
-    {"signal-rate", 0, OPTION_QUANTITY, "RATE", "Hz", NULL,
-     "rows per second of --signals; default: the output rate. Another rate is a run of its own",
-     AT(signal_rate)},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
+     .help = "the log (.csv, also .gz, .zst{, or written}; default: standard output), the model of "
+             "--reduce, or the design of --show"},
+    {"signals", OPTION_OUTPUT, AT(signals), .value = "FILE.csv",
+     .help = "write what happens inside, against time"},
+    {"signal-rate", OPTION_QUANTITY, AT(signal_rate), .value = "RATE", .unit = "Hz",
+     .help = "rows per second of --signals; default: the output rate. Another rate is a run of its "
+             "own"},
     PLOT_OPTION(AT(plot),
                 "draw the outputs of the run against time (with --sine also against the input), or "
                 "what --sweep found; without either, the views of the instrument"),
-    {"view", 0, OPTION_TEXT, "VIEW", NULL, NULL,
-     "the view to --plot: its number, or how its title begins", AT(view)},
-    {"animate", 0, OPTION_OUTPUT, "FILE.svg", NULL, NULL,
-     "draw a view of one signal against another as a picture that moves: that of --view, else the "
-     "first",
-     AT(animate)},
+    {"view", OPTION_TEXT, AT(view), .value = "VIEW",
+     .help = "the view to --plot: its number, or how its title begins"},
+    {"animate", OPTION_OUTPUT, AT(animate), .value = "FILE.svg",
+     .help = "draw a view of one signal against another as a picture that moves: that of --view, "
+             "else the first"},
     REPORT_OPTION(AT(report), "write one self-contained page: outputs, views, design, error model"),
     JSON_OPTION(AT(json), "print the result as JSON"),
 };

@@ -29,8 +29,9 @@ typedef struct option_integer {
 
 typedef struct option {
     const char *name; /* without the dashes */
-    char letter;      /* 0: none */
     option_kind kind;
+    size_t offset;       /* of the value in the settings of the group */
+    char letter;         /* 0: none */
     const char *value;   /* what --help calls the value: "RATE" */
     const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages */
     const char *choices; /* OPTION_CHOICE: "octave|decade|all"; OPTION_INTEGER: "1-5", the least and
@@ -38,7 +39,6 @@ typedef struct option {
                             or "positive", which refuses 0 and less, or "not negative";
                             OPTION_FRACTION: "0.1..0.9" */
     const char *help;    /* a clause; see `description` */
-    size_t offset;       /* of the value in the settings of the group */
 } option;
 
 typedef struct option_group {
@@ -62,51 +62,52 @@ typedef struct example {
 #define CONFIDENCE_RANGE "0.001..0.999999999"
 
 /* Options that several verbs have, each with its own words. */
-#define PLOT_OPTION(at, help)                                                                      \
+#define PLOT_OPTION(at, text)                                                                      \
     {                                                                                              \
-        "plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL, help, at                  \
+        "plot", OPTION_OUTPUT, at, .value = "FILE.svg|.png|.pdf|term", .help = text                \
     }
-#define REPORT_OPTION(at, help)                                                                    \
+#define REPORT_OPTION(at, text)                                                                    \
     {                                                                                              \
-        "report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, help, at                              \
+        "report", OPTION_OUTPUT, at, .value = "FILE.html", .help = text                            \
     }
-#define JSON_OPTION(at, help)                                                                      \
+#define JSON_OPTION(at, text)                                                                      \
     {                                                                                              \
-        "json", 0, OPTION_FLAG, NULL, NULL, NULL, help, at                                         \
+        "json", OPTION_FLAG, at, .help = text                                                      \
     }
-#define STRICT_OPTION(at, help)                                                                    \
+#define STRICT_OPTION(at, text)                                                                    \
     {                                                                                              \
-        "strict", 0, OPTION_FLAG, NULL, NULL, NULL, help, at                                       \
+        "strict", OPTION_FLAG, at, .help = text                                                    \
     }
-#define THREADS_OPTION(at, help)                                                                   \
+#define THREADS_OPTION(at, text)                                                                   \
     {                                                                                              \
-        "threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", help, at                               \
+        "threads", OPTION_INTEGER, at, .value = "N", .choices = "1-65536", .help = text            \
     }
-#define SEED_OPTION(at, help)                                                                      \
+#define SEED_OPTION(at, text)                                                                      \
     {                                                                                              \
-        "seed", 's', OPTION_INTEGER, "N", NULL, NULL, help, at                                     \
+        "seed", OPTION_INTEGER, at, .letter = 's', .value = "N", .help = text                      \
     }
-#define CONFIDENCE_OPTION(at, help)                                                                \
+#define CONFIDENCE_OPTION(at, text)                                                                \
     {                                                                                              \
-        "confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE, help, at             \
+        "confidence", OPTION_FRACTION, at, .value = "FRACTION", .choices = CONFIDENCE_RANGE,       \
+                                           .help = text                                            \
     }
 #define DECIMALS_OPTION(at)                                                                        \
     {                                                                                              \
-        "decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",                                          \
-            "digits after the point, 0 to 17; default: as many as the number needs", at            \
+        "decimals", OPTION_INTEGER, at,                                                            \
+            .value = "N", .choices = "0-17",                                                       \
+            .help = "digits after the point, 0 to 17; default: as many as the number needs"        \
     }
-#define LATITUDE_OPTION(at, help)                                                                  \
+#define LATITUDE_OPTION(at, text) ANGLE_OPTION("latitude", "-90..90", at, text)
+#define TURN_OPTION(name, at, text) ANGLE_OPTION(name, "-36000..36000", at, text)
+#define ANGLE_OPTION(name, range, at, text)                                                        \
     {                                                                                              \
-        "latitude", 0, OPTION_QUANTITY, "ANGLE", "deg", "-90..90", help, at                        \
+        name, OPTION_QUANTITY, at, .value = "ANGLE", .unit = "deg", .choices = range, .help = text \
     }
 #define HEIGHT_OPTION(at)                                                                          \
     {                                                                                              \
-        "height", 0, OPTION_QUANTITY, "LENGTH", "m", "-10000..100000",                             \
-            "above the ellipsoid; default 0m", at                                                  \
-    }
-#define ANGLE_OPTION(name, at, help)                                                               \
-    {                                                                                              \
-        name, 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", help, at                        \
+        "height", OPTION_QUANTITY, at, .value = "LENGTH", .unit = "m",                             \
+                                       .choices = "-10000..100000",                                \
+                                       .help = "above the ellipsoid; default 0m"                   \
     }
 
 /* OPERANDS_MAX is room for the operands of most verbs; one that takes more makes its own. */

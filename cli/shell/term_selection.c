@@ -6,11 +6,11 @@
 #include <string.h>
 
 const option term_options[TERM_OPTIONS] = {
-    {"only", 0, OPTION_TEXT, "TERMS", NULL, NULL,
-     "use these terms of the model alone, such as angle_random_walk,scale_factor or gyro.bias",
-     offsetof(term_selection, only)},
-    {"without", 0, OPTION_TEXT, "TERMS", NULL, NULL, "use all terms of the model but these",
-     offsetof(term_selection, without)},
+    {"only", OPTION_TEXT, offsetof(term_selection, only), .value = "TERMS",
+     .help =
+         "use these terms of the model alone, such as angle_random_walk,scale_factor or gyro.bias"},
+    {"without", OPTION_TEXT, offsetof(term_selection, without), .value = "TERMS",
+     .help = "use all terms of the model but these"},
 };
 
 enum { TERMS_MAX = 64 };

@@ -21,33 +21,32 @@ typedef struct spectrum_options {
 #define AT(field) offsetof(spectrum_options, field)
 
 static const option spectrum_option_table[] = {
-    {"method", 0, OPTION_CHOICE, "CHOICE", NULL, "welch|multitaper",
-     "averaged windowed segments (the default), or Slepian tapers, for records too short to be "
-     "cut up",
-     AT(method)},
-    {"resolution", 0, OPTION_QUANTITY, "BANDWIDTH", "Hz", "positive",
-     "how far two lines must be apart to be told from each other; default: 31 segments, or one for "
-     "multitaper",
-     AT(resolution)},
-    {"window", 0, OPTION_CHOICE, "CHOICE", NULL, "hann|blackman-harris|kaiser",
-     "of the segments; the latter two for weak lines beside strong ones", AT(window)},
-    {"trend", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "remove a straight line from each segment, not its mean only", AT(trend)},
-    {"density", 0, OPTION_CHOICE, "SIDES", NULL, "two-sided|one-sided",
-     "of the densities shown: IEEE's convention (the default), or twice that as many data sheets "
-     "and analysers have it; parameters are always two-sided",
-     AT(density)},
-    {"false-alarm", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
-     "chance that a channel without lines shows any; default 0.001", AT(false_alarm)},
-    {"from", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "not negative",
-     "lowest frequency the noise parameters are fitted to; default: the lowest resolved", AT(from)},
-    {"to", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "positive",
-     "highest; set it below the sensor's own filter; default: half the sample rate", AT(to)},
+    {"method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "welch|multitaper",
+     .help = "averaged windowed segments (the default), or Slepian tapers, for records too short "
+             "to be cut up"},
+    {"resolution", OPTION_QUANTITY, AT(resolution), .value = "BANDWIDTH", .unit = "Hz",
+     .choices = "positive",
+     .help = "how far two lines must be apart to be told from each other; default: 31 segments, or "
+             "one for multitaper"},
+    {"window", OPTION_CHOICE, AT(window), .value = "CHOICE",
+     .choices = "hann|blackman-harris|kaiser",
+     .help = "of the segments; the latter two for weak lines beside strong ones"},
+    {"trend", OPTION_FLAG, AT(trend),
+     .help = "remove a straight line from each segment, not its mean only"},
+    {"density", OPTION_CHOICE, AT(density), .value = "SIDES", .choices = "two-sided|one-sided",
+     .help = "of the densities shown: IEEE's convention (the default), or twice that as many data "
+             "sheets and analysers have it; parameters are always two-sided"},
+    {"false-alarm", OPTION_FRACTION, AT(false_alarm), .value = "FRACTION",
+     .help = "chance that a channel without lines shows any; default 0.001"},
+    {"from", OPTION_QUANTITY, AT(from), .value = "FREQUENCY", .unit = "Hz",
+     .choices = "not negative",
+     .help = "lowest frequency the noise parameters are fitted to; default: the lowest resolved"},
+    {"to", OPTION_QUANTITY, AT(to), .value = "FREQUENCY", .unit = "Hz", .choices = "positive",
+     .help = "highest; set it below the sensor's own filter; default: half the sample rate"},
     CONFIDENCE_OPTION(AT(confidence), "of the two-sided intervals; default 0.95"),
-    {"output", 'o', OPTION_OUTPUT, "FILE.csv", NULL, NULL,
-     "write the densities (100 per decade, one line per channel and frequency, SI) here; - is "
-     "standard output",
-     AT(output)},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE.csv",
+     .help = "write the densities (100 per decade, one line per channel and frequency, SI) here; - "
+             "is standard output"},
     PLOT_OPTION(AT(plot), "draw the root densities with their intervals, lines marked"),
     REPORT_OPTION(AT(report), "write one self-contained page: plot and tables"),
     JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
