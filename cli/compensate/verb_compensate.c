@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit compensate: log + model -> log without the errors the model describes. */
 #include "compensate_parts.h"
-#include "log/log_units.h"
 #include "shell/job_progress.h"
 
 #include "imukit/show.h"
@@ -28,9 +27,9 @@ static const option compensate_option_table[] = {
      .help = "largest rate, where the model has nonlinear terms and no range"},
     {"force-limit", OPTION_QUANTITY, AT(force_limit), .value = "FORCE", .unit = "g",
      .choices = "positive", .help = "largest specific force, likewise"},
-    {"to-gyro-unit", OPTION_TEXT, AT(to_gyro_unit), .value = "UNIT",
+    {"to-gyro-unit", OPTION_UNIT, AT(to_gyro_unit), .value = "UNIT", .unit = "rad/s",
      .help = "of the rates written; default: as read, rad/s for counts"},
-    {"to-accel-unit", OPTION_TEXT, AT(to_accel_unit), .value = "UNIT",
+    {"to-accel-unit", OPTION_UNIT, AT(to_accel_unit), .value = "UNIT", .unit = "m/s^2",
      .help = "of the forces written; default: as read, m/s^2 for counts"},
     DECIMALS_OPTION(AT(decimals)),
     {"flags", OPTION_FLAG, AT(flags),
@@ -112,27 +111,20 @@ static int check_axes(const compensate_options *o, const imk_model *model,
     return -1;
 }
 
-static int set_up(const compensate_options *o, const imk_model *terms,
-                  imk_compensate_log_settings *settings)
+static imk_compensate_log_settings set_up(const compensate_options *o, const imk_model *terms)
 {
-    *settings = imk_compensate_log_default();
+    imk_compensate_log_settings settings = imk_compensate_log_default();
     if (o->terms.only || o->terms.without)
-        settings->terms = terms;
-    settings->temperature = o->temperature;
-    settings->temperature_time = o->temperature_time;
-    settings->powered_for = o->powered_for;
-    settings->rate_limit = o->rate_limit;
-    settings->force_limit = o->force_limit;
-    settings->flags = o->flags;
-    imk_unit gyro = imk_unit_of("rad/s"), accel = imk_unit_of("m/s^2");
-    int code = log_unit_asked("to-gyro-unit", o->to_gyro_unit, &gyro);
-    if (code < 0)
-        code = log_unit_asked("to-accel-unit", o->to_accel_unit, &accel);
-    if (o->to_gyro_unit)
-        settings->gyro_unit = gyro;
-    if (o->to_accel_unit)
-        settings->accel_unit = accel;
-    return code;
+        settings.terms = terms;
+    settings.temperature = o->temperature;
+    settings.temperature_time = o->temperature_time;
+    settings.powered_for = o->powered_for;
+    settings.rate_limit = o->rate_limit;
+    settings.force_limit = o->force_limit;
+    settings.flags = o->flags;
+    settings.gyro_unit = o->to_gyro_unit;
+    settings.accel_unit = o->to_accel_unit;
+    return settings;
 }
 
 /* What went wrong with the model or with what is written; the rest is the log's. */
@@ -208,11 +200,9 @@ static int run(int count, char **words)
     if (!operands[1])
         return command_misused("an operand is missing: imukit compensate LOG MODEL");
     imk_log_reader *reader = NULL;
-    imk_compensate_log_settings settings;
     imk_model *models = command_memory(NULL, 2 * sizeof *models);
     code = compensate_models(&o, operands[1], &models[0], &models[1]);
-    if (code < 0)
-        code = set_up(&o, &models[1], &settings);
+    const imk_compensate_log_settings settings = set_up(&o, &models[1]);
     if (code < 0)
         code = log_input_open(&o.log, operands[0], false, &reader);
     if (code < 0)

@@ -2,7 +2,6 @@
 /* imukit convert: logs, model files and parameter files of other programs between formats. */
 #include "convert_parameters.h"
 #include "log/log_input.h"
-#include "log/log_units.h"
 #include "shell/job_progress.h"
 
 #include "imukit/convert_log.h"
@@ -13,14 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The units of the columns written, in the order of their settings. */
-enum { TIME_UNIT, GYRO_UNIT, ACCEL_UNIT, TEMPERATURE_UNIT, UNITS };
-
 typedef struct convert_options {
     log_input log;
     parameter_options parameters;
     imk_convert_log_settings to;
-    const char *unit[UNITS], *to_point;
+    const char *to_point;
     option_integer decimals, threads;
 } convert_options;
 
@@ -29,13 +25,13 @@ typedef struct convert_options {
 static const option convert_option_table[] = {
     {"select", OPTION_TEXT, AT(to.select), .value = "NAMES",
      .help = "columns to keep, in this order, such as time,gyro_x; default: all"},
-    {"to-gyro-unit", OPTION_TEXT, AT(unit[GYRO_UNIT]), .value = "UNIT",
+    {"to-gyro-unit", OPTION_UNIT, AT(to.gyro_unit), .value = "UNIT",
      .help = "of the gyro columns written; default: as read"},
-    {"to-accel-unit", OPTION_TEXT, AT(unit[ACCEL_UNIT]), .value = "UNIT",
+    {"to-accel-unit", OPTION_UNIT, AT(to.accel_unit), .value = "UNIT",
      .help = "of the accelerometer columns written; default: as read"},
-    {"to-time-unit", OPTION_TEXT, AT(unit[TIME_UNIT]), .value = "UNIT",
+    {"to-time-unit", OPTION_UNIT, AT(to.time_unit), .value = "UNIT",
      .help = "of the time column written; default: as read"},
-    {"to-temperature-unit", OPTION_TEXT, AT(unit[TEMPERATURE_UNIT]), .value = "UNIT",
+    {"to-temperature-unit", OPTION_UNIT, AT(to.temperature_unit), .value = "UNIT",
      .help = "of the temperature column written; default: as read"},
     DECIMALS_OPTION(AT(decimals)),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
@@ -129,16 +125,8 @@ static int parse_point(const char *text, double point[3])
 
 static int set_up(convert_options *o)
 {
-    static const char *const names[UNITS] = {"to-time-unit", "to-gyro-unit", "to-accel-unit",
-                                             "to-temperature-unit"};
-    imk_unit *units[UNITS] = {&o->to.time_unit, &o->to.gyro_unit, &o->to.accel_unit,
-                              &o->to.temperature_unit};
-    int code = -1;
-    for (int i = 0; i < UNITS && code < 0; i++)
-        code = log_unit_parse(names[i], o->unit[i], units[i]);
     o->to.to_point = o->to_point != NULL;
-    if (code < 0 && o->to_point)
-        code = parse_point(o->to_point, o->to.point.v);
+    int code = o->to_point ? parse_point(o->to_point, o->to.point.v) : -1;
     if (code < 0 && o->to.gravity_free && isnan(o->to.latitude))
         code = command_misused("--gravity-free: gravity differs from place to place: add "
                                "--latitude 45deg and, off the sea, --height 500m");

@@ -4,6 +4,8 @@
 #ifndef IMUKIT_OPTIONS_H
 #define IMUKIT_OPTIONS_H
 
+#include "imukit/units.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -17,6 +19,7 @@ typedef enum option_kind {
     OPTION_OUTPUT,   /* the same, of a file that is written: see file_clash.h */
     OPTION_INTEGER,  /* option_integer */
     OPTION_QUANTITY, /* double, SI: a number with a unit of the dimension of `unit` */
+    OPTION_UNIT,     /* imk_unit: of the dimension of `unit`; NULL: of any */
     OPTION_FRACTION, /* double in (0, 1): "0.95" or "95%" */
     OPTION_CHOICE    /* int: position in `choices` */
 } option_kind;
@@ -33,7 +36,8 @@ typedef struct option {
     size_t offset;       /* of the value in the settings of the group */
     char letter;         /* 0: none */
     const char *value;   /* what --help calls the value: "RATE" */
-    const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages */
+    const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages;
+                            OPTION_UNIT */
     const char *choices; /* OPTION_CHOICE: "octave|decade|all"; OPTION_INTEGER: "1-5", the least and
                             the most, NULL: any; OPTION_QUANTITY: the same as "-90..90" in `unit`,
                             or "positive", which refuses 0 and less, or "not negative";
@@ -142,6 +146,9 @@ const char *options_output_name(const char *name);
 
 /* Does an output of the command line go to standard output? Tables for people then keep off it. */
 bool options_stdout_taken(void);
+
+/* Is the unit that an option gave of the dimension that is due? @return -1 or the exit code */
+int options_check_unit(const char *name, const imk_unit *unit, imk_dimension due);
 
 /* "--rate RATE", "-o, --output FILE": at most `size` bytes. */
 void option_synopsis(const option *o, char *text, size_t size);
