@@ -133,8 +133,8 @@ static int check_company(const evaluation *v)
                    {"table-axis", o->bench.table_axis >= 0},
                    {"section", o->bench.section != NULL}};
     bool counts = false;
-    for (size_t k = 0; k < v->channel_count; k++)
-        counts = counts || in_counts(&v->channel[k]);
+    for (size_t k = 0; k < v->log->channel_count; k++)
+        counts = counts || in_counts(&v->log->channel[k]);
     if (o->sensitivity && !counts)
         return command_misused("--sensitivity is of readings in counts, and there are none");
     if (o->zero && !o->sensitivity)
@@ -160,76 +160,28 @@ static int apply_sensitivity(const evaluate_options *o, imk_evaluate_channel *c)
     int code = read_quantity("sensitivity", o->sensitivity, dimension, &sensitivity);
     if (code < 0)
         code = read_quantity("zero", o->zero, counts, &zero);
-    for (size_t k = 0; code < 0 && k < c->count; k++) {
-        c->reading[k] = (c->reading[k] - zero) / sensitivity;
-        c->sigma[k] /= sensitivity;
-    }
     if (code < 0)
-        c->reading_unit = c->reference_unit;
+        imk_evaluate_scale(c, sensitivity, zero);
     return code;
 }
 
-static int prepare(const evaluate_options *o, imk_evaluate_channel *c)
+static int evaluate_channel(const evaluation *v, imk_evaluate_channel *c)
 {
-    double largest = 0;
-    c->settings = imk_evaluation_default();
-    c->settings.confidence = o->confidence;
-    int code = apply_sensitivity(o, c);
-    c->settings.same_unit =
-        imk_dimension_equal(c->reading_unit.dimension, c->reference_unit.dimension);
-    for (size_t k = 0; k < c->count; k++)
-        largest = fmax(largest, fabs(c->reference[k]));
+    const evaluate_options *o = v->options;
     const imk_dimension dimension = c->reference_unit.dimension;
+    imk_error error;
+    int code = apply_sensitivity(o, c);
+    imk_evaluate_channel_settings(v->log, c);
     if (code < 0)
         code = read_quantity("full-scale", o->full_scale, dimension, &c->settings.full_scale);
-    if (c->of_log)
-        c->settings.level_width = 1e-5 * largest;
     if (code < 0)
         code = read_quantity("level-width", o->level_width, dimension, &c->settings.level_width);
+    if (code < 0 && imk_evaluate_channel_run(v->log, c, &error) != IMK_OK)
+        code = command_error(&error, c->name);
     return code;
 }
 
 /* ---- from end to end ------------------------------------------------------------------------- */
-
-static bool all_known(size_t count, const double *sigma)
-{
-    for (size_t k = 0; k < count; k++)
-        if (!isfinite(sigma[k]))
-            return false;
-    return true;
-}
-
-static bool any_direction(const imk_evaluate_channel *c)
-{
-    for (size_t k = 0; k < c->count; k++)
-        if (c->direction[k] != 0)
-            return true;
-    return false;
-}
-
-static int evaluate_channel_table(const evaluate_options *o, imk_evaluate_channel *c)
-{
-    imk_error error;
-    int code = prepare(o, c);
-    if (code >= 0)
-        return code;
-    const imk_evaluation_table table = {.count = c->count,
-                                        .reference = c->reference,
-                                        .reading = c->reading,
-                                        .sigma = all_known(c->count, c->sigma) ? c->sigma : NULL,
-                                        .direction = any_direction(c) ? c->direction : NULL,
-                                        .run = c->run};
-    const size_t size = imk_evaluation_workspace_size(&table);
-    void *workspace = command_memory(NULL, size);
-    c->level = command_memory(NULL, c->count * sizeof *c->level);
-    const imk_status status =
-        imk_evaluate(&table, &c->settings, workspace, size, c->level, c->count, &c->result, &error);
-    free(workspace);
-    if (status != IMK_OK)
-        return command_error(&error, c->name);
-    imk_evaluate_channel_figures(c);
-    return -1;
-}
 
 static int show(const evaluation *v)
 {
@@ -250,23 +202,31 @@ static int show(const evaluation *v)
                                       .report = o->report,
                                       .levels = o->levels,
                                       .missed = v->missed,
-                                      .channel_count = v->channel_count,
-                                      .rest_count = v->rest_count,
+                                      .channel_count = v->log->channel_count,
+                                      .rest_count = v->log->rest_count,
                                       .limit_count = v->limit_count,
-                                      .channel = v->channel,
-                                      .rest = v->rest};
+                                      .channel = v->log->channel,
+                                      .rest = v->log->rest};
     imk_show_evaluate(&shown, result);
     show_origin(result);
     const show_options options = {
         .report = o->report,
         .plot = o->plot,
         .json = o->json,
-        .lacking = v->channel_count == 0 ? "a table or a log with a reference" : NULL};
+        .lacking = v->log->channel_count == 0 ? "a table or a log with a reference" : NULL};
     return show_end(result, &options, end);
 }
 
 static int evaluate(evaluation *v)
 {
+    const calibrate_options *logs = &v->options->bench;
+    imk_evaluate_log_settings settings = imk_evaluate_log_default();
+    settings.confidence = v->options->confidence;
+    settings.minimum = logs->minimum;
+    settings.trim = logs->trim;
+    settings.settle = logs->settle;
+    settings.sections = logs->section != NULL;
+    (void)command_unless_memory(imk_evaluate_log_create(&settings, NULL, &v->log, NULL));
     int code = evaluate_read_limits(v);
     if (code < 0)
         code = evaluate_load(v);
@@ -274,26 +234,11 @@ static int evaluate(evaluation *v)
         code = evaluate_load_rest(v);
     if (code < 0)
         code = check_company(v);
-    for (size_t k = 0; code < 0 && k < v->channel_count; k++)
-        code = evaluate_channel_table(v->options, &v->channel[k]);
+    for (size_t k = 0; code < 0 && k < v->log->channel_count; k++)
+        code = evaluate_channel(v, &v->log->channel[k]);
     if (code < 0)
         code = evaluate_check_limits(v);
     return code < 0 ? show(v) : code;
-}
-
-static void free_evaluation(evaluation *v)
-{
-    for (size_t k = 0; k < v->channel_count; k++) {
-        imk_evaluate_channel *c = &v->channel[k];
-        free(c->reference);
-        free(c->reading);
-        free(c->sigma);
-        free(c->direction);
-        free(c->run);
-        free(c->level);
-    }
-    imk_motion_file_free(v->motion);
-    free(v);
 }
 
 static int run(int count, char **words)
@@ -313,6 +258,8 @@ static int run(int count, char **words)
         code = command_misused("an operand is missing: imukit evaluate FILE..., or --static LOG");
     if (code < 0)
         code = evaluate(v);
-    free_evaluation(v);
+    imk_evaluate_log_free(v->log);
+    imk_motion_file_free(v->motion);
+    free(v);
     return code;
 }
