@@ -72,7 +72,7 @@ static int load_table(evaluation *v, const char *path)
     imk_error error;
     imk_log log;
     const imk_log_settings settings = table_settings(v);
-    if (imk_log_load(path, &settings, NULL, NULL, &log, &error) != IMK_OK)
+    if (imk_log_load(path, &settings, NULL, &log, &error) != IMK_OK)
         return command_log_error(&error, path);
     const int code = tell(v, path, imk_evaluate_table(v->log, &log, &error), &error);
     imk_log_free(&log);

@@ -44,8 +44,8 @@ IMK_API void imk_evaluate_log_free(imk_evaluate_log *result);
 IMK_API bool imk_evaluate_is_table(size_t column_count, const imk_log_column *columns);
 /** Add the readings of a table, with the columns direction (up, down), run and sigma where it has
  *  them: one run, or those of its column.
- *  @return with a finding, IMK_ERROR_COLUMN, _EMPTY, _UNIT_MISSING, _DIMENSION, _SYNTAX,
- * _NOT_FINITE, _RANGE; IMK_ERROR_MEMORY */
+ *  @return with a finding, IMK_ERROR_COLUMN, _EMPTY, _UNIT_MISSING, _DIMENSION, _SYNTAX, _RANGE,
+ *          _NOT_FINITE; IMK_ERROR_MEMORY */
 IMK_API imk_status imk_evaluate_table(imk_evaluate_log *evaluation, const imk_log *table,
                                       imk_error *error);
 /** Add the readings of a record with a reference, as the mean of every stretch in which it is
