@@ -50,7 +50,7 @@ static void calibrate(void *context)
     imk_test_record record;
     const double start = bench_now();
     const imk_log_settings reading = imk_log_settings_default();
-    j->status = imk_log_load(j->path, &reading, NULL, NULL, &log, NULL);
+    j->status = imk_log_load(j->path, &reading, NULL, &log, NULL);
     if (j->status != IMK_OK)
         return;
     refer(&log, &record);

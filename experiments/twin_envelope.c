@@ -126,7 +126,7 @@ int main(int argc, char **argv)
     imk_log log;
     imk_log_settings log_settings = imk_log_settings_default();
     log_settings.rate = rate;
-    if (imk_log_load(argv[1], &log_settings, NULL, NULL, &log, &error) != IMK_OK)
+    if (imk_log_load(argv[1], &log_settings, NULL, &log, &error) != IMK_OK)
         return fail(&error, argv[1]);
     static imk_model model;
     if (imk_model_open(argv[2], &model, NULL, &error) != IMK_OK)

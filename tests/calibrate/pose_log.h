@@ -140,7 +140,7 @@ static inline pose_log *pose_log_read(const char *path, double rate, bool counts
     pose_log *log = calloc(1, sizeof *log);
     imk_log_settings settings = imk_log_settings_default();
     settings.rate = rate;
-    if (imk_log_load(path, &settings, NULL, NULL, &log->log, NULL) != IMK_OK) {
+    if (imk_log_load(path, &settings, NULL, &log->log, NULL) != IMK_OK) {
         free(log);
         return NULL;
     }

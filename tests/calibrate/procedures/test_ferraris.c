@@ -38,7 +38,7 @@ static bool load(session *s)
         return false;
     }
     settings.rate = 204.8;
-    CHECK_OK(imk_log_load(LOG, &settings, NULL, NULL, &s->log, &error));
+    CHECK_OK(imk_log_load(LOG, &settings, NULL, &s->log, &error));
     assert_int_equal(s->log.rows, 9414);
     s->section = malloc(s->log.rows * sizeof *s->section);
     size_t label = 0;

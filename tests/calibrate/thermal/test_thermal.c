@@ -526,7 +526,7 @@ static void a_real_sweep(void **state)
     imk_log log;
     imk_error error;
     const imk_log_settings settings = imk_log_settings_default();
-    CHECK_OK(imk_log_load(path, &settings, NULL, NULL, &log, &error));
+    CHECK_OK(imk_log_load(path, &settings, NULL, &log, &error));
     imk_test_record record = {.count = log.rows,
                               .dt = log.findings.interval,
                               .time = log.data[imk_log_find(&log, IMK_QUANTITY_TIME, -1)],

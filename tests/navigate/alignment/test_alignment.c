@@ -864,7 +864,7 @@ static void test_parked_log(void **state)
     (void)state;
     const imk_log_settings reading = imk_log_settings_default();
     imk_log log;
-    if (imk_log_load(LOG, &reading, NULL, NULL, &log, NULL) != IMK_OK) {
+    if (imk_log_load(LOG, &reading, NULL, &log, NULL) != IMK_OK) {
         print_message("%s is absent: skipped\n", LOG);
         skip();
     }
