@@ -21,14 +21,6 @@ static void add_key(imk_term_keys *keys, const char *sensor, const char *key)
         memcpy(keys->key[keys->count++], text, sizeof text);
 }
 
-static bool is_one_of(const char *key, size_t count, const char *const *list)
-{
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(key, list[i]) == 0)
-            return true;
-    return false;
-}
-
 /* Terms of which the readings can be freed; the device's model has those that it frees them of. */
 static bool is_correctable(const char *key)
 {
@@ -48,7 +40,7 @@ static bool is_correctable(const char *key)
                                        "cross_axis",
                                        "g_sensitivity",
                                        "g2_sensitivity"};
-    return is_one_of(key, sizeof keys / sizeof keys[0], keys);
+    return imki_is_one_of(key, sizeof keys / sizeof keys[0], keys);
 }
 
 /* What says how another term acts, or when a reading is saturated: no error by itself. */
@@ -56,7 +48,7 @@ static bool is_companion(const char *key)
 {
     static const char *const keys[] = {"range", "pendulous_axis", "damping", "noise.density",
                                        "bias.warm_up.time"};
-    return is_one_of(key, sizeof keys / sizeof keys[0], keys);
+    return imki_is_one_of(key, sizeof keys / sizeof keys[0], keys);
 }
 
 void imk_firmware_terms(const imk_firmware *firmware, const imk_model *model,
