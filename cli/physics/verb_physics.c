@@ -347,7 +347,7 @@ static int start(const physics_options *o, const char *operand)
         code = physics_input_make(o, &p.settings.input);
     if (code < 0) {
         p.model = command_memory(NULL, sizeof *p.model);
-        p.file.instrument->reduce(p.file.design, p.model);
+        imk_instrument_reduce(p.file.instrument, p.file.design, p.model);
         code = do_task(&p);
     }
     free(p.model);
