@@ -49,7 +49,7 @@ static void *started(const subject *s)
 {
     imk_error error = {0};
     void *state = allocate(s->instrument->state_size);
-    if (s->instrument->init(s->design, &s->settings, state, &error) != IMK_OK) {
+    if (imk_instrument_init(s->instrument, s->design, &s->settings, state, &error) != IMK_OK) {
         fprintf(stderr, "bench_physics: %s: the design is refused: %s %s\n", s->name, error.field,
                 error.expected);
         exit(1);

@@ -310,7 +310,7 @@ static void *started(const imk_instrument *instrument, const trial *t, uint64_t 
     settings.step = t->step;
     settings.seed = seed;
     void *state = aligned_alloc(64, (instrument->state_size + 63) / 64 * 64);
-    if (state && instrument->init(&t->design, &settings, state, &error) == IMK_OK)
+    if (state && imk_instrument_init(instrument, &t->design, &settings, state, &error) == IMK_OK)
         return state;
     fprintf(stderr, "%s: %s: %s (%g, limit %g)\n", t->instrument, error.field, error.expected,
             error.value, error.limit);

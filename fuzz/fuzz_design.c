@@ -35,7 +35,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     require((file.design != NULL) == (status == IMK_OK));
     if (status != IMK_OK)
         return 0;
-    require(file.instrument->validate(file.design, NULL) == IMK_OK);
+    require(imk_design_check(file.instrument, file.design, NULL) == IMK_OK);
     require(imk_design_print(&file, &text, &length, NULL) == IMK_OK);
     require(imk_design_parse(text, length, &back, NULL) == IMK_OK);
     require_same(&file, &back);

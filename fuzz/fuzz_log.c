@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* libFuzzer entry: any bytes as a log, read in pieces whose length the bytes choose.
- * Reads: src/io/log/log_reader.c src/io/log/log_format.c src/io/log/log_header.c
+ * Reads: src/io/log/log_reader.c src/io/log/log_format.c src/io/log/log_csv.c
  * src/io/log/log_columns.c src/io/log/log_row.c src/io/log/log_cells.c src/io/log/log_cells_avx2.c
  * src/io/log/log_text.c src/io/log/log_findings.c */
 #include "harness.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of .npy matrices. What stands before the magic number is the file of names
  * beside the matrix.
- * Reads: src/io/log/npy.c src/io/log/log_matrix.c */
+ * Reads: src/io/log/npy.c src/io/log/log_npy.c src/io/log/log_matrix.c */
 #include "harness.h"
 
 #include "imukit/log.h"

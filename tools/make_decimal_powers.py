@@ -38,18 +38,22 @@ def table():
         " *",
         " *     10^e = (high 2^64 + low + r) 2^(floor(log2 10^e) - 127),  0 <= r < 1",
         " *",
-        f" * for e = {FIRST} ... {LAST}; r = 0 for 0 <= e <= 55. Written by tools/make_decimal_powers.py. */",
-        '#include "base/decimal_internal.h"',
+        f" * for e = {FIRST} ... {LAST}, two in a row; r = 0 for 0 <= e <= 55. Written by",
+        " * tools/make_decimal_powers.py. */",
+        '#include "decimal_internal.h"',
         "",
         "/* clang-format off */",
         "const imki_decimal_power imki_decimal_powers[IMKI_POWER_LAST - IMKI_POWER_FIRST + 1] = {",
     ]
+    powers = []
     for exponent in range(FIRST, LAST + 1):
         value, remainder = significand(exponent)
         assert 1 << 127 <= value < 1 << 128
         assert (remainder == 0) == (0 <= exponent <= 55)
         assert floor_log2(exponent) == ((exponent * 217706 + (2048 << 16)) >> 16) - 2048
-        lines.append(f"    {{0x{value >> 64:016X}, 0x{value & (1 << 64) - 1:016X}}}, /* {exponent} */")
+        powers.append(f"{{0x{value >> 64:016X}, 0x{value & (1 << 64) - 1:016X}}},")
+    for i in range(0, len(powers), 2):
+        lines.append(f"    {' '.join(powers[i:i + 2])} /* {FIRST + i} */")
     return "\n".join(lines + ["};", "/* clang-format on */", ""])
 
 

@@ -20,41 +20,35 @@ typedef struct allan_options {
     option_integer threads;
 } allan_options;
 
+#define AT(member) offsetof(allan_options, member)
+
 static const option allan_option_table[] = {
-    {"statistic", 0, OPTION_TEXT, "NAME,NAME…|all", NULL, NULL,
+    {"statistic", 0, A_TEXT("NAME,NAME…|all"), AT(statistic),
      "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, haar; "
-     "theo1 takes seconds a million samples",
-     offsetof(allan_options, statistic)},
-    {"tau", 0, OPTION_TEXT, "octave|decade|many|all|LIST", NULL, NULL,
+     "theo1 takes seconds a million samples"},
+    {"tau", 0, A_TEXT("octave|decade|many|all|LIST"), AT(tau),
      "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, then 32 "
-     "to the octave), every one, or a list such as 1,10,100 in seconds",
-     offsetof(allan_options, tau)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
-     "of the two-sided intervals; default 0.95", offsetof(allan_options, confidence)},
-    {"edf", 0, OPTION_CHOICE, "CHOICE", NULL, "exact|greenhall-riley",
+     "to the octave), every one, or a list such as 1,10,100 in seconds"},
+    {"confidence", 0, A_FRACTION("FRACTION", CONFIDENCE_RANGE), AT(confidence),
+     "of the two-sided intervals; default 0.95"},
+    {"edf", 0, A_CHOICE("CHOICE", "exact|greenhall-riley"), AT(edf),
      "degrees of freedom behind the intervals: of the sampled process (the default), or by the "
-     "published formulas for the continuous one",
-     offsetof(allan_options, edf)},
-    {"bias", 0, OPTION_CHOICE, "CHOICE", NULL, "removed|published|left",
+     "published formulas for the continuous one"},
+    {"bias", 0, A_CHOICE("CHOICE", "removed|published|left"), AT(bias),
      "the bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: taken off for the "
-     "noise "
-     "found (the default), the same with the factors in print, or left in",
-     offsetof(allan_options, bias)},
-    {"type", 0, OPTION_CHOICE, "CHOICE", NULL, "rate|phase",
-     "what the columns hold: rates (the default), or their integral (phase, angle)",
-     offsetof(allan_options, type)},
-    {"output", 'o', OPTION_OUTPUT, "FILE.csv", NULL, NULL,
+     "noise found (the default), the same with the factors in print, or left in"},
+    {"type", 0, A_CHOICE("CHOICE", "rate|phase"), AT(type),
+     "what the columns hold: rates (the default), or their integral (phase, angle)"},
+    {"output", 'o', AN_OUTPUT("FILE.csv"), AT(output),
      "write the long table (one line per channel and averaging time, SI) here; - is standard "
-     "output",
-     offsetof(allan_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
-     "draw the deviations with their intervals", offsetof(allan_options, plot)},
-    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
-     "write one self-contained page: plot and tables", offsetof(allan_options, report)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of a table",
-     offsetof(allan_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
-     offsetof(allan_options, threads)},
+     "output"},
+    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
+     "draw the deviations with their intervals"},
+    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
+     "write one self-contained page: plot and tables"},
+    {"json", 0, A_FLAG, AT(json), "print the result as JSON instead of a table"},
+    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
+     "threads to use; default: all processors"},
 };
 
 static int run(int count, char **words);
@@ -70,8 +64,9 @@ const verb allan_verb = {
                  {"imukit allan phase.txt --columns x --rate 1Hz --type phase -o adev.csv",
                   "one column of phase data without header, sampled once a second"}},
     .description =
-        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst), or "
-        ".npy; - is standard input. Without gyro and accelerometer columns every other column is "
+        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
+        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
+        "column is "
         "analysed.\n\nWhich statistic: oadev to look at a sensor; mdev or pdev to tell "
         "quantization from "
         "other fast noise; ohdev when the rate drifts in a straight line; totdev, htot and theo1 "
@@ -80,10 +75,8 @@ const verb allan_verb = {
         "finite keep their places empty: oadev of rates is then taken of what is there, and the "
         "share of the record's pairs behind each point is shown. The other statistics, and phase, "
         "need a complete record: --gaps bridge or --gaps longest.",
-    .groups = {{"Options", sizeof allan_option_table / sizeof allan_option_table[0],
-                allan_option_table, 0},
-               {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
-                offsetof(allan_options, log)}},
+    .groups = {{A_GROUP("Options", allan_option_table), 0},
+               {A_GROUP("Reading the log", log_input_options), AT(log)}},
     .run = run};
 
 /* Names of --statistic. @return -1 or the exit code */
@@ -249,14 +242,11 @@ static int analyse(const allan_options *o, const char *path, const imk_allan_log
         return code;
     imk_allan_log *a;
     imk_error error;
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    job_progress shown = job_progress_begin(path);
-    const imk_job job = job_progress_job(&shown, &executor);
+    threaded_job t;
+    threaded_job_begin(&t, path, o->threads.value);
     const imk_record_source source = imk_log_source(reader);
-    const imk_status status = imk_allan_log_run(&source, settings, &job, &a, &error);
-    job_progress_end(&shown);
-    imk_thread_pool_destroy(pool);
+    const imk_status status = imk_allan_log_run(&source, settings, &t.job, &a, &error);
+    threaded_job_end(&t);
     imk_log_close(reader);
     code = tell(o, path, a, status, &error);
     if (code < 0)
@@ -267,7 +257,7 @@ static int analyse(const allan_options *o, const char *path, const imk_allan_log
 
 static int run(int count, char **words)
 {
-    allan_options o = {.confidence = 0.95, .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
+    allan_options o = {.confidence = 0.95, .log = {.gaps = IMK_GAPS_KEEP, .missing_allowed = true}};
     const char *operands[OPERANDS_MAX];
     imk_allan_log_settings settings = imk_allan_log_default();
     double *times = NULL;

@@ -114,7 +114,7 @@ int bench_known_before(bench *b)
                               "--into",
                               given, model->residual_of);
     for (int sensor = 0; code < 0 && sensor < 2; sensor++)
-        code = apply_counts(o, sensor, sensor == 0 ? &model->gyro : &model->accel);
+        code = apply_counts(o, sensor, imk_model_triad_to_set(model, sensor));
     if (code < 0)
         code = match_axes(b, model, given != NULL);
     b->before = *model;

@@ -30,8 +30,8 @@ static int check_alike(const char *path, const imk_model *model, const char *fir
                        const imk_model *first)
 {
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *t = sensor == 0 ? &model->gyro : &model->accel;
-        const imk_triad *f = sensor == 0 ? &first->gyro : &first->accel;
+        const imk_triad *t = imk_model_triad(model, sensor);
+        const imk_triad *f = imk_model_triad(first, sensor);
         const char *frame = (sensor == 0 ? &model->gyro_evidence : &model->accel_evidence)->frame;
         const char *other = (sensor == 0 ? &first->gyro_evidence : &first->accel_evidence)->frame;
         if (t->present != f->present || (t->present && t->axis_count != f->axis_count))

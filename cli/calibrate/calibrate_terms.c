@@ -115,7 +115,7 @@ static void collect(parameter_list *list, imk_model_parameter parameter)
 static void collect_term(const bench *b, int sensor, int term, parameter_list *list)
 {
     imk_model *model = &b->found->calibration->model;
-    const imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, sensor);
     const bool powers = term == IMK_MODEL_BIAS_TEMPERATURE || term == IMK_MODEL_SCALE_TEMPERATURE;
     const bool pairs = term == IMK_MODEL_MISALIGNMENT || term == IMK_MODEL_CROSS_AXIS;
     const option_integer order = b->options->temperature_order;
@@ -157,8 +157,7 @@ static int collect_item(const bench *b, const char *option_name, const char *ite
     }
     bool found = false;
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *triad =
-            sensor == 0 ? &b->found->calibration->model.gyro : &b->found->calibration->model.accel;
+        const imk_triad *triad = imk_model_triad(&b->found->calibration->model, sensor);
         const size_t length = strlen(sensors[sensor]);
         const bool stated = strncmp(item, sensors[sensor], length) == 0;
         const bool other = strncmp(item, sensors[1 - sensor], strlen(sensors[1 - sensor])) == 0;
@@ -213,7 +212,7 @@ static bool temperature_range(const bench *b, double *low, double *high)
 static int make_room(bench *b, imk_model_parameter p)
 {
     imk_model *model = &b->found->calibration->model;
-    imk_triad *triad = p.sensor == 0 ? &model->gyro : &model->accel;
+    imk_triad *triad = imk_model_triad_to_set(model, p.sensor);
     imk_temperature_polynomial *polynomial = p.term == IMK_MODEL_BIAS_TEMPERATURE
                                                  ? &triad->bias.temperature
                                                  : &triad->scale_factor.temperature;

@@ -8,18 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(member) offsetof(compensate_emission, member)
+
 const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
-    {"emit-c", 0, OPTION_FILE, "DIR", NULL, NULL,
-     "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c",
-     offsetof(compensate_emission, directory)},
-    {"arithmetic", 0, OPTION_CHOICE, "KIND", NULL, "float|double|fixed",
-     "of that code: float (default), double, or fixed: 32-bit integers, for parts without an FPU",
-     offsetof(compensate_emission, arithmetic)},
-    {"prefix", 0, OPTION_TEXT, "NAME", NULL, NULL,
-     "of its files and names; default: imukit_ and the name of the model",
-     offsetof(compensate_emission, prefix)},
-    {"vectors", 0, OPTION_INTEGER, "N", NULL, "1-1000000",
-     "samples in its self-test, 1 to 1000000; default 64", offsetof(compensate_emission, vectors)},
+    {"emit-c", 0, AN_INPUT("DIR"), AT(directory),
+     "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c"},
+    {"arithmetic", 0, A_CHOICE("KIND", "float|double|fixed"), AT(arithmetic),
+     "of that code: float (default), double, or fixed: 32-bit integers, for parts without an FPU"},
+    {"prefix", 0, A_TEXT("NAME"), AT(prefix),
+     "of its files and names; default: imukit_ and the name of the model"},
+    {"vectors", 0, AN_INTEGER("N", "1-1000000"), AT(vectors),
+     "samples in its self-test, 1 to 1000000; default 64"},
 };
 
 static const char *const arithmetics[3] = {"float", "double", "fixed"};

@@ -10,43 +10,33 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(member) offsetof(compensate_options, member)
+
 static const option compensate_option_table[] = {
-    {"output", 'o', OPTION_OUTPUT, "LOG", NULL, NULL,
-     "where to write: .csv (also .gz, .zst) or .npy; - (the default) is standard output",
-     offsetof(compensate_options, output)},
-    {"temperature", 0, OPTION_QUANTITY, "TEMPERATURE", "degC", NULL,
-     "of the unit, for a log without such a column; overrules one",
-     offsetof(compensate_options, temperature)},
-    {"temperature-time", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "over which the rate of temperature is smoothed, where the model needs it; default 30s",
-     offsetof(compensate_options, temperature_time)},
-    {"powered-for", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long the unit was on before the first row, for warm-up; default 0s",
-     offsetof(compensate_options, powered_for)},
-    {"rate-limit", 0, OPTION_QUANTITY, "RATE", "deg/s", "positive",
-     "largest rate, where the model has nonlinear terms and no range",
-     offsetof(compensate_options, rate_limit)},
-    {"force-limit", 0, OPTION_QUANTITY, "FORCE", "g", "positive",
-     "largest specific force, likewise", offsetof(compensate_options, force_limit)},
-    {"to-gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the rates written; default: as read, rad/s for counts",
-     offsetof(compensate_options, to_gyro_unit)},
-    {"to-accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the forces written; default: as read, m/s^2 for counts",
-     offsetof(compensate_options, to_accel_unit)},
-    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
-     "digits after the point, 0 to 17; default: as many as the number needs",
-     offsetof(compensate_options, decimals)},
-    {"flags", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "add a column of flags: 1 saturated, 2 temperature, 4 limit, 8 not finite, 16 acceleration",
-     offsetof(compensate_options, flags)},
-    {"strict", 0, OPTION_FLAG, NULL, NULL, NULL, "exit with 1 when there is a warning",
-     offsetof(compensate_options, strict)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "print the summary as JSON; the log goes to a file then", offsetof(compensate_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
-     "threads to use; default: all processors. The bytes do not depend on it",
-     offsetof(compensate_options, threads)},
+    {"output", 'o', AN_OUTPUT("LOG"), AT(output),
+     "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output"},
+    {"temperature", 0, A_QUANTITY("TEMPERATURE", "degC", NULL), AT(temperature),
+     "of the unit, for a log without such a column; overrules one"},
+    {"temperature-time", 0, A_QUANTITY("TIME", "s", NULL), AT(temperature_time),
+     "over which the rate of temperature is smoothed, where the model needs it; default 30s"},
+    {"powered-for", 0, A_QUANTITY("TIME", "s", NULL), AT(powered_for),
+     "how long the unit was on before the first row, for warm-up; default 0s"},
+    {"rate-limit", 0, A_QUANTITY("RATE", "deg/s", "positive"), AT(rate_limit),
+     "largest rate, where the model has nonlinear terms and no range"},
+    {"force-limit", 0, A_QUANTITY("FORCE", "g", "positive"), AT(force_limit),
+     "largest specific force, likewise"},
+    {"to-gyro-unit", 0, A_TEXT("UNIT"), AT(to_gyro_unit),
+     "of the rates written; default: as read, rad/s for counts"},
+    {"to-accel-unit", 0, A_TEXT("UNIT"), AT(to_accel_unit),
+     "of the forces written; default: as read, m/s^2 for counts"},
+    {"decimals", 0, AN_INTEGER("N", "0-17"), AT(decimals),
+     "digits after the point, 0 to 17; default: as many as the number needs"},
+    {"flags", 0, A_FLAG, AT(flags),
+     "add a column of flags: 1 saturated, 2 temperature, 4 limit, 8 not finite, 16 acceleration"},
+    {"strict", 0, A_FLAG, AT(strict), "exit with 1 when there is a warning"},
+    {"json", 0, A_FLAG, AT(json), "print the summary as JSON; the log goes to a file then"},
+    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
+     "threads to use; default: all processors. The bytes do not depend on it"},
 };
 
 static int run(int count, char **words);
@@ -64,7 +54,8 @@ const verb compensate_verb = {
                   "the same for a device: C99 code for one sample, with its error bound and a "
                   "self-test"}},
     .description =
-        "LOG is CSV (also .gz, .zst) or .npy; - is standard input. MODEL is a model file or a name "
+        "LOG is CSV (also .gz, .zst){ or logs}; - is standard input. MODEL is a model file or a "
+        "name "
         "from `imukit devices`. Gyro and accel columns become angular rate and specific force of "
         "the body; other columns are copied.\n\nThe deterministic terms are taken out: bias with "
         "temperature and warm-up, scale factor, nonlinearity, misalignment, cross-axis and "
@@ -73,13 +64,11 @@ const verb compensate_verb = {
         "acceleration is the central difference of the rates. A gap in time begins anew.\n\nWith "
         "--emit-c and no LOG, the correction is written as C99 code without loops, heap or libm. "
         "Lever arms, warm-up and the rate of temperature stay in there.",
-    .groups = {{"Options", sizeof compensate_option_table / sizeof compensate_option_table[0],
-                compensate_option_table, 0},
+    .groups = {{A_GROUP("Options", compensate_option_table), 0},
                {"Code for a device", COMPENSATE_EMIT_OPTIONS, compensate_emit_options,
-                offsetof(compensate_options, emission)},
-               {"Terms", TERM_OPTIONS, term_options, offsetof(compensate_options, terms)},
-               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
-                offsetof(compensate_options, log)}},
+                AT(emission)},
+               {A_GROUP("Terms", term_options), AT(terms)},
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
     .run = run};
 
 int compensate_models(const compensate_options *o, const char *name, imk_model *whole,
@@ -170,15 +159,12 @@ static int compensate(const compensate_options *o, const char *const *operands,
     int code = check_axes(o, settings->terms ? settings->terms : whole, &source);
     if (code >= 0)
         return code;
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    job_progress shown = job_progress_begin(operands[0]);
-    const imk_job job = job_progress_job(&shown, &executor);
+    threaded_job t;
+    threaded_job_begin(&t, operands[0], o->threads.value);
     imk_compensate_log *log;
     const imk_status status =
-        imk_compensate_log_run(&source, whole, settings, &sink, &job, &log, &error);
-    job_progress_end(&shown);
-    imk_thread_pool_destroy(pool);
+        imk_compensate_log_run(&source, whole, settings, &sink, &t.job, &log, &error);
+    threaded_job_end(&t);
     const imk_status ended = imk_log_sink_end(&written, status, &error);
     code = status == IMK_OK && ended != IMK_OK ? command_error(&error, NULL)
                                                : tell(operands, log, ended, &error);

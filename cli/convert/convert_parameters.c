@@ -19,27 +19,23 @@ static const char formats[] =
 static const char target_formats[] =
     "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
 
+#define AT(member) offsetof(parameter_options, member)
+
 const option parameter_option_table[PARAMETER_OPTIONS] = {
-    {"from", 0, OPTION_CHOICE, "FORMAT", NULL, formats,
-     "of the parameter file read; default: by its content", offsetof(parameter_options, from)},
-    {"to", 0, OPTION_CHOICE, "FORMAT", NULL, target_formats,
-     "of the parameter file written; default: a model file", offsetof(parameter_options, to)},
-    {"density", 0, OPTION_CHOICE, "SIDES", NULL, "as-the-program|two-sided|one-sided",
-     "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)",
-     offsetof(parameter_options, density)},
-    {"sensor", 0, OPTION_TEXT, "NAME", NULL, NULL, "which of several in the parameter file",
-     offsetof(parameter_options, sensor)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print what was assumed and left out as JSON",
-     offsetof(parameter_options, json)},
-    {"flicker", 0, OPTION_CHOICE, "CHOICE", NULL,
-     "random-walk|gauss-markov|two-gauss-markov|left-out",
-     "--to filter: what stands for bias instability, which no filter state is",
-     offsetof(parameter_options, flicker)},
-    {"tau-from", 0, OPTION_QUANTITY, "TIME", "s", "1e-9..1e9",
-     "--to filter: shortest averaging time at which that has to hold; default 1 s",
-     offsetof(parameter_options, tau_from)},
-    {"tau-to", 0, OPTION_QUANTITY, "TIME", "s", "1e-9..1e9",
-     "--to filter: the longest; default 1000 s", offsetof(parameter_options, tau_to)},
+    {"from", 0, A_CHOICE("FORMAT", formats), AT(from),
+     "of the parameter file read; default: by its content"},
+    {"to", 0, A_CHOICE("FORMAT", target_formats), AT(to),
+     "of the parameter file written; default: a model file"},
+    {"density", 0, A_CHOICE("SIDES", "as-the-program|two-sided|one-sided"), AT(density),
+     "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)"},
+    {"sensor", 0, A_TEXT("NAME"), AT(sensor), "which of several in the parameter file"},
+    {"json", 0, A_FLAG, AT(json), "print what was assumed and left out as JSON"},
+    {"flicker", 0, A_CHOICE("CHOICE", "random-walk|gauss-markov|two-gauss-markov|left-out"),
+     AT(flicker), "--to filter: what stands for bias instability, which no filter state is"},
+    {"tau-from", 0, A_QUANTITY("TIME", "s", "1e-9..1e9"), AT(tau_from),
+     "--to filter: shortest averaging time at which that has to hold; default 1 s"},
+    {"tau-to", 0, A_QUANTITY("TIME", "s", "1e-9..1e9"), AT(tau_to),
+     "--to filter: the longest; default 1000 s"},
 };
 
 bool parameters_or_model(const char *path)

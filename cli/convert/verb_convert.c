@@ -1,44 +1,63 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit convert: logs, model files and parameter files of other programs between formats. */
-#include "convert_motion.h"
 #include "convert_parameters.h"
 #include "log/log_input.h"
 #include "log/log_units.h"
-#include "shell/command.h"
-#include "shell/progress.h"
+#include "shell/job_progress.h"
 
+#include "imukit/convert_log.h"
 #include "imukit/model_file.h"
+
+#include <math.h>
 
 #include <stdlib.h>
 #include <string.h>
 
+/* The units of the columns written, in the order of their settings. */
+enum { TIME_UNIT, GYRO_UNIT, ACCEL_UNIT, TEMPERATURE_UNIT, UNITS };
+
 typedef struct convert_options {
     log_input log;
     parameter_options parameters;
-    convert_motion_options motion;
-    const char *to_gyro_unit, *to_accel_unit, *to_time_unit, *to_temperature_unit, *select;
+    imk_convert_log_settings to;
+    const char *unit[UNITS], *to_point;
     option_integer decimals, threads;
 } convert_options;
 
+#define AT(member) offsetof(convert_options, member)
+
 static const option convert_option_table[] = {
-    {"select", 0, OPTION_TEXT, "NAMES", NULL, NULL,
-     "columns to keep, in this order, such as time,gyro_x; default: all",
-     offsetof(convert_options, select)},
-    {"to-gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the gyro columns written; default: as read", offsetof(convert_options, to_gyro_unit)},
-    {"to-accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the accelerometer columns written; default: as read",
-     offsetof(convert_options, to_accel_unit)},
-    {"to-time-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the time column written; default: as read", offsetof(convert_options, to_time_unit)},
-    {"to-temperature-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "of the temperature column written; default: as read",
-     offsetof(convert_options, to_temperature_unit)},
-    {"decimals", 0, OPTION_INTEGER, "N", NULL, "0-17",
-     "digits after the point, 0 to 17; default: as many as the number needs",
-     offsetof(convert_options, decimals)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
-     offsetof(convert_options, threads)},
+    {"select", 0, A_TEXT("NAMES"), AT(to.select),
+     "columns to keep, in this order, such as time,gyro_x; default: all"},
+    {"to-gyro-unit", 0, A_TEXT("UNIT"), AT(unit[GYRO_UNIT]),
+     "of the gyro columns written; default: as read"},
+    {"to-accel-unit", 0, A_TEXT("UNIT"), AT(unit[ACCEL_UNIT]),
+     "of the accelerometer columns written; default: as read"},
+    {"to-time-unit", 0, A_TEXT("UNIT"), AT(unit[TIME_UNIT]),
+     "of the time column written; default: as read"},
+    {"to-temperature-unit", 0, A_TEXT("UNIT"), AT(unit[TEMPERATURE_UNIT]),
+     "of the temperature column written; default: as read"},
+    {"decimals", 0, AN_INTEGER("N", "0-17"), AT(decimals),
+     "digits after the point, 0 to 17; default: as many as the number needs"},
+    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
+     "threads to use; default: all processors"},
+};
+
+static const option motion_option_table[] = {
+    {"to-point", 0, A_TEXT("\"X Y Z UNIT\""), AT(to_point),
+     "specific force at another point of the body, forward right down of the accelerometers, such "
+     "as \"0.1 0 -0.05 m\""},
+    {"gravity-free", 0, A_FLAG, AT(to.gravity_free),
+     "acceleration relative to the Earth instead of specific force; needs --latitude, and a unit "
+     "that is still at first"},
+    {"still", 0, A_QUANTITY("TIME", "s", NULL), AT(to.still),
+     "how long it is still, for roll and pitch; default 10s"},
+    {"latitude", 0, A_QUANTITY("ANGLE", "deg", "-90..90"), AT(to.latitude),
+     "geodetic, for gravity"},
+    {"height", 0, A_QUANTITY("LENGTH", "m", "-10000..100000"), AT(to.height),
+     "above the ellipsoid; default 0m"},
+    {"yaw", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(to.yaw),
+     "at first, from north to east, for the Earth's rotation; default 0deg"},
 };
 
 static int run(int count, char **words);
@@ -56,7 +75,8 @@ const verb convert_verb = {
          {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
           "a model becomes a parameter file of another program; without --to the way back"}},
     .description =
-        "A log is .csv (also .gz, .zst) or .npy; - is standard input or output, as CSV. Increments "
+        "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
+        "Increments "
         "become rates. Values keep their units unless an option changes them.\n\n"
         "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
         "Parameter files of "
@@ -64,14 +84,10 @@ const verb convert_verb = {
         "ardupilot "
         "are recognised by their content; what was assumed about units and densities, and what a "
         "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
-    .groups = {{"Options", sizeof convert_option_table / sizeof convert_option_table[0],
-                convert_option_table, 0},
-               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table,
-                offsetof(convert_options, parameters)},
-               {"Another point, without gravity", CONVERT_MOTION_OPTIONS,
-                convert_motion_option_table, offsetof(convert_options, motion)},
-               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options,
-                offsetof(convert_options, log)}},
+    .groups = {{A_GROUP("Options", convert_option_table), 0},
+               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
+               {A_GROUP("Another point, without gravity", motion_option_table), 0},
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
     .run = run};
 
 /* What each end is. A name without an ending tells nothing of what is read: its content is looked
@@ -101,160 +117,87 @@ static int convert_model(const char *in, const char *out)
     return code;
 }
 
-/* Which columns are read and how they are written. */
-typedef struct conversion {
+static int parse_point(const char *text, double point[3])
+{
+    double sigma[3];
     size_t count;
-    size_t source[IMK_LOG_COLUMNS_MAX];
-    imk_log_column column[IMK_LOG_COLUMNS_MAX];
-} conversion;
-
-static int select_columns(const convert_options *o, imk_log_reader *reader, conversion *c)
-{
-    const char *names[IMK_LOG_COLUMNS_MAX];
-    size_t available = imk_log_column_count(reader);
-    for (size_t k = 0; k < available; k++)
-        names[k] = imk_log_column_get(reader, k)->name;
-    c->count = 0;
-    for (size_t k = 0; !o->select && k < available; k++)
-        c->source[c->count++] = k;
-    for (const char *item = o->select; item;) {
-        size_t length = strcspn(item, ","), k = 0;
-        while (k < available &&
-               (strlen(names[k]) != length || strncmp(names[k], item, length) != 0))
-            k++;
-        if (k == available || c->count == IMK_LOG_COLUMNS_MAX) {
-            char name[64];
-            snprintf(name, sizeof name, "%.*s", (int)(length < 60 ? length : 60), item);
-            const char *nearest = command_nearest(name, available, names);
-            return command_failed("--select: the log has no column \"%s\"%s%s%s", name,
-                                  nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-                                  nearest ? "\"?" : "");
-        }
-        c->source[c->count++] = k;
-        item = item[length] ? item + length + 1 : NULL;
-    }
-    for (size_t k = 0; k < c->count; k++)
-        c->column[k] = *imk_log_column_get(reader, c->source[k]);
-    return -1;
+    const imk_dimension length = imk_unit_of("m").dimension;
+    if (imk_quantity_parse(text, text + strlen(text), length, 3, point, sigma, &count, NULL,
+                           NULL) == IMK_OK &&
+        count == 3)
+        return -1;
+    return command_misused("--to-point %s: expected three lengths with their unit, such as "
+                           "\"0.1 0 -0.05 m\"",
+                           text);
 }
 
-/* Increments were divided by the interval on reading: name and unit follow. */
-static void make_rate(imk_log_column *column)
+static int set_up(convert_options *o)
 {
-    const bool gyro = column->quantity == IMK_QUANTITY_ANGULAR_RATE;
-    if (!column->increment)
-        return;
-    column->increment = false;
-    column->unit = imk_unit_of(gyro ? "deg/s" : "m/s^2");
-    if (column->axis >= 0 && column->axis < 3)
-        imk_axis_name(gyro ? "gyro" : "accel", column->axis, column->name);
-}
-
-static int set_units(const convert_options *o, conversion *c)
-{
-    const struct {
-        imk_quantity quantity;
-        const char *option_name, *text;
-    } choices[] = {{IMK_QUANTITY_TIME, "to-time-unit", o->to_time_unit},
-                   {IMK_QUANTITY_ANGULAR_RATE, "to-gyro-unit", o->to_gyro_unit},
-                   {IMK_QUANTITY_SPECIFIC_FORCE, "to-accel-unit", o->to_accel_unit},
-                   {IMK_QUANTITY_TEMPERATURE, "to-temperature-unit", o->to_temperature_unit}};
+    static const char *const names[UNITS] = {"to-time-unit", "to-gyro-unit", "to-accel-unit",
+                                             "to-temperature-unit"};
+    imk_unit *units[UNITS] = {&o->to.time_unit, &o->to.gyro_unit, &o->to.accel_unit,
+                              &o->to.temperature_unit};
     int code = -1;
-    for (size_t k = 0; k < c->count; k++) {
-        make_rate(&c->column[k]);
-        for (size_t i = 0; i < sizeof choices / sizeof choices[0] && code < 0; i++)
-            if (c->column[k].quantity == choices[i].quantity)
-                code = log_unit_asked(choices[i].option_name, choices[i].text, &c->column[k].unit);
-    }
+    for (int i = 0; i < UNITS && code < 0; i++)
+        code = log_unit_parse(names[i], o->unit[i], units[i]);
+    o->to.to_point = o->to_point != NULL;
+    if (code < 0 && o->to_point)
+        code = parse_point(o->to_point, o->to.point.v);
+    if (code < 0 && o->to.gravity_free && isnan(o->to.latitude))
+        code = command_misused("--gravity-free: gravity differs from place to place: add "
+                               "--latitude 45deg and, off the sea, --height 500m");
     return code;
 }
 
-enum { BLOCK_ROWS = 65536 };
-
-static int copy_rows(imk_log_reader *reader, convert_motion *motion, imk_log_writer *writer,
-                     const conversion *c, const char *in, const imk_executor *executor)
+/* What is wrong with an option, or with what is written; the rest is the log's. */
+static int tell(const char *in, const imk_findings *findings, imk_status status,
+                const imk_error *error)
 {
-    double *read[IMK_LOG_COLUMNS_MAX] = {NULL}, *written[IMK_LOG_COLUMNS_MAX];
-    double *memory =
-        command_memory(NULL, imk_log_column_count(reader) * BLOCK_ROWS * sizeof *memory);
-    imk_error error;
-    imk_status status = IMK_OK;
-    for (size_t k = 0; k < imk_log_column_count(reader); k++)
-        read[k] = memory + k * BLOCK_ROWS;
-    for (size_t k = 0; k < c->count; k++)
-        written[k] = read[c->source[k]];
-    progress p = progress_begin("converting", "B", 1);
-    size_t rows = 1;
-    bool wrote = true;
-    uint64_t total = 0;
-    while (status == IMK_OK && rows > 0 && wrote) {
-        uint64_t done, size;
-        status = convert_motion_read(motion, reader, BLOCK_ROWS, read, &rows, &error);
-        if (status == IMK_OK && rows > 0)
-            wrote = imk_log_write(writer, rows, (const double *const *)written, executor) == IMK_OK;
-        total += rows;
-        imk_log_progress(reader, &done, &size);
-        progress_update(&p, done, size);
+    const imk_finding *failure = status != IMK_OK ? imk_findings_failure(findings) : NULL;
+    char text[400];
+    if (failure && strcmp(failure->code, "not_written") == 0)
+        return command_error(error, NULL);
+    if (failure && strcmp(failure->code, "no_such_column") == 0) {
+        imk_finding_text(failure, text, sizeof text);
+        return command_failed("%s", text);
     }
-    progress_end(&p);
-    free(memory);
-    if (status != IMK_OK) {
-        imk_log_abandon(writer);
-        return command_error(&error, in);
-    }
-    if (wrote && total == 0) {
-        imk_log_abandon(writer);
-        return command_failed("%s: there is a header but no data row", in);
-    }
-    if (imk_log_commit(writer, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    return EXIT_DONE;
+    if (!failure && status == IMK_ERROR_DIMENSION)
+        return command_misused("--to-%s %s: expected %s", error->field, error->found,
+                               error->expected);
+    if (!failure && status == IMK_ERROR_RANGE)
+        return command_misused("--%s must be %s", error->field, error->expected);
+    return log_input_tell(in, findings, status, error);
 }
 
-static int write_log(const convert_options *o, imk_log_reader *reader, convert_motion *motion,
-                     const conversion *c, const char *in, const char *out)
-{
-    int decimals[IMK_LOG_COLUMNS_MAX];
-    bool fixed = o->decimals.given;
-    imk_error error;
-    imk_log_writer *writer;
-    for (size_t k = 0; k < c->count; k++)
-        decimals[k] = (int)o->decimals.value;
-    if (imk_log_create(out, c->count, c->column, fixed ? IMK_LOG_FIXED : IMK_LOG_SHORTEST,
-                       fixed ? decimals : NULL, 0, &writer, &error) != IMK_OK)
-        return command_error(&error, NULL);
-    log_copy_labels(reader, writer);
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-    imk_executor executor = imk_thread_pool_executor(pool);
-    int code = copy_rows(reader, motion, writer, c, in, &executor);
-    imk_thread_pool_destroy(pool);
-    return code;
-}
-
-static int convert_log(const convert_options *o, const char *in, const char *out)
+static int convert_log(convert_options *o, const char *in, const char *out)
 {
     imk_error error;
-    imk_log_reader *reader;
-    imk_log_settings settings = log_input_settings(&o->log);
-    conversion c;
-    convert_motion *motion = NULL;
-    if (imk_log_open(in, &settings, &reader, &error) != IMK_OK)
-        return command_log_error(&error, in);
-    int code = select_columns(o, reader, &c);
+    imk_findings findings;
+    imk_log_reader *reader = NULL;
+    imk_log_sink written = {
+        .path = out, .fixed = o->decimals.given, .decimals = (int)o->decimals.value};
+    int code = set_up(o);
     if (code < 0)
-        code = set_units(o, &c);
-    if (code < 0)
-        code = convert_motion_start(&o->motion, reader, in, &motion);
-    if (code < 0)
-        code = write_log(o, reader, motion, &c, in, out);
-    convert_motion_end(motion);
+        code = log_input_open(&o->log, in, false, &reader);
+    if (code >= 0)
+        return code;
+    threaded_job t;
+    threaded_job_begin(&t, in, o->threads.value);
+    const imk_record_source source = imk_log_source(reader);
+    const imk_record_sink sink = imk_log_sink_of(&written);
+    const imk_status status =
+        imk_convert_log_run(&source, &o->to, &sink, &t.job, &findings, &error);
+    threaded_job_end(&t);
+    const imk_status ended = imk_log_sink_end(&written, status, &error);
+    code = status == IMK_OK && ended != IMK_OK ? command_error(&error, NULL)
+                                               : tell(in, &findings, ended, &error);
     imk_log_close(reader);
-    return code;
+    return code < 0 ? EXIT_DONE : code;
 }
 
 static int run(int count, char **words)
 {
-    convert_options o = {.motion = convert_motion_default()};
+    convert_options o = {.to = imk_convert_log_default()};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&convert_verb, count, words, &o, operands);
     if (code >= 0)
@@ -277,7 +220,7 @@ static int run(int count, char **words)
                                "other; use identify or simulate",
                                operands[0], from_model ? "model" : "log", operands[1],
                                to_model ? "model" : "log");
-    if (from_model && (o.motion.to_point || o.motion.gravity_free))
+    if (from_model && (o.to_point || o.to.gravity_free))
         return command_misused("--to-point and --gravity-free are for logs, and %s is a model",
                                operands[0]);
     return from_model ? convert_model(operands[0], operands[1])

@@ -11,8 +11,10 @@ typedef struct devices_options {
     bool json;
 } devices_options;
 
+#define AT(member) offsetof(devices_options, member)
+
 static const option devices_option_table[] = {
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(devices_options, json)},
+    {"json", 0, A_FLAG, AT(json), "print as JSON"},
 };
 
 static int run(int count, char **words);

@@ -13,86 +13,65 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(member) offsetof(drift_options, member)
+
 static const option navigation_option_table[] = {
-    {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long; default: 24h, with --motion its length, with --want its time",
-     offsetof(drift_options, duration)},
-    {"times", 0, OPTION_TEXT, "TIMES", NULL, NULL,
-     "when to look instead, such as \"1min, 10min, 1h\"", offsetof(drift_options, times)},
-    {"aligned", 0, OPTION_CHOICE, "HOW", NULL, "given|self",
+    {"duration", 'd', A_QUANTITY("TIME", "s", NULL), AT(duration),
+     "how long; default: 24h, with --motion its length, with --want its time"},
+    {"times", 0, A_TEXT("TIMES"), AT(times), "when to look instead, such as \"1min, 10min, 1h\""},
+    {"aligned", 0, A_CHOICE("HOW", "given|self"), AT(aligned),
      "given (the default): the attitude at the start is true, but for --initial-attitude; self: "
-     "the unit finds it at rest from its own readings",
-     offsetof(drift_options, aligned)},
-    {"align-time", 0, OPTION_QUANTITY, "TIME", "s", NULL, "length of that alignment; default 300s",
-     offsetof(drift_options, align_time)},
-    {"initial-attitude", 0, OPTION_TEXT, "ANGLES", NULL, NULL,
+     "the unit finds it at rest from its own readings"},
+    {"align-time", 0, A_QUANTITY("TIME", "s", NULL), AT(align_time),
+     "length of that alignment; default 300s"},
+    {"initial-attitude", 0, A_TEXT("ANGLES"), AT(initial_attitude),
      "1 sigma of the error at the start: \"0.05 deg\", or about north, east and down, \"0.01 0.01 "
-     "0.1 deg\"; default 0",
-     offsetof(drift_options, initial_attitude)},
-    {"initial-velocity", 0, OPTION_TEXT, "SPEEDS", NULL, NULL, "likewise, \"0.1 m/s\"; default 0",
-     offsetof(drift_options, initial_velocity)},
-    {"initial-position", 0, OPTION_TEXT, "LENGTHS", NULL, NULL, "likewise, \"10 m\"; default 0",
-     offsetof(drift_options, initial_position)},
-    {"vertical", 0, OPTION_CHOICE, "HOW", NULL, "slaved|free",
+     "0.1 deg\"; default 0"},
+    {"initial-velocity", 0, A_TEXT("SPEEDS"), AT(initial_velocity),
+     "likewise, \"0.1 m/s\"; default 0"},
+    {"initial-position", 0, A_TEXT("LENGTHS"), AT(initial_position),
+     "likewise, \"10 m\"; default 0"},
+    {"vertical", 0, A_CHOICE("HOW", "slaved|free"), AT(vertical),
      "slaved (the default): height follows the truth, as with a barometer; free: it grows without "
-     "bound",
-     offsetof(drift_options, vertical)},
-    {"compensated", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "bound"},
+    {"compensated", 0, A_FLAG, AT(compensated),
      "beside it the same after calibration: values that the model knows are taken out, their "
-     "uncertainty stays",
-     offsetof(drift_options, compensated)},
-    {"want", 0, OPTION_TEXT, "WISH", NULL, NULL,
+     "uncertainty stays"},
+    {"want", 0, A_TEXT("WISH"), AT(want),
      "the inverse question, \"CEP 1 nmi @ 1h\": what each term must become, and which devices "
-     "would do; also R95, DRMS, height, velocity, tilt, heading",
-     offsetof(drift_options, want)},
+     "would do; also R95, DRMS, height, velocity, tilt, heading"},
 };
 
 static const option place_option_table[] = {
-    {"motion", 'm', OPTION_FILE, "MOTION", NULL, NULL,
-     "a motion script (.yaml) or a table of poses; default: at rest as the options below say",
-     offsetof(drift_options, motion)},
-    {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", NULL, "of the samples; default 100Hz",
-     offsetof(drift_options, rate)},
-    {"latitude", 0, OPTION_QUANTITY, "ANGLE", "deg", "-90..90", "geodetic; default 45deg",
-     offsetof(drift_options, latitude)},
-    {"height", 0, OPTION_QUANTITY, "LENGTH", "m", "-10000..100000",
-     "above the ellipsoid; default 0m", offsetof(drift_options, height)},
-    {"roll", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "default 0deg: level",
-     offsetof(drift_options, roll)},
-    {"pitch", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "default 0deg: level",
-     offsetof(drift_options, pitch)},
-    {"yaw", 0, OPTION_QUANTITY, "ANGLE", "deg", "-36000..36000", "from north to east; default 0deg",
-     offsetof(drift_options, yaw)},
+    {"motion", 'm', AN_INPUT("MOTION"), AT(motion),
+     "a motion script (.yaml) or a table of poses; default: at rest as the options below say"},
+    {"rate", 'r', A_QUANTITY("RATE", "Hz", NULL), AT(rate), "of the samples; default 100Hz"},
+    {"latitude", 0, A_QUANTITY("ANGLE", "deg", "-90..90"), AT(latitude), "geodetic; default 45deg"},
+    {"height", 0, A_QUANTITY("LENGTH", "m", "-10000..100000"), AT(height),
+     "above the ellipsoid; default 0m"},
+    {"roll", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(roll), "default 0deg: level"},
+    {"pitch", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(pitch), "default 0deg: level"},
+    {"yaw", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(yaw),
+     "from north to east; default 0deg"},
 };
 
 static const option output_option_table[] = {
-    {"monte-carlo", 'n', OPTION_INTEGER, "N", NULL, "1-4294967295",
-     "simulate and navigate so many runs as well, without linearising",
-     offsetof(drift_options, monte_carlo)},
-    {"seed", 's', OPTION_INTEGER, "N", NULL, NULL,
-     "of the runs: the same seed makes the same bytes on every machine; default 1",
-     offsetof(drift_options, seed)},
-    {"shard", 0, OPTION_TEXT, "I/N", NULL, NULL,
-     "only part I of N of the runs, for imukit merge; with -o PART.h5",
-     offsetof(drift_options, shard)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
-     "threads to use; default: all processors. The results do not depend on it",
-     offsetof(drift_options, threads)},
-    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
+    {"monte-carlo", 'n', AN_INTEGER("N", "1-4294967295"), AT(monte_carlo),
+     "simulate and navigate so many runs as well, without linearising"},
+    {"seed", 's', AN_INTEGER("N", NULL), AT(seed),
+     "of the runs: the same seed makes the same bytes on every machine; default 1"},
+    {"shard", 0, A_TEXT("I/N"), AT(shard),
+     "only part I of N of the runs, for imukit merge; with -o PART.h5"},
+    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
+     "threads to use; default: all processors. The results do not depend on it"},
+    {"output", 'o', AN_OUTPUT("FILE"), AT(output),
      "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started again, it "
-     "goes on. Else figures and terms against time (.csv)",
-     offsetof(drift_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
-     "draw the growth and the shares of the terms", offsetof(drift_options, plot)},
-    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
-     offsetof(drift_options, report)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(drift_options, json)},
+     "goes on. Else figures and terms against time (.csv)"},
+    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
+     "draw the growth and the shares of the terms"},
+    {"report", 0, AN_OUTPUT("FILE.html"), AT(report), "write one self-contained page"},
+    {"json", 0, A_FLAG, AT(json), "print as JSON"},
 };
-
-#define GROUP(title, table)                                                                        \
-    {                                                                                              \
-        title, sizeof(table) / sizeof(table)[0], table, 0                                          \
-    }
 
 static int run(int count, char **words);
 
@@ -116,10 +95,10 @@ const verb drift_verb = {
         "size is known (repeatability, noise) scatter. The covariance is linear: ~ marks where "
         "attitude errors are too large for it.\n\nRESULTS.h5 is what --monte-carlo or imukit merge "
         "wrote: its statistics are printed.",
-    .groups = {GROUP("Navigation", navigation_option_table),
-               {"Terms", TERM_OPTIONS, term_options, offsetof(drift_options, terms)},
-               GROUP("Motion and place", place_option_table),
-               GROUP("Runs and output", output_option_table)},
+    .groups = {{A_GROUP("Navigation", navigation_option_table), 0},
+               {A_GROUP("Terms", term_options), AT(terms)},
+               {A_GROUP("Motion and place", place_option_table), 0},
+               {A_GROUP("Runs and output", output_option_table), 0}},
     .run = run};
 
 /* ---- checks ---- */

@@ -3,7 +3,7 @@
  * every stretch in which it is constant; and the log at rest (--static), identified. */
 #include "evaluate_parts.h"
 
-#include "log/channel_units.h"
+#include "imukit/channel_units.h"
 
 #include "imukit/reference_alignment.h"
 #include "imukit/samples.h"
@@ -405,17 +405,17 @@ int evaluate_load(evaluation *v)
 
 /* ---- at rest --------------------------------------------------------------------------------- */
 
-static void identify(const log_channels *channels, size_t c, double confidence, void *workspace,
+static void identify(const imk_even_record *channels, size_t c, double confidence, void *workspace,
                      size_t size, imk_evaluate_rest *rest)
 {
     imk_error error;
-    const imk_log_column *column = log_channel_column(channels, c);
+    const imk_log_column *column = imk_even_record_column(channels, c);
     imk_identify_settings settings = imk_identify_default();
     settings.dt = channels->dt;
     settings.confidence = confidence;
     snprintf(rest->name, sizeof rest->name, "%s", column->name);
     const imk_status status =
-        imk_identify_channel(&settings, channels->rows, log_channel_data(channels, c),
+        imk_identify_channel(&settings, channels->rows, imk_even_record_data(channels, c),
                              &rest->result, workspace, size, &error);
     rest->identified = status == IMK_OK;
     if (!rest->identified) {
@@ -423,14 +423,14 @@ static void identify(const log_channels *channels, size_t c, double confidence, 
                      imk_status_text(status));
         return;
     }
-    rest->unit = channel_readable_unit(column, rest->result.minimum_floor);
+    rest->unit = imk_channel_readable_unit(column, rest->result.minimum_floor);
     imk_evaluate_rest_figures(rest);
 }
 
 int evaluate_load_rest(evaluation *v)
 {
     const evaluate_options *o = v->options;
-    log_channels channels;
+    imk_even_record channels;
     if (!o->rest)
         return -1;
     const int code = log_input_load(&o->bench.log, o->rest, &channels);
@@ -441,6 +441,6 @@ int evaluate_load_rest(evaluation *v)
     for (size_t c = 0; c < channels.count && v->rest_count < IMK_EVALUATE_CHANNELS; c++)
         identify(&channels, c, o->confidence, workspace, size, &v->rest[v->rest_count++]);
     free(workspace);
-    log_channels_free(&channels);
+    imk_even_record_free(&channels);
     return -1;
 }

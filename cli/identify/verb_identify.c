@@ -5,86 +5,66 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(member) offsetof(identify_options, member)
+
 static const option identify_option_table[] = {
-    {"output", 'o', OPTION_OUTPUT, "MODEL", NULL, NULL, "write the model here (.yaml or .json)",
-     offsetof(identify_options, output)},
-    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
-     "write one self-contained page: verdict, parameters, Allan plots, model",
-     offsetof(identify_options, report)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
-     "draw the Allan deviation of each channel with the model, and how far it is off",
-     offsetof(identify_options, plot)},
-    {"twin", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "simulate the model over the length of the log and draw its Allan deviation over the log's",
-     offsetof(identify_options, twin)},
-    {"seed", 0, OPTION_INTEGER, "N", NULL, NULL, "of the twin; default 1",
-     offsetof(identify_options, seed)},
-    {"into", 0, OPTION_INTO, "MODEL", NULL, NULL,
+    {"output", 'o', AN_OUTPUT("MODEL"), AT(output), "write the model here (.yaml or .json)"},
+    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
+     "write one self-contained page: verdict, parameters, Allan plots, model"},
+    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
+     "draw the Allan deviation of each channel with the model, and how far it is off"},
+    {"twin", 0, A_FLAG, AT(twin),
+     "simulate the model over the length of the log and draw its Allan deviation over the log's"},
+    {"seed", 0, AN_INTEGER("N", NULL), AT(seed), "of the twin; default 1"},
+    {"into", 0, A_TARGET("MODEL"), AT(into),
      "start from this model and replace only what is identified: noise and output filter; the "
-     "changes are printed",
-     offsetof(identify_options, into)},
-    {"name", 0, OPTION_TEXT, "TEXT", NULL, NULL, "name of the model; default: that of the log file",
-     offsetof(identify_options, name)},
-    {"truth", 0, OPTION_FILE, "MODEL", NULL, NULL,
-     "print these true values beside the estimates, for logs that were simulated",
-     offsetof(identify_options, truth)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
-     "of intervals and bounds; default 0.95", offsetof(identify_options, confidence)},
-    {"significance", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
-     "chance that a term which is not there is called present; default 0.01",
-     offsetof(identify_options, significance)},
-    {"keep", 0, OPTION_TEXT, "LIST", NULL, NULL,
+     "changes are printed"},
+    {"name", 0, A_TEXT("TEXT"), AT(name), "name of the model; default: that of the log file"},
+    {"truth", 0, AN_INPUT("MODEL"), AT(truth),
+     "print these true values beside the estimates, for logs that were simulated"},
+    {"confidence", 0, A_FRACTION("FRACTION", CONFIDENCE_RANGE), AT(confidence),
+     "of intervals and bounds; default 0.95"},
+    {"significance", 0, A_FRACTION("FRACTION", NULL), AT(significance),
+     "chance that a term which is not there is called present; default 0.01"},
+    {"keep", 0, A_TEXT("LIST"), AT(keep),
      "leave these in the log: outliers, stuck, saturated (samples), warm-up, temperature, all; "
-     "otherwise what is found of them is taken out, and told",
-     offsetof(identify_options, keep)},
-    {"runs", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "otherwise what is found of them is taken out, and told"},
+    {"runs", 0, A_FLAG, AT(runs),
      "several logs are runs of one sensor: one joint model, do they agree, and how much the mean "
-     "differs from run to run",
-     offsetof(identify_options, runs)},
-    {"devices", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "differs from run to run"},
+    {"devices", 0, A_FLAG, AT(devices),
      "several logs are of different sensors: mean and spread of each term, and which of them "
-     "differ",
-     offsetof(identify_options, devices)},
-    {"strict", 0, OPTION_FLAG, NULL, NULL, NULL, "exit with 1 when the verdict holds a warning",
-     offsetof(identify_options, strict)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
-     offsetof(identify_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
-     offsetof(identify_options, threads)},
+     "differ"},
+    {"strict", 0, A_FLAG, AT(strict), "exit with 1 when the verdict holds a warning"},
+    {"json", 0, A_FLAG, AT(json), "print the result as JSON instead of tables"},
+    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
+     "threads to use; default: all processors"},
 };
 
 static const option plan_option_table[] = {
-    {"plan", 0, OPTION_FILE, "MODEL", NULL, NULL,
+    {"plan", 0, AN_INPUT("MODEL"), AT(plan),
      "no LOG: how well a record of this noise (a file or a catalogue name) will tell each term; "
-     "with --rate",
-     offsetof(identify_options, plan)},
-    {"want", 0, OPTION_TEXT, "LIST", NULL, NULL,
-     "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected 95%\"",
-     offsetof(identify_options, want)},
-    {"duration", 0, OPTION_QUANTITY, "TIME", "s", "positive",
-     "of the planned record, or of the one behind a curve", offsetof(identify_options, duration)},
+     "with --rate"},
+    {"want", 0, A_TEXT("LIST"), AT(want),
+     "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected 95%\""},
+    {"duration", 0, A_QUANTITY("TIME", "s", "positive"), AT(duration),
+     "of the planned record, or of the one behind a curve"},
 };
 
 static const option allan_option_table[] = {
-    {"method", 0, OPTION_CHOICE, "CHOICE", NULL, "likelihood|allan",
+    {"method", 0, A_CHOICE("CHOICE", "likelihood|allan"), AT(method),
      "likelihood of the spectrum (default), which loses nothing; or generalised least squares on "
-     "the Allan deviations, for what a plot holds",
-     offsetof(identify_options, method)},
-    {"curve", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "the Allan deviations, for what a plot holds"},
+    {"curve", 0, A_FLAG, AT(curve),
      "LOG is a table of Allan deviations instead: columns tau [s], gyro_x [deg/s] and so on; with "
-     "--rate and --duration",
-     offsetof(identify_options, curve)},
-    {"plain", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "the clusters of the curve do not overlap; default: they do",
-     offsetof(identify_options, plain)},
-    {"tolerance", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
+     "--rate and --duration"},
+    {"plain", 0, A_FLAG, AT(plain), "the clusters of the curve do not overlap; default: they do"},
+    {"tolerance", 0, A_FRACTION("FRACTION", NULL), AT(tolerance),
      "error of the model admitted in each deviation, beside what chance explains: 2% for a curve "
-     "read from a page",
-     offsetof(identify_options, tolerance)},
-    {"gauss-markov", 0, OPTION_INTEGER, "N", NULL, "0-8",
+     "read from a page"},
+    {"gauss-markov", 0, AN_INTEGER("N", "0-8"), AT(gauss_markov),
      "Gauss-Markov terms looked for in the Allan deviations; default 0 (the likelihood looks by "
-     "itself)",
-     offsetof(identify_options, gauss_markov)},
+     "itself)"},
 };
 
 _Static_assert(IMK_TERMS_MAX == 8, "as the range of --gauss-markov says");
@@ -105,7 +85,7 @@ const verb identify_verb = {
                   "a log without header and time column; the model's twin is drawn over it"}},
     .description =
         "LOG is a record of a sensor that does not move: CSV with a header such as time [s],gyro_x "
-        "[deg/s],accel_x [g] (also .gz, .zst), or .npy; - is standard input. An hour shows the "
+        "[deg/s],accel_x [g] (also .gz, .zst){, or logs}; - is standard input. An hour shows the "
         "white noise and the bias instability of most sensors, several hours the random walk.\n\n"
         "Estimated for each channel: quantization, white noise (angle or velocity random walk), "
         "bias instability, rate or acceleration random walk and ramp, with spectral lines, "
@@ -117,14 +97,10 @@ const verb identify_verb = {
         "Several LOGs need --runs (of one sensor) or --devices (different sensors).\n\n"
         "The mean of the record is printed but not written as a bias: at rest it holds the Earth's "
         "rotation and gravity, which need a known attitude to be told apart.",
-    .groups = {{"Options", sizeof identify_option_table / sizeof identify_option_table[0],
-                identify_option_table, 0},
-               {"Planning a record", sizeof plan_option_table / sizeof plan_option_table[0],
-                plan_option_table, 0},
-               {"From Allan deviations", sizeof allan_option_table / sizeof allan_option_table[0],
-                allan_option_table, 0},
-               {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
-                offsetof(identify_options, log)}},
+    .groups = {{A_GROUP("Options", identify_option_table), 0},
+               {A_GROUP("Planning a record", plan_option_table), 0},
+               {A_GROUP("From Allan deviations", allan_option_table), 0},
+               {A_GROUP("Reading the log", log_input_options), AT(log)}},
     .run = run};
 
 void identify_warn(const imk_verdict *verdict)
@@ -303,7 +279,7 @@ static int run(int count, char **words)
     identify_options o = {.confidence = 0.95,
                           .significance = 0.01,
                           .seed = {.value = 1},
-                          .log = {.gaps = GAPS_KEEP, .missing_allowed = true}};
+                          .log = {.gaps = IMK_GAPS_KEEP, .missing_allowed = true}};
     const char *operands[IMK_JOINT_RECORDS_MAX];
     size_t logs = 0;
     int code = options_parse(&identify_verb, count, words, &o, operands);

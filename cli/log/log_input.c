@@ -7,32 +7,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(member) offsetof(log_input, member)
+
 const option log_input_options[LOG_INPUT_OPTIONS] = {
-    {"rate", 'r', OPTION_QUANTITY, "RATE", "Hz", "1e-9..1e9",
-     "sample rate, needed when the log has no time column", offsetof(log_input, rate)},
-    {"columns", 0, OPTION_TEXT, "NAMES", NULL, NULL,
-     "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - skips one",
-     offsetof(log_input, columns)},
-    {"gyro-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "unit of the gyro columns where the header has none, such as deg/s",
-     offsetof(log_input, gyro_unit)},
-    {"accel-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "unit of the accelerometer columns where the header has none, such as g",
-     offsetof(log_input, accel_unit)},
-    {"time-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "unit of the time column where the header has none, such as us",
-     offsetof(log_input, time_unit)},
-    {"temperature-unit", 0, OPTION_TEXT, "UNIT", NULL, NULL,
-     "unit of the temperature column where the header has none, such as degC",
-     offsetof(log_input, temperature_unit)},
-    {"axes", 0, OPTION_TEXT, "NAMES", NULL, NULL,
-     "where the log's x, y, z point, such as right-forward-up; mapped to forward-right-down",
-     offsetof(log_input, axes)},
-    {"gaps", 0, OPTION_CHOICE, "CHOICE", NULL, "refuse|bridge|longest|keep",
+    {"rate", 'r', A_QUANTITY("RATE", "Hz", "1e-9..1e9"), AT(rate),
+     "sample rate, needed when the log has no time column"},
+    {"columns", 0, A_TEXT("NAMES"), AT(columns),
+     "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - skips "
+     "one"},
+    {"gyro-unit", 0, A_TEXT("UNIT"), AT(gyro_unit),
+     "unit of the gyro columns where the header has none, such as deg/s"},
+    {"accel-unit", 0, A_TEXT("UNIT"), AT(accel_unit),
+     "unit of the accelerometer columns where the header has none, such as g"},
+    {"time-unit", 0, A_TEXT("UNIT"), AT(time_unit),
+     "unit of the time column where the header has none, such as us"},
+    {"temperature-unit", 0, A_TEXT("UNIT"), AT(temperature_unit),
+     "unit of the temperature column where the header has none, such as degC"},
+    {"axes", 0, A_TEXT("NAMES"), AT(axes),
+     "where the log's x, y, z point, such as right-forward-up; mapped to forward-right-down"},
+    {"gaps", 0, A_CHOICE("CHOICE", "refuse|bridge|longest|keep"), AT(gaps),
      "rows that are missing, not finite or out of order: keep their places empty (the default of "
      "allan and identify, which know how), refuse the log (the default elsewhere; gaps of up to "
-     "0.1 % are bridged with a warning), interpolate over them, or use the longest clean stretch",
-     offsetof(log_input, gaps)},
+     "0.1 % are bridged with a warning), interpolate over them, or use the longest clean stretch"},
 };
 
 imk_log_settings log_input_settings(const log_input *input)
@@ -50,7 +46,7 @@ imk_log_settings log_input_settings(const log_input *input)
 
 int log_input_check(const log_input *input)
 {
-    if (input->gaps == GAPS_KEEP && !input->missing_allowed)
+    if (input->gaps == IMK_GAPS_KEEP && !input->missing_allowed)
         return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
                                "bridge or --gaps longest");
     return -1;
@@ -103,7 +99,7 @@ int log_input_tell(const char *path, const imk_findings *findings, imk_status st
     return log_input_tell_model(path, "the model", findings, status, error);
 }
 
-int log_input_load(const log_input *input, const char *path, log_channels *channels)
+int log_input_load(const log_input *input, const char *path, imk_even_record *channels)
 {
     imk_error error;
     imk_log_reader *reader;

@@ -8,19 +8,12 @@
 #include "imukit/even_record.h"
 #include "imukit/log.h"
 
-/* The library's names under those that verbs use. */
-enum { GAPS_KEEP = IMK_GAPS_KEEP };
-typedef imk_even_record log_channels;
-#define log_channel_column imk_even_record_column
-#define log_channel_data imk_even_record_data
-#define log_channels_free imk_even_record_free
-#define log_forget_faults imk_log_forget_faults
-
 /* What the options of log_input_options fill. */
 typedef struct log_input {
     double rate; /* [Hz]; 0: from the time column */
     const char *columns, *gyro_unit, *accel_unit, *time_unit, *temperature_unit, *axes;
-    int gaps; /* imk_gap_policy; a verb that can do with missing samples begins with GAPS_KEEP */
+    int gaps; /* imk_gap_policy; a verb that can do with missing samples begins with IMK_GAPS_KEEP
+               */
     bool missing_allowed; /* it can: --gaps keep is no error */
 } log_input;
 
@@ -32,7 +25,7 @@ imk_log_settings log_input_settings(const log_input *input);
 
 /* Load a log and make its channels equally spaced by the policy on gaps. Messages are printed.
  * @return -1 or the exit code */
-int log_input_load(const log_input *input, const char *path, log_channels *channels);
+int log_input_load(const log_input *input, const char *path, imk_even_record *channels);
 
 /* Refuse a policy on gaps that this verb has not. @return -1 or the exit code */
 int log_input_check(const log_input *input);

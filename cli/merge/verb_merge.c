@@ -15,12 +15,12 @@ typedef struct merge_options {
     bool partial, json;
 } merge_options;
 
+#define AT(member) offsetof(merge_options, member)
+
 static const option merge_option_table[] = {
-    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
-     "results file: .h5 or .csv (.csv.gz, .csv.zst)", offsetof(merge_options, output)},
-    {"partial", 0, OPTION_FLAG, NULL, NULL, NULL, "write what is there although runs are missing",
-     offsetof(merge_options, partial)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print as JSON", offsetof(merge_options, json)},
+    {"output", 'o', AN_OUTPUT("FILE"), AT(output), "results file: .h5 or .csv (.csv.gz, .csv.zst)"},
+    {"partial", 0, A_FLAG, AT(partial), "write what is there although runs are missing"},
+    {"json", 0, A_FLAG, AT(json), "print as JSON"},
 };
 
 /* More than a command line holds. */
@@ -45,8 +45,7 @@ const verb merge_verb = {
         "left out. When runs are missing then, nothing is written, and the shards to compute again "
         "are named; --partial writes what there is.\n\n"
         "docs/clusters.md shows campaigns on many machines, docs/campaign-file.md the format.",
-    .groups = {{"Options", sizeof merge_option_table / sizeof merge_option_table[0],
-                merge_option_table, 0}},
+    .groups = {{A_GROUP("Options", merge_option_table), 0}},
     .run = run};
 
 static void warn_complaints(const imk_campaign_merge_report *report)

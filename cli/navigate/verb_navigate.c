@@ -10,70 +10,53 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(member) offsetof(navigate_options, member)
+
 static const option navigate_option_table[] = {
-    {"position", 'p', OPTION_TEXT, "POSITION", NULL, NULL,
+    {"position", 'p', A_TEXT("POSITION"), AT(position),
      "latitude, longitude and height above the ellipsoid at the start, such as \"34.25 deg, 108.91 "
-     "deg, 380 m\"",
-     offsetof(navigate_options, position)},
-    {"align", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "how long the unit stands at the start, to find its attitude by itself",
-     offsetof(navigate_options, align)},
-    {"align-method", 0, OPTION_CHOICE, "CHOICE", NULL, "means|inertial|fine",
+     "deg, 380 m\""},
+    {"align", 0, A_QUANTITY("TIME", "s", NULL), AT(align),
+     "how long the unit stands at the start, to find its attitude by itself"},
+    {"align-method", 0, A_CHOICE("CHOICE", "means|inertial|fine"), AT(method),
      "from the means of force and rate (the default for gyros that read more than 1.5 times the "
      "Earth's rotation); from gravity's turn in inertial axes (the default for others: the unit "
-     "may rock); the same and an estimate of the rest",
-     offsetof(navigate_options, method)},
-    {"heading", 0, OPTION_TEXT, "ANGLE", NULL, NULL,
-     "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 deg\"",
-     offsetof(navigate_options, heading)},
-    {"attitude", 0, OPTION_TEXT, "ANGLES", NULL, NULL,
-     "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\"",
-     offsetof(navigate_options, attitude)},
-    {"model", 'm', OPTION_FILE, "MODEL", NULL, NULL,
+     "may rock); the same and an estimate of the rest"},
+    {"heading", 0, A_TEXT("ANGLE"), AT(heading),
+     "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 deg\""},
+    {"attitude", 0, A_TEXT("ANGLES"), AT(attitude),
+     "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\""},
+    {"model", 'm', AN_INPUT("MODEL"), AT(model),
      "errors of the sensors, a file or a name from imukit devices: predicts the error, and weighs "
-     "updates",
-     offsetof(navigate_options, model)},
-    {"zero-velocity", 0, OPTION_TEXT, "auto|TIME", NULL, NULL,
+     "updates"},
+    {"zero-velocity", 0, A_TEXT("auto|TIME"), AT(zero_velocity),
      "correct by standing still: whenever it is seen to, or known to at the end of each TIME, such "
-     "as 60s",
-     offsetof(navigate_options, zero_velocity)},
-    {"stop", 0, OPTION_QUANTITY, "TIME", "s", NULL,
-     "length of the stops that --zero-velocity TIME knows of; default 5s",
-     offsetof(navigate_options, stop)},
-    {"still-velocity", 0, OPTION_QUANTITY, "VELOCITY", "m/s", NULL,
-     "1 sigma of what moves in a unit that stands; default 0.01m/s",
-     offsetof(navigate_options, still_velocity)},
-    {"still-rotation", 0, OPTION_QUANTITY, "RATE", "deg/h", NULL,
+     "as 60s"},
+    {"stop", 0, A_QUANTITY("TIME", "s", NULL), AT(stop),
+     "length of the stops that --zero-velocity TIME knows of; default 5s"},
+    {"still-velocity", 0, A_QUANTITY("VELOCITY", "m/s", NULL), AT(still_velocity),
+     "1 sigma of what moves in a unit that stands; default 0.01m/s"},
+    {"still-rotation", 0, A_QUANTITY("RATE", "deg/h", NULL), AT(still_rotation),
      "use that a standing unit does not turn either, to this 1 sigma of the mean rate over a "
-     "stand; "
-     "default: not used",
-     offsetof(navigate_options, still_rotation)},
-    {"vertical", 0, OPTION_CHOICE, "CHOICE", NULL, "slaved|free",
-     "height held as at the start (the default), or free: it then runs away within minutes",
-     offsetof(navigate_options, vertical)},
-    {"coning", 0, OPTION_INTEGER, "N", NULL, "1-4",
-     "samples that coning and sculling are computed from, 1 to 4; default 3",
-     offsetof(navigate_options, samples)},
-    {"standard-gravity", 0, OPTION_QUANTITY, "G", "m/s^2", NULL,
-     "what g stands for in accelerometer columns in g, mg or ug; default 9.80665m/s^2",
-     offsetof(navigate_options, standard_gravity)},
-    {"gravity-free", 0, OPTION_FLAG, NULL, NULL, NULL,
+     "stand; default: not used"},
+    {"vertical", 0, A_CHOICE("CHOICE", "slaved|free"), AT(vertical),
+     "height held as at the start (the default), or free: it then runs away within minutes"},
+    {"coning", 0, AN_INTEGER("N", "1-4"), AT(samples),
+     "samples that coning and sculling are computed from, 1 to 4; default 3"},
+    {"standard-gravity", 0, A_QUANTITY("G", "m/s^2", NULL), AT(standard_gravity),
+     "what g stands for in accelerometer columns in g, mg or ug; default 9.80665m/s^2"},
+    {"gravity-free", 0, A_FLAG, AT(gravity_free),
      "put the acceleration relative to the Earth into the track: mean since the row before; north, "
-     "east, down",
-     offsetof(navigate_options, gravity_free)},
-    {"interval", 0, OPTION_QUANTITY, "TIME", "s", NULL, "between rows of the track; default 1s",
-     offsetof(navigate_options, interval)},
-    {"output", 'o', OPTION_OUTPUT, "TRACK", NULL, NULL,
-     "write the track: .csv (also .gz, .zst) or .npy; - is standard output",
-     offsetof(navigate_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
-     "draw the track, and the way from the start against time", offsetof(navigate_options, plot)},
-    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL, "write one self-contained page",
-     offsetof(navigate_options, report)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the summary as JSON",
-     offsetof(navigate_options, json)},
-    {"strict", 0, OPTION_FLAG, NULL, NULL, NULL, "exit with 1 when there is a warning",
-     offsetof(navigate_options, strict)},
+     "east, down"},
+    {"interval", 0, A_QUANTITY("TIME", "s", NULL), AT(interval),
+     "between rows of the track; default 1s"},
+    {"output", 'o', AN_OUTPUT("TRACK"), AT(output),
+     "write the track: .csv (also .gz, .zst){ or written}; - is standard output"},
+    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
+     "draw the track, and the way from the start against time"},
+    {"report", 0, AN_OUTPUT("FILE.html"), AT(report), "write one self-contained page"},
+    {"json", 0, A_FLAG, AT(json), "print the summary as JSON"},
+    {"strict", 0, A_FLAG, AT(strict), "exit with 1 when there is a warning"},
 };
 
 static int run(int count, char **words);
@@ -91,16 +74,14 @@ const verb navigate_verb = {
                   "--model tactical --zero-velocity auto -o track.csv",
                   "a drive with stops, each of which corrects"}},
     .description =
-        "LOG is CSV (also .gz, .zst) or .npy with three gyros and three accelerometers, as rates "
+        "LOG is CSV (also .gz, .zst){ or logs} with three gyros and three accelerometers, as rates "
         "or increments; - is standard input. A strapdown mechanisation on the WGS84 ellipsoid "
         "integrates it from --position on. Nothing but --zero-velocity corrects it, so its error "
         "grows.\n\nWith --model the error is predicted by covariance, alignment included. Errors "
         "that the model knows are not taken out here: imukit compensate does that first.\n\n"
         "Where the unit stands still all the time, the distance from the start is the error.",
-    .groups = {{"Options", sizeof navigate_option_table / sizeof navigate_option_table[0],
-                navigate_option_table, 0},
-               {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
-                offsetof(navigate_options, log)}},
+    .groups = {{A_GROUP("Options", navigate_option_table), 0},
+               {A_GROUP("Reading the log", log_input_options), AT(log)}},
     .run = run};
 
 static int show(const imk_navigate_log *n, const navigate_options *o, const char *path)

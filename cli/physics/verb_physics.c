@@ -10,97 +10,73 @@
 #include <string.h>
 #include <strings.h>
 
+#define AT(member) offsetof(physics_options, member)
+
 static const option task_option_table[] = {
-    {"list", 0, OPTION_FLAG, NULL, NULL, NULL, "the instruments there are; also without INSTRUMENT",
-     offsetof(physics_options, list)},
-    {"show", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "print the design as a file with units and comments, the way to begin a design of your own",
-     offsetof(physics_options, show)},
-    {"reduce", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "the error model by closed forms, as a table; -o MODEL.yaml writes it",
-     offsetof(physics_options, reduce)},
-    {"sweep", 0, OPTION_FLAG, NULL, NULL, NULL,
+    {"list", 0, A_FLAG, AT(list), "the instruments there are; also without INSTRUMENT"},
+    {"show", 0, A_FLAG, AT(show),
+     "print the design as a file with units and comments, the way to begin a design of your own"},
+    {"reduce", 0, A_FLAG, AT(reduce),
+     "the error model by closed forms, as a table; -o MODEL.yaml writes it"},
+    {"sweep", 0, A_FLAG, AT(sweep),
      "find the error model by the experiments of a laboratory and compare it with the closed "
-     "forms; -o MODEL.yaml without --reduce writes what was measured",
-     offsetof(physics_options, sweep)},
-    {"single-axis", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "write a model of one instrument along x, not of three",
-     offsetof(physics_options, single_axis)},
+     "forms; -o MODEL.yaml without --reduce writes what was measured"},
+    {"single-axis", 0, A_FLAG, AT(single_axis),
+     "write a model of one instrument along x, not of three"},
 };
 
 static const option input_option_table[] = {
-    {"rate", 'r', OPTION_TEXT, "RATE", NULL, NULL,
-     "angular rate about x, \"10 deg/s\", or about all axes of the case, \"1 2 3 deg/s\"",
-     offsetof(physics_options, rate)},
-    {"acceleration", 'a', OPTION_TEXT, "FORCE", NULL, NULL,
-     "specific force along x, \"1 g\", or along all axes of the case, \"0 0 -9.81 m/s^2\"",
-     offsetof(physics_options, acceleration)},
-    {"sine", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", NULL,
-     "makes the rate or force given the amplitude of a sine", offsetof(physics_options, sine)},
-    {"temperature", 't', OPTION_QUANTITY, "TEMPERATURE", "degC", NULL, "default 20degC",
-     offsetof(physics_options, temperature)},
-    {"temperature-rate", 0, OPTION_QUANTITY, "RATE", "degC/min", NULL,
-     "lets it rise or fall from there", offsetof(physics_options, temperature_rate)},
+    {"rate", 'r', A_TEXT("RATE"), AT(rate),
+     "angular rate about x, \"10 deg/s\", or about all axes of the case, \"1 2 3 deg/s\""},
+    {"acceleration", 'a', A_TEXT("FORCE"), AT(acceleration),
+     "specific force along x, \"1 g\", or along all axes of the case, \"0 0 -9.81 m/s^2\""},
+    {"sine", 0, A_QUANTITY("FREQUENCY", "Hz", NULL), AT(sine),
+     "makes the rate or force given the amplitude of a sine"},
+    {"temperature", 't', A_QUANTITY("TEMPERATURE", "degC", NULL), AT(temperature),
+     "default 20degC"},
+    {"temperature-rate", 0, A_QUANTITY("RATE", "degC/min", NULL), AT(temperature_rate),
+     "lets it rise or fall from there"},
 };
 
 static const option run_option_table[] = {
-    {"duration", 'd', OPTION_QUANTITY, "TIME", "s", NULL,
-     "run so long and write the log; with --view: draw the view for so long",
-     offsetof(physics_options, duration)},
-    {"output-rate", 0, OPTION_QUANTITY, "RATE", "Hz", NULL,
-     "samples per second; default 100Hz. With --view: points per second of the view",
-     offsetof(physics_options, output_rate)},
-    {"level", 0, OPTION_CHOICE, "LEVEL", NULL, "full|slow",
-     "the dynamics of all parts (the default), or a map or envelope without the fast part",
-     offsetof(physics_options, level)},
-    {"step", 0, OPTION_QUANTITY, "TIME", "s", "positive",
+    {"duration", 'd', A_QUANTITY("TIME", "s", NULL), AT(duration),
+     "run so long and write the log; with --view: draw the view for so long"},
+    {"output-rate", 0, A_QUANTITY("RATE", "Hz", NULL), AT(output_rate),
+     "samples per second; default 100Hz. With --view: points per second of the view"},
+    {"level", 0, A_CHOICE("LEVEL", "full|slow"), AT(level),
+     "the dynamics of all parts (the default), or a map or envelope without the fast part"},
+    {"step", 0, A_QUANTITY("TIME", "s", "positive"), AT(step),
      "longest internal step; default: what the instrument's accuracy needs. A step that would give "
-     "wrong results is refused",
-     offsetof(physics_options, step)},
-    {"no-noise", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "nothing random: no noise and no constants of the run", offsetof(physics_options, no_noise)},
-    {"seed", 's', OPTION_INTEGER, "N", NULL, NULL,
-     "the same seed makes the same bytes on every machine; default 1",
-     offsetof(physics_options, seed)},
-    {"run", 0, OPTION_INTEGER, "N", NULL, "0-4294967295",
-     "another run of the same instrument: other noise, other constants of the run; default 0",
-     offsetof(physics_options, run)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536",
-     "threads of --sweep; default: all processors. The result does not depend on it",
-     offsetof(physics_options, threads)},
+     "wrong results is refused"},
+    {"no-noise", 0, A_FLAG, AT(no_noise), "nothing random: no noise and no constants of the run"},
+    {"seed", 's', AN_INTEGER("N", NULL), AT(seed),
+     "the same seed makes the same bytes on every machine; default 1"},
+    {"run", 0, AN_INTEGER("N", "0-4294967295"), AT(run),
+     "another run of the same instrument: other noise, other constants of the run; default 0"},
+    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
+     "threads of --sweep; default: all processors. The result does not depend on it"},
 };
 
 static const option output_option_table[] = {
-    {"output", 'o', OPTION_OUTPUT, "FILE", NULL, NULL,
-     "the log (.csv, also .gz, .zst, or .npy; default: standard output), the model of --reduce, or "
-     "the design of --show",
-     offsetof(physics_options, output)},
-    {"signals", 0, OPTION_OUTPUT, "FILE.csv", NULL, NULL, "write what happens inside, against time",
-     offsetof(physics_options, signals)},
-    {"signal-rate", 0, OPTION_QUANTITY, "RATE", "Hz", NULL,
-     "rows per second of --signals; default: the output rate. Another rate is a run of its own",
-     offsetof(physics_options, signal_rate)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
+    {"output", 'o', AN_OUTPUT("FILE"), AT(output),
+     "the log (.csv, also .gz, .zst{, or written}; default: standard output), the model of "
+     "--reduce, or "
+     "the design of --show"},
+    {"signals", 0, AN_OUTPUT("FILE.csv"), AT(signals), "write what happens inside, against time"},
+    {"signal-rate", 0, A_QUANTITY("RATE", "Hz", NULL), AT(signal_rate),
+     "rows per second of --signals; default: the output rate. Another rate is a run of its own"},
+    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
      "draw the outputs of the run against time (with --sine also against the input), or what "
-     "--sweep found; without either, the views of the instrument",
-     offsetof(physics_options, plot)},
-    {"view", 0, OPTION_TEXT, "VIEW", NULL, NULL,
-     "the view to --plot: its number, or how its title begins", offsetof(physics_options, view)},
-    {"animate", 0, OPTION_OUTPUT, "FILE.svg", NULL, NULL,
+     "--sweep found; without either, the views of the instrument"},
+    {"view", 0, A_TEXT("VIEW"), AT(view),
+     "the view to --plot: its number, or how its title begins"},
+    {"animate", 0, AN_OUTPUT("FILE.svg"), AT(animate),
      "draw a view of one signal against another as a picture that moves: that of --view, else the "
-     "first",
-     offsetof(physics_options, animate)},
-    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
-     "write one self-contained page: outputs, views, design, error model",
-     offsetof(physics_options, report)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON",
-     offsetof(physics_options, json)},
+     "first"},
+    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
+     "write one self-contained page: outputs, views, design, error model"},
+    {"json", 0, A_FLAG, AT(json), "print the result as JSON"},
 };
-
-#define GROUP(title, table)                                                                        \
-    {                                                                                              \
-        title, sizeof(table) / sizeof(table)[0], table, 0                                          \
-    }
 
 static int run(int count, char **words);
 
@@ -123,8 +99,10 @@ const verb physics_verb = {
         "time; the input is held over a sample. x is the input axis; what y and z are stands in "
         "the documentation of each instrument. The views are drawn under the input of --rate and "
         "--acceleration, else each under an input that shows something.",
-    .groups = {GROUP("What to do", task_option_table), GROUP("Input", input_option_table),
-               GROUP("Running", run_option_table), GROUP("Output", output_option_table)},
+    .groups = {{A_GROUP("What to do", task_option_table), 0},
+               {A_GROUP("Input", input_option_table), 0},
+               {A_GROUP("Running", run_option_table), 0},
+               {A_GROUP("Output", output_option_table), 0}},
     .run = run};
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -367,7 +345,7 @@ static int start(const physics_options *o, const char *operand)
         code = physics_input_make(o, &p.settings.input);
     if (code < 0) {
         p.model = command_memory(NULL, sizeof *p.model);
-        p.file.instrument->reduce(p.file.design, p.model);
+        imk_instrument_reduce(p.file.instrument, p.file.design, p.model);
         code = do_task(&p);
     }
     free(p.model);

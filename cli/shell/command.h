@@ -12,12 +12,26 @@
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
-extern const verb simulate_verb, allan_verb, identify_verb, compensate_verb, devices_verb,
-    grade_verb, convert_verb, physics_verb, navigate_verb, merge_verb, drift_verb, calibrate_verb,
-    evaluate_verb, spectrum_verb;
+/* The verbs in the order of the help: NAME_verb of each is in a file of its own. */
+#define COMMAND_VERBS(VERB)                                                                        \
+    VERB(identify)                                                                                 \
+    VERB(calibrate)                                                                                \
+    VERB(evaluate)                                                                                 \
+    VERB(simulate)                                                                                 \
+    VERB(compensate)                                                                               \
+    VERB(allan)                                                                                    \
+    VERB(spectrum)                                                                                 \
+    VERB(devices)                                                                                  \
+    VERB(grade)                                                                                    \
+    VERB(convert)                                                                                  \
+    VERB(physics)                                                                                  \
+    VERB(drift)                                                                                    \
+    VERB(navigate)                                                                                 \
+    VERB(merge)
 
-/* The verbs in the order of the help. */
-const verb *const *command_verbs(size_t *count);
+#define VERB(name) extern const verb name##_verb;
+COMMAND_VERBS(VERB)
+#undef VERB
 
 /* Remember which verb speaks; messages start with it. */
 void command_begin(const char *verb_name);

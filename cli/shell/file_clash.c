@@ -7,7 +7,7 @@
 
 #include "command.h"
 
-#include "imukit/names.h"
+#include "imukit/log.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -136,8 +136,9 @@ static void add(run_files *files, const char *taker, const char *given, option_k
     if (!given || !*given || strcmp(given, "-") == 0 || strcmp(given, "term") == 0)
         return;
     add_name(files, taker, given, "", kind);
-    if (imk_has_ending(given, ".npy"))
-        add_name(files, taker, given, ".columns", kind);
+    const char *companion = imk_log_format_of(given)->companion;
+    if (companion)
+        add_name(files, taker, given, companion, kind);
 }
 
 static void add_all(run_files *files, const verb *v, const void *settings,

@@ -40,3 +40,17 @@ void job_progress_end(job_progress *p)
 {
     progress_end(&p->shown);
 }
+
+void threaded_job_begin(threaded_job *t, const char *path, uint64_t threads)
+{
+    t->pool = imk_thread_pool_create(threads);
+    t->executor = imk_thread_pool_executor(t->pool);
+    t->shown = job_progress_begin(path);
+    t->job = job_progress_job(&t->shown, &t->executor);
+}
+
+void threaded_job_end(threaded_job *t)
+{
+    job_progress_end(&t->shown);
+    imk_thread_pool_destroy(t->pool);
+}

@@ -10,17 +10,10 @@
 #include <signal.h>
 #include <string.h>
 
-static const verb *const verbs[] = {
-    &identify_verb, &calibrate_verb, &evaluate_verb, &simulate_verb, &compensate_verb,
-    &allan_verb,    &spectrum_verb,  &devices_verb,  &grade_verb,    &convert_verb,
-    &physics_verb,  &drift_verb,     &navigate_verb, &merge_verb};
+#define VERB(name) &name##_verb,
+static const verb *const verbs[] = {COMMAND_VERBS(VERB)};
+#undef VERB
 enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
-
-const verb *const *command_verbs(size_t *count)
-{
-    *count = VERB_COUNT;
-    return verbs;
-}
 
 void command_welcome(FILE *out)
 {

@@ -37,9 +37,20 @@ typedef struct option {
                             the most, NULL: any; OPTION_QUANTITY: the same as "-90..90" in `unit`,
                             or "positive", which refuses 0 and less, or "not negative";
                             OPTION_FRACTION: "0.1..0.9" */
-    const char *help;    /* a clause */
     size_t offset;       /* of the value in the settings of the group */
+    const char *help;    /* a clause; see `description` */
 } option;
+
+/* The kind of an option, and what goes with it: {"tau", 0, A_TEXT("LIST"), offset, "help"}. */
+#define A_FLAG OPTION_FLAG, NULL, NULL, NULL
+#define A_TEXT(value) OPTION_TEXT, value, NULL, NULL
+#define AN_INPUT(value) OPTION_FILE, value, NULL, NULL
+#define A_TARGET(value) OPTION_INTO, value, NULL, NULL
+#define AN_OUTPUT(value) OPTION_OUTPUT, value, NULL, NULL
+#define AN_INTEGER(value, range) OPTION_INTEGER, value, NULL, range
+#define A_QUANTITY(value, unit, range) OPTION_QUANTITY, value, unit, range
+#define A_FRACTION(value, range) OPTION_FRACTION, value, NULL, range
+#define A_CHOICE(value, choices) OPTION_CHOICE, value, NULL, choices
 
 typedef struct option_group {
     const char *title;
@@ -47,6 +58,8 @@ typedef struct option_group {
     const option *options;
     size_t offset; /* of the group's settings in the verb's */
 } option_group;
+
+#define A_GROUP(title, table) title, sizeof(table) / sizeof *(table), table
 
 typedef struct example {
     const char *command, *meaning;
@@ -67,7 +80,9 @@ typedef struct verb {
     bool last_is_written;  /* the last operand is an output */
     bool all_are_evidence; /* one operand given twice would count as two */
     example examples[2];
-    const char *description; /* paragraphs separated by blank lines */
+    const char *description; /* paragraphs separated by blank lines; behind "CSV", "{ or logs}" and
+                                "{, or written}" are the other formats of logs that are read, or
+                                written, with these words before the last */
     option_group groups[GROUPS_MAX];
     int (*run)(int argument_count, char **arguments);
 } verb;

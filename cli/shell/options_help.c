@@ -4,10 +4,12 @@
 
 #include "command.h"
 
+#include "imukit/log.h"
+
 #include <ctype.h>
 #include <string.h>
 
-enum { LINE_WIDTH = 88, HELP_COLUMN = 28 };
+enum { LINE_WIDTH = 88, HELP_COLUMN = 28, HELP_SIZE = 4096 };
 
 void option_synopsis(const option *o, char *text, size_t size)
 {
@@ -18,9 +20,27 @@ void option_synopsis(const option *o, char *text, size_t size)
     snprintf(text, size, "%s--%s%s%s", letter, o->name, value ? " " : "", value ? value : "");
 }
 
+/* A text with the formats of logs where it has "{ or logs}". */
+static const char *with_formats(const char *text, char full[HELP_SIZE])
+{
+    size_t used = 0;
+    for (const char *open; (open = strchr(text, '{')); text = strchr(open, '}') + 1) {
+        char last[16];
+        const size_t length = strcspn(open, "lw}") - 1; /* of what stands before the last */
+        snprintf(last, sizeof last, "%.*s", (int)length, open + 1);
+        used += (size_t)snprintf(full + used, HELP_SIZE - used, "%.*s", (int)(open - text), text);
+        imk_log_formats_text(last, open[length + 1] == 'w', HELP_SIZE - used, full + used);
+        used += strlen(full + used);
+    }
+    snprintf(full + used, HELP_SIZE - used, "%s", text);
+    return full;
+}
+
 /* Words of a text filled into lines; a blank line in the text separates paragraphs. */
 static void fill(FILE *out, const char *text, int indent, int column)
 {
+    char full[HELP_SIZE];
+    text = with_formats(text, full);
     while (*text) {
         if (*text == '\n') {
             fprintf(out, "%s%*s", column > indent ? "\n\n" : "", indent, "");
@@ -77,6 +97,8 @@ void options_help(const verb *v, FILE *out)
 static void troff(FILE *out, const char *text)
 {
     bool line_start = true;
+    char full[HELP_SIZE];
+    text = with_formats(text, full);
     for (const char *c = text; *c; c++) {
         if (line_start && (*c == '.' || *c == '\''))
             fputs("\\&", out);

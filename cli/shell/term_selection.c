@@ -5,12 +5,12 @@
 
 #include <string.h>
 
+#define AT(member) offsetof(term_selection, member)
+
 const option term_options[TERM_OPTIONS] = {
-    {"only", 0, OPTION_TEXT, "TERMS", NULL, NULL,
-     "use these terms of the model alone, such as angle_random_walk,scale_factor or gyro.bias",
-     offsetof(term_selection, only)},
-    {"without", 0, OPTION_TEXT, "TERMS", NULL, NULL, "use all terms of the model but these",
-     offsetof(term_selection, without)},
+    {"only", 0, A_TEXT("TERMS"), AT(only),
+     "use these terms of the model alone, such as angle_random_walk,scale_factor or gyro.bias"},
+    {"without", 0, A_TEXT("TERMS"), AT(without), "use all terms of the model but these"},
 };
 
 enum { TERMS_MAX = 64 };

@@ -18,49 +18,39 @@ typedef struct spectrum_options {
     option_integer threads;
 } spectrum_options;
 
+#define AT(member) offsetof(spectrum_options, member)
+
 static const option spectrum_option_table[] = {
-    {"method", 0, OPTION_CHOICE, "CHOICE", NULL, "welch|multitaper",
-     "averaged windowed segments (the default), or Slepian tapers, for records too short to be "
-     "cut up",
-     offsetof(spectrum_options, method)},
-    {"resolution", 0, OPTION_QUANTITY, "BANDWIDTH", "Hz", "positive",
+    {"method", 0, A_CHOICE("CHOICE", "welch|multitaper"), AT(method),
+     "averaged windowed segments (the default), or Slepian tapers, for records too short to be cut "
+     "up"},
+    {"resolution", 0, A_QUANTITY("BANDWIDTH", "Hz", "positive"), AT(resolution),
      "how far two lines must be apart to be told from each other; default: 31 segments, or one for "
-     "multitaper",
-     offsetof(spectrum_options, resolution)},
-    {"window", 0, OPTION_CHOICE, "CHOICE", NULL, "hann|blackman-harris|kaiser",
-     "of the segments; the latter two for weak lines beside strong ones",
-     offsetof(spectrum_options, window)},
-    {"trend", 0, OPTION_FLAG, NULL, NULL, NULL,
-     "remove a straight line from each segment, not its mean only",
-     offsetof(spectrum_options, trend)},
-    {"density", 0, OPTION_CHOICE, "SIDES", NULL, "two-sided|one-sided",
+     "multitaper"},
+    {"window", 0, A_CHOICE("CHOICE", "hann|blackman-harris|kaiser"), AT(window),
+     "of the segments; the latter two for weak lines beside strong ones"},
+    {"trend", 0, A_FLAG, AT(trend), "remove a straight line from each segment, not its mean only"},
+    {"density", 0, A_CHOICE("SIDES", "two-sided|one-sided"), AT(density),
      "of the densities shown: IEEE's convention (the default), or twice that as many data sheets "
-     "and analysers have it; parameters are always two-sided",
-     offsetof(spectrum_options, density)},
-    {"false-alarm", 0, OPTION_FRACTION, "FRACTION", NULL, NULL,
-     "chance that a channel without lines shows any; default 0.001",
-     offsetof(spectrum_options, false_alarm)},
-    {"from", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "not negative",
-     "lowest frequency the noise parameters are fitted to; default: the lowest resolved",
-     offsetof(spectrum_options, from)},
-    {"to", 0, OPTION_QUANTITY, "FREQUENCY", "Hz", "positive",
-     "highest; set it below the sensor's own filter; default: half the sample rate",
-     offsetof(spectrum_options, to)},
-    {"confidence", 0, OPTION_FRACTION, "FRACTION", NULL, CONFIDENCE_RANGE,
-     "of the two-sided intervals; default 0.95", offsetof(spectrum_options, confidence)},
-    {"output", 'o', OPTION_OUTPUT, "FILE.csv", NULL, NULL,
+     "and analysers have it; parameters are always two-sided"},
+    {"false-alarm", 0, A_FRACTION("FRACTION", NULL), AT(false_alarm),
+     "chance that a channel without lines shows any; default 0.001"},
+    {"from", 0, A_QUANTITY("FREQUENCY", "Hz", "not negative"), AT(from),
+     "lowest frequency the noise parameters are fitted to; default: the lowest resolved"},
+    {"to", 0, A_QUANTITY("FREQUENCY", "Hz", "positive"), AT(to),
+     "highest; set it below the sensor's own filter; default: half the sample rate"},
+    {"confidence", 0, A_FRACTION("FRACTION", CONFIDENCE_RANGE), AT(confidence),
+     "of the two-sided intervals; default 0.95"},
+    {"output", 'o', AN_OUTPUT("FILE.csv"), AT(output),
      "write the densities (100 per decade, one line per channel and frequency, SI) here; - is "
-     "standard output",
-     offsetof(spectrum_options, output)},
-    {"plot", 0, OPTION_OUTPUT, "FILE.svg|.png|.pdf|term", NULL, NULL,
-     "draw the root densities with their intervals, lines marked",
-     offsetof(spectrum_options, plot)},
-    {"report", 0, OPTION_OUTPUT, "FILE.html", NULL, NULL,
-     "write one self-contained page: plot and tables", offsetof(spectrum_options, report)},
-    {"json", 0, OPTION_FLAG, NULL, NULL, NULL, "print the result as JSON instead of tables",
-     offsetof(spectrum_options, json)},
-    {"threads", 0, OPTION_INTEGER, "N", NULL, "1-65536", "threads to use; default: all processors",
-     offsetof(spectrum_options, threads)},
+     "standard output"},
+    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
+     "draw the root densities with their intervals, lines marked"},
+    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
+     "write one self-contained page: plot and tables"},
+    {"json", 0, A_FLAG, AT(json), "print the result as JSON instead of tables"},
+    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
+     "threads to use; default: all processors"},
 };
 
 static int run(int count, char **words);
@@ -76,15 +66,14 @@ const verb spectrum_verb = {
                  {"imukit spectrum bench.csv --resolution 0.01Hz --density one-sided -o psd.csv",
                   "finer, and in the convention of most spectrum analysers, as a table"}},
     .description =
-        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst), or "
-        ".npy; - is standard input. Without gyro and accelerometer columns every other column is "
+        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
+        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
+        "column is "
         "analysed.\n\nLines are listed with frequency, amplitude and what they are multiples of. "
         "The noise parameters are a cross-check of imukit identify, which is the better "
         "estimator; where they differ, something that neither models is in the log.",
-    .groups = {{"Options", sizeof spectrum_option_table / sizeof spectrum_option_table[0],
-                spectrum_option_table, 0},
-               {"Reading the log", LOG_INPUT_OPTIONS, log_input_options,
-                offsetof(spectrum_options, log)}},
+    .groups = {{A_GROUP("Options", spectrum_option_table), 0},
+               {A_GROUP("Reading the log", log_input_options), AT(log)}},
     .run = run};
 
 static void write_rows(const imk_spectrum_log *s, size_t channel, imk_output_file *file)
@@ -164,14 +153,11 @@ static int analyse(const spectrum_options *o, const char *path,
         return code;
     imk_spectrum_log *s;
     imk_error error;
-    imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-    const imk_executor executor = imk_thread_pool_executor(pool);
-    job_progress shown = job_progress_begin(path);
-    const imk_job job = job_progress_job(&shown, &executor);
+    threaded_job t;
+    threaded_job_begin(&t, path, o->threads.value);
     const imk_record_source source = imk_log_source(reader);
-    const imk_status status = imk_spectrum_log_run(&source, settings, &job, &s, &error);
-    job_progress_end(&shown);
-    imk_thread_pool_destroy(pool);
+    const imk_status status = imk_spectrum_log_run(&source, settings, &t.job, &s, &error);
+    threaded_job_end(&t);
     imk_log_close(reader);
     code = tell(o, path, s, status, &error);
     if (code < 0)

@@ -26,9 +26,7 @@
 #include "imukit/model.h"
 #include "imukit/navigate.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_alignment_method {
     IMK_ALIGNMENT_MEANS = 0,
@@ -90,7 +88,5 @@ IMK_API void imk_alignment_add(imk_alignment *alignment, double dt, imk_vector3 
 IMK_API imk_status imk_alignment_finish(const imk_alignment *alignment,
                                         imk_alignment_result *result, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -9,9 +9,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Which statistic, what it estimates, and the averaging factors m a record of n rate samples
  * allows (docs/theory/allan-deviation.md says which to use for what; equations of [RILEY2008]). */
@@ -124,14 +122,6 @@ IMK_API imk_status imk_allan_noise_type(size_t n, const double *sums, size_t m,
 IMK_API imk_status imk_allan_noise_type_for(imk_allan_statistic statistic, size_t n,
                                             const double *sums, size_t m, imk_power_law *type);
 
-/** Equivalent degrees of freedom at factor m of the continuous process: the general formula of
- *  Greenhall and Riley [GREENHALL2003] for ADEV, OADEV, MDEV, TDEV, HDEV, OHDEV and Haar, its sum
- *  for PDEV; the published fits for TOTDEV, MTOT, HTOT [RILEY2008, 5.4] and Theo1 [HOWE2003], which
- *  are up to 20 % off below n/m = 6 (Theo1 with random-walk rate noise: of no use below n/m = 3).
- */
-IMK_API double imk_allan_edf_greenhall_riley(imk_allan_statistic statistic, imk_power_law type,
-                                             size_t n, size_t m);
-
 /** Equivalent degrees of freedom, 2 E^2/var, at factor m; NaN outside the range of m.
  *
  *  ADEV, OADEV, MDEV, TDEV, HDEV, OHDEV, PDEV, Haar: exact ones of the sampled process: independent
@@ -173,8 +163,13 @@ IMK_API void imk_allan_interval(double deviation, double edf, double confidence,
 typedef struct imk_allan_settings {
     uint32_t cookie;
     imk_allan_statistic statistic;
-    double confidence;    /**< two-sided, of the intervals; 0.95 */
-    bool greenhall_riley; /**< degrees of freedom of the continuous process; false: exact ones */
+    double confidence; /**< two-sided, of the intervals; 0.95 */
+    /** Degrees of freedom of the continuous process: the general formula of Greenhall and Riley
+     *  [GREENHALL2003] for ADEV, OADEV, MDEV, TDEV, HDEV, OHDEV and Haar, its sum for PDEV; the
+     *  published fits for TOTDEV, MTOT, HTOT [RILEY2008, 5.4] and Theo1 [HOWE2003], which are up to
+     *  20 % off below n/m = 6 (Theo1 with random-walk rate noise: of no use below n/m = 3).
+     *  false: those of imk_allan_edf_exact(). */
+    bool greenhall_riley;
     imk_allan_bias_removal bias;
     void *workspace; /**< MTOT, HTOT and Theo1 only: imk_allan_workspace_size() */
     size_t workspace_size;
@@ -202,7 +197,5 @@ IMK_API imk_status imk_allan_points(const imk_allan_settings *settings, size_t n
                                     const double *sums, size_t factor_count, const size_t *factors,
                                     imk_allan_point *points, const imk_executor *executor);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

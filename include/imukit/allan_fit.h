@@ -23,9 +23,7 @@
 #include "imukit/identify.h"
 #include "imukit/noise.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_ALLAN_FIT_FACTORS_MAX = 64, /**< tau in a table */
@@ -160,7 +158,5 @@ IMK_API imk_status imk_allan_fit_bootstrap(const imk_allan_fit_settings *setting
                                            imk_allan_bootstrap *result, void *workspace,
                                            size_t workspace_size);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

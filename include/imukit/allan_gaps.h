@@ -19,9 +19,7 @@
 
 #include "imukit/allan.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** One averaging time of a record with gaps. */
 typedef struct imk_allan_gap_point {
@@ -64,7 +62,5 @@ IMK_API imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings
                                          void *workspace, size_t workspace_size,
                                          const imk_executor *executor);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -7,9 +7,7 @@
 #include "imukit/allan.h"
 #include "imukit/even_record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Deviations of one channel over the averaging time, as columns ready to be plotted. */
 typedef struct imk_allan_curve {
@@ -65,7 +63,5 @@ IMK_API imk_unit imk_allan_log_unit(const imk_allan_log *allan, size_t channel,
 /** "white-rate" */
 IMK_API const char *imk_power_law_name(imk_power_law type);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -29,9 +29,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_ALLAN_STREAM_TIERS = 26,
@@ -98,7 +96,5 @@ IMK_API size_t imk_allan_stream_points(const imk_allan_stream *stream,
 /** Mean of the samples that were there; not a number when there is none. */
 IMK_API double imk_allan_stream_mean(const imk_allan_stream *stream);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

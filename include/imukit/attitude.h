@@ -10,9 +10,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef struct imk_vector3 {
     double v[3];
@@ -74,7 +72,5 @@ IMK_API imk_matrix3 imk_matrix3_from_euler(double roll, double pitch, double yaw
  *  is 0. */
 IMK_API void imk_matrix3_to_euler(imk_matrix3 c, double *roll, double *pitch, double *yaw);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

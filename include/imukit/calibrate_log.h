@@ -15,9 +15,7 @@
 #include "imukit/repeatability.h"
 #include "imukit/thermal.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_CALIBRATE_DOUBTS_MAX = 16, IMK_CALIBRATE_REFERENCES = 9, IMK_CALIBRATE_POSES = 3 };
 
@@ -179,7 +177,5 @@ IMK_API const char *imk_parameter_file_unit(imk_model_parameter parameter);
 IMK_API void imk_parameter_title(imk_model_parameter parameter, char *text, size_t size);
 /** @} */
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -29,9 +29,7 @@
 #include "imukit/model_parameter.h"
 #include "imukit/test_record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_TEST_RECORDS_MAX = 64, IMK_FIXTURES_MAX = 8 };
 
@@ -222,7 +220,5 @@ IMK_API imk_status imk_calibration_compare(const imk_model *a, const imk_model *
                                            double rotation[3], double *difference, double *sigma,
                                            imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -19,9 +19,7 @@
 #include "imukit/motion_script.h"
 #include "imukit/procedure.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A wanted uncertainty. */
 typedef struct imk_plan_wish {
@@ -146,7 +144,5 @@ IMK_API imk_status imk_next_pose(const imk_calibration *calibration, double sigm
                                  size_t workspace_size, size_t count, imk_pose_advice *advice,
                                  imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -18,9 +18,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What the numbers of a campaign depend on, and their shape. Arrays and texts are the caller's. */
 typedef struct imk_campaign {
@@ -129,7 +127,5 @@ IMK_API imk_status imk_campaign_merge(size_t count, const char *const *paths, co
                                       bool partial, imk_campaign_merge_report *report,
                                       imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

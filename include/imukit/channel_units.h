@@ -6,9 +6,7 @@
 
 #include "imukit/record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What kind of sensor a column is of. */
 typedef enum imk_channel_kind {
@@ -30,7 +28,5 @@ IMK_API imk_unit imk_channel_plain_unit(const imk_log_column *column);
 /** Unit a person reads figures of this size in [SI]. */
 IMK_API imk_unit imk_channel_readable_unit(const imk_log_column *column, double magnitude);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

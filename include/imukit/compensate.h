@@ -23,9 +23,7 @@
 
 #include "imukit/correct.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Flags of a sample. */
 enum {
@@ -119,7 +117,5 @@ IMK_API void imk_compensate_record(imk_compensator *compensator, const imk_readi
 /** Doubles of workspace for blocks and records of `count` samples; at most about 12 000. */
 IMK_API size_t imk_compensate_workspace(size_t count);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -10,9 +10,7 @@
 #include "imukit/job.h"
 #include "imukit/record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A list of terms, as their keys in the model file ("gyro.bias.fixed"). */
 enum { IMK_TERM_KEYS_MAX = 64 };
@@ -72,7 +70,5 @@ IMK_API void imk_compensate_log_free(imk_compensate_log *result);
  *  quantization) of the whole model, which tells what readings are saturated. */
 IMK_API void imk_compensation_model(const imk_model *whole, imk_model *selected);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -25,9 +25,7 @@
 
 #include "imukit/distort.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** How to correct. Start from imk_correction_default(), then change fields. */
 typedef struct imk_correction_settings {
@@ -99,7 +97,5 @@ typedef struct imk_readings {
 IMK_API void imk_correct(const imk_correction *correction, const imk_readings *readings,
                          size_t count, double *const out[2][IMK_AXES_MAX]);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -6,9 +6,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Longest text imk_decimal_shortest() or imk_decimal_fixed() writes, with its terminating zero. */
 #define IMK_DECIMAL_SIZE 384
@@ -39,7 +37,5 @@ IMK_API size_t imk_decimal_fixed(double value, int decimals, char *text);
  *  @return length without the terminating zero, at most 24 */
 IMK_API size_t imk_decimal_significant(double value, int digits, char *text);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -14,9 +14,7 @@
 
 #include "imukit/physics_log.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_DESIGN_NAME_SIZE = 96 };
 
@@ -64,7 +62,5 @@ IMK_API imk_status imk_design_write(const char *path, const imk_design_file *fil
 IMK_API imk_status imk_design_print(const imk_design_file *file, char **text, size_t *size,
                                     imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -31,12 +31,7 @@
 #include "imukit/model.h"
 #include "imukit/random.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
-/** Index of the two-element arrays below: gyros and accelerometers. */
-enum { IMK_GYRO = 0, IMK_ACCEL = 1 };
+IMK_BEGIN_C
 
 /** What a unit is exposed to: one array per quantity, one element per sample; body axes. NULL means
  *  zero throughout (for the temperature: the polynomials vanish). */
@@ -125,7 +120,5 @@ IMK_API imk_hysteresis imk_hysteresis_start(const imk_triad *triad);
 IMK_API void imk_hysteresis_next(imk_hysteresis *hysteresis, size_t count,
                                  const double *temperature, double *state);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -7,9 +7,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Standard normal distribution function and its inverse; relative error < 1e-14, also in tails. */
 IMK_API double imk_normal_probability(double x);
@@ -45,7 +43,5 @@ IMK_API double imk_f_upper_quantile(double probability, double numerator, double
 /** Quantile of Student's distribution; infinite degrees: the normal one. */
 IMK_API double imk_student_quantile(double probability, double degrees);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

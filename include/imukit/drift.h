@@ -31,9 +31,7 @@
 #include "imukit/model.h"
 #include "imukit/motion.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_DRIFT_STATES = 9, IMK_DRIFT_LANES = 8 };
 
@@ -227,7 +225,5 @@ IMK_API imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t 
                                      imk_drift_wish wish, double goal,
                                      imk_drift_requirement *requirement, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

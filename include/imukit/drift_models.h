@@ -10,9 +10,7 @@
 #include "imukit/model.h"
 #include "imukit/units.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** @name When to look
  *  @{ */
@@ -141,7 +139,5 @@ IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, size_t r
                                               const double *errors, imk_error *error);
 IMK_API void imk_drift_models_free(imk_drift_models *result);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

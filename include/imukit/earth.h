@@ -7,9 +7,7 @@
 
 #include "imukit/attitude.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Rotation of the Earth in inertial space [rad/s], WGS84. */
 #define IMK_EARTH_RATE 7.292115e-5
@@ -49,7 +47,5 @@ IMK_API void imk_curvature_radii(double latitude, double *meridian, double *prim
 /** C_en: north, east and down at a place, as columns in ECEF axes. */
 IMK_API imk_matrix3 imk_ned_axes(double latitude, double longitude);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -7,9 +7,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** e^x. Error below 0.7 ulp, below 1 ulp where the result is subnormal; 0 below -745.2, infinity
  *  where the result is beyond the largest double; NaN stays NaN. */
@@ -31,7 +29,5 @@ IMK_API double imk_cos(double x);
 /** Angle of the point (x, y) [rad], -pi … pi, signs of zeros as in C. Error below 1 ulp. */
 IMK_API double imk_atan2(double y, double x);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

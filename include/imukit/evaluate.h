@@ -12,9 +12,7 @@
 
 #include "imukit/repeatability.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_EVALUATION_RUNS_MAX = 64 };
 
@@ -134,7 +132,5 @@ IMK_API imk_status imk_evaluate(const imk_evaluation_table *table,
 IMK_API imk_evaluation_line imk_minimax_line(size_t n, const double *x, const double *y,
                                              int alternation[3], int *workspace);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

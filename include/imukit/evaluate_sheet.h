@@ -9,9 +9,7 @@
 #include "imukit/identify.h"
 #include "imukit/units.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_EVALUATE_CHANNELS = 16,
@@ -94,7 +92,5 @@ IMK_API void imk_evaluate_judge(size_t limit_count, imk_evaluate_limit *limits, 
 /** "met", "not met"; "" without a limit. */
 IMK_API const char *imk_evaluate_verdict_text(imk_evaluate_verdict verdict);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -8,9 +8,7 @@
 #include "imukit/job.h"
 #include "imukit/record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What is done about rows that are missing, not finite or out of order. */
 typedef enum imk_gap_policy {
@@ -56,7 +54,5 @@ IMK_API double *imk_even_record_data(const imk_even_record *record, size_t chann
 /** How many rows of the channel are finite numbers. */
 IMK_API size_t imk_even_record_finite(const imk_even_record *record, size_t channel);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -6,9 +6,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** One independent piece of work: item 0 … count - 1, in any order, on any thread. */
 typedef void (*imk_work)(void *work_context, size_t item);
@@ -25,7 +23,5 @@ typedef struct imk_executor {
 IMK_API void imk_execute(const imk_executor *executor, size_t count, imk_work work,
                          void *work_context);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -20,9 +20,7 @@
 
 #include "imukit/procedure.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A part of a log that matters. */
 typedef struct imk_ferraris_stretch {
@@ -88,7 +86,5 @@ IMK_API void imk_ferraris_to_model(const imk_ferraris *ferraris, imk_model *mode
 /** The inverse; cross-axis response is taken with the misalignment; sigmas are 0. */
 IMK_API void imk_ferraris_from_model(const imk_model *model, imk_ferraris *ferraris);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

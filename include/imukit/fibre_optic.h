@@ -39,9 +39,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** How the phase is read. */
 typedef enum imk_fibre_optic_loop {
@@ -181,7 +179,5 @@ IMK_API double imk_fibre_optic_shupe_coefficient(const imk_fibre_optic *design);
 /** This kind of instrument; design struct imk_fibre_optic. Outputs: the rate; resets per second. */
 IMK_API extern const imk_instrument imk_fibre_optic_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

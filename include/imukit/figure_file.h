@@ -9,9 +9,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** True when gnuplot is on PATH, which all but SVG needs. */
 IMK_API bool imk_plot_available(void);
@@ -30,7 +28,5 @@ IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, 
 IMK_API imk_status imk_animation_write(const imk_animation *animation, const char *path,
                                        imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -23,9 +23,7 @@
 
 #include "imukit/model.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** How bias instability (flicker noise), which no finite number of states has, is approximated. */
 typedef enum imk_filter_flicker {
@@ -115,7 +113,5 @@ IMK_API void imk_filter_continuous(const imk_filter_noise *noise, double *f, dou
 IMK_API void imk_filter_discrete(const imk_filter_noise *noise, double dt, double *phi,
                                  double *q_d);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -25,9 +25,7 @@
 
 #include "imukit/compensate.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_firmware_arithmetic {
     IMK_FIRMWARE_FLOAT,  /**< binary32 */
@@ -158,7 +156,5 @@ IMK_API void imk_firmware_round(const imk_firmware *firmware, imk_firmware_sampl
  */
 IMK_API void imk_firmware_run(const imk_firmware *firmware, imk_firmware_sample *sample);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -12,9 +12,7 @@
 #include "imukit/compensate_log.h"
 #include "imukit/firmware.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_FIRMWARE_NAME_MAX = 48 };
 
@@ -47,7 +45,5 @@ IMK_API imk_status imk_firmware_write(const char *directory, const imk_firmware 
                                       const imk_model *model,
                                       const imk_firmware_file_settings *settings, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

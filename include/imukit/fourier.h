@@ -6,9 +6,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Workspace [bytes] for transforms of n points; 0 when n is 0 or above 2^31. About 17 n for large
  *  n, twice that for small, and 115 n where Bluestein's algorithm is needed. The workspace may be
@@ -38,7 +36,5 @@ IMK_API imk_status imk_cosine(size_t n, double *data, void *workspace, size_t wo
 IMK_API imk_status imk_cosine_inverse(size_t n, double *data, void *workspace,
                                       size_t workspace_size);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -23,9 +23,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A design. Start from imk_free_gyro_default(), then change fields. Triples are along x, y, z of
  *  the gimbal they belong to. */
@@ -121,7 +119,5 @@ IMK_API double imk_free_gyro_anisoelasticity(const imk_free_gyro *design);
 /** The instrument; outputs and signals are in its tables. */
 IMK_API extern const imk_instrument imk_free_gyro_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

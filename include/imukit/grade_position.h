@@ -10,9 +10,7 @@
 #include "imukit/job.h"
 #include "imukit/model.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** When it is looked at: a minute, an hour, a day. */
 enum { IMK_GRADE_MINUTE, IMK_GRADE_HOUR, IMK_GRADE_DAY, IMK_GRADE_TIMES };
@@ -81,7 +79,5 @@ IMK_API imk_status imk_grade_run(const imk_model *model, const imk_job *job, imk
                                  imk_error *error);
 IMK_API void imk_graded_free(imk_graded *result);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

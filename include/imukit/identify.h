@@ -16,9 +16,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** The five terms of the lecture and of IEEE 952. */
 typedef enum imk_noise_term {
@@ -123,7 +121,5 @@ IMK_API double imk_identification_allan_variance(const imk_identification *resul
 IMK_API void imk_identification_store(const imk_identification *result, imk_model *model,
                                       bool accel, int axis);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

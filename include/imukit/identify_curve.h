@@ -9,9 +9,7 @@
 
 #include "imukit/identify_log.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What is asked, and what the table does not say. Start from imk_identify_curve_default(). */
 typedef struct imk_identify_curve_settings {
@@ -39,7 +37,5 @@ IMK_API imk_status imk_identify_curve_run(const imk_record_source *source,
                                           const imk_job *job, imk_identify_log **result,
                                           imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -12,9 +12,7 @@
 
 #include "imukit/identify.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Most records of a joint estimate. */
 enum { IMK_JOINT_RECORDS_MAX = 24 };
@@ -77,7 +75,5 @@ typedef struct imk_population {
 IMK_API imk_status imk_population_estimate(size_t count, const double *values, const double *sigmas,
                                            double confidence, imk_population *population);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

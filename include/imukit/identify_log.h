@@ -15,9 +15,7 @@
 #include "imukit/model.h"
 #include "imukit/record_screen.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What is asked. Start from imk_identify_log_default(). */
 typedef struct imk_identify_log_settings {
@@ -96,7 +94,5 @@ IMK_API imk_term_display imk_channel_term(const imk_log_column *column, imk_nois
 /** Let the samples go, which are the bulk of the memory. */
 IMK_API void imk_identify_log_let_samples_go(imk_identify_log *result);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -13,9 +13,7 @@
 
 #include "imukit/identify.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** The noise of one axis, as a record of it is expected. Sinusoids are left out: they are found and
  *  subtracted, and cost next to nothing. */
@@ -94,7 +92,5 @@ IMK_API imk_status imk_identify_duration(const imk_expected_noise *noise,
                                          double *duration, void *workspace, size_t workspace_size,
                                          imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

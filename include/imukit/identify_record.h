@@ -16,9 +16,7 @@
 
 #include "imukit/identify.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_IDENTIFY_RECORD_LEAST = 1 << 19, /**< samples that a record needs at least */
@@ -66,7 +64,5 @@ IMK_API imk_status imk_identify_record_finish(imk_identify_record *record,
 IMK_API const imk_allan_point *imk_identify_record_curve(const imk_identify_record *record,
                                                          size_t *count);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

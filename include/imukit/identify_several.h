@@ -10,9 +10,7 @@
 #include "imukit/identify_log.h"
 #include "imukit/repeatability.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A strength of one record; its square and the sigma of that are known also where the term is
  *  absent. */
@@ -83,7 +81,5 @@ IMK_API imk_status imk_identify_devices(size_t count, const imk_identify_log *co
 
 IMK_API void imk_identify_several_free(imk_identify_several *result);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -8,9 +8,9 @@
  *  hand; and a description, imk_instrument, through which all of them can be run alike:
  *
  *      const imk_instrument *instrument = imk_instrument_find("ring_laser");
- *      instrument->set_default(design);                      // design_size bytes
- *      instrument->init(design, &settings, state, &error);   // state_size bytes, 64-byte aligned
- *      instrument->step(state, &exposure, outputs);          // as often as samples are wanted
+ *      instrument->set_default(design);              // design_size bytes
+ *      imk_instrument_init(instrument, design, &settings, state, &error);  // state_size bytes
+ *      instrument->step(state, &exposure, outputs);  // as often as samples are wanted
  *
  *  Three levels describe the same instrument: the full dynamics (every carrier cycle, transit of
  *  light, beat of the laser), a slow map or envelope of it, and the error model of model.h that
@@ -24,9 +24,7 @@
 #include "imukit/model.h"
 #include "imukit/random.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_INSTRUMENT_OUTPUTS_MAX = 8, IMK_INSTRUMENT_SIGNALS_MAX = 16, IMK_VIEW_CURVES_MAX = 4 };
 
@@ -122,7 +120,8 @@ typedef struct imk_instrument {
     const char *title;      /**< "ring laser gyro" */
     const char *technology; /**< as the table of grades calls it: "RLG"; "" when it does not */
     const char *source;     /**< where the default design's figures come from */
-    int sensor;             /**< IMK_GYRO (0) or IMK_ACCEL (1) */
+    int sensor;             /**< IMK_GYRO or IMK_ACCEL */
+    uint32_t cookie;        /**< what a design's first member must be */
     size_t design_size, state_size;
     size_t field_count;
     const imk_design_field *fields;
@@ -134,25 +133,22 @@ typedef struct imk_instrument {
     size_t view_count;
     const imk_view *views;
 
-    /** A realistic design. */
+    /** A realistic design, cookie included. */
     void (*set_default)(void *design);
-    /** Every field finite and in its range, and the design possible as a whole.
-     *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
-    imk_status (*validate)(const void *design, imk_error *error);
-    /** Validate and start, in the state the instrument is in when it has been switched on.
-     *  @param state state_size bytes, 64-byte aligned; plain data that may be copied; of no use
-     *               after an error
-     *  @return errors of validate; IMK_ERROR_RANGE for a step (field "step") or rate that would
-     *          give wrong results; IMK_ERROR_UNSUPPORTED for a level it does not have */
+    /** What imk_design_check() asks of a design whose fields are in their ranges: is it possible as
+     *  a whole? NULL: it is.
+     *  @return IMK_ERROR_RANGE, _CONFLICT; error.field the path */
+    imk_status (*check)(const void *design, imk_error *error);
+    /** What imk_instrument_init() does once design and settings are valid and the state is 0.
+     *  @return IMK_ERROR_RANGE, _UNSUPPORTED */
     imk_status (*init)(const void *design, const imk_physics_settings *settings, void *state,
                        imk_error *error);
     /** Advance by 1/rate under a constant exposure. */
     void (*step)(void *state, const imk_exposure *exposure, double *outputs);
     /** The internal signals as they are now. */
     void (*observe)(const void *state, double *signals);
-    /** The error model of one instrument by closed forms: one axis, direction x, case axes as body
-     *  axes. The design must be valid. Fills the whole model. */
-    void (*reduce)(const void *design, imk_model *model);
+    /** What imk_instrument_reduce() does with a triad of one axis along x that has no errors. */
+    void (*reduce)(const void *design, imk_triad *triad);
     /** Internal step that settings.step 0 gives [s], for a valid design. */
     double (*step_length)(const void *design, const imk_physics_settings *settings);
 } imk_instrument;
@@ -164,16 +160,30 @@ IMK_API const imk_instrument *imk_instrument_get(size_t index);
 /** Kind by name ("ring_laser", case, blanks, - and _ ignored); NULL when there is none. */
 IMK_API const imk_instrument *imk_instrument_find(const char *name);
 
-/** Check all fields of a design against the table: finite, in range, a word that exists. Part of
- *  every validate. */
+/** Is a design this instrument's, every field finite and in its range, and the design possible as a
+ *  whole?
+ *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
 IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void *design,
                                     imk_error *error);
 
-/** Make a model of one axis (from reduce) one of three such instruments along body x, y and z; the
- *  case axes y and z of each are the next body axes in turn. Evidence is kept for axis x only. */
+/** Check design and settings, and start in the state the instrument is in when it is switched on.
+ *  @param state state_size bytes, 64-byte aligned; plain data that may be copied; of no use after
+ *               an error
+ *  @return errors of imk_design_check(); IMK_ERROR_RANGE for a step (field "step") or rate that
+ *          would give wrong results; IMK_ERROR_UNSUPPORTED for a level it does not have */
+IMK_API imk_status imk_instrument_init(const imk_instrument *instrument, const void *design,
+                                       const imk_physics_settings *settings, void *state,
+                                       imk_error *error);
+
+/** The error model of one instrument by closed forms: one axis, direction x, case axes as body
+ *  axes. The design must be valid. Fills the whole model. */
+IMK_API void imk_instrument_reduce(const imk_instrument *instrument, const void *design,
+                                   imk_model *model);
+
+/** Make a model of one axis, from imk_instrument_reduce(), one of three such instruments along body
+ *  x, y and z; the case axes y and z of each are the next body axes in turn. Evidence is kept for
+ *  axis x only. */
 IMK_API void imk_model_three_axes(imk_model *model);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -18,9 +18,7 @@
 #include "imukit/parameter_file.h"
 #include "imukit/thread_pool.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A sentence that says what was found, what was expected and what to do:
  *  `tactical.yaml:7:3: gyro.noise.angle_random_walk: "0.1 deg/h" is a rate; expected a unit like …`
@@ -41,7 +39,5 @@ extern "C" {
  *  @return length; the text is shortened between characters to fit `size` with its zero */
 IMK_API size_t imk_error_text(const imk_error *error, const char *source, char *text, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -15,9 +15,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Called now and then by long work, by one thread at a time.
  *  @param stage  what is done: "reading", "identifying", the name of a channel
@@ -71,7 +69,5 @@ IMK_API size_t imk_finding_message(const imk_finding *finding, const char *recor
 /** The code without what tells it from one of that name in other jobs: "gaps". */
 IMK_API const char *imk_finding_code(const imk_finding *finding);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -11,6 +11,7 @@
 #include "imukit/calibrate_log.h"
 #include "imukit/channel_units.h"
 #include "imukit/compensate_log.h"
+#include "imukit/convert_log.h"
 #include "imukit/drift_models.h"
 #include "imukit/evaluate_sheet.h"
 #include "imukit/even_record.h"

@@ -23,9 +23,7 @@
 #include "imukit/identify.h"
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_LABORATORY_POINTS_MAX = 101,
@@ -118,7 +116,5 @@ typedef struct imk_laboratory_figure {
 IMK_API size_t imk_laboratory_figures(const imk_model *model, int sensor,
                                       imk_laboratory_figure *figures);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

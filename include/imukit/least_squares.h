@@ -10,9 +10,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Residuals r(x) (already divided by their sigmas) and, when jacobian is not NULL, dr/dx
  *  (residual_count x parameter_count, row-major). @return IMK_OK, or an error to stop the solver */
@@ -60,7 +58,5 @@ IMK_API imk_status imk_least_squares_solve(const imk_least_squares *problem, dou
                                            double *covariance, imk_least_squares_result *result,
                                            void *workspace, size_t workspace_size);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -6,9 +6,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Cholesky factor L of a symmetric positive definite n x n matrix, A = L L^T, in place: the lower
  *  triangle becomes L, the upper is not read and set to zero. IMK_ERROR_SINGULAR when A is not
@@ -40,7 +38,5 @@ IMK_API imk_status imk_qr_covariance(size_t rows, size_t columns, const double *
  *  @return IMK_ERROR_NOT_FINITE, IMK_ERROR_NO_CONVERGENCE after 60 sweeps */
 IMK_API imk_status imk_symmetric_eigen(size_t n, double *a, double *eigenvalues, double *v);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -17,9 +17,29 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
+
+/** A format of logs. */
+typedef struct imk_log_format {
+    const char *name;      /**< what it is called, which is the ending of its files: ".npy" */
+    const char *beginning; /**< of its files; NULL: they are known by the ending only */
+    const char *companion; /**< what FILE.npy.columns, which comes with a file, ends in more: a file
+                                of names and units; NULL: nothing comes with it */
+    bool written;          /**< it can be written, too */
+} imk_log_format;
+
+/** Format `index`, CSV first; NULL beyond the last. */
+IMK_API const imk_log_format *imk_log_format_get(size_t index);
+/** The format of a log of this name, also of one that ends in .gz or .zst behind: CSV where the
+ *  name says nothing. @param path  may be NULL */
+IMK_API const imk_log_format *imk_log_format_of(const char *path);
+/** The format of a log that begins with these bytes; NULL: they tell none. */
+IMK_API const imk_log_format *imk_log_format_begun(const char *begin, size_t size);
+/** The names of the formats but CSV, to stand behind that: ", .bag or .npy".
+ *  @param last  what stands before the last one: " or "
+ *  @param written  only those that can be written
+ *  @return text, of at most size - 1 bytes */
+IMK_API const char *imk_log_formats_text(const char *last, bool written, size_t size, char *text);
 
 /** How to read a file. Start from imk_log_settings_default(). Texts may be NULL: taken from the
  *  header. */
@@ -188,7 +208,5 @@ IMK_API imk_status imk_log_sink_end(imk_log_sink *log, imk_status status, imk_er
 /** Give up: nothing appears. Frees the writer; NULL is allowed. */
 IMK_API void imk_log_abandon(imk_log_writer *writer);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -8,15 +8,11 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Bytes that this process may have in all: the least of the machine's memory and of the limits on
  *  its address space, its data and its control group; SIZE_MAX when nothing is known. */
 IMK_API size_t imk_memory_limit(void);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

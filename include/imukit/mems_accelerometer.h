@@ -27,9 +27,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_mems_loop {
     IMK_MEMS_OPEN = 0,    /**< the displacement is the reading */
@@ -217,7 +215,5 @@ IMK_API imk_mems_quantizer imk_mems_accelerometer_quantizer(const imk_mems_accel
  *  rate, behind the static nonlinearity; it has no limit cycle, dead zone or quantization noise. */
 IMK_API extern const imk_instrument imk_mems_accelerometer_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -13,9 +13,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_AXES_MAX = 8,              /**< sensing axes of one kind: 3 in a triad, more if redundant */
@@ -216,6 +214,14 @@ typedef struct imk_model {
     imk_correlation correlation;
 } imk_model;
 
+/** A kind of sensor, and the index of arrays of two: gyros and accelerometers. */
+enum { IMK_GYRO = 0, IMK_ACCEL = 1 };
+
+/** The triad of a kind of sensor, IMK_GYRO or IMK_ACCEL. */
+IMK_API const imk_triad *imk_model_triad(const imk_model *model, int sensor);
+/** The same, to be changed. */
+IMK_API imk_triad *imk_model_triad_to_set(imk_model *model, int sensor);
+
 /** A perfect unit: orthogonal triads of gyros and accelerometers without any error. */
 IMK_API void imk_model_default(imk_model *model);
 
@@ -310,7 +316,5 @@ IMK_API imk_grade_result imk_grade_model(const imk_model *model);
  * none: IMK_GRADE_NONE. */
 IMK_API imk_grade imk_grade_of_position(double hour, double day);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

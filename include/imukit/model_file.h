@@ -10,9 +10,7 @@
 #include "imukit/model.h"
 #include "imukit/result.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef struct imk_document imk_document;
 
@@ -64,7 +62,5 @@ IMK_API imk_status imk_model_open(const char *name, imk_model *model, imk_docume
  *  @return false: it is none; null is added */
 IMK_API bool imk_result_json(imk_result *result, const char *key, const char *text);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

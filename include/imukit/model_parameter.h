@@ -6,9 +6,7 @@
 
 #include "imukit/model.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Numbers of a term per axis: 1, 3, 5 or 6; 0 when the sensor does not have it. Of a temperature
  *  term as many as a polynomial can have, whatever its order in a model. */
@@ -35,7 +33,5 @@ IMK_API imk_status imk_model_parameter_parse(const char *name, imk_model_paramet
 /** SI unit as the model file writes it: "rad/s", "1", "rad", "1/(m/s^2)", "rad/s/(m/s^2)" … */
 IMK_API const char *imk_model_parameter_unit(imk_model_parameter parameter);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -23,9 +23,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /* ---- trajectories ---------------------------------------------------------------------------- */
 
@@ -216,7 +214,5 @@ typedef struct imk_motion {
     const imk_recorded_motion *recorded; /**< or NULL: exactly one of the two */
 } imk_motion;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -8,9 +8,7 @@
 #include "imukit/log.h"
 #include "imukit/motion_script.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What a file holds. Owns everything its motion points to. */
 typedef struct imk_motion_file imk_motion_file;
@@ -75,7 +73,5 @@ IMK_API void imk_temperature_file_free(imk_temperature_file *file);
 IMK_API const imk_temperature_profile *
 imk_temperature_file_profile(const imk_temperature_file *file);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -26,9 +26,7 @@
 
 #include "imukit/motion.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What a step does. All angles in [rad], rates in [rad/s]. Amounts may be negative. */
 typedef enum imk_step_kind {
@@ -105,7 +103,5 @@ IMK_API imk_status imk_motion_script_compile(const imk_motion_script *script,
                                              imk_trajectory_piece *piece, size_t piece_count,
                                              imk_trajectory *trajectory, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -8,9 +8,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Index of the candidate nearest to `name`, counting letters changed, added, left out and
  *  neighbours exchanged [DAMERAU1964]; ASCII case, blanks, '-' and '_' do not count. The first one
@@ -23,7 +21,5 @@ IMK_API size_t imk_nearest_name(const char *name, size_t count, const char *cons
 /** Does the name end in `ending`, such as ".csv"? Case counts. @param name  NULL has no ending */
 IMK_API bool imk_has_ending(const char *name, const char *ending);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -27,9 +27,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Where a body is, how fast, and how it stands; Earth-fixed axes. */
 typedef struct imk_navigation_state {
@@ -162,7 +160,5 @@ IMK_API void imk_strapdown_lanes_run(imk_strapdown_lanes *lanes, imk_kernel kern
                                      double dt, const double *const channel[][6],
                                      const double *height, const double *climb);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -13,9 +13,7 @@
 #include "imukit/even_record.h"
 #include "imukit/zero_velocity.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** When the unit is known to stand. */
 typedef enum imk_stop_policy {
@@ -107,7 +105,5 @@ IMK_API void imk_navigate_log_free(imk_navigate_log *result);
 IMK_API imk_status imk_navigate_log_track(const imk_navigate_log *log, const imk_record_sink *sink,
                                           imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -29,9 +29,7 @@
 #include "imukit/random.h"
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Term numbers of the random streams: imk_stream(run, term, instance, axis). Fixed for ever. */
 enum {
@@ -318,7 +316,5 @@ IMK_API imk_status imk_quantization_start(imk_quantization_state *state, double 
  *  rate is ever lost. Applies to the sum of everything else, last. */
 IMK_API void imk_quantization_apply(imk_quantization_state *state, size_t count, double *out);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

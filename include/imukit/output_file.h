@@ -6,9 +6,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef struct imk_output_file imk_output_file;
 
@@ -47,7 +45,5 @@ IMK_API void imk_output_file_abandon(imk_output_file *file);
  *  these files fail. The first 32 files open at a time are covered. */
 IMK_API void imk_output_file_abandon_all(void);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -12,9 +12,7 @@
 #include "imukit/filter_noise.h"
 #include "imukit/model.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_parameter_format {
     IMK_PARAMETERS_UNKNOWN = 0,
@@ -97,7 +95,5 @@ IMK_API imk_status imk_parameters_print(const char *path, const imk_parameter_se
                                         const imk_model *model, char **text, size_t *size,
                                         imk_parameter_notes *notes, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

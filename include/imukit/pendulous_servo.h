@@ -21,9 +21,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A design. Start from imk_pendulous_servo_default(), then change fields. */
 typedef struct imk_pendulous_servo {
@@ -100,7 +98,5 @@ IMK_API void imk_pendulous_servo_reduce(const imk_pendulous_servo *design, imk_m
 /** Output 1 is the current [A]; signals: angle, torque, current. */
 IMK_API extern const imk_instrument imk_pendulous_servo_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -10,9 +10,7 @@
 #include "imukit/laboratory.h"
 #include "imukit/record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What the instrument is exposed to, against time. */
 typedef struct imk_physics_input {
@@ -138,7 +136,5 @@ IMK_API void imk_design_error_in_units(const imk_instrument *instrument, const v
 IMK_API size_t imk_design_field_text(const imk_design_field *field, const void *design, int digits,
                                      char *text, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -20,9 +20,7 @@
 #include "imukit/calibration.h"
 #include "imukit/static_detection.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_procedure {
     IMK_PROCEDURE_MULTIPOSITION = 0,
@@ -160,7 +158,5 @@ IMK_API size_t imk_solution_doubts(const imk_calibration *calibration,
                                    const imk_calibration_result *result, size_t capacity,
                                    imk_doubt_finding *doubt);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -10,9 +10,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Instruction set that draws the normals. All give the same bits. */
 typedef enum imk_kernel {
@@ -73,7 +71,5 @@ IMK_API void imk_random_words(imk_random source, uint64_t stream, uint64_t first
 IMK_API void imk_random_normals(imk_random source, uint64_t stream, uint64_t first, size_t count,
                                 double *out);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

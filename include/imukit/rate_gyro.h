@@ -28,9 +28,7 @@
 #include "imukit/instrument.h"
 #include "imukit/spinning_mass.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** The design. Start from imk_rate_gyro_default(), then change fields. */
 typedef struct imk_rate_gyro {
@@ -89,7 +87,5 @@ IMK_API void imk_rate_gyro_reduce(const imk_rate_gyro *design, imk_model *model)
 /** "rate_gyro" */
 IMK_API extern const imk_instrument imk_rate_gyro_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -32,9 +32,7 @@
 #include "imukit/instrument.h"
 #include "imukit/spinning_mass.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_rebalance {
     IMK_REBALANCE_OPEN = 0,
@@ -109,7 +107,5 @@ IMK_API void imk_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *d
 /** "rate_integrating_gyro" */
 IMK_API extern const imk_instrument imk_rate_integrating_gyro_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

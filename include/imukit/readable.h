@@ -7,9 +7,7 @@
 #include "imukit/drift.h"
 #include "imukit/units.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A value to as many decimals as two digits of its uncertainty need, or `digits` significant ones
  *  when the uncertainty is 0; "-" for no number. */
@@ -30,7 +28,5 @@ IMK_API imk_unit imk_readable_figure_unit(imk_drift_wish figure, double value);
 IMK_API const char *imk_readable_figure(imk_drift_wish figure, double value,
                                         char text[IMK_READABLE_SIZE]);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -14,9 +14,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_LOG_COLUMNS_MAX = 64 };
 
@@ -154,7 +152,5 @@ IMK_API void imk_log_free(imk_log *log);
 /** Index of the column of a quantity and axis, or -1. */
 IMK_API int imk_log_find(const imk_log *log, imk_quantity quantity, int axis);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -9,9 +9,7 @@
 #include "imukit/identify_plan.h"
 #include "imukit/job.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_PLAN_PARAMETERS_MAX = 2 * (IMK_NOISE_TERMS + 2 * IMK_TERMS_MAX),
@@ -83,7 +81,5 @@ IMK_API imk_status imk_record_plan_run(const imk_model *model,
 /** @param allocator  of the job that made it */
 IMK_API void imk_record_plan_free(imk_record_plan *result, const imk_allocator *allocator);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -10,9 +10,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Samples of one kind. */
 typedef struct imk_screen_count {
@@ -102,7 +100,5 @@ enum {
 IMK_API size_t imk_screen_apply(const imk_screen_settings *settings, const imk_screen *found,
                                 unsigned what, size_t n, double *samples);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

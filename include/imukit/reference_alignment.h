@@ -7,9 +7,7 @@
 
 #include "imukit/procedure.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A stretch in which every reference channel is constant: a step of a rate table, a position of a
  *  dividing head, a level of a centrifuge. */
@@ -67,7 +65,5 @@ IMK_API imk_status imk_reference_offset(const imk_test_record *record, double ma
                                         void *workspace, size_t workspace_size,
                                         imk_reference_shift *shift, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -19,9 +19,7 @@
 #include "imukit/calibration.h"
 #include "imukit/static_detection.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_RUNS_MAX = 1024 };
 
@@ -91,7 +89,5 @@ IMK_API imk_status imk_repeatability_of_calibrations(size_t runs,
  *  sigmas, and their intervals as evidence (as long as there is room). */
 IMK_API void imk_repeatability_to_model(const imk_repeatability_result *result, imk_model *model);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -9,9 +9,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** How one curve is drawn. */
 typedef enum imk_curve_style {
@@ -96,7 +94,5 @@ typedef struct imk_animation {
 IMK_API imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t *size,
                                      imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

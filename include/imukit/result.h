@@ -19,9 +19,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef struct imk_result imk_result;
 
@@ -152,7 +150,5 @@ IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, siz
                                       imk_error *error);
 /** @} */
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -32,9 +32,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Shape of the beams' path. */
 typedef enum imk_ring_laser_shape {
@@ -181,7 +179,5 @@ IMK_API double imk_ring_laser_dither_residual(const imk_ring_laser *design, doub
 /** Outputs: the rate [rad/s]; the counts of the sample, dither included. */
 IMK_API extern const imk_instrument imk_ring_laser_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

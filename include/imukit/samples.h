@@ -10,9 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A number beyond this, in SI units, is no reading of a sensor but a fault of the log, like an
  *  infinity: sums of its powers overflow, up to the fourth. */
@@ -29,7 +27,5 @@ IMK_API size_t imk_step_intervals(double step, double interval);
  *  there can be. */
 IMK_API size_t imk_samples_in(double time, double interval);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -37,9 +37,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_shell_mode {
     IMK_SHELL_REBALANCE = 0, /**< the pattern is held, the force that holds it is read */
@@ -157,7 +155,5 @@ IMK_API double imk_shell_gyro_drive_force(const imk_shell_gyro *design);
 /** The description by which it is run. */
 IMK_API extern const imk_instrument imk_shell_gyro_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

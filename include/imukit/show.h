@@ -19,9 +19,7 @@
 #include "imukit/result.h"
 #include "imukit/spectrum_log.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Deviations: a table for each statistic and kind of sensor, a figure. */
 IMK_API void imk_show_allan_log(const imk_allan_log *allan, const char *name, imk_result *result);
@@ -196,7 +194,5 @@ IMK_API void imk_show_evaluate(const imk_evaluate_shown *shown, imk_result *resu
 IMK_API void imk_show_record_plan(const imk_record_plan *plan, const char *name,
                                   imk_result *result);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

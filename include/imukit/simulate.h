@@ -35,9 +35,7 @@
 #include "imukit/motion.h"
 #include "imukit/random.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_SUBSTEPS_MAX = 512 };
 
@@ -95,7 +93,5 @@ IMK_API double imk_simulator_true_time(const imk_simulator *simulator, int64_t r
 /** True when row `row` is lost (timing.drops). */
 IMK_API bool imk_simulator_dropped(const imk_simulator *simulator, uint64_t row);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -8,9 +8,7 @@
 #include "imukit/record.h"
 #include "imukit/simulate.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What is asked. Start from imk_simulate_log_default(). */
 typedef struct imk_simulate_log_settings {
@@ -45,7 +43,5 @@ IMK_API imk_status imk_simulate_truth_run(const imk_model *model,
                                           const imk_record_sink *sink, const imk_job *job,
                                           imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -16,9 +16,7 @@
 
 #include "imukit/identify.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_spectrum_method {
     IMK_SPECTRUM_WELCH = 0,
@@ -191,7 +189,5 @@ IMK_API imk_status imk_spectrum_fit(const imk_spectrum *spectrum, size_t line_co
                                     double confidence, double significance,
                                     imk_spectrum_parameters *result);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -8,9 +8,7 @@
 #include "imukit/even_record.h"
 #include "imukit/spectrum.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum {
     IMK_SPECTRUM_LINES_MAX = 64,
@@ -66,7 +64,5 @@ IMK_API imk_status imk_spectrum_log_run(const imk_record_source *source,
                                         imk_error *error);
 IMK_API void imk_spectrum_log_free(imk_spectrum_log *result);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

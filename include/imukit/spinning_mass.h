@@ -8,9 +8,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Torques nobody wants, about the output axis of one gyro. */
 typedef struct imk_error_torque {
@@ -45,7 +43,5 @@ IMK_API double imk_anisoelastic_drift(double mass, double compliance_difference,
  *  @param damping  c [N m s/rad] */
 IMK_API double imk_thermal_torque(double damping);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

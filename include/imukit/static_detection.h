@@ -16,9 +16,7 @@
 
 #include "imukit/test_record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** How to detect. Start from imk_static_default(), then change fields. */
 typedef struct imk_static_settings {
@@ -83,7 +81,5 @@ IMK_API imk_status imk_static_detect(const imk_test_record *record,
 IMK_API imk_static_interval imk_static_summary(const imk_test_record *record, size_t begin,
                                                size_t end);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

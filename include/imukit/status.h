@@ -17,9 +17,16 @@
 #define IMK_API __attribute__((visibility("default")))
 #endif
 
+/* Around what C and C++ share. */
 #ifdef __cplusplus
-extern "C" {
+#define IMK_BEGIN_C extern "C" {
+#define IMK_END_C }
+#else
+#define IMK_BEGIN_C
+#define IMK_END_C
 #endif
+
+IMK_BEGIN_C
 
 #define IMK_VERSION_MAJOR 0
 #define IMK_VERSION_MINOR 1
@@ -94,7 +101,5 @@ IMK_API const char *imk_status_text(imk_status status);
 IMK_API imk_status imk_error_set(imk_error *error, imk_status status, const char *field,
                                  const char *found, const char *expected);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

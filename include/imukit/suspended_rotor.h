@@ -24,9 +24,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** A design. Start from imk_suspended_rotor_default(), then change fields. Triples are along the
  *  case axes. */
@@ -106,7 +104,5 @@ IMK_API void imk_suspended_rotor_drift(const imk_suspended_rotor *design, const 
 /** The instrument; outputs and signals are in its tables. */
 IMK_API extern const imk_instrument imk_suspended_rotor_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -6,9 +6,7 @@
 
 #include "imukit/distort.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** The samples of one log, the caller's arrays. Sample k is the mean over the interval that ends at
  *  its time. Everything is SI but readings, which are in counts where the unit outputs counts. */
@@ -31,7 +29,5 @@ typedef struct imk_test_record {
     const char *const *section_name; /**< section_count names */
 } imk_test_record;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -17,9 +17,7 @@
 
 #include "imukit/test_record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_THERMAL_GAPS_MAX = 24 };
 
@@ -132,7 +130,5 @@ IMK_API imk_status imk_thermal_analyse(const imk_test_record *record,
 IMK_API imk_status imk_thermal_apply(const imk_thermal_findings *findings, bool polynomials,
                                      imk_model *model, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

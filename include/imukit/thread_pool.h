@@ -6,9 +6,7 @@
 
 #include "imukit/executor.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef struct imk_thread_pool imk_thread_pool;
 
@@ -29,7 +27,5 @@ IMK_API size_t imk_thread_pool_threads(const imk_thread_pool *pool);
  *  item. */
 IMK_API imk_executor imk_thread_pool_executor(imk_thread_pool *pool);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

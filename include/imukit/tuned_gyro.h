@@ -38,9 +38,7 @@
 #include "imukit/instrument.h"
 #include "imukit/spinning_mass.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** The design. Start from imk_tuned_gyro_default(), then change fields. */
 typedef struct imk_tuned_gyro {
@@ -124,7 +122,5 @@ IMK_API void imk_tuned_gyro_reduce(const imk_tuned_gyro *design, imk_model *mode
 /** "tuned_gyro" */
 IMK_API extern const imk_instrument imk_tuned_gyro_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

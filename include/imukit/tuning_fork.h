@@ -35,9 +35,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_tuning_fork_arrangement {
     IMK_TUNING_FORK_IN_PLANE = 0,
@@ -173,7 +171,5 @@ IMK_API double imk_tuning_fork_coupling(double difference, double angle, double 
 /** Outputs: rate, quadrature [rad/s]. */
 IMK_API extern const imk_instrument imk_tuning_fork_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

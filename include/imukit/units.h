@@ -9,9 +9,7 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** Exponents of the base dimensions, in halves (so that 1/sqrt(Hz), time^{1/2}, is 1): metre,
  *  second, radian, kelvin, count, kilogram, ampere. The angle is a dimension here: deg/s and Hz
@@ -95,7 +93,5 @@ IMK_API size_t imk_quantity_format(const double *values, const double *sigmas, s
  *  K below (a difference). SI for a dimension without a name. */
 IMK_API imk_unit imk_unit_readable(imk_dimension dimension, double magnitude);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -6,9 +6,7 @@
 
 #include "imukit/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** U+FFFD. */
 #define IMK_UTF8_REPLACEMENT "\xEF\xBF\xBD"
@@ -31,7 +29,5 @@ IMK_API size_t imk_utf8_clean(const char *text, char *target, size_t size);
  *  @param target  `size` (> 0) bytes, always ended by a zero */
 IMK_API void imk_utf8_shorten(const char *text, char *target, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -22,9 +22,7 @@
 
 #include "imukit/instrument.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 typedef enum imk_beam_arrangement { IMK_BEAM_PAIR = 0, IMK_BEAM_SINGLE } imk_beam_arrangement;
 
@@ -97,7 +95,5 @@ IMK_API void imk_vibrating_beam_reduce(const imk_vibrating_beam *design, imk_mod
  *  Signals: displacements of both beams, axial force, amplitudes. */
 IMK_API extern const imk_instrument imk_vibrating_beam_instrument;
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

@@ -18,9 +18,7 @@
 #include "imukit/model.h"
 #include "imukit/navigate.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 enum { IMK_BIAS_PARTS_MAX = 13, IMK_NAVIGATION_ERRORS = 9 };
 
@@ -205,7 +203,5 @@ IMK_API imk_standstill_verdict imk_standstill_add(imk_standstill *detector, doub
                                                   imk_vector3 angle, imk_vector3 velocity,
                                                   const imk_rest_readings *rest);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

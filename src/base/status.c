@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Names and texts of the statuses, from the one list in status.h, and filling an imk_error. */
-#include "imukit/status.h"
+#include "error_internal.h"
 
+#include "base/text_internal.h"
 #include "imukit/utf8.h"
 
+#include <limits.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -31,20 +33,6 @@ const char *imk_status_text(imk_status status)
     return "unknown";
 }
 
-/* Copy as much of a UTF-8 text as fits, never cutting a character in two. */
-static void copy_text(char *target, size_t size, const char *source)
-{
-    size_t length = source ? strlen(source) : 0;
-    if (length >= size) {
-        length = size - 1;
-        while (length > 0 && ((unsigned char)source[length] & 0xC0) == 0x80)
-            length--;
-    }
-    if (length > 0)
-        memcpy(target, source, length);
-    target[length] = '\0';
-}
-
 imk_status imk_error_set(imk_error *error, imk_status status, const char *field, const char *found,
                          const char *expected)
 {
@@ -53,8 +41,20 @@ imk_status imk_error_set(imk_error *error, imk_status status, const char *field,
         error->status = status;
         error->index = -1;
         imk_utf8_shorten(field ? field : "", error->field, sizeof error->field);
-        copy_text(error->found, sizeof error->found, found);
-        copy_text(error->expected, sizeof error->expected, expected);
+        imki_copy_text(error->found, sizeof error->found, found ? found : "");
+        imki_copy_text(error->expected, sizeof error->expected, expected ? expected : "");
+    }
+    return status;
+}
+
+imk_status imki_error_number(imk_error *error, imk_status status, const char *field, size_t index,
+                             double value, double limit, const char *expected)
+{
+    imk_error_set(error, status, field, NULL, expected);
+    if (error) {
+        error->index = index <= INT_MAX ? (int)index : -1;
+        error->value = value;
+        error->limit = limit;
     }
     return status;
 }

@@ -220,7 +220,7 @@ static void first_step(operations *o, int reserve)
 static double middle_slope(const imk_firmware *f, int sensor, int i)
 {
     const imk_correction *c = &f->correction;
-    const imk_triad *triad = sensor == IMK_GYRO ? &f->model.gyro : &f->model.accel;
+    const imk_triad *triad = imk_model_triad(&f->model, sensor);
     double within = 0;
     for (int j = 0; j < 3; j++)
         within += fabs(triad->direction[i][j]) *

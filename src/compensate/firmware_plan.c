@@ -104,7 +104,7 @@ static imk_status set_channel(imk_firmware *f, const imk_compensator *reference,
                               int axis, imk_error *error)
 {
     static const char *const keys[2] = {"gyro.range", "accel.range"};
-    const imk_triad *triad = sensor == IMK_GYRO ? &f->model.gyro : &f->model.accel;
+    const imk_triad *triad = imk_model_triad(&f->model, sensor);
     const imk_correction *c = &f->correction;
     imk_firmware_channel *channel = &f->channel[sensor][axis];
     const double range = reference->range[sensor][axis], per_unit = c->per_unit[sensor][axis];

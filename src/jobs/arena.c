@@ -54,7 +54,7 @@ static imki_arena_block *add_block(imki_arena *arena, size_t size)
     return block;
 }
 
-void *imki_arena_take(imki_arena *arena, size_t size)
+void *imki_arena_room(imki_arena *arena, size_t size)
 {
     imki_arena_block *block = arena->blocks;
     size_t place = block ? aligned_place(block, size) : 0;
@@ -65,7 +65,13 @@ void *imki_arena_take(imki_arena *arena, size_t size)
     if (!block)
         return NULL;
     block->used = place + size;
-    return memset((char *)(block + 1) + place, 0, size);
+    return (char *)(block + 1) + place;
+}
+
+void *imki_arena_take(imki_arena *arena, size_t size)
+{
+    void *place = imki_arena_room(arena, size);
+    return place ? memset(place, 0, size) : NULL;
 }
 
 void *imki_arena_extend(imki_arena *arena, void *at, size_t items, size_t size)
@@ -81,13 +87,13 @@ void *imki_arena_extend(imki_arena *arena, void *at, size_t items, size_t size)
 char *imki_arena_text(imki_arena *arena, const char *text)
 {
     const size_t size = text ? strlen(text) + 1 : 0;
-    char *copy = text ? imki_arena_take(arena, size) : NULL;
+    char *copy = text ? imki_arena_room(arena, size) : NULL;
     return copy ? memcpy(copy, text, size) : NULL;
 }
 
 double *imki_arena_numbers(imki_arena *arena, const double *values, size_t count, double scale)
 {
-    double *copy = values ? imki_arena_take(arena, (count + 1) * sizeof *copy) : NULL;
+    double *copy = values ? imki_arena_room(arena, (count + 1) * sizeof *copy) : NULL;
     for (size_t i = 0; copy && i < count; i++)
         copy[i] = values[i] / scale;
     return copy;
@@ -99,7 +105,7 @@ const char *imki_arena_format(imki_arena *arena, const char *format, va_list arg
     va_copy(again, arguments);
     const int length = vsnprintf(NULL, 0, format, again);
     va_end(again);
-    char *text = length >= 0 ? imki_arena_take(arena, (size_t)length + 1) : NULL;
+    char *text = length >= 0 ? imki_arena_room(arena, (size_t)length + 1) : NULL;
     if (!text)
         return "";
     vsnprintf(text, (size_t)length + 1, format, arguments);

@@ -19,6 +19,8 @@ typedef struct imki_arena {
 /* Zeroed memory, its address a multiple of 64 from 256 bytes on, of 16 below; NULL when memory is
  * exhausted. */
 void *imki_arena_take(imki_arena *arena, size_t size);
+/* The same, of any content: for what is written before it is read. */
+void *imki_arena_room(imki_arena *arena, size_t size);
 /* `items` of `size` bytes each as part of a growing array: its room doubles when it is full.
  * @param at  the array, or NULL; its items are moved. @return NULL when memory is exhausted */
 void *imki_arena_extend(imki_arena *arena, void *at, size_t items, size_t size);

@@ -1,8 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What all jobs do: tell what they find, and how far they are. */
+#include "arena_internal.h"
 #include "job_internal.h"
 
 #include <stdio.h>
+#include <string.h>
+
+const imk_job *imki_job_of(const imk_job *job)
+{
+    static const imk_job alone = {.memory = 0};
+    return job ? job : &alone;
+}
+
+void *imki_result_new(const imk_job *job, const char *origin, size_t size, imk_status *status,
+                      imk_error *error)
+{
+    void *made = origin ? NULL : imki_resize(&job->allocator, NULL, size);
+    *status = origin ? imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL, origin)
+              : made ? IMK_OK
+                     : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    return made ? memset(made, 0, size) : NULL;
+}
 
 void imki_find(imk_findings *findings, imk_finding_level level, const char *code, const char *name,
                size_t count, const double *numbers)

@@ -20,6 +20,15 @@ imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status
         __VA_ARGS__                                                                                \
     }
 
+/* The job, or, of NULL, one of zeros. */
+const imk_job *imki_job_of(const imk_job *job);
+
+/* Zeroed memory of a result.
+ * @param origin  where settings that were not initialised come from; NULL: they were
+ * @return NULL with the status and the error */
+void *imki_result_new(const imk_job *job, const char *origin, size_t size, imk_status *status,
+                      imk_error *error);
+
 /* Tell of progress. @return IMK_ERROR_CANCELLED where the caller gives up */
 imk_status imki_job_progress(const imk_job *job, const char *stage, const char *unit, uint64_t done,
                              uint64_t total, imk_error *error);

@@ -11,6 +11,7 @@
  * derivatives over the range, which makes P smallest. */
 #include "correct_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -32,8 +33,7 @@ imk_status imki_pseudo_inverse(int rows, const double (*matrix)[3], double (*out
     imk_cholesky_inverse(3, normal, inverse);
     for (int j = 0; j < 3; j++)
         for (int i = 0; i < rows; i++)
-            out[j][i] = inverse[3 * j] * matrix[i][0] + inverse[3 * j + 1] * matrix[i][1] +
-                        inverse[3 * j + 2] * matrix[i][2];
+            out[j][i] = imki_dot3(inverse + 3 * j, matrix[i]);
     /* X <- X + (I - X J) X takes out the rounding of the normal equations. */
     double rest[3][3], better[3][IMK_AXES_MAX];
     for (int j = 0; j < 9; j++) {

@@ -58,8 +58,8 @@ imk_status imki_count_iterations(const imki_inversion *inversion, double toleran
 double imki_contraction(const imki_inversion *inversion);
 
 /* Fill an error about a key of a sensor; NULL: about none. @return the status */
-imk_status imki_refuse(imk_error *error, imk_status status, int sensor, const char *key,
-                       const char *found, const char *expected);
+imk_status imki_correct_refuse(imk_error *error, imk_status status, int sensor, const char *key,
+                               const char *found, const char *expected);
 
 /* Fill an error for a model that is not invertible: names the term that matters most.
  * @param distortion  that of the inversion, from which terms are taken for a while */

@@ -13,8 +13,8 @@ static void append(char *text, size_t size, const char *more)
     text[length] = '\0';
 }
 
-imk_status imki_refuse(imk_error *error, imk_status status, int sensor, const char *key,
-                       const char *found, const char *expected)
+imk_status imki_correct_refuse(imk_error *error, imk_status status, int sensor, const char *key,
+                               const char *found, const char *expected)
 {
     char field[64] = "";
     append(field, sizeof field, !key ? "" : sensor == IMK_GYRO ? "gyro." : "accel.");
@@ -97,10 +97,10 @@ imk_status imki_refuse_inversion(const imki_inversion *inversion, imk_distortion
             }
         }
     }
-    imki_refuse(error, IMK_ERROR_NO_CONVERGENCE, worst_sensor,
-                worst < 0 ? NULL : imki_term_field(worst)->path[worst_sensor],
-                "this term is too large to be taken out over the range of the sensors",
-                "state a smaller range, or correct without this term");
+    imki_correct_refuse(error, IMK_ERROR_NO_CONVERGENCE, worst_sensor,
+                        worst < 0 ? NULL : imki_term_field(worst)->path[worst_sensor],
+                        "this term is too large to be taken out over the range of the sensors",
+                        "state a smaller range, or correct without this term");
     if (error) {
         error->value = contraction;
         error->limit = 1.0;

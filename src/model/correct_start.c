@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Preparing the correction of a model: which unknowns there are, how large they can be, whether
  * every reading belongs to one motion, and how many iterations lead to it. */
+#include "base/algebra/vector_internal.h"
+#include "base/text_internal.h"
 #include "correct_internal.h"
 #include "model_internal.h"
 
@@ -81,26 +83,28 @@ static imk_status check_partners(const imki_inversion *v, imk_error *error)
     const unsigned coupling = IMKI_PRODUCT_FEATURES | IMKI_THIRD_FEATURES;
     const char *key = gyro & IMKI_THIRD_FEATURES ? "g_sensitivity" : "g2_sensitivity";
     if (gyro & coupling && v->outputs[IMK_ACCEL] == 0)
-        return imki_refuse(
+        return imki_correct_refuse(
             error, IMK_ERROR_CONFLICT, IMK_GYRO, key,
             "the effect of specific force on the gyros cannot be taken out: the unit has "
             "no accelerometers",
             "remove this term, or add accelerometers");
     if (gyro & coupling && !v->solves[IMK_ACCEL])
-        return imki_refuse(
+        return imki_correct_refuse(
             error, IMK_ERROR_SINGULAR, IMK_ACCEL, "direction",
             "the effect of specific force on the gyros needs accelerometers in three "
             "directions",
             "remove the g-sensitivity of the gyros");
     if (accel & coupling && v->outputs[IMK_GYRO] == 0)
-        return imki_refuse(error, IMK_ERROR_CONFLICT, IMK_ACCEL, "lever_arm",
-                           "the effect of rotation cannot be taken out: the unit has no gyros",
-                           "remove the lever arms, or add gyros");
+        return imki_correct_refuse(
+            error, IMK_ERROR_CONFLICT, IMK_ACCEL, "lever_arm",
+            "the effect of rotation cannot be taken out: the unit has no gyros",
+            "remove the lever arms, or add gyros");
     if (accel & coupling && !v->solves[IMK_GYRO])
-        return imki_refuse(error, IMK_ERROR_SINGULAR, IMK_GYRO, "direction",
-                           "the effect of rotation on the accelerometers needs gyros in three "
-                           "directions",
-                           "remove the lever arms of the accelerometers");
+        return imki_correct_refuse(
+            error, IMK_ERROR_SINGULAR, IMK_GYRO, "direction",
+            "the effect of rotation on the accelerometers needs gyros in three "
+            "directions",
+            "remove the lever arms of the accelerometers");
     return IMK_OK;
 }
 
@@ -113,7 +117,7 @@ static void find_unknowns(imki_inversion *v, const imk_model *model)
         v->outputs[sensor] = !triad->present ? 0 : v->solves[sensor] ? 3 : triad->axis_count;
         for (int i = 0; triad->present && i < triad->axis_count; i++) {
             const double *e = triad->direction[i];
-            const double squared = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+            const double squared = imki_dot3(e, e);
             for (int j = 0; j < 3; j++)
                 v->along[sensor][i][j] = e[j] / squared;
         }
@@ -188,7 +192,7 @@ static imk_status find_limits(imki_inversion *v, const imk_triad *triad, int sen
         return IMK_OK;
     }
     if (!(stated > 0.0) && needs_limit(v->distortion, sensor))
-        return imki_refuse(
+        return imki_correct_refuse(
             error, IMK_ERROR_KEY_MISSING, sensor, "range", "",
             "add the range: the model has terms that are not linear, and how far they "
             "are to be taken out must be known");
@@ -227,8 +231,7 @@ static imk_status check_monotonic(const imki_inversion *v, imk_error *error)
         for (int i = 0; i < v->distortion->axis_count[sensor]; i++) {
             const imk_axis_response *axis = &v->distortion->axis[sensor][i];
             const double *along = v->along[sensor][i], limit = v->input_limit[sensor][i];
-            const double linear =
-                axis->other[0] * along[0] + axis->other[1] * along[1] + axis->other[2] * along[2];
+            const double linear = imki_dot3(axis->other, along);
             const double u = imki_turning_point(axis, linear, limit);
             if (!(fabs(u) <= limit))
                 continue;
@@ -236,9 +239,10 @@ static imk_status check_monotonic(const imki_inversion *v, imk_error *error)
             imk_decimal_significant(u, 6, found + strlen(found));
             const char *unit = sensor == IMK_GYRO ? " rad/s, which is within the range"
                                                   : " m/s^2, which is within the range";
-            memcpy(found + strlen(found), unit, strlen(unit) + 1);
-            imki_refuse(error, IMK_ERROR_NO_CONVERGENCE, sensor, worst_term(axis, sensor, u), found,
-                        "state a smaller range, or correct without this term");
+            imki_append_text(found, sizeof found, unit);
+            imki_correct_refuse(error, IMK_ERROR_NO_CONVERGENCE, sensor,
+                                worst_term(axis, sensor, u), found,
+                                "state a smaller range, or correct without this term");
             if (error) {
                 error->index = i;
                 error->value = u;
@@ -306,9 +310,9 @@ imk_status imk_correction_start(imk_correction *correction, const imk_model *mod
     if (status != IMK_OK)
         return status;
     if (imki_invert_middle(&v, &singular) != IMK_OK)
-        return imki_refuse(error, IMK_ERROR_SINGULAR, singular, "misalignment",
-                           "the axes with their errors do not span space",
-                           "check direction, misalignment, cross_axis and scale_factor");
+        return imki_correct_refuse(error, IMK_ERROR_SINGULAR, singular, "misalignment",
+                                   "the axes with their errors do not span space",
+                                   "check direction, misalignment, cross_axis and scale_factor");
     status = imki_count_iterations(&v, with->tolerance, &made.iterations, &made.contraction, left);
     if (status != IMK_OK)
         return imki_refuse_inversion(&v, &made.distortion, error);

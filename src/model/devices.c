@@ -4,6 +4,7 @@
  * A data sheet's "bias instability" is the flat floor of the Allan deviation:
  *
  *     B = floor / sqrt(2 ln 2/pi) = floor / 0.664     [IEEE952] */
+#include "base/text_internal.h"
 #include "device_table_internal.h"
 #include "model_schema_internal.h"
 
@@ -32,11 +33,6 @@ const imk_device *imk_device_get(size_t index)
     return index < imki_device_table_count ? &imki_device_table[index].device : NULL;
 }
 
-static char lower_case(char c)
-{
-    return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-}
-
 static bool is_blank(char c)
 {
     return c == ' ' || c == '\t';
@@ -50,7 +46,7 @@ static bool same_name(const char *a, const char *b)
             a++;
         while (is_blank(*b))
             b++;
-        if (lower_case(*a) != lower_case(*b))
+        if (imki_lower(*a) != imki_lower(*b))
             return false;
         if (*a == '\0')
             return true;
@@ -63,15 +59,6 @@ const imk_device *imk_device_find(const char *name)
         if (same_name(name, imk_device_get(i)->name))
             return imk_device_get(i);
     return NULL;
-}
-
-static void copy_text(char *target, size_t size, const char *source)
-{
-    size_t length = strlen(source);
-    if (length >= size)
-        length = size - 1;
-    memcpy(target, source, length);
-    target[length] = '\0';
 }
 
 static void set_all(imk_axes *axes, double value)
@@ -149,14 +136,14 @@ void imk_device_model(const imk_device *device, imk_model *model)
                                      .bias_divisor = 1000};
     const imki_device_entry *entry = (const imki_device_entry *)(const void *)device;
     imk_model_default(model);
-    copy_text(model->name, sizeof model->name, device->name);
-    copy_text(model->description, sizeof model->description, device->grade);
+    imki_copy_text(model->name, sizeof model->name, device->name);
+    imki_copy_text(model->description, sizeof model->description, device->grade);
     set_triad(&model->gyro, &entry->gyro, gyro_units);
     set_triad(&model->accel, &entry->accel, accel_units);
     set_g_sensitivity(&model->gyro, &entry->gyro);
     imk_evidence *evidence[2] = {&model->gyro_evidence, &model->accel_evidence};
     for (int i = 0; i < 2; i++) {
-        copy_text(evidence[i]->source, sizeof evidence[i]->source, device->source);
-        copy_text(evidence[i]->method, sizeof evidence[i]->method, entry->method);
+        imki_copy_text(evidence[i]->source, sizeof evidence[i]->source, device->source);
+        imki_copy_text(evidence[i]->method, sizeof evidence[i]->method, entry->method);
     }
 }

@@ -6,19 +6,13 @@
  *     a.(f + alpha x r + w x (w x r)) = a.f + (r x a).alpha + sum over i <= j of W_ij w_i w_j
  *     w x (w x r) = w (w.r) - r (w.w):   W_ii = a_i r_i - a.r,   W_ij = a_i r_j + a_j r_i  (i < j)
  */
+#include "base/algebra/vector_internal.h"
 #include "distort_internal.h"
 #include "model_internal.h"
 
 #include <string.h>
 
 enum { XX = 3, YY, ZZ, XY, YZ, ZX, THIRD };
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 static void place_row(const double a[3], const double r[3], double weight[IMK_FEATURES])
 {
@@ -30,7 +24,7 @@ static void place_row(const double a[3], const double r[3], double weight[IMK_FE
     weight[XY] = a[0] * r[1] + a[1] * r[0];
     weight[YZ] = a[1] * r[2] + a[2] * r[1];
     weight[ZX] = a[2] * r[0] + a[0] * r[2];
-    cross(r, a, weight + THIRD);
+    imki_cross3(r, a, weight + THIRD);
 }
 
 bool imki_pendulous_axis(const imk_triad *triad, int axis, double p[3])
@@ -62,7 +56,7 @@ static imk_status compile_cross_products(imk_axis_response *axis, const imk_tria
             error->index = i;
         return IMK_ERROR_CONFLICT;
     }
-    cross(p, e, o);
+    imki_cross3(p, e, o);
     place_row(p, triad->lever_arm.value[i], axis->pendulous);
     place_row(o, triad->lever_arm.value[i], axis->output);
     return IMK_OK;

@@ -3,6 +3,7 @@
 #include "imukit/model.h"
 
 #include "model_internal.h"
+#include "model_schema_internal.h"
 
 #include <string.h>
 
@@ -20,4 +21,42 @@ void imk_model_default(imk_model *model)
     model->cookie = IMKI_MODEL_COOKIE;
     set_triad(&model->gyro);
     set_triad(&model->accel);
+}
+
+const imk_triad *imk_model_triad(const imk_model *model, int sensor)
+{
+    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
+}
+
+imk_triad *imk_model_triad_to_set(imk_model *model, int sensor)
+{
+    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
+}
+
+/* ---- comparison -------------------------------------------------------------------------------
+ *
+ * Numbers are compared as numbers (-0 is 0); what lies beyond the number of axes or of list
+ * elements does not count. */
+
+static bool equal_triads(const imk_triad *a, const imk_triad *b)
+{
+    if (a->present != b->present)
+        return false;
+    if (!a->present)
+        return true;
+    /* The first field is the direction, with the number of axes the others are compared on. How
+     * the file states its densities changes no number. */
+    for (size_t i = 0; i < imki_triad_field_count; i++)
+        if (imki_triad_fields[i].shape != IMKI_DENSITY &&
+            !imki_field_equal(&imki_triad_fields[i], a, b, false))
+            return false;
+    return true;
+}
+
+bool imk_model_equal(const imk_model *a, const imk_model *b)
+{
+    for (size_t i = 0; i < imki_timing_field_count; i++)
+        if (!imki_numbers_equal(&imki_timing_fields[i], &a->timing, &b->timing, 1, false))
+            return false;
+    return equal_triads(&a->gyro, &b->gyro) && equal_triads(&a->accel, &b->accel);
 }

@@ -36,7 +36,7 @@ bool imki_model_parameter_exists(const imk_model *model, imk_model_parameter par
 {
     if (!is_parameter(parameter))
         return false;
-    const imk_triad *triad = parameter.sensor == IMKI_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, parameter.sensor);
     const bool diagonal = imki_terms[parameter.term].form == IMKI_FORM_SEEN &&
                           triad->axis_count == 3 && parameter.axis == parameter.element;
     return triad->present && parameter.axis < triad->axis_count && !diagonal;
@@ -53,7 +53,7 @@ static const double *value_at(const imk_model *model, imk_model_parameter parame
 {
     if (!imki_model_parameter_exists(model, parameter))
         return NULL;
-    const imk_triad *triad = parameter.sensor == IMKI_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, parameter.sensor);
     const double *first = imki_term_values(parameter.term, triad);
     if (is_polynomial(parameter)) {
         const imk_temperature_polynomial *polynomial = (const void *)first;

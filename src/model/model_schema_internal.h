@@ -9,9 +9,6 @@
 
 #include <math.h>
 
-/* Kinds of sensor: index of the two-element arrays below. */
-enum { IMKI_GYRO, IMKI_ACCEL };
-
 typedef enum imki_shape {
     IMKI_SCALAR,       /* imk_scalar */
     IMKI_AXES,         /* imk_axes */
@@ -91,6 +88,10 @@ bool imki_field_equal(const imki_field *field, const imk_triad *a, const imk_tri
 
 /* True when the field has its default in the triad, so that it need not be written. */
 bool imki_field_absent(const imki_field *field, const imk_triad *triad);
+
+/* The same of the numbers of a field of shape scalar … quadratic. */
+bool imki_numbers_equal(const imki_field *field, const void *a, const void *b, int axis_count,
+                        bool with_sigmas);
 
 /* The field of a triad with this dotted path, "noise.gauss_markov.sigma" included (then *list is
  * the list it belongs to, else NULL); NULL when there is none. */

@@ -80,8 +80,8 @@ static bool names_timing(const char *name, const imki_field *field)
 static bool is_known(const char *name)
 {
     for (size_t i = 0; i < imki_triad_field_count; i++)
-        if (names_field(name, &imki_triad_fields[i], IMKI_GYRO) ||
-            names_field(name, &imki_triad_fields[i], IMKI_ACCEL))
+        if (names_field(name, &imki_triad_fields[i], IMK_GYRO) ||
+            names_field(name, &imki_triad_fields[i], IMK_ACCEL))
             return true;
     for (size_t i = 0; i < imki_timing_field_count; i++)
         if (names_timing(name, &imki_timing_fields[i]))
@@ -109,9 +109,9 @@ static size_t find_candidates(bool has_sensor, const char **candidates)
     size_t count = 0;
     for (size_t i = 0; i < imki_triad_field_count; i++) {
         const imki_field *field = &imki_triad_fields[i];
-        add_path(candidates, &count, field->path[IMKI_GYRO]);
-        if (!field->path[IMKI_GYRO] || field->path[IMKI_GYRO] != field->path[IMKI_ACCEL])
-            add_path(candidates, &count, field->path[IMKI_ACCEL]);
+        add_path(candidates, &count, field->path[IMK_GYRO]);
+        if (!field->path[IMK_GYRO] || field->path[IMK_GYRO] != field->path[IMK_ACCEL])
+            add_path(candidates, &count, field->path[IMK_ACCEL]);
     }
     for (size_t i = 0; !has_sensor && i < imki_timing_field_count; i++)
         add_path(candidates, &count, imki_timing_fields[i].path[0]);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Validation of a model: every field of the schema against its range, then what the ranges of
  * single fields cannot say: settings that need or exclude one another. */
+#include "base/algebra/vector_internal.h"
+#include "base/refuse_internal.h"
 #include "model_internal.h"
 #include "model_schema_internal.h"
 
@@ -47,13 +49,8 @@ static path path_of(const char *first, const char *second)
 static imk_status refuse(imk_error *error, imk_status status, const path *where, int index,
                          double value, double limit, const char *expected)
 {
-    imk_error_set(error, status, where->text, "", expected);
-    if (error) {
-        error->index = index;
-        error->value = value;
-        error->limit = limit;
-    }
-    return status;
+    return imki_refuse_at(error, status, where->text, index < 0 ? SIZE_MAX : (size_t)index, value,
+                          limit, expected);
 }
 
 static imk_status conflict(imk_error *error, const char *kind, const char *field, int axis,
@@ -201,7 +198,7 @@ static imk_status check_directions(const imk_triad *triad, const path *where, im
         for (int j = 0; j < 3; j++)
             if (!is_finite(e[j]))
                 return refuse(error, IMK_ERROR_NOT_FINITE, where, i, e[j], 0, "a finite number");
-        double square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+        double square = imki_dot3(e, e);
         if (!(square >= 1 - 2 * direction_tolerance && square <= 1 + 2 * direction_tolerance))
             return refuse(error, IMK_ERROR_RANGE, where, i, square, 1,
                           "a direction of unit length (this is its square)");
@@ -217,8 +214,8 @@ static imk_status check_pendulous(const imk_triad *triad, const path *where, imk
         for (int j = 0; j < 3; j++)
             if (!is_finite(p[j]))
                 return refuse(error, IMK_ERROR_NOT_FINITE, where, i, p[j], 0, "a finite number");
-        double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-        double along = p[0] * e[0] + p[1] * e[1] + p[2] * e[2];
+        double square = imki_dot3(p, p);
+        double along = imki_dot3(p, e);
         if (square == 0)
             continue;
         if (!(square >= 1 - 2 * direction_tolerance && square <= 1 + 2 * direction_tolerance))
@@ -249,8 +246,8 @@ static imk_status check_field(const imki_field *field, const imk_triad *triad, i
     if (of != kind) {
         if (!imki_field_absent(field, triad))
             return conflict(error, kind_names[kind], field->path[of], -1,
-                            kind == IMKI_GYRO ? "a gyro has no such error"
-                                              : "an accelerometer has no such error",
+                            kind == IMK_GYRO ? "a gyro has no such error"
+                                             : "an accelerometer has no such error",
                             "set it to 0");
         return IMK_OK;
     }
@@ -385,7 +382,7 @@ static imk_status check_correlated(const imk_model *model, int index, imk_error 
 {
     static const path where = {"correlation.parameters", 0};
     const imk_model_parameter parameter = model->correlation.parameter[index];
-    const bool present = parameter.sensor == IMKI_GYRO ? model->gyro.present : model->accel.present;
+    const bool present = parameter.sensor == IMK_GYRO ? model->gyro.present : model->accel.present;
     char unused[IMK_MODEL_PARAMETER_NAME];
     if (imk_model_parameter_name(parameter, unused) != IMK_OK ||
         (present && !imki_model_parameter_exists(model, parameter)))
@@ -431,17 +428,17 @@ imk_status imk_model_validate(const imk_model *model, imk_error *error)
     if (status == IMK_OK && !model->gyro.present && !model->accel.present)
         return imk_error_set(error, IMK_ERROR_KEY_MISSING, "gyro", "", "a gyro, an accel, or both");
     if (status == IMK_OK)
-        status = check_triad(&model->gyro, IMKI_GYRO, error);
+        status = check_triad(&model->gyro, IMK_GYRO, error);
     if (status == IMK_OK)
-        status = check_triad(&model->accel, IMKI_ACCEL, error);
+        status = check_triad(&model->accel, IMK_ACCEL, error);
     for (size_t i = 0; status == IMK_OK && i < imki_timing_field_count; i++) {
         path where = path_of("timing", imki_timing_fields[i].path[0]);
         status = check_numbers(&imki_timing_fields[i], &model->timing, 1, &where, error);
     }
     if (status == IMK_OK)
-        status = check_evidence(&model->gyro_evidence, &model->gyro, IMKI_GYRO, error);
+        status = check_evidence(&model->gyro_evidence, &model->gyro, IMK_GYRO, error);
     if (status == IMK_OK)
-        status = check_evidence(&model->accel_evidence, &model->accel, IMKI_ACCEL, error);
+        status = check_evidence(&model->accel_evidence, &model->accel, IMK_ACCEL, error);
     if (status == IMK_OK)
         status = check_correlation(model, error);
     return status;

@@ -10,6 +10,8 @@
  * system is the same for all components, so it is factorised once. */
 #include "imukit/motion.h"
 
+#include "base/refuse_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -30,18 +32,6 @@ size_t imk_trajectory_poses_workspace(size_t count)
     return (3 + COMPONENTS) * count;
 }
 
-static imk_status refuse(imk_error *error, imk_status status, const char *field, size_t row,
-                         double value, double limit, const char *expected)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error) {
-        error->index = (int)row;
-        error->value = value;
-        error->limit = limit;
-    }
-    return status;
-}
-
 static double product(imk_quaternion a, imk_quaternion b)
 {
     return (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z);
@@ -55,30 +45,32 @@ static imk_status check_row(const double *time, const double *const position[3],
                             const imk_quaternion *attitude, size_t row, imk_error *error)
 {
     if (!isfinite(time[row]))
-        return refuse(error, IMK_ERROR_NOT_FINITE, "time", row, time[row], 0.0, "a time");
+        return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "time", row, time[row], 0.0, "a time");
     if (row > 0 && !(time[row] > time[row - 1]))
-        return refuse(error, IMK_ERROR_TIME_ORDER, "time", row, time[row], time[row - 1],
-                      "times that increase");
+        return imki_refuse_at(error, IMK_ERROR_TIME_ORDER, "time", row, time[row], time[row - 1],
+                              "times that increase");
     if (row > 0 &&
         !(time[row] - time[row - 1] >= shortest_step && time[row] - time[row - 1] <= longest_step))
-        return refuse(error, IMK_ERROR_RANGE, "time", row, time[row] - time[row - 1],
-                      time[row] - time[row - 1] < 1.0 ? shortest_step : longest_step,
-                      "a step of time from 1 ns to 1e9 s");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "time", row, time[row] - time[row - 1],
+                              time[row] - time[row - 1] < 1.0 ? shortest_step : longest_step,
+                              "a step of time from 1 ns to 1e9 s");
     for (int axis = 0; axis < 3; axis++)
         if (!isfinite(position[axis][row]))
-            return refuse(error, IMK_ERROR_NOT_FINITE, "position", row, position[axis][row], 0.0,
-                          "a position");
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "position", row, position[axis][row],
+                                  0.0, "a position");
     const double square = product(attitude[row], attitude[row]);
     if (!isfinite(square))
-        return refuse(error, IMK_ERROR_NOT_FINITE, "attitude", row, square, 0.0, "an attitude");
+        return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "attitude", row, square, 0.0,
+                              "an attitude");
     if (!(fabs(square - 1.0) <= 1e-2))
-        return refuse(error, IMK_ERROR_RANGE, "attitude", row, square, 1.0, "a unit quaternion");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "attitude", row, square, 1.0,
+                              "a unit quaternion");
     if (row == 0)
         return IMK_OK;
     const double cosine = fabs(product(attitude[row], attitude[row - 1]));
     if (!(cosine >= 0.5 * sqrt(square * product(attitude[row - 1], attitude[row - 1]))))
-        return refuse(error, IMK_ERROR_RANGE, "attitude", row, cosine, 0.5,
-                      "attitudes less than 120 deg apart: more poses per second");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "attitude", row, cosine, 0.5,
+                              "attitudes less than 120 deg apart: more poses per second");
     return IMK_OK;
 }
 
@@ -205,8 +197,8 @@ imk_status imk_trajectory_from_poses(size_t count, const double *time,
                                      imk_trajectory_piece *piece, imk_error *error)
 {
     if (count < 2)
-        return refuse(error, IMK_ERROR_TOO_SHORT, "poses", 0, (double)count, 2.0,
-                      "at least two poses");
+        return imki_refuse_at(error, IMK_ERROR_TOO_SHORT, "poses", 0, (double)count, 2.0,
+                              "at least two poses");
     for (size_t row = 0; row < count; row++) {
         const imk_status status = check_row(time, position, attitude, row, error);
         if (status)

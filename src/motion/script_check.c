@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The numbers of a motion script, each by itself. What depends on the steps before, the speed and
  * the place, is checked while it is compiled. */
+#include "base/error_internal.h"
 #include "script_step_internal.h"
 
 #include <float.h>
@@ -19,13 +20,8 @@ imk_status imki_step_refuse(imk_error *error, const char *field, size_t index, d
 {
     const bool finite = value >= -DBL_MAX && value <= DBL_MAX;
     const imk_status status = finite ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
-    imk_error_set(error, status, field, "", finite ? expected : "a finite number");
-    if (error) {
-        error->index = index <= 0x7fffffff ? (int)index : -1;
-        error->value = value;
-        error->limit = limit;
-    }
-    return status;
+    return imki_error_number(error, status, field, index, value, limit,
+                             finite ? expected : "a finite number");
 }
 
 /* A number of the script itself: no index. */

@@ -9,6 +9,8 @@
  * is 1 to rounding. */
 #include "imukit/motion.h"
 
+#include "base/refuse_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -137,41 +139,29 @@ void imk_temperature_carry(const imk_temperature_profile *profile, double *carri
         carried[i + 1] = carry(profile, i, carried[i]);
 }
 
-static imk_status refuse(imk_error *error, imk_status status, const char *field, size_t index,
-                         double value, double limit, const char *expected)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error) {
-        error->index = (int)index;
-        error->value = value;
-        error->limit = limit;
-    }
-    return status;
-}
-
 imk_status imk_temperature_validate(const imk_temperature_profile *profile, imk_error *error)
 {
     if (profile->point_count == 0 || !profile->time || !profile->temperature)
         return imk_error_set(error, IMK_ERROR_EMPTY, "temperature", NULL, "at least one point");
     const double tau = profile->time_constant;
     if (!isfinite(tau))
-        return refuse(error, IMK_ERROR_NOT_FINITE, "time_constant", 0, tau, 0.0, "a time");
+        return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "time_constant", 0, tau, 0.0, "a time");
     if (!(tau == 0.0 || tau >= 1e-9)) /* below, s/tau could overflow */
-        return refuse(error, IMK_ERROR_RANGE, "time_constant", 0, tau, 1e-9,
-                      "0, or a time from 1 ns up");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "time_constant", 0, tau, 1e-9,
+                              "0, or a time from 1 ns up");
     for (size_t i = 0; i < profile->point_count; i++) {
         const double time = profile->time[i], temperature = profile->temperature[i];
         if (!isfinite(time))
-            return refuse(error, IMK_ERROR_NOT_FINITE, "time", i, time, 0.0, "a time");
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "time", i, time, 0.0, "a time");
         if (!isfinite(temperature))
-            return refuse(error, IMK_ERROR_NOT_FINITE, "temperature", i, temperature, 0.0,
-                          "a temperature");
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "temperature", i, temperature, 0.0,
+                                  "a temperature");
         if (i > 0 && !(time >= profile->time[i - 1]))
-            return refuse(error, IMK_ERROR_TIME_ORDER, "time", i, time, profile->time[i - 1],
-                          "times that do not decrease");
+            return imki_refuse_at(error, IMK_ERROR_TIME_ORDER, "time", i, time,
+                                  profile->time[i - 1], "times that do not decrease");
         if (!(temperature > 0.0))
-            return refuse(error, IMK_ERROR_RANGE, "temperature", i, temperature, 0.0,
-                          "a temperature above absolute zero");
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "temperature", i, temperature, 0.0,
+                                  "a temperature above absolute zero");
     }
     return IMK_OK;
 }

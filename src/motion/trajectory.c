@@ -2,6 +2,7 @@
 /* Trajectories: a body at rest, checks, and the state at one instant. */
 #include "trajectory_internal.h"
 
+#include "base/refuse_internal.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -12,31 +13,19 @@
 /* Rotation by all lines about one axis: the series of the kernel hold below. */
 #define LARGEST_VIBRATION 1.0 /* [rad] */
 
-static imk_status refuse(imk_error *error, imk_status status, const char *field, size_t index,
-                         double value, double limit, const char *expected)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error) {
-        error->index = (int)index;
-        error->value = value;
-        error->limit = limit;
-    }
-    return status;
-}
-
 /* ---- at rest --------------------------------------------------------------------------------- */
 
 static imk_status check_place(imk_geodetic place, imk_error *error)
 {
     if (!(fabs(place.latitude) <= 0.5 * HALF_TURN))
-        return refuse(error, IMK_ERROR_RANGE, "latitude", 0, place.latitude, 0.5 * HALF_TURN,
-                      "a latitude within a quarter turn of the equator");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "latitude", 0, place.latitude,
+                              0.5 * HALF_TURN, "a latitude within a quarter turn of the equator");
     if (!(fabs(place.longitude) <= 2.0 * HALF_TURN))
-        return refuse(error, IMK_ERROR_RANGE, "longitude", 0, place.longitude, 2.0 * HALF_TURN,
-                      "a longitude within one turn");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "longitude", 0, place.longitude,
+                              2.0 * HALF_TURN, "a longitude within one turn");
     if (!(place.height >= -1e4 && place.height <= 1e7))
-        return refuse(error, IMK_ERROR_RANGE, "height", 0, place.height,
-                      place.height < 0.0 ? -1e4 : 1e7, "a height from -10 km to 10000 km");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "height", 0, place.height,
+                              place.height < 0.0 ? -1e4 : 1e7, "a height from -10 km to 10000 km");
     return IMK_OK;
 }
 
@@ -47,8 +36,8 @@ imk_status imk_trajectory_standstill(imk_geodetic place, const double roll_pitch
     static const char *const names[] = {"roll", "pitch", "yaw"};
     for (int i = 0; i < 3; i++)
         if (!(fabs(roll_pitch_yaw[i]) <= 1e3))
-            return refuse(error, IMK_ERROR_RANGE, names[i], (size_t)i, roll_pitch_yaw[i], 1e3,
-                          "an angle");
+            return imki_refuse_at(error, IMK_ERROR_RANGE, names[i], (size_t)i, roll_pitch_yaw[i],
+                                  1e3, "an angle");
     if (earth) {
         const imk_status status = check_place(place, error);
         if (status)
@@ -100,23 +89,24 @@ static imk_status check_numbers(const imk_trajectory_piece *piece, size_t index,
     const double *const position = &piece->position[0][0];
     const double *const quaternion = &piece->quaternion[0][0];
     if (!isfinite(piece->start))
-        return refuse(error, IMK_ERROR_NOT_FINITE, "start", index, piece->start, 0.0, NULL);
+        return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "start", index, piece->start, 0.0, NULL);
     if (!(piece->length > 0.0) || (!last && isinf(piece->length)))
-        return refuse(error, IMK_ERROR_RANGE, "length", index, piece->length, 0.0,
-                      "a positive length, finite but for the last piece");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "length", index, piece->length, 0.0,
+                              "a positive length, finite but for the last piece");
     for (size_t i = 0; i < 21; i++)
         if (!isfinite(position[i]))
-            return refuse(error, IMK_ERROR_NOT_FINITE, "position", index, position[i], 0.0, NULL);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "position", index, position[i], 0.0,
+                                  NULL);
     double square = 0.0;
     for (size_t i = 0; i < 24; i++) {
         if (!isfinite(quaternion[i]))
-            return refuse(error, IMK_ERROR_NOT_FINITE, "quaternion", index, quaternion[i], 0.0,
-                          NULL);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "quaternion", index, quaternion[i],
+                                  0.0, NULL);
         square += i % 6 == 0 ? quaternion[i] * quaternion[i] : 0.0;
     }
     if (!(square >= 0.01 && square <= 100.0))
-        return refuse(error, IMK_ERROR_RANGE, "quaternion", index, square, 1.0,
-                      "a quaternion of norm about 1");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "quaternion", index, square, 1.0,
+                              "a quaternion of norm about 1");
     return IMK_OK;
 }
 
@@ -128,8 +118,8 @@ static imk_status check_seam(const imk_trajectory_piece *before, const imk_traje
     const double gap = fabs(time - (before->start + before->length));
     if (!(time > before->start) ||
         !(gap <= 1e-15 * fabs(time) * 8.0 || gap <= 1e-9 * before->length))
-        return refuse(error, IMK_ERROR_TIME_ORDER, "start", index, time,
-                      before->start + before->length, "the end of the piece before");
+        return imki_refuse_at(error, IMK_ERROR_TIME_ORDER, "start", index, time,
+                              before->start + before->length, "the end of the piece before");
     /* free of gravity and vibration, so that force is the acceleration */
     const imk_trajectory bare = {.earth = false};
     imki_instant a, b;
@@ -150,8 +140,8 @@ static imk_status check_seam(const imk_trajectory_piece *before, const imk_traje
     };
     for (size_t i = 0; i < sizeof checks / sizeof *checks; i++)
         if (!(checks[i].jump <= checks[i].limit))
-            return refuse(error, IMK_ERROR_CONFLICT, checks[i].name, index, checks[i].jump,
-                          checks[i].limit, "a motion without jumps where pieces meet");
+            return imki_refuse_at(error, IMK_ERROR_CONFLICT, checks[i].name, index, checks[i].jump,
+                                  checks[i].limit, "a motion without jumps where pieces meet");
     return IMK_OK;
 }
 
@@ -169,8 +159,8 @@ static imk_status check_height(const imk_trajectory *trajectory, size_t index, d
     }
     const double radius = imk_vector3_norm(position);
     if (!(radius >= 6.34e6 && radius <= 1.64e7))
-        return refuse(error, IMK_ERROR_RANGE, "position", index, radius,
-                      radius < 6.34e6 ? 6.34e6 : 1.64e7, "a place on or above the Earth");
+        return imki_refuse_at(error, IMK_ERROR_RANGE, "position", index, radius,
+                              radius < 6.34e6 ? 6.34e6 : 1.64e7, "a place on or above the Earth");
     return IMK_OK;
 }
 
@@ -179,34 +169,36 @@ static imk_status check_lines(const imk_trajectory *trajectory, imk_error *error
     double sum[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     if (trajectory->line_count > IMK_VIBRATION_LINES_MAX ||
         (trajectory->line_count > 0 && !trajectory->line))
-        return refuse(error, IMK_ERROR_ARGUMENT, "vibration", trajectory->line_count,
-                      (double)trajectory->line_count, IMK_VIBRATION_LINES_MAX, "up to 512 lines");
+        return imki_refuse_at(error, IMK_ERROR_ARGUMENT, "vibration", trajectory->line_count,
+                              (double)trajectory->line_count, IMK_VIBRATION_LINES_MAX,
+                              "up to 512 lines");
     for (size_t i = 0; i < trajectory->line_count; i++) {
         const imk_vibration_line *line = &trajectory->line[i];
         if (line->axis < 0 || line->axis > 5)
-            return refuse(error, IMK_ERROR_RANGE, "vibration.axis", i, line->axis, 5.0,
-                          "an axis from 0 to 5");
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "vibration.axis", i, line->axis, 5.0,
+                                  "an axis from 0 to 5");
         if (!(line->frequency >= IMK_VIBRATION_FREQUENCY_MIN &&
               line->frequency <= IMK_VIBRATION_FREQUENCY_MAX))
-            return refuse(error, IMK_ERROR_RANGE, "vibration.frequency", i, line->frequency,
-                          line->frequency > 1.0 ? IMK_VIBRATION_FREQUENCY_MAX
-                                                : IMK_VIBRATION_FREQUENCY_MIN,
-                          "a frequency from 1e-6 Hz to 1e9 Hz");
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "vibration.frequency", i, line->frequency,
+                                  line->frequency > 1.0 ? IMK_VIBRATION_FREQUENCY_MAX
+                                                        : IMK_VIBRATION_FREQUENCY_MIN,
+                                  "a frequency from 1e-6 Hz to 1e9 Hz");
         if (!(fabs(line->phase) <= 1e9))
-            return refuse(error, IMK_ERROR_RANGE, "vibration.phase", i, line->phase, 1e9,
-                          "a phase in cycles");
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "vibration.phase", i, line->phase, 1e9,
+                                  "a phase in cycles");
         if (!isfinite(line->amplitude))
-            return refuse(error, IMK_ERROR_NOT_FINITE, "vibration.amplitude", i, line->amplitude,
-                          0.0, NULL);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "vibration.amplitude", i,
+                                  line->amplitude, 0.0, NULL);
         sum[line->axis] += fabs(line->amplitude);
         if (line->axis < 3 && !(sum[line->axis] <= IMK_VIBRATION_DISPLACEMENT_MAX))
-            return refuse(error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude,
-                          IMK_VIBRATION_DISPLACEMENT_MAX,
-                          "displacements up to 10 km, together, along an axis");
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude,
+                                  IMK_VIBRATION_DISPLACEMENT_MAX,
+                                  "displacements up to 10 km, together, along an axis");
         if (line->axis >= 3 &&
             !(fabs(line->amplitude) <= 0.1 && sum[line->axis] <= LARGEST_VIBRATION))
-            return refuse(error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude, 0.1,
-                          "rotations up to 0.1 rad, together up to 1 rad about an axis");
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude,
+                                  0.1,
+                                  "rotations up to 0.1 rad, together up to 1 rad about an axis");
     }
     return IMK_OK;
 }
@@ -218,8 +210,8 @@ imk_status imk_trajectory_validate(const imk_trajectory *trajectory, imk_error *
         return imk_error_set(error, IMK_ERROR_EMPTY, "piece", NULL, "at least one piece");
     for (size_t i = 0; i < 3; i++)
         if (!isfinite(trajectory->origin[i]))
-            return refuse(error, IMK_ERROR_NOT_FINITE, "origin", i, trajectory->origin[i], 0.0,
-                          NULL);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "origin", i, trajectory->origin[i],
+                                  0.0, NULL);
     for (size_t i = 0; i < count; i++) {
         imk_status status = check_numbers(&trajectory->piece[i], i, i + 1 == count, error);
         if (!status && i > 0)

@@ -8,6 +8,7 @@
  * fraction of the part lies; a line of amplitude a has the power a^2/2. */
 #include "imukit/motion.h"
 
+#include "base/refuse_internal.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -59,12 +60,7 @@ static double uniform(const uint32_t word[2])
 static imk_status refuse(imk_error *error, imk_status status, const char *field, size_t index,
                          double value, const char *expected)
 {
-    imk_error_set(error, status, field, NULL, expected);
-    if (error) {
-        error->index = (int)index;
-        error->value = value;
-    }
-    return status;
+    return imki_refuse_at(error, status, field, index, value, 0.0, expected);
 }
 
 static imk_status check_density(int axis, size_t corners, const double *frequency,

@@ -138,6 +138,17 @@ void imki_arma_blocks(imk_arma_state *const *states, size_t count, double *const
         store_lane(&lanes, i, states[i]);
 }
 
+void imki_arma_across(void *const *states, size_t count, double *const *blocks)
+{
+    for (size_t first = 0; first < count; first += IMKI_ARMA_LANES) {
+        imk_arma_state *some[IMKI_ARMA_LANES];
+        const size_t left = count - first, now = left < IMKI_ARMA_LANES ? left : IMKI_ARMA_LANES;
+        for (size_t i = 0; i < now; i++)
+            some[i] = states[first + i];
+        imki_arma_blocks(some, now, blocks + first);
+    }
+}
+
 static void next_block(void *state, double *block)
 {
     add_block(state, block);

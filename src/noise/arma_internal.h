@@ -43,10 +43,9 @@ double imki_covariance(const imki_stretch *stretch, const double a[3], const dou
 /* angular * dt, brought to 0 … pi: the angle of the upper pole of the samples. */
 double imki_angle_of(double angular, double dt);
 
-/* A sensor's output filter, driven by `density` times its input; and whether it fits a sample
- * interval. */
-imki_dynamics imki_filter_dynamics(double density, imk_low_pass filter);
-imk_status imki_check_low_pass(imk_low_pass filter, double dt);
+/* What a sensor's output filter does over a time. @return IMK_ERROR_RANGE, IMK_ERROR_NOT_FINITE
+ * where it does not fit a sample interval of this length */
+imk_status imki_low_pass_over(imk_low_pass filter, double time, imki_stretch *stretch);
 
 /* The sequence with the poles of the dynamics over dt and a moving average of the given
  * autocovariances at lags 0, 1, 2. Its polynomial B is the invertible factor: B(1) and B(-1) are

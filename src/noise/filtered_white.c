@@ -11,11 +11,12 @@
  * plain white noise nothing cancels, so both limits are reached: white for a bandwidth far above
  * the rate, the continuous filter far below. */
 #include "arma_internal.h"
+#include "noise_terms_internal.h"
 
 /* w of the filter from its -3 dB point f: second order, with r = (2 pi f/w)^2,
  * (1 - r)^2 + 4 damping^2 r = 2, whose positive root is r = m + sqrt(m^2 + 1), m = 1 - 2 damping^2.
  */
-imki_dynamics imki_filter_dynamics(double density, imk_low_pass filter)
+static imki_dynamics filter_dynamics(double density, imk_low_pass filter)
 {
     double cutoff = 2.0 * IMKI_PI * filter.bandwidth;
     if (filter.damping == 0.0)
@@ -33,12 +34,12 @@ double imk_filtered_white_sampled_allan_variance(double density, imk_low_pass fi
     if (filter.bandwidth == 0.0)
         return imk_white_sampled_allan_variance(density, dt, n);
     double tau = (double)n * dt;
-    imki_dynamics dynamics = imki_filter_dynamics(density, filter);
+    imki_dynamics dynamics = filter_dynamics(density, filter);
     imki_stretch stretch = imki_stretch_of_time(&dynamics, tau);
     return imki_half_difference(&dynamics, &stretch) / (tau * tau);
 }
 
-imk_status imki_check_low_pass(imk_low_pass filter, double dt)
+static imk_status check_low_pass(imk_low_pass filter, double dt)
 {
     if (!isfinite(filter.bandwidth) || !isfinite(filter.damping))
         return IMK_ERROR_NOT_FINITE;
@@ -48,10 +49,19 @@ imk_status imki_check_low_pass(imk_low_pass filter, double dt)
     return bandwidth_fits && damping_fits ? IMK_OK : IMK_ERROR_RANGE;
 }
 
+imk_status imki_low_pass_over(imk_low_pass filter, double time, imki_stretch *stretch)
+{
+    const imk_status status = check_low_pass(filter, time);
+    const imki_dynamics dynamics = filter_dynamics(1.0, filter);
+    if (status == IMK_OK)
+        *stretch = imki_stretch_of_time(&dynamics, time);
+    return status;
+}
+
 static imk_status check(double density, imk_low_pass filter, double dt)
 {
     imk_status status = imki_check_noise(density, dt);
-    return status == IMK_OK ? imki_check_low_pass(filter, dt) : status;
+    return status == IMK_OK ? check_low_pass(filter, dt) : status;
 }
 
 imk_status imk_filtered_white_arma(double density, imk_low_pass filter, double dt, imk_arma *arma)
@@ -68,7 +78,7 @@ imk_status imk_filtered_white_arma(double density, imk_low_pass filter, double d
                            .decrement = sigma * sigma};
         return IMK_OK;
     }
-    imki_dynamics dynamics = imki_filter_dynamics(density, filter);
+    imki_dynamics dynamics = filter_dynamics(density, filter);
     imki_stretch s = imki_stretch_of_time(&dynamics, dt);
     double trace = s.phi[0][0] + s.phi[1][1];
     double determinant = imk_exp(-(dynamics.rate[0] + dynamics.rate[1]) * dt);
@@ -110,3 +120,22 @@ imk_status imk_filtered_white_start(imk_arma_state *state, double density, imk_l
     imk_status status = imk_filtered_white_arma(density, filter, dt, &arma);
     return status == IMK_OK ? imk_arma_start(state, &arma, random, stream) : status;
 }
+
+static double bandwidth(imki_term_place place)
+{
+    return place.triad->bandwidth.value[place.axis];
+}
+
+static imk_status start(void *state, imki_term_place place, double dt, imk_random random,
+                        uint64_t stream)
+{
+    const imk_low_pass filter = {bandwidth(place), place.triad->damping.value[place.axis]};
+    return imk_filtered_white_start(state, place.triad->noise.white.value[place.axis], filter, dt,
+                                    random, stream);
+}
+
+const imki_generator imki_filtered_white = {.state_size = sizeof(imk_arma_state),
+                                            .start = start,
+                                            .field = "bandwidth",
+                                            .refused = bandwidth,
+                                            .across = imki_arma_across};

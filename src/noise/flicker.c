@@ -13,7 +13,7 @@
  * The fastest stage also stands for those faster than dt, which are left out: its variance is
  * raised by FASTEST, chosen to make the largest deviation of the Allan deviation from the ideal one
  * smallest over 2 … 300 dt (tests/reference/flicker_stages.py). */
-#include "generator_internal.h"
+#include "noise_terms_internal.h"
 
 #define FASTEST 1.20785             /* tests/reference/flicker_stages.py */
 #define VARIANCE 0.4412712003053032 /* ln 4/pi */
@@ -182,22 +182,25 @@ static void sum_held_stages(imk_flicker_state *state, uint64_t first_change,
     state->changes[2] += CHANGES;
 }
 
-size_t imki_flicker_draws(const imk_flicker_state *state, double *normals, imki_draw *draws)
+static size_t draws(const void *of, double *normals, imki_draw *draw)
 {
+    const imk_flicker_state *state = of;
     for (size_t stage = 0; stage < 2; stage++)
-        draws[stage] = imki_draw_of(stage_stream(state, stage), state->next, IMK_NOISE_BLOCK,
-                                    normals + stage * IMK_NOISE_BLOCK);
-    draws[2] = imki_draw_of(stage_stream(state, 2), state->changes[2], CHANGES,
-                            normals + (size_t)2 * IMK_NOISE_BLOCK);
+        draw[stage] = imki_draw_of(stage_stream(state, stage), state->next, IMK_NOISE_BLOCK,
+                                   normals + stage * IMK_NOISE_BLOCK);
+    draw[2] = imki_draw_of(stage_stream(state, 2), state->changes[2], CHANGES,
+                           normals + (size_t)2 * IMK_NOISE_BLOCK);
     return 3;
 }
 
-void imki_flicker_block(imk_flicker_state *state, double *normals, double *block)
+static void blocks(void *states, size_t count, imk_kernel kernel, double *normals, double *block)
 {
+    imk_flicker_state *state = states;
     double value[GROUPED] = {0.0}, sums[1 + GROUPED];
     const uint64_t first = state->next + state->phase, first_change = (first + 3) / 4;
     const size_t offset = (size_t)(first % 4), lead = (size_t)(first_change % GROUP);
     imki_recursion stages[2];
+    (void)count;
     for (size_t stage = 0; stage < 2; stage++) {
         const double innovation = stage == 0 ? state->fast_innovation : state->innovation;
         stages[stage] = (imki_recursion){.gain = state->sigma * innovation,
@@ -207,22 +210,61 @@ void imki_flicker_block(imk_flicker_state *state, double *normals, double *block
     }
     for (size_t k = 0; k < CHANGES; k++)
         value[lead + k] = normals[2 * IMK_NOISE_BLOCK + k] * state->innovation;
-    imki_add_flicker(state->random.kernel, stages, state->value[2], value + lead, block);
+    imki_add_flicker(kernel, stages, state->value[2], value + lead, block);
     sum_held_stages(state, first_change, value, sums + 1);
-    imki_add_held(state->random.kernel, sums + lead + (offset > 0 ? 0 : 1), offset, block);
+    imki_add_held(kernel, sums + lead + (offset > 0 ? 0 : 1), offset, block);
     state->next += IMK_NOISE_BLOCK;
 }
 
-static void next_block(void *state, double *block)
+static double strength(imki_term_place place)
 {
-    imk_flicker_state *flicker = state;
-    double normals[IMKI_FLICKER_NORMALS];
-    imki_draw draws[3];
-    imki_random_draws(flicker->random, draws, imki_flicker_draws(flicker, normals, draws));
-    imki_flicker_block(flicker, normals, block);
+    return place.triad->noise.bias_instability.value[place.axis];
 }
+
+static imk_status start(void *state, imki_term_place place, double dt, imk_random random,
+                        uint64_t stream)
+{
+    return imk_flicker_start(state, strength(place), dt, random, stream);
+}
+
+static const imki_generator generator = {.state_size = sizeof(imk_flicker_state),
+                                         .start = start,
+                                         .field = "noise.bias_instability",
+                                         .refused = strength,
+                                         .normals = IMKI_FLICKER_NORMALS,
+                                         .draws = draws,
+                                         .together = 1,
+                                         .blocks = blocks};
 
 void imk_flicker_add(imk_flicker_state *state, size_t count, double *out)
 {
-    imki_add_blocks(&state->block, next_block, state, count, out);
+    imki_add_generated(&generator, state, state->random, &state->block, count, out);
 }
+
+/* The stages. Those that are held are interpolated by it: only half a per cent is between them and
+ * their processes. */
+static size_t processes(imki_term_place place, double dt, imki_process *process)
+{
+    double time = dt;
+    for (int stage = 0; stage < STAGES; stage++, time *= 4.0)
+        process[stage] = (imki_process){.kind = IMKI_PROCESS_FIRST_ORDER,
+                                        .size = strength(place),
+                                        .share = stage == 0 ? VARIANCE * FASTEST : VARIANCE,
+                                        .time = time,
+                                        .held = stage >= 2};
+    return STAGES;
+}
+
+static double allan_variance(imki_term_place place, double tau)
+{
+    return imk_flicker_allan_variance(strength(place), tau);
+}
+
+const imki_noise_term imki_flicker_term = {
+    .path = {"noise.bias_instability", "noise.bias_instability"},
+    .text = {"gyro bias instability", "accelerometer bias instability"},
+    .stream = IMK_TERM_FLICKER,
+    .strength = strength,
+    .generator = &generator,
+    .processes = processes,
+    .allan_variance = allan_variance};

@@ -4,7 +4,7 @@
  *     y[k] = phi y[k-1] + q n[k],   phi = exp(-dt/T),   q = sigma sqrt(1 - phi^2),
  *
  * from a stationary y[-1]. expm1 keeps q accurate for dt << T, where 1 - phi^2 cancels. */
-#include "generator_internal.h"
+#include "noise_terms_internal.h"
 
 /* sum over k >= 3 of (-1)^k/k! [4 a^k - b^k - n c^k - d^k]: the bracket of either Allan variance,
  * whose terms up to second order cancel. Largest argument 2: 26 terms leave 2^29/29! < 1e-22. */
@@ -104,36 +104,88 @@ imk_status imk_gauss_markov_start(imk_gauss_markov_state *state, imk_gauss_marko
     return IMK_OK;
 }
 
-imki_draw imki_gauss_markov_draw(const imk_gauss_markov_state *state, double *normals)
+static size_t draws(const void *state, double *normals, imki_draw *draw)
 {
-    return imki_draw_of(state->stream, state->next, IMK_NOISE_BLOCK, normals);
+    const imk_gauss_markov_state *process = state;
+    draw[0] = imki_draw_of(process->stream, process->next, IMK_NOISE_BLOCK, normals);
+    return 1;
 }
 
-void imki_gauss_markov_blocks(imk_gauss_markov_state *states, size_t count, double *normals,
-                              double *block)
+static void blocks(void *states, size_t count, imk_kernel kernel, double *normals, double *block)
 {
     imki_recursion recursions[IMKI_TOGETHER];
+    imk_gauss_markov_state *process = states;
     for (size_t i = 0; i < count; i++) {
-        recursions[i] = (imki_recursion){.gain = states[i].gain,
-                                         .power = states[i].power,
+        recursions[i] = (imki_recursion){.gain = process[i].gain,
+                                         .power = process[i].power,
                                          .normals = normals + i * IMK_NOISE_BLOCK,
-                                         .value = &states[i].value};
-        states[i].next += IMK_NOISE_BLOCK;
+                                         .value = &process[i].value};
+        process[i].next += IMK_NOISE_BLOCK;
     }
-    if (count > 0)
-        imki_add_recursions(states->random.kernel, recursions, count, block);
+    imki_add_recursions(kernel, recursions, count, block);
 }
 
-static void next_block(void *state, double *block)
+static imk_gauss_markov process_at(imki_term_place place)
 {
-    imk_gauss_markov_state *process = state;
-    double normals[IMK_NOISE_BLOCK];
-    const imki_draw draw = imki_gauss_markov_draw(process, normals);
-    imki_random_draws(process->random, &draw, 1);
-    imki_gauss_markov_blocks(process, 1, normals, block);
+    const struct imk_gauss_markov_term *term = &place.triad->noise.gauss_markov[place.instance];
+    return (imk_gauss_markov){term->sigma.value[place.axis],
+                              term->correlation_time.value[place.axis]};
 }
+
+static double strength(imki_term_place place)
+{
+    return process_at(place).sigma;
+}
+
+static double correlation_time(imki_term_place place)
+{
+    return process_at(place).correlation_time;
+}
+
+static imk_status start(void *state, imki_term_place place, double dt, imk_random random,
+                        uint64_t stream)
+{
+    return imk_gauss_markov_start(state, process_at(place), dt, random, stream);
+}
+
+static const imki_generator generator = {.state_size = sizeof(imk_gauss_markov_state),
+                                         .start = start,
+                                         .field = "noise.gauss_markov",
+                                         .refused = correlation_time,
+                                         .normals = IMK_NOISE_BLOCK,
+                                         .draws = draws,
+                                         .together = IMKI_TOGETHER,
+                                         .blocks = blocks};
 
 void imk_gauss_markov_add(imk_gauss_markov_state *state, size_t count, double *out)
 {
-    imki_add_blocks(&state->block, next_block, state, count, out);
+    imki_add_generated(&generator, state, state->random, &state->block, count, out);
 }
+
+static int count(const imk_noise *noise)
+{
+    return noise->gauss_markov_count;
+}
+
+static size_t processes(imki_term_place place, double dt, imki_process *process)
+{
+    (void)dt;
+    const size_t one = imki_one_process(process, IMKI_PROCESS_FIRST_ORDER, strength(place));
+    process->time = correlation_time(place);
+    return one;
+}
+
+static double allan_variance(imki_term_place place, double tau)
+{
+    return imk_gauss_markov_allan_variance(process_at(place), tau);
+}
+
+const imki_noise_term imki_gauss_markov_term = {
+    .path = {"noise.gauss_markov", "noise.gauss_markov"},
+    .text = {"gyro Gauss-Markov process", "accelerometer Gauss-Markov process"},
+    .stream = IMK_TERM_GAUSS_MARKOV,
+    .count = count,
+    .strength = strength,
+    .generator = &generator,
+    .processes = processes,
+    .allan_variance = allan_variance};

@@ -128,32 +128,15 @@ void imki_to_time_order(imk_kernel kernel, const double *block, double *out);
 /* the reverse */
 void imki_to_segment_order(imk_kernel kernel, const double *samples, double *block);
 
-/* ---- one block of each term, added in segment order: what the public generators hand out ----
- *
- * Terms of one normal a sample first say what they want drawn, so that the draws of several terms
- * can be one call; the block function then takes those normals, and may overwrite them. */
+enum { IMKI_FLICKER_NORMALS = 2 * IMK_NOISE_BLOCK + IMKI_FLICKER_CHANGES };
 
-enum {
-    IMKI_TOGETHER = 2, /* Gauss-Markov terms in one call */
-    IMKI_FLICKER_NORMALS = 2 * IMK_NOISE_BLOCK + IMKI_FLICKER_CHANGES
-};
-
-imki_draw imki_white_draw(const imk_white_state *state, double *normals);
-void imki_white_block(imk_white_state *state, const double *normals, double *block);
-imki_draw imki_random_walk_draw(const imk_random_walk_state *state, double *normals);
-void imki_random_walk_block(imk_random_walk_state *state, const double *normals, double *block);
-imki_draw imki_gauss_markov_draw(const imk_gauss_markov_state *state, double *normals);
-/* count <= IMKI_TOGETHER; the normals of each follow one another. */
-void imki_gauss_markov_blocks(imk_gauss_markov_state *states, size_t count, double *normals,
-                              double *block);
-/* Fills three draws of IMKI_FLICKER_NORMALS normals together. @return 3 */
-size_t imki_flicker_draws(const imk_flicker_state *state, double *normals, imki_draw *draws);
-void imki_flicker_block(imk_flicker_state *state, double *normals, double *block);
-
-/* count <= IMKI_ARMA_LANES sequences of one seed, each added to a block of its own. */
+/* count <= IMKI_ARMA_LANES sequences of one seed, each adding 512 samples in segment order to a
+ * block of its own. */
 void imki_arma_blocks(imk_arma_state *const *states, size_t count, double *const *blocks);
-void imki_sinusoid_block(imk_sinusoid_state *state, imk_kernel kernel, double *block);
-/* Applies, instead of adding. Not to be mixed with imk_quantization_apply() within a block. */
+/* The same of any number of states, imk_arma_state each. */
+void imki_arma_across(void *const *states, size_t count, double *const *blocks);
+/* Applies to a block, instead of adding. Not to be mixed with imk_quantization_apply() within a
+ * block. */
 void imki_quantization_block(imk_quantization_state *state, imk_kernel kernel, double *block);
 
 /* What the ends of a record of n samples take from the expected square of cosine coefficient k of a

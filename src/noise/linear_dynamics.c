@@ -11,6 +11,8 @@
  * each length, so its errors do not grow. */
 #include "arma_internal.h"
 
+#include "base/algebra/vector_internal.h"
+
 imki_dynamics imki_first_order(double omega, double drive)
 {
     return (imki_dynamics){
@@ -134,7 +136,7 @@ double imki_covariance(const imki_stretch *stretch, const double a[3], const dou
 {
     double sum = 0.0;
     for (int i = 0; i < 3; i++)
-        sum += a[i] * (stretch->q[i][0] * b[0] + stretch->q[i][1] * b[1] + stretch->q[i][2] * b[2]);
+        sum += a[i] * imki_dot3(stretch->q[i], b);
     return sum;
 }
 

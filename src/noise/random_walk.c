@@ -12,7 +12,7 @@
  * The steps are white, and the cosine transform (DCT-II) turns the walk's covariance into a
  * diagonal matrix exactly; its expected square is that of the spectrum K^2 dt^2/(4 sin^2(pi f dt)).
  */
-#include "generator_internal.h"
+#include "noise_terms_internal.h"
 
 double imk_random_walk_allan_variance(double k, double tau)
 {
@@ -42,27 +42,62 @@ imk_status imk_random_walk_start(imk_random_walk_state *state, double k, double 
     return IMK_OK;
 }
 
-imki_draw imki_random_walk_draw(const imk_random_walk_state *state, double *normals)
+static size_t draws(const void *state, double *normals, imki_draw *draw)
 {
-    return imki_draw_of(state->stream, state->next, IMK_NOISE_BLOCK, normals);
+    const imk_random_walk_state *walk = state;
+    draw[0] = imki_draw_of(walk->stream, walk->next, IMK_NOISE_BLOCK, normals);
+    return 1;
 }
 
-void imki_random_walk_block(imk_random_walk_state *state, const double *normals, double *block)
+static void blocks(void *states, size_t count, imk_kernel kernel, double *normals, double *block)
 {
-    state->next += IMK_NOISE_BLOCK;
-    imki_add_sums(state->random.kernel, state->step, normals, &state->value, block);
+    imk_random_walk_state *walk = states;
+    (void)count;
+    imki_add_sums(kernel, walk->step, normals, &walk->value, block);
+    walk->next += IMK_NOISE_BLOCK;
 }
 
-static void next_block(void *state, double *block)
+static double strength(imki_term_place place)
 {
-    imk_random_walk_state *walk = state;
-    double normals[IMK_NOISE_BLOCK];
-    const imki_draw draw = imki_random_walk_draw(walk, normals);
-    imki_random_draws(walk->random, &draw, 1);
-    imki_random_walk_block(walk, normals, block);
+    return place.triad->noise.random_walk.value[place.axis];
 }
+
+static imk_status start(void *state, imki_term_place place, double dt, imk_random random,
+                        uint64_t stream)
+{
+    return imk_random_walk_start(state, strength(place), dt, random, stream);
+}
+
+static const imki_generator generator = {.state_size = sizeof(imk_random_walk_state),
+                                         .start = start,
+                                         .field = "noise.random_walk",
+                                         .refused = strength,
+                                         .normals = IMK_NOISE_BLOCK,
+                                         .draws = draws,
+                                         .together = 1,
+                                         .blocks = blocks};
 
 void imk_random_walk_add(imk_random_walk_state *state, size_t count, double *out)
 {
-    imki_add_blocks(&state->block, next_block, state, count, out);
+    imki_add_generated(&generator, state, state->random, &state->block, count, out);
 }
+
+static size_t processes(imki_term_place place, double dt, imki_process *process)
+{
+    (void)dt;
+    return imki_one_process(process, IMKI_PROCESS_WALK, strength(place));
+}
+
+static double allan_variance(imki_term_place place, double tau)
+{
+    return imk_random_walk_allan_variance(strength(place), tau);
+}
+
+const imki_noise_term imki_random_walk_term = {
+    .path = {"noise.rate_random_walk", "noise.acceleration_random_walk"},
+    .text = {"gyro rate random walk", "accelerometer acceleration random walk"},
+    .stream = IMK_TERM_RANDOM_WALK,
+    .strength = strength,
+    .generator = &generator,
+    .processes = processes,
+    .allan_variance = allan_variance};

@@ -7,6 +7,7 @@
  *
  * an ARMA(2,1). The drive that gives the standard deviation sigma is sigma sqrt(2 w^3/Q). */
 #include "arma_internal.h"
+#include "noise_terms_internal.h"
 
 static imki_dynamics resonance_dynamics(imk_resonance resonance)
 {
@@ -72,3 +73,60 @@ imk_status imk_resonance_start(imk_arma_state *state, imk_resonance resonance, d
     imk_status status = imk_resonance_arma(resonance, dt, &arma);
     return status == IMK_OK ? imk_arma_start(state, &arma, random, stream) : status;
 }
+
+static imk_resonance resonance_at(imki_term_place place)
+{
+    const struct imk_resonance_term *term = &place.triad->noise.resonance[place.instance];
+    return (imk_resonance){term->sigma.value[place.axis], term->frequency.value[place.axis],
+                           term->q.value[place.axis]};
+}
+
+static double strength(imki_term_place place)
+{
+    return resonance_at(place).sigma;
+}
+
+static double frequency(imki_term_place place)
+{
+    return resonance_at(place).frequency;
+}
+
+static imk_status start(void *state, imki_term_place place, double dt, imk_random random,
+                        uint64_t stream)
+{
+    return imk_resonance_start(state, resonance_at(place), dt, random, stream);
+}
+
+static const imki_generator generator = {.state_size = sizeof(imk_arma_state),
+                                         .start = start,
+                                         .field = "noise.resonance",
+                                         .refused = frequency,
+                                         .across = imki_arma_across};
+
+static int count(const imk_noise *noise)
+{
+    return noise->resonance_count;
+}
+
+static size_t processes(imki_term_place place, double dt, imki_process *process)
+{
+    (void)dt;
+    const size_t one = imki_one_process(process, IMKI_PROCESS_RESONANCE, strength(place));
+    process->frequency = frequency(place);
+    process->q = resonance_at(place).q;
+    return one;
+}
+
+static double allan_variance(imki_term_place place, double tau)
+{
+    return imk_resonance_allan_variance(resonance_at(place), tau);
+}
+
+const imki_noise_term imki_resonance_term = {.path = {"noise.resonance", "noise.resonance"},
+                                             .text = {"gyro resonance", "accelerometer resonance"},
+                                             .stream = IMK_TERM_RESONANCE,
+                                             .count = count,
+                                             .strength = strength,
+                                             .generator = &generator,
+                                             .processes = processes,
+                                             .allan_variance = allan_variance};

@@ -5,7 +5,7 @@
  * is exact at any k, and f is off by at most 2^-65/dt. Within a segment of 32 samples the sine
  * turns by the addition theorem from the segment's start, which costs one sine and cosine per
  * segment and an error of 2 ulp of a. */
-#include "generator_internal.h"
+#include "noise_terms_internal.h"
 
 double imk_sinusoid_allan_variance(imk_sinusoid sinusoid, double tau)
 {
@@ -57,21 +57,75 @@ imk_status imk_sinusoid_start(imk_sinusoid_state *state, imk_sinusoid sinusoid, 
     return IMK_OK;
 }
 
-void imki_sinusoid_block(imk_sinusoid_state *state, imk_kernel kernel, double *block)
+static void blocks(void *states, size_t count, imk_kernel kernel, double *normals, double *block)
 {
-    const imki_turning turning = {state->amplitude, state->phase, state->step, state->turn_sine,
-                                  state->turn_cosine};
+    imk_sinusoid_state *s = states;
+    (void)count;
+    (void)normals;
+    const imki_turning turning = {s->amplitude, s->phase, s->step, s->turn_sine, s->turn_cosine};
     imki_add_sinusoid(kernel, &turning, block);
-    state->phase += state->step * IMK_NOISE_BLOCK;
+    s->phase += s->step * IMK_NOISE_BLOCK;
 }
+
+static imk_sinusoid sinusoid_at(imki_term_place place)
+{
+    const struct imk_sinusoid_term *term = &place.triad->noise.sinusoid[place.instance];
+    return (imk_sinusoid){term->amplitude.value[place.axis], term->frequency.value[place.axis]};
+}
+
+static double strength(imki_term_place place)
+{
+    return sinusoid_at(place).amplitude;
+}
+
+static double frequency(imki_term_place place)
+{
+    return sinusoid_at(place).frequency;
+}
+
+static imk_status start(void *state, imki_term_place place, double dt, imk_random random,
+                        uint64_t stream)
+{
+    return imk_sinusoid_start(state, sinusoid_at(place), dt, random, stream);
+}
+
+static const imki_generator generator = {.state_size = sizeof(imk_sinusoid_state),
+                                         .start = start,
+                                         .field = "noise.sinusoid",
+                                         .refused = frequency,
+                                         .together = 1,
+                                         .blocks = blocks};
 
 /* The state knows no instruction set; a block is short enough for any. */
-static void next_block(void *state, double *block)
-{
-    imki_sinusoid_block(state, IMK_KERNEL_SCALAR, block);
-}
-
 void imk_sinusoid_add(imk_sinusoid_state *state, size_t count, double *out)
 {
-    imki_add_blocks(&state->block, next_block, state, count, out);
+    const imk_random any = {.kernel = IMK_KERNEL_SCALAR};
+    imki_add_generated(&generator, state, any, &state->block, count, out);
 }
+
+static int count(const imk_noise *noise)
+{
+    return noise->sinusoid_count;
+}
+
+static size_t processes(imki_term_place place, double dt, imki_process *process)
+{
+    (void)dt;
+    const size_t one = imki_one_process(process, IMKI_PROCESS_SINE, strength(place));
+    process->frequency = frequency(place);
+    return one;
+}
+
+static double allan_variance(imki_term_place place, double tau)
+{
+    return imk_sinusoid_allan_variance(sinusoid_at(place), tau);
+}
+
+const imki_noise_term imki_sinusoid_term = {.path = {"noise.sinusoid", "noise.sinusoid"},
+                                            .text = {"gyro sinusoid", "accelerometer sinusoid"},
+                                            .stream = IMK_TERM_SINUSOID,
+                                            .count = count,
+                                            .strength = strength,
+                                            .generator = &generator,
+                                            .processes = processes,
+                                            .allan_variance = allan_variance};

@@ -2,7 +2,7 @@
 /* White noise: the mean of continuous white noise of density N over each sample,
  *
  *     y[k] = N/sqrt(dt) n[k],   Allan variance N^2/tau,   S(f) = N^2   [IEEE952]  */
-#include "generator_internal.h"
+#include "noise_terms_internal.h"
 
 double imk_white_allan_variance(double density, double tau)
 {
@@ -34,27 +34,63 @@ imk_status imk_white_start(imk_white_state *state, double density, double dt, im
     return IMK_OK;
 }
 
-imki_draw imki_white_draw(const imk_white_state *state, double *normals)
+static size_t draws(const void *state, double *normals, imki_draw *draw)
 {
-    return imki_draw_of(state->stream, state->next, IMK_NOISE_BLOCK, normals);
+    const imk_white_state *white = state;
+    draw[0] = imki_draw_of(white->stream, white->next, IMK_NOISE_BLOCK, normals);
+    return 1;
 }
 
-void imki_white_block(imk_white_state *state, const double *normals, double *block)
+static void blocks(void *states, size_t count, imk_kernel kernel, double *normals, double *block)
 {
-    state->next += IMK_NOISE_BLOCK;
-    imki_add_scaled(state->random.kernel, state->sigma, normals, block);
+    imk_white_state *white = states;
+    (void)count;
+    imki_add_scaled(kernel, white->sigma, normals, block);
+    white->next += IMK_NOISE_BLOCK;
 }
 
-static void next_block(void *state, double *block)
+static double strength(imki_term_place place)
 {
-    imk_white_state *white = state;
-    double normals[IMK_NOISE_BLOCK];
-    const imki_draw draw = imki_white_draw(white, normals);
-    imki_random_draws(white->random, &draw, 1);
-    imki_white_block(white, normals, block);
+    return place.triad->noise.white.value[place.axis];
 }
+
+static imk_status start(void *state, imki_term_place place, double dt, imk_random random,
+                        uint64_t stream)
+{
+    return imk_white_start(state, strength(place), dt, random, stream);
+}
+
+static const imki_generator generator = {.state_size = sizeof(imk_white_state),
+                                         .start = start,
+                                         .field = "noise.white",
+                                         .refused = strength,
+                                         .normals = IMK_NOISE_BLOCK,
+                                         .draws = draws,
+                                         .together = 1,
+                                         .blocks = blocks};
 
 void imk_white_add(imk_white_state *state, size_t count, double *out)
 {
-    imki_add_blocks(&state->block, next_block, state, count, out);
+    imki_add_generated(&generator, state, state->random, &state->block, count, out);
 }
+
+static size_t processes(imki_term_place place, double dt, imki_process *process)
+{
+    (void)dt;
+    return imki_one_process(process, IMKI_PROCESS_WHITE, strength(place));
+}
+
+static double allan_variance(imki_term_place place, double tau)
+{
+    return imk_white_allan_variance(strength(place), tau);
+}
+
+const imki_noise_term imki_white_term = {
+    .path = {"noise.angle_random_walk", "noise.velocity_random_walk"},
+    .text = {"gyro angle random walk", "accelerometer velocity random walk"},
+    .stream = IMK_TERM_WHITE,
+    .strength = strength,
+    .generator = &generator,
+    .filtered = &imki_filtered_white,
+    .processes = processes,
+    .allan_variance = allan_variance};

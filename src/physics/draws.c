@@ -42,17 +42,17 @@ double imki_run_constant(const imk_physics_settings *settings, uint8_t source, d
     return constant * repeatability;
 }
 
-imk_status imki_wander_start(imki_wander *wander, const imk_physics_settings *settings,
-                             uint8_t source, double repeatability, double instability)
+void imki_wander_start(imki_wander *wander, const imk_physics_settings *settings, uint8_t source,
+                       double repeatability, double instability)
 {
     wander->constant = imki_run_constant(settings, source, repeatability);
-    wander->flickers = settings->noise && instability > 0.0;
     wander->position = IMKI_WANDER_BLOCK;
-    if (!wander->flickers)
-        return IMK_OK;
-    return imk_flicker_start(
-        &wander->flicker, instability, 1.0 / settings->rate, imk_random_seeded(settings->seed),
-        stream_of(settings, settings->occasion, FLICKERS + FLICKER_INSTANCES * source));
+    wander->flickers =
+        settings->noise && instability > 0.0 &&
+        imk_flicker_start(&wander->flicker, instability, 1.0 / settings->rate,
+                          imk_random_seeded(settings->seed),
+                          stream_of(settings, settings->occasion,
+                                    FLICKERS + FLICKER_INSTANCES * source)) == IMK_OK;
 }
 
 void imki_wander_fill(imki_wander *wander)

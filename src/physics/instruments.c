@@ -1,35 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The kinds of instruments there are. */
-#include "imukit/fibre_optic.h"
-#include "imukit/free_gyro.h"
-#include "imukit/mems_accelerometer.h"
-#include "imukit/pendulous_servo.h"
-#include "imukit/rate_gyro.h"
-#include "imukit/rate_integrating_gyro.h"
-#include "imukit/ring_laser.h"
-#include "imukit/shell_gyro.h"
-#include "imukit/suspended_rotor.h"
-#include "imukit/tuned_gyro.h"
-#include "imukit/tuning_fork.h"
-#include "imukit/vibrating_beam.h"
+#include "base/text_internal.h"
+#include "imukit/physics.h"
 
 #include <stdbool.h>
 
-/* In the order of the lecture: spinning mass, optical, vibratory, accelerometers. */
-static const imk_instrument *const instruments[] = {&imk_free_gyro_instrument,
-                                                    &imk_rate_gyro_instrument,
-                                                    &imk_rate_integrating_gyro_instrument,
-                                                    &imk_tuned_gyro_instrument,
-                                                    &imk_suspended_rotor_instrument,
-                                                    &imk_fibre_optic_instrument,
-                                                    &imk_ring_laser_instrument,
-                                                    &imk_tuning_fork_instrument,
-                                                    &imk_shell_gyro_instrument,
-                                                    &imk_mems_accelerometer_instrument,
-                                                    &imk_pendulous_servo_instrument,
-                                                    &imk_vibrating_beam_instrument,
-                                                    NULL};
-enum { INSTRUMENTS = sizeof instruments / sizeof instruments[0] - 1 };
+#define DESCRIPTION(name) &imk_##name##_instrument,
+static const imk_instrument *const instruments[] = {IMK_INSTRUMENT_LIST(DESCRIPTION)};
+enum { INSTRUMENTS = sizeof instruments / sizeof instruments[0] };
 
 size_t imk_instrument_count(void)
 {
@@ -46,11 +24,6 @@ static bool is_separator(char c)
     return c == ' ' || c == '-' || c == '_';
 }
 
-static char lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
 static bool same_name(const char *a, const char *b)
 {
     for (;;) {
@@ -58,7 +31,7 @@ static bool same_name(const char *a, const char *b)
             a++;
         while (is_separator(*b))
             b++;
-        if (lower(*a) != lower(*b))
+        if (imki_lower(*a) != imki_lower(*b))
             return false;
         if (*a == '\0')
             return true;

@@ -4,14 +4,19 @@
 #ifndef IMUKI_PHYSICS_INTERNAL_H
 #define IMUKI_PHYSICS_INTERNAL_H
 
+#include "base/refuse_internal.h"
 #include "imukit/distort.h"
 #include "imukit/instrument.h"
 #include "imukit/noise.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
 #define IMKI_PI 3.14159265358979323846
+#define IMKI_DEGREE (IMKI_PI / 180.0)
+/* The temperature at which designs are stated, if they do not say another [K]. */
+#define IMKI_DESIGN_TEMPERATURE 293.15
 /* Exact by definition of the SI [SI2019]. */
 #define IMKI_LIGHT_SPEED 299792458.0
 #define IMKI_PLANCK 6.62607015e-34
@@ -46,7 +51,8 @@ static inline double imki_draw(imki_draws *draws)
 
 /* A quantity that differs from run to run and wanders within one: a constant drawn once with the
  * 1 sigma `repeatability` and flicker noise of the instability B (model.h) at the sample rate.
- * imki_wander_next() gives the value for the next sample. */
+ * imki_wander_next() gives the value for the next sample. Of a design and settings that are valid.
+ */
 enum { IMKI_WANDER_BLOCK = 64 };
 typedef struct imki_wander {
     double constant;
@@ -59,8 +65,8 @@ typedef struct imki_wander {
 /* The constant by itself, of a quantity that does not wander. */
 double imki_run_constant(const imk_physics_settings *settings, uint8_t source,
                          double repeatability);
-imk_status imki_wander_start(imki_wander *wander, const imk_physics_settings *settings,
-                             uint8_t source, double repeatability, double instability);
+void imki_wander_start(imki_wander *wander, const imk_physics_settings *settings, uint8_t source,
+                       double repeatability, double instability);
 void imki_wander_fill(imki_wander *wander);
 
 static inline double imki_wander_next(imki_wander *wander)
@@ -72,6 +78,17 @@ static inline double imki_wander_next(imki_wander *wander)
     return wander->constant + wander->buffer[wander->position++];
 }
 
+static inline double imki_clamped(double x, double limit)
+{
+    return x > limit ? limit : x < -limit ? -limit : x;
+}
+
+/* The nearest multiple of a step; 0: no step. */
+static inline double imki_quantised(double x, double step)
+{
+    return step > 0.0 ? step * floor(x / step + 0.5) : x;
+}
+
 #define IMKI_LENGTH(array) (sizeof(array) / sizeof((array)[0]))
 
 /* The tables of an instrument's description, under the names they have in every file. */
@@ -80,8 +97,26 @@ static inline double imki_wander_next(imki_wander *wander)
     .outputs = outputs, .signal_count = IMKI_LENGTH(signals), .signals = signals,                  \
     .view_count = IMKI_LENGTH(views), .views = views
 
-/* Settings as they must be: cookie, a finite rate > 0, a known level, a step >= 0. */
-imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *error);
+/* The functions of an instrument that differ in the type of the design only: they call
+ * imk_NAME_default(), imki_NAME_reduce() and what imk_NAME_instrument lists. */
+#define IMKI_DESIGN_FUNCTIONS(name)                                                                \
+    static void set_default(void *design)                                                          \
+    {                                                                                              \
+        *(imk_##name *)design = imk_##name##_default();                                            \
+    }                                                                                              \
+    static void reduce(const void *design, imk_triad *triad)                                       \
+    {                                                                                              \
+        imki_##name##_reduce(design, triad);                                                       \
+    }                                                                                              \
+    imk_status imk_##name##_validate(const imk_##name *design, imk_error *error)                   \
+    {                                                                                              \
+        return imk_design_check(&imk_##name##_instrument, design, error);                          \
+    }                                                                                              \
+    void imk_##name##_reduce(const imk_##name *design, imk_model *model)                           \
+    {                                                                                              \
+        imk_instrument_reduce(&imk_##name##_instrument, design, model);                            \
+    }                                                                                              \
+    extern const imk_instrument imk_##name##_instrument
 
 /* Divide a sample of 1/rate into equal internal steps no longer than settings.step, or than
  * `longest` when that is 0.
@@ -91,9 +126,12 @@ imk_status imki_settings_check(const imk_physics_settings *settings, imk_error *
 imk_status imki_divide_sample(const imk_physics_settings *settings, double longest, double limit,
                               const char *reason, size_t *count, double *step, imk_error *error);
 
-/* Refuse a design: field, value, limit, and what to do. Returns the status. */
-imk_status imki_design_refuse(imk_error *error, imk_status status, const char *field, double value,
-                              double limit, const char *expected);
+/* A design whose numbers do not go together. */
+static inline imk_status imki_conflict(imk_error *error, const char *field, double value,
+                                       double limit, const char *expected)
+{
+    return imki_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
+}
 
 /* Reference and valid range of a polynomial: 60 K to both sides, above absolute zero. */
 static inline void imki_temperature_range(imk_temperature_polynomial *polynomial, double reference)
@@ -109,10 +147,6 @@ static inline double imki_model_damping(double damping)
 {
     return damping > 50.0 ? 0.0 : damping < 0.05 ? 0.05 : damping;
 }
-
-/* A model of one axis of this kind of sensor along x, nothing else in it, which says where it comes
- * from. @return the triad to fill */
-imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrument);
 
 /* An error u that acts like an input, such as a force on the mass, with its slope per kelvin: what
  * the triad states of scale factor, K2, K3 and their temperature slopes, about no input, becomes

@@ -3,31 +3,21 @@
  * input, three axes from one. */
 #include "physics_internal.h"
 
+#include "base/text_internal.h"
 #include "model/model_schema_internal.h"
 
-static void copy_text(char *to, size_t size, const char *from)
+void imk_instrument_reduce(const imk_instrument *instrument, const void *design, imk_model *model)
 {
-    size_t i = 0;
-    for (; from[i] && i + 1 < size; i++)
-        to[i] = from[i];
-    to[i] = '\0';
-}
-
-imk_triad *imki_reduction_begin(imk_model *model, const imk_instrument *instrument)
-{
+    const int sensor = instrument->sensor;
     imk_model_default(model);
-    const bool gyro = instrument->sensor == IMK_GYRO;
-    imk_triad *triad = gyro ? &model->gyro : &model->accel;
-    imk_evidence *evidence = gyro ? &model->gyro_evidence : &model->accel_evidence;
-    (gyro ? &model->accel : &model->gyro)->present = false;
-    triad->present = true;
+    imk_triad *triad = imk_model_triad_to_set(model, sensor);
+    imk_evidence *evidence = sensor == IMK_GYRO ? &model->gyro_evidence : &model->accel_evidence;
+    imk_model_triad_to_set(model, sensor == IMK_GYRO ? IMK_ACCEL : IMK_GYRO)->present = false;
     triad->axis_count = 1;
-    for (int k = 0; k < 3; k++)
-        triad->direction[0][k] = k == 0 ? 1.0 : 0.0;
-    copy_text(model->name, sizeof model->name, instrument->title);
-    copy_text(evidence->source, sizeof evidence->source, instrument->source);
-    copy_text(evidence->method, sizeof evidence->method, "design parameters, by closed forms");
-    return triad;
+    imki_copy_text(model->name, sizeof model->name, instrument->title);
+    imki_copy_text(evidence->source, sizeof evidence->source, instrument->source);
+    imki_copy_text(evidence->method, sizeof evidence->method, "design parameters, by closed forms");
+    instrument->reduce(design, triad);
 }
 
 double imki_reduction_offset(imk_triad *triad, double u, double per_kelvin)

@@ -122,6 +122,20 @@ static const struct message {
     {"misfit", "{name}: the four noise terms do not explain the spectrum (misfit {0.1f}, worst at "
                "{1.3g} Hz: {2.2f} of the fit); an output filter, a resonance or a correlated noise "
                "is there: see imukit identify, or fit a part with --from and --to"},
+    /* convert_log.c, convert_motion.c */
+    {"no_such_column",
+     "--select: the log has no column \"{name}\"{0?}; did you mean \"{other}\"?{?}"},
+    {"convert:no_axis", "{record} has no column {name}, which --{other} needs"},
+    {"convert:counts", "{name} is in counts, and --{other} needs {0?}forces{0!}rates{?}: imukit "
+                       "compensate makes them, by a model with a sensitivity"},
+    {"moves", "the unit moves in the first {0g} s ({1.3g} deg/s, {2.3g} m/s^2 rms): roll and pitch "
+              "are wrong by as much; shorten --still"},
+    {"gravity", "the mean force while still is {0.4g} m/s^2 and gravity {1.4g} m/s^2"},
+    {"acceleration", "{0} rows have no neighbour with finite rates: their angular acceleration is "
+                     "taken as zero"},
+    {"drift", "attitude comes from the gyros alone: while still they were off by {0.3g} deg/h, "
+              "which makes up to {1.3g} deg and {2.3g} m/s^2 in the {3.4g} s of this log"},
+    {"convert:not_finite", "{0} rows have no finite rates: the attitude was held"},
     /* navigate_log.c, navigate_align.c, navigate_run.c */
     {"column_of_counts", "{name} is in counts: imukit compensate makes rates and forces of them"},
     {"no_sensor_column", "has no column {name}: navigation needs three gyros and three "

@@ -12,6 +12,25 @@
 
 #include <string.h>
 
+/* Normals drawn in one call: for white noise, a random walk, flicker and two more terms. */
+enum {
+    BATCH_NORMALS = 4 * IMK_NOISE_BLOCK + IMKI_FLICKER_NORMALS,
+    BATCH_PARTS = 2 * IMK_TERMS_MAX,
+    BATCH_DRAWS = BATCH_NORMALS / IMK_NOISE_BLOCK + IMKI_DRAWS_MAX
+};
+
+/* Bytes of the states of a term. */
+static size_t states_size(const imki_noise_term *term, imki_axis axis)
+{
+    imki_term_place place = {axis.triad, axis.axis, 0};
+    const int count = imki_term_count(term, &axis.triad->noise);
+    size_t present = 0;
+    for (; place.instance < count; place.instance++)
+        present += term->strength(place) != 0.0;
+    const size_t size = present * imki_term_generator(term, place)->state_size;
+    return (size + 63) / 64 * 64;
+}
+
 /* Dotted path of a parameter that a generator has refused. */
 static imk_status refused(imk_error *error, imk_status status, imki_axis axis, const char *field,
                           double value)
@@ -29,93 +48,52 @@ static imk_status refused(imk_error *error, imk_status status, imki_axis axis, c
     return status;
 }
 
-static imk_status start_white(imki_channel *channel, imki_axis axis, double dt, imk_random random,
-                              uint32_t run, imk_error *error)
+size_t imki_channel_memory(imki_axis axis)
 {
-    int i = axis.axis;
-    double density = axis.triad->noise.white.value[i];
-    imk_low_pass filter = {axis.triad->bandwidth.value[i], axis.triad->damping.value[i]};
-    uint64_t stream = imk_stream(run, IMK_TERM_WHITE, 0, axis.stream_axis);
-    if (density == 0.0)
-        return IMK_OK;
-    imk_status status;
-    channel->arma_present = filter.bandwidth > 0.0;
-    channel->white_present = !channel->arma_present;
-    if (channel->arma_present) {
-        status = imk_filtered_white_start(&channel->arma, density, filter, dt, random, stream);
-        return status == IMK_OK ? status
-                                : refused(error, status, axis, "bandwidth", filter.bandwidth);
-    }
-    status = imk_white_start(&channel->white, density, dt, random, stream);
-    return status == IMK_OK ? status : refused(error, status, axis, "noise.white", density);
+    size_t size = 0;
+    for (int t = 0; t < IMKI_NOISE_TERMS; t++)
+        size += states_size(imki_noise_terms[t], axis);
+    return size;
 }
 
-static imk_status start_drifts(imki_channel *channel, imki_axis axis, double dt, imk_random random,
-                               uint32_t run, imk_error *error)
+/* The states of a term; elements of strength 0 on this axis take no part. The instance of a stream
+ * is the place in the model's list. */
+static imk_status start_term(imki_channel_term *made, const imki_noise_term *term, imki_axis axis,
+                             double dt, imk_random random, uint32_t run, imk_error *error)
 {
-    const imk_noise *noise = &axis.triad->noise;
-    double instability = noise->bias_instability.value[axis.axis];
-    double walk = noise->random_walk.value[axis.axis], q = noise->quantization.value[axis.axis];
-    imk_status status;
-    channel->flicker_present = instability != 0.0;
-    status = imk_flicker_start(&channel->flicker, instability, dt, random,
-                               imk_stream(run, IMK_TERM_FLICKER, 0, axis.stream_axis));
+    imki_term_place place = {axis.triad, axis.axis, 0};
+    const imki_generator *generator = imki_term_generator(term, place);
+    const int count = imki_term_count(term, &axis.triad->noise);
+    made->generator = generator;
+    for (; place.instance < count; place.instance++) {
+        if (term->strength(place) == 0.0)
+            continue;
+        const uint64_t stream =
+            imk_stream(run, term->stream, (uint8_t)place.instance, axis.stream_axis);
+        void *state = made->states + made->count++ * generator->state_size;
+        const imk_status status = generator->start(state, place, dt, random, stream);
+        if (status != IMK_OK)
+            return refused(error, status, axis, generator->field, generator->refused(place));
+    }
+    return IMK_OK;
+}
+
+static imk_status start_terms(imki_channel *channel, imki_axis axis, double dt, imk_random random,
+                              uint32_t run, unsigned char *memory, imk_error *error)
+{
+    imk_status status = IMK_OK;
+    for (int t = 0; t < IMKI_NOISE_TERMS && status == IMK_OK; t++) {
+        channel->term[t].states = memory;
+        memory += states_size(imki_noise_terms[t], axis);
+        status = start_term(&channel->term[t], imki_noise_terms[t], axis, dt, random, run, error);
+    }
     if (status != IMK_OK)
-        return refused(error, status, axis, "noise.bias_instability", instability);
-    channel->random_walk_present = walk != 0.0;
-    status = imk_random_walk_start(&channel->random_walk, walk, dt, random,
-                                   imk_stream(run, IMK_TERM_RANDOM_WALK, 0, axis.stream_axis));
-    if (status != IMK_OK)
-        return refused(error, status, axis, "noise.random_walk", walk);
+        return status;
+    const double q = axis.triad->noise.quantization.value[axis.axis];
     status = imk_quantization_start(&channel->quantization, q, dt, random,
                                     imk_stream(run, IMK_TERM_QUANTIZATION, 0, axis.stream_axis));
-    if (status != IMK_OK)
-        return refused(error, status, axis, "noise.quantization", q);
-    channel->ramp = noise->ramp.value[axis.axis] * dt;
-    return IMK_OK;
-}
-
-/* Terms of strength 0 on this axis take no part; the instance is the place in the model's list. */
-static imk_status start_lists(imki_channel *channel, imki_axis axis, double dt, imk_random random,
-                              uint32_t run, imk_error *error)
-{
-    const imk_noise *noise = &axis.triad->noise;
-    int i = axis.axis;
-    for (int j = 0; j < noise->gauss_markov_count; j++) {
-        imk_gauss_markov process = {noise->gauss_markov[j].sigma.value[i],
-                                    noise->gauss_markov[j].correlation_time.value[i]};
-        if (process.sigma == 0.0)
-            continue;
-        uint64_t stream = imk_stream(run, IMK_TERM_GAUSS_MARKOV, (uint8_t)j, axis.stream_axis);
-        imk_status status = imk_gauss_markov_start(
-            &channel->gauss_markov[channel->gauss_markov_count++], process, dt, random, stream);
-        if (status != IMK_OK)
-            return refused(error, status, axis, "noise.gauss_markov", process.correlation_time);
-    }
-    for (int j = 0; j < noise->sinusoid_count; j++) {
-        imk_sinusoid sinusoid = {noise->sinusoid[j].amplitude.value[i],
-                                 noise->sinusoid[j].frequency.value[i]};
-        if (sinusoid.amplitude == 0.0)
-            continue;
-        uint64_t stream = imk_stream(run, IMK_TERM_SINUSOID, (uint8_t)j, axis.stream_axis);
-        imk_status status = imk_sinusoid_start(&channel->sinusoid[channel->sinusoid_count++],
-                                               sinusoid, dt, random, stream);
-        if (status != IMK_OK)
-            return refused(error, status, axis, "noise.sinusoid", sinusoid.frequency);
-    }
-    for (int j = 0; j < noise->resonance_count; j++) {
-        imk_resonance resonance = {noise->resonance[j].sigma.value[i],
-                                   noise->resonance[j].frequency.value[i],
-                                   noise->resonance[j].q.value[i]};
-        if (resonance.sigma == 0.0)
-            continue;
-        uint64_t stream = imk_stream(run, IMK_TERM_RESONANCE, (uint8_t)j, axis.stream_axis);
-        imk_status status = imk_resonance_start(&channel->resonance[channel->resonance_count++],
-                                                resonance, dt, random, stream);
-        if (status != IMK_OK)
-            return refused(error, status, axis, "noise.resonance", resonance.frequency);
-    }
-    return IMK_OK;
+    channel->ramp = axis.triad->noise.ramp.value[axis.axis] * dt;
+    return status == IMK_OK ? status : refused(error, status, axis, "noise.quantization", q);
 }
 
 static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double part,
@@ -123,13 +101,12 @@ static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double
 {
     imk_low_pass filter = {axis.triad->bandwidth.value[axis.axis],
                            axis.triad->damping.value[axis.axis]};
+    imki_stretch stretch;
     if (filter.bandwidth == 0.0)
         return IMK_OK;
-    imk_status status = imki_check_low_pass(filter, part);
+    const imk_status status = imki_low_pass_over(filter, part, &stretch);
     if (status != IMK_OK)
         return refused(error, status, axis, "bandwidth", filter.bandwidth);
-    imki_dynamics dynamics = imki_filter_dynamics(1.0, filter);
-    imki_stretch stretch = imki_stretch_of_time(&dynamics, part);
     imki_band_limit *limit = &channel->band_limit;
     limit->present = true;
     for (int i = 0; i < 2; i++) {
@@ -141,7 +118,8 @@ static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double
 }
 
 imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, size_t substeps,
-                              imk_random random, uint32_t run, imk_error *error)
+                              imk_random random, uint32_t run, unsigned char *memory,
+                              imk_error *error)
 {
     channel->sensor = axis.sensor;
     channel->axis = axis.axis;
@@ -154,11 +132,7 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
     channel->zero_offset = axis.triad->zero_offset.value[axis.axis];
     imk_status status = start_band_limit(channel, axis, dt / (double)substeps, error);
     if (status == IMK_OK)
-        status = start_white(channel, axis, dt, random, run, error);
-    if (status == IMK_OK)
-        status = start_drifts(channel, axis, dt, random, run, error);
-    if (status == IMK_OK)
-        status = start_lists(channel, axis, dt, random, run, error);
+        status = start_terms(channel, axis, dt, random, run, memory, error);
     return status;
 }
 
@@ -293,48 +267,59 @@ static void output_stage(imki_channel *channel, double *block)
             block[j] = imki_round(channel->sensitivity * block[j] + channel->zero_offset);
 }
 
-/* Draws of up to IMKI_TOGETHER Gauss-Markov terms from `first` on. @return how many */
-static size_t process_draws(const imki_channel *channel, size_t first, double *normals,
-                            imki_draw *draws)
+/* States of a channel whose normals are drawn in one call. */
+typedef struct batch {
+    struct {
+        const imki_generator *generator;
+        unsigned char *states;
+        size_t count;
+        double *normals;
+    } part[BATCH_PARTS];
+    size_t parts, draws, used;
+    imki_draw draw[BATCH_DRAWS];
+    IMKI_ALIGNED double normals[BATCH_NORMALS];
+} batch;
+
+static void add_batch(const imki_channel *channel, batch *b, double *block)
 {
-    const size_t left = (size_t)channel->gauss_markov_count - first;
-    const size_t count = left < IMKI_TOGETHER ? left : IMKI_TOGETHER;
-    for (size_t i = 0; i < count; i++)
-        draws[i] = imki_gauss_markov_draw(&channel->gauss_markov[first + i],
-                                          normals + i * IMK_NOISE_BLOCK);
-    return count;
+    if (b->draws > 0)
+        imki_random_draws(channel->random, b->draw, b->draws);
+    for (size_t i = 0; i < b->parts; i++)
+        b->part[i].generator->blocks(b->part[i].states, b->part[i].count, channel->kernel,
+                                     b->part[i].normals, block);
+    b->parts = b->draws = b->used = 0;
 }
 
-/* White noise, random walk, flicker and the first Gauss-Markov terms, their normals drawn in one
- * call; then the other Gauss-Markov terms. */
-static void add_noise(imki_channel *channel, double *block)
+static void put_in_batch(batch *b, const imki_generator *generator, unsigned char *states,
+                         size_t count)
 {
-    enum { BLOCK = IMK_NOISE_BLOCK, DRAWS = 5 + IMKI_TOGETHER };
-    IMKI_ALIGNED double white[BLOCK], walk[BLOCK], flicker[IMKI_FLICKER_NORMALS];
-    IMKI_ALIGNED double other[IMKI_TOGETHER * BLOCK];
-    imki_draw draws[DRAWS];
-    size_t count = 0;
-    if (channel->white_present)
-        draws[count++] = imki_white_draw(&channel->white, white);
-    if (channel->random_walk_present)
-        draws[count++] = imki_random_walk_draw(&channel->random_walk, walk);
-    if (channel->flicker_present)
-        count += imki_flicker_draws(&channel->flicker, flicker, draws + count);
-    size_t processes = process_draws(channel, 0, other, draws + count);
-    imki_random_draws(channel->random, draws, count + processes);
-    if (channel->white_present)
-        imki_white_block(&channel->white, white, block);
-    if (channel->flicker_present)
-        imki_flicker_block(&channel->flicker, flicker, block);
-    if (channel->random_walk_present)
-        imki_random_walk_block(&channel->random_walk, walk, block);
-    imki_gauss_markov_blocks(channel->gauss_markov, processes, other, block);
-    for (size_t first = processes; first < (size_t)channel->gauss_markov_count;
-         first += processes) {
-        processes = process_draws(channel, first, other, draws);
-        imki_random_draws(channel->random, draws, processes);
-        imki_gauss_markov_blocks(channel->gauss_markov + first, processes, other, block);
+    b->part[b->parts].generator = generator;
+    b->part[b->parts].states = states;
+    b->part[b->parts].count = count;
+    b->part[b->parts++].normals = b->normals + b->used;
+    for (size_t i = 0; i < count && generator->draws; i++) {
+        b->draws += generator->draws(states + i * generator->state_size, b->normals + b->used,
+                                     b->draw + b->draws);
+        b->used += generator->normals;
     }
+}
+
+/* The terms first … last - 1 of a channel, one after another. */
+static void add_terms(imki_channel *channel, int first, int last, batch *b, double *block)
+{
+    for (int t = first; t < last; t++) {
+        const imki_channel_term *term = &channel->term[t];
+        const imki_generator *generator = term->generator;
+        for (size_t i = 0; i < term->count && !generator->across;) {
+            const size_t left = term->count - i;
+            const size_t now = left < generator->together ? left : generator->together;
+            if (b->used + now * generator->normals > BATCH_NORMALS || b->parts == BATCH_PARTS)
+                add_batch(channel, b, block);
+            put_in_batch(b, generator, term->states + i * generator->state_size, now);
+            i += now;
+        }
+    }
+    add_batch(channel, b, block);
 }
 
 /* The deterministic part, and the ramp, in segment order. */
@@ -361,41 +346,54 @@ static void end_block(imki_channel *channel, double *out)
     channel->next += IMK_NOISE_BLOCK;
 }
 
-/* Filtered white noise (instance -1) or the same resonance of each channel that has it. */
-static void add_arma(size_t count, imki_channel *const *channels, int instance, double *const *out)
+/* State `index` of a term of each channel that has it, where that goes across channels. */
+static void add_across(size_t count, imki_channel *const *channels, int t, size_t index,
+                       double *const *out)
 {
-    imk_arma_state *states[IMKI_CHANNELS] = {NULL};
+    void *states[IMKI_CHANNELS];
     double *blocks[IMKI_CHANNELS] = {NULL};
+    const imki_generator *generator = NULL;
     size_t present = 0;
     for (size_t i = 0; i < count; i++) {
-        imki_channel *channel = channels[i];
-        if (instance < 0 ? !channel->arma_present : instance >= channel->resonance_count)
+        const imki_channel_term *term = &channels[i]->term[t];
+        if (!term->generator->across || index >= term->count)
             continue;
-        states[present] = instance < 0 ? &channel->arma : &channel->resonance[instance];
+        generator = term->generator;
+        states[present] = term->states + index * generator->state_size;
         blocks[present++] = out[i];
     }
-    imki_arma_blocks(states, present, blocks);
+    if (generator)
+        generator->across(states, present, blocks);
+}
+
+/* How many states of a term go across, of the channel that has most of them. */
+static size_t states_across(size_t count, imki_channel *const *channels, int t)
+{
+    size_t most = 0;
+    for (size_t i = 0; i < count; i++)
+        if (channels[i]->term[t].generator->across && channels[i]->term[t].count > most)
+            most = channels[i]->term[t].count;
+    return most;
 }
 
 /* Blocks stand in `out` in segment order until they are finished. */
 void imki_channel_blocks(size_t count, imki_channel *const *channels, bool constant,
                          double *const *out)
 {
-    int resonances = 0;
-    for (size_t i = 0; i < count; i++) {
+    batch b;
+    b.parts = b.draws = b.used = 0;
+    for (size_t i = 0; i < count; i++)
         begin_block(channels[i], constant, out[i]);
-        if (channels[i]->resonance_count > resonances)
-            resonances = channels[i]->resonance_count;
+    for (int t = 0, done = 0; t <= IMKI_NOISE_TERMS; t++) {
+        const size_t across = t < IMKI_NOISE_TERMS ? states_across(count, channels, t) : 0;
+        if (across == 0 && t < IMKI_NOISE_TERMS)
+            continue;
+        for (size_t i = 0; i < count && t > done; i++)
+            add_terms(channels[i], done, t, &b, out[i]);
+        for (size_t j = 0; j < across; j++)
+            add_across(count, channels, t, j, out);
+        done = t;
     }
-    add_arma(count, channels, -1, out);
-    for (size_t i = 0; i < count; i++) {
-        imki_channel *channel = channels[i];
-        add_noise(channel, out[i]);
-        for (int j = 0; j < channel->sinusoid_count; j++)
-            imki_sinusoid_block(&channel->sinusoid[j], channel->kernel, out[i]);
-    }
-    for (int j = 0; j < resonances; j++)
-        add_arma(count, channels, j, out);
     for (size_t i = 0; i < count; i++)
         end_block(channels[i], out[i]);
 }

@@ -8,6 +8,7 @@
  * and covers b[k-1] … b[k] in M equal parts. Temperature and warm-up, which are slow, are taken in
  * the middle of a part without jitter. Nothing here depends on how rows are divided into stretches.
  */
+#include "base/refuse_internal.h"
 #include "model/distort_internal.h"
 #include "simulate_internal.h"
 
@@ -106,13 +107,9 @@ static imk_status check_timing(const imk_model *model, const imk_simulation *sim
     /* Normals stay below 7.54: so boundaries cannot change places. */
     if (model->timing.jitter.value * simulation->rate <= 1.0 / 16.0)
         return IMK_OK;
-    imk_error_set(error, IMK_ERROR_RANGE, "timing.jitter", "",
-                  "a jitter of at most 1/16 of the sample interval");
-    if (error) {
-        error->value = model->timing.jitter.value;
-        error->limit = 1.0 / 16.0 / simulation->rate;
-    }
-    return IMK_ERROR_RANGE;
+    return imki_refuse(error, IMK_ERROR_RANGE, "timing.jitter", model->timing.jitter.value,
+                       1.0 / 16.0 / simulation->rate,
+                       "a jitter of at most 1/16 of the sample interval");
 }
 
 static imk_status start_motion(imki_scene *e, const imk_model *model,

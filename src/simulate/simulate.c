@@ -2,11 +2,13 @@
 /* The simulator: memory, channels, and the order in which rows are made. */
 #include "imukit/simulate.h"
 
+#include "base/refuse_internal.h"
+#include "base/workspace_internal.h"
 #include "simulate_internal.h"
 
 #include <string.h>
 
-enum { COOKIE = 0x5131A711, ALIGNMENT = 64 };
+enum { COOKIE = 0x5131A711 };
 
 struct imk_simulator {
     imki_scene scene;
@@ -30,10 +32,7 @@ static imk_status range_error(imk_error *error, const char *field, double value,
                               const char *expected)
 {
     imk_status status = isfinite(value) ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
-    imk_error_set(error, status, field, "", expected);
-    if (error)
-        error->value = value;
-    return status;
+    return imki_refuse(error, status, field, value, 0.0, expected);
 }
 
 static imk_status check_simulation(const imk_simulation *simulation, imk_error *error)
@@ -63,44 +62,6 @@ static size_t axes_of(const imk_triad *triad)
     return triad->present ? (size_t)triad->axis_count : 0;
 }
 
-static size_t aligned(size_t size)
-{
-    return (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-}
-
-/* Bytes of the lists of one channel. */
-static size_t list_size(const imk_noise *noise)
-{
-    return aligned((size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state)) +
-           aligned((size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state)) +
-           aligned((size_t)noise->resonance_count * sizeof(imk_arma_state));
-}
-
-size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
-{
-    size_t gyros = axes_of(&model->gyro), accels = axes_of(&model->accel);
-    return aligned(sizeof(imk_simulator)) + aligned((gyros + accels) * sizeof(imki_channel)) +
-           gyros * list_size(&model->gyro.noise) + accels * list_size(&model->accel.noise) +
-           aligned(imki_scene_size(model, simulation) * sizeof(double));
-}
-
-static void *take(unsigned char **memory, size_t size)
-{
-    void *taken = *memory;
-    *memory += aligned(size);
-    return taken;
-}
-
-static void assign_lists(imki_channel *channel, const imk_noise *noise, unsigned char **memory)
-{
-    channel->gauss_markov =
-        take(memory, (size_t)noise->gauss_markov_count * sizeof(imk_gauss_markov_state));
-    channel->sinusoid = take(memory, (size_t)noise->sinusoid_count * sizeof(imk_sinusoid_state));
-    channel->resonance = take(memory, (size_t)noise->resonance_count * sizeof(imk_arma_state));
-}
-
-/* ---- start ---- */
-
 static imki_axis axis_of(const imk_model *model, size_t channel)
 {
     size_t gyros = axes_of(&model->gyro);
@@ -110,6 +71,29 @@ static imki_axis axis_of(const imk_model *model, size_t channel)
     return (imki_axis){&model->accel, "accel", IMK_ACCEL, (int)axis,
                        (uint8_t)(axis + IMK_AXES_MAX)};
 }
+
+/* Bytes of the parts, in this order; the columns of the scene last. */
+typedef struct layout {
+    size_t channels, states, columns, all;
+} layout;
+
+static layout layout_of(const imk_model *model, const imk_simulation *simulation)
+{
+    const size_t count = axes_of(&model->gyro) + axes_of(&model->accel);
+    layout l = {.channels = imki_aligned(count * sizeof(imki_channel)),
+                .columns = imki_aligned(imki_scene_size(model, simulation) * sizeof(double))};
+    for (size_t i = 0; i < count; i++)
+        l.states += imki_channel_memory(axis_of(model, i));
+    l.all = imki_aligned(sizeof(imk_simulator)) + l.channels + l.states + l.columns;
+    return l;
+}
+
+size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
+{
+    return layout_of(model, simulation).all;
+}
+
+/* ---- start ---- */
 
 /* One draw for the whole run. */
 static double repeatability(const imk_axes *sigma, imki_axis axis, uint8_t instance,
@@ -150,16 +134,15 @@ static double constant_response(const imk_simulator *made, const imki_channel *c
     return response;
 }
 
-static imk_status start_channels(imk_simulator *made, unsigned char *memory, const imk_model *model,
+static imk_status start_channels(imk_simulator *made, imki_arena *memory, const imk_model *model,
                                  const imk_simulation *simulation, imk_error *error)
 {
     for (size_t i = 0; i < made->channels; i++) {
         imki_axis axis = axis_of(model, i);
         imki_channel *channel = &made->channel[i];
-        assign_lists(channel, &axis.triad->noise, &memory);
-        imk_status status =
-            imki_channel_start(channel, axis, 1.0 / simulation->rate, made->scene.substeps,
-                               made->random, simulation->run, error);
+        imk_status status = imki_channel_start(channel, axis, 1.0 / simulation->rate,
+                                               made->scene.substeps, made->random, simulation->run,
+                                               imki_take(memory, imki_channel_memory(axis)), error);
         if (status != IMK_OK)
             return status;
         if (!made->scene.varies)
@@ -177,28 +160,27 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
         status = check_simulation(simulation, error);
     if (status != IMK_OK)
         return status;
-    if (size < imk_simulator_size(model, simulation))
+    const layout l = layout_of(model, simulation);
+    if (size < l.all)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_simulator_size() bytes");
-    if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
+    if (!memory || (uintptr_t)memory % 64 != 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
-    const size_t columns_size = aligned(imki_scene_size(model, simulation) * sizeof(double));
-    memset(memory, 0, imk_simulator_size(model, simulation) - columns_size);
-    unsigned char *rest = memory;
-    imk_simulator *made = take(&rest, sizeof *made);
+    memset(memory, 0, l.all - l.columns);
+    imki_arena rest = {memory, 0};
+    imk_simulator *made = imki_take(&rest, sizeof *made);
     made->random = imk_random_seeded(simulation->seed);
     made->drops = model->timing.drops.value;
     made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
     made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
-    made->channel = take(&rest, made->channels * sizeof *made->channel);
-    /* The columns of the scene come last. */
-    double *columns = (double *)(void *)((unsigned char *)memory +
-                                         imk_simulator_size(model, simulation) - columns_size);
+    made->channel = imki_take(&rest, l.channels);
+    imki_arena states = {imki_take(&rest, l.states), 0};
+    double *columns = imki_take(&rest, l.columns);
     status = imki_scene_start(&made->scene, model, simulation, checked, columns, error);
     if (status == IMK_OK)
         status = start_distortion(made, model, simulation, error);
     if (status == IMK_OK)
-        status = start_channels(made, rest, model, simulation, error);
+        status = start_channels(made, &states, model, simulation, error);
     if (status == IMK_OK)
         *simulator = made;
     return status;

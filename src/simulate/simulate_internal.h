@@ -6,7 +6,7 @@
 #include "imukit/distort.h"
 #include "imukit/simulate.h"
 #include "noise/arma_internal.h"
-#include "noise/generator_internal.h"
+#include "noise/noise_terms_internal.h"
 
 /* ---- scene.c: motion and temperature, a stretch of parts of samples at a time ---- */
 
@@ -88,6 +88,13 @@ typedef struct imki_band_limit {
     double x, v;
 } imki_band_limit;
 
+/* The states of a stochastic term that this axis has. */
+typedef struct imki_channel_term {
+    const imki_generator *generator;
+    unsigned char *states;
+    size_t count;
+} imki_channel_term;
+
 typedef struct imki_channel {
     int sensor, axis;
     double constant, ramp; /* of a unit at rest [unit]; [unit per sample] */
@@ -96,22 +103,18 @@ typedef struct imki_channel {
     imk_kernel kernel;
     uint64_t next; /* sample */
     imki_band_limit band_limit;
-    bool white_present, arma_present, flicker_present, random_walk_present;
-    imk_white_state white;
-    imk_arma_state arma; /* filtered white noise */
-    imk_flicker_state flicker;
-    imk_random_walk_state random_walk;
+    imki_channel_term term[IMKI_NOISE_TERMS];
     imk_quantization_state quantization;
-    int gauss_markov_count, sinusoid_count, resonance_count;
-    imk_gauss_markov_state *gauss_markov;
-    imk_sinusoid_state *sinusoid;
-    imk_arma_state *resonance;
     double sample[IMK_NOISE_BLOCK]; /* a block not yet handed out completely */
 } imki_channel;
 
-/* Start the stochastic terms and the output stage. The arrays of the channel have been assigned. */
+/* Bytes of the states of the stochastic terms, a multiple of 64. */
+size_t imki_channel_memory(imki_axis axis);
+/* Start the stochastic terms and the output stage.
+ * @param memory  imki_channel_memory() bytes of zeros, 64-byte aligned */
 imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, size_t substeps,
-                              imk_random random, uint32_t run, imk_error *error);
+                              imk_random random, uint32_t run, unsigned char *memory,
+                              imk_error *error);
 
 /* The deterministic part of `rows` rows, whole blocks of 512 where the scene is still, out of the
  * stretch from its part `part` on. */

@@ -43,7 +43,7 @@ static uint64_t run(uint64_t hash, const imk_instrument *instrument, imk_level l
     settings.seed = 3;
     settings.rate = 500.0;
     settings.level = level;
-    if (instrument->init(design, &settings, state, NULL) != IMK_OK)
+    if (imk_instrument_init(instrument, design, &settings, state, NULL) != IMK_OK)
         return add_number(hash, -1.0);
     for (int i = 0; i < SAMPLES; i++) {
         const imk_exposure exposure = exposure_of(i);

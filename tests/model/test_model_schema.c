@@ -63,12 +63,12 @@ static void paths_are_unique_and_found(void **state)
                 assert_ptr_equal(imki_field_find(path, kind, &list), &imki_triad_fields[i]);
         }
     const imki_field *list;
-    const imki_field *field = imki_field_find("noise.resonance.q", IMKI_ACCEL, &list);
+    const imki_field *field = imki_field_find("noise.resonance.q", IMK_ACCEL, &list);
     assert_non_null(field);
-    assert_string_equal(list->path[IMKI_ACCEL], "noise.resonance");
-    assert_null(imki_field_find("noise.resonance.", IMKI_ACCEL, &list));
-    assert_null(imki_field_find("noise", IMKI_GYRO, &list));
-    assert_null(imki_field_find("g_sensitivity", IMKI_ACCEL, &list));
+    assert_string_equal(list->path[IMK_ACCEL], "noise.resonance");
+    assert_null(imki_field_find("noise.resonance.", IMK_ACCEL, &list));
+    assert_null(imki_field_find("noise", IMK_GYRO, &list));
+    assert_null(imki_field_find("g_sensitivity", IMK_ACCEL, &list));
 }
 
 /* A term has a field and draws of its own; a power has a term of that form, and exponents that an

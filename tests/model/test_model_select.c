@@ -38,7 +38,7 @@ static imk_model without_errors(void)
 
 static const imk_triad *triad_of(const imk_model *model, int kind)
 {
-    return kind == IMKI_GYRO ? &model->gyro : &model->accel;
+    return kind == IMK_GYRO ? &model->gyro : &model->accel;
 }
 
 static bool is_no_error(const imki_field *field)

@@ -21,7 +21,7 @@ static inline void *started(const imk_instrument *instrument, const void *design
     const size_t size = (instrument->state_size + 63) / 64 * 64;
     void *state = aligned_alloc(64, size);
     assert_non_null(state);
-    if (instrument->init(design, settings, state, &error) != IMK_OK)
+    if (imk_instrument_init(instrument, design, settings, state, &error) != IMK_OK)
         print_error("%s: %s %s (%g, limit %g)\n", imk_status_name(error.status), error.field,
                     error.expected, error.value, error.limit);
     assert_int_equal(error.status, IMK_OK);
@@ -120,7 +120,7 @@ static inline void check_chain(const imk_instrument *instrument, const void *des
     identify.significance = 1e-6;
     CHECK_OK(
         imk_identify_channel(&identify, count, samples, &found, workspace, workspace_size, &error));
-    instrument->reduce(design, model);
+    imk_instrument_reduce(instrument, design, model);
     const imk_noise *noise = instrument->sensor == 0 ? &model->gyro.noise : &model->accel.noise;
     const double stated[] = {noise->quantization.value[0], noise->white.value[0],
                              noise->bias_instability.value[0], noise->random_walk.value[0],

@@ -542,12 +542,12 @@ static void test_refusals(void **state)
     imk_error error;
     void *gyro = started(fog, &design, &settings);
     settings.step = 5e-6; /* the transit takes 4.84 us */
-    CHECK_STATUS(fog->init(&design, &settings, gyro, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(fog, &design, &settings, gyro, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     settings.step = 4e-6;
-    CHECK_OK(fog->init(&design, &settings, gyro, &error));
+    CHECK_OK(imk_instrument_init(fog, &design, &settings, gyro, &error));
     settings.rate = 0.0;
-    CHECK_STATUS(fog->init(&design, &settings, gyro, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(fog, &design, &settings, gyro, &error), IMK_ERROR_RANGE);
     free(gyro);
 }
 

@@ -397,7 +397,7 @@ static void levels_agree_with_model(void **unused)
     d.start_nutation = 0.0;
     d.pickoff_resolution = d.pickoff_noise = 0.0;
     imk_model *model = malloc(sizeof *model);
-    gyro->reduce(&d, model);
+    imk_instrument_reduce(gyro, &d, model);
     const imk_triad *g = &model->gyro;
     CHECK_OK(imk_model_validate(model, NULL));
     for (int level = 0; level < 2; level++) {
@@ -441,7 +441,7 @@ static void warm_torque(void **unused)
     imk_exposure x = imk_exposure_default();
     imk_free_gyro clean = d;
     clean.pickoff_resolution = clean.pickoff_noise = 0.0;
-    gyro->reduce(&clean, model);
+    imk_instrument_reduce(gyro, &clean, model);
     x.temperature += 40.0;
     const imk_physics_settings settings = settings_of(IMK_LEVEL_SLOW, 1.0, false);
     CHECK_RELATIVE(mean_of(gyro, &clean, &settings, &x, 0, 2, 0),
@@ -512,7 +512,7 @@ static void angle_random_walk(void **unused)
     d.stop = 60.0 * degree;
     d.torque_noise = 1e-6;
     imk_model *model = malloc(sizeof *model);
-    gyro->reduce(&d, model);
+    imk_instrument_reduce(gyro, &d, model);
     const double n = model->gyro.noise.white.value[0], dt = 0.2;
     const double j = d.outer_inertia[0] + d.inner_inertia[0] + d.rotor_transverse;
     const double nutation = 2.0 * pi * imk_free_gyro_nutation(&d, 0.0);
@@ -560,7 +560,7 @@ static void grade(void **unused)
     (void)unused;
     const imk_free_gyro d = imk_free_gyro_default();
     imk_model *model = malloc(sizeof *model);
-    gyro->reduce(&d, model);
+    imk_instrument_reduce(gyro, &d, model);
     imk_model_three_axes(model);
     CHECK_OK(imk_model_validate(model, NULL));
     assert_int_equal(imk_grade_model(model).gyro, IMK_GRADE_CONTROL);
@@ -609,7 +609,7 @@ static void stop_holds(void **unused)
 static void refused(const imk_free_gyro *d, imk_status status, const char *field)
 {
     imk_error error = {0};
-    CHECK_STATUS(gyro->validate(d, &error), status);
+    CHECK_STATUS(imk_design_check(gyro, d, &error), status);
     assert_string_equal(error.field, field);
 }
 
@@ -617,9 +617,9 @@ static void refusals(void **unused)
 {
     (void)unused;
     imk_free_gyro d = {0};
-    CHECK_STATUS(gyro->validate(&d, NULL), IMK_ERROR_UNINITIALISED);
+    CHECK_STATUS(imk_design_check(gyro, &d, NULL), IMK_ERROR_UNINITIALISED);
     const imk_free_gyro good = imk_free_gyro_default();
-    CHECK_OK(gyro->validate(&good, NULL));
+    CHECK_OK(imk_design_check(gyro, &good, NULL));
     d = good;
     d.rotor_polar = (double)NAN;
     refused(&d, IMK_ERROR_NOT_FINITE, "rotor.polar_inertia");
@@ -657,7 +657,7 @@ static void step_refusal(void **unused)
     imk_error error = {0};
     void *state = started(gyro, &d, &settings);
     settings.step = 1.0 / (5.9 * 269.0);
-    CHECK_STATUS(gyro->init(&d, &settings, state, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &d, &settings, state, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     settings.step = 0.0;
     CHECK_CLOSE(gyro->step_length(&d, &settings), 0.1 / 269.021, 1e-9);

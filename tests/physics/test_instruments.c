@@ -90,11 +90,11 @@ static void defaults_are_valid(void **state)
     for (size_t i = 0; i < imk_instrument_count(); i++) {
         imk_error error = {0};
         void *design = design_of(get(i));
-        if (get(i)->validate(design, &error) != IMK_OK)
+        if (imk_design_check(get(i), design, &error) != IMK_OK)
             print_error("%s: %s %s\n", get(i)->name, error.field, error.expected);
         assert_int_equal(error.status, IMK_OK);
         for (int axes = 1; axes <= 3; axes += 2) {
-            get(i)->reduce(design, model);
+            imk_instrument_reduce(get(i), design, model);
             if (axes == 3)
                 imk_model_three_axes(model);
             if (imk_model_validate(model, &error) != IMK_OK)
@@ -131,7 +131,7 @@ static void every_field_is_checked(void **state)
                     free(design);
                     continue;
                 }
-                const imk_status status = get(i)->validate(design, &error);
+                const imk_status status = imk_design_check(get(i), design, &error);
                 const imk_status due = field->kind == IMK_DESIGN_NUMBER && b < 2
                                            ? IMK_ERROR_NOT_FINITE
                                            : IMK_ERROR_RANGE;
@@ -155,17 +155,20 @@ static void settings_are_checked(void **state)
         imk_error error = {0};
         imk_physics_settings settings = imk_physics_settings_default();
         settings.rate = 0.0;
-        CHECK_STATUS(k->init(design, &settings, memory, &error), IMK_ERROR_RANGE);
+        CHECK_STATUS(imk_instrument_init(k, design, &settings, memory, &error), IMK_ERROR_RANGE);
         assert_string_equal(error.field, "rate");
         settings = imk_physics_settings_default();
         settings.step = (double)NAN;
-        CHECK_STATUS(k->init(design, &settings, memory, &error), IMK_ERROR_NOT_FINITE);
+        CHECK_STATUS(imk_instrument_init(k, design, &settings, memory, &error),
+                     IMK_ERROR_NOT_FINITE);
         settings = imk_physics_settings_default();
         settings.cookie = 0;
-        CHECK_STATUS(k->init(design, &settings, memory, &error), IMK_ERROR_UNINITIALISED);
+        CHECK_STATUS(imk_instrument_init(k, design, &settings, memory, &error),
+                     IMK_ERROR_UNINITIALISED);
         memset(design, 0, k->design_size);
         settings = imk_physics_settings_default();
-        CHECK_STATUS(k->init(design, &settings, memory, &error), IMK_ERROR_UNINITIALISED);
+        CHECK_STATUS(imk_instrument_init(k, design, &settings, memory, &error),
+                     IMK_ERROR_UNINITIALISED);
         free(memory);
         free(design);
     }
@@ -183,7 +186,7 @@ static void steps_that_would_lie_are_refused(void **state)
         imk_physics_settings settings = imk_physics_settings_default();
         settings.rate = 0.5;
         settings.step = 1.0;
-        const imk_status status = k->init(design, &settings, memory, &error);
+        const imk_status status = imk_instrument_init(k, design, &settings, memory, &error);
         if (status != IMK_ERROR_RANGE || strcmp(error.field, "step") != 0 || !error.expected[0]) {
             print_error("%s: %s %s %s\n", k->name, imk_status_name(status), error.field,
                         error.expected);
@@ -258,7 +261,7 @@ static void classes_agree_with_the_technology_column(void **state)
     for (size_t i = 0; i < imk_instrument_count(); i++) {
         const imk_instrument *k = get(i);
         void *design = design_of(k);
-        k->reduce(design, model);
+        imk_instrument_reduce(k, design, model);
         imk_model_three_axes(model);
         const imk_grade_result result = imk_grade_model(model);
         const imk_grade grade = k->sensor == IMK_GYRO ? result.gyro : result.accel;

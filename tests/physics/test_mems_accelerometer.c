@@ -342,7 +342,7 @@ static void refuse_settings(const imk_mems_accelerometer *d, const imk_physics_s
     imk_error error = {0};
     void *memory = aligned_alloc(64, (INSTRUMENT->state_size + 63) / 64 * 64);
     assert_non_null(memory);
-    CHECK_STATUS(INSTRUMENT->init(d, settings, memory, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(INSTRUMENT, d, settings, memory, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, field);
     free(memory);
 }

@@ -346,7 +346,7 @@ static void impossible_designs_are_refused(void **state)
     CHECK_STATUS(imk_pendulous_servo_validate(&d, &error), IMK_ERROR_UNINITIALISED);
     d = imk_pendulous_servo_default();
     settings.step = 1e-3; /* 800 Hz: 1.25 ms a cycle */
-    CHECK_STATUS(servo->init(&d, &settings, memory, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(servo, &d, &settings, memory, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     free(memory);
 }

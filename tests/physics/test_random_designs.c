@@ -102,7 +102,7 @@ static bool runs(const imk_instrument *instrument, const void *design, void *sta
         return false;
     if (settings.rate * step < 1e-3) /* at most a thousand internal steps */
         settings.rate = 1e-3 / step;
-    if (instrument->init(design, &settings, state, NULL) != IMK_OK)
+    if (imk_instrument_init(instrument, design, &settings, state, NULL) != IMK_OK)
         return true; /* refused: a rate or level that it does not have */
     for (int i = 0; i < STEPS; i++) {
         const imk_exposure exposure = any_exposure(rate, force);
@@ -137,12 +137,12 @@ static void designs_are_refused_or_run(void **unused)
             instrument->set_default(design);
             for (int k = (int)(CHANGES_MAX * uniform() * uniform()); k >= 0; k--)
                 change_field(instrument, design);
-            if (instrument->validate(design, &error) != IMK_OK) {
+            if (imk_design_check(instrument, design, &error) != IMK_OK) {
                 assert_true(error.field[0] != '\0' && error.status != IMK_OK);
                 continue;
             }
             valid++;
-            instrument->reduce(design, model);
+            imk_instrument_reduce(instrument, design, model);
             if (imk_model_validate(model, &error) != IMK_OK)
                 fail_msg("%s, design %d: error model with %s = %g", instrument->name, i,
                          error.field, error.value);

@@ -325,7 +325,7 @@ static void test_copies_and_grade(void **state)
     free(b);
     imk_model *model = malloc(sizeof *model);
     imk_error error;
-    gyro->reduce(&d, model);
+    imk_instrument_reduce(gyro, &d, model);
     CHECK_OK(imk_model_validate(model, &error));
     imk_model_three_axes(model);
     assert_int_equal(imk_grade_model(model).gyro, IMK_GRADE_CONTROL);
@@ -344,7 +344,7 @@ static void test_refusals(void **state)
     (void)state;
     const imk_rate_gyro good = imk_rate_gyro_default();
     imk_rate_gyro d = {0};
-    refused(d, IMK_ERROR_UNINITIALISED, "rate_gyro");
+    refused(d, IMK_ERROR_UNINITIALISED, "design");
     d = good;
     d.output_inertia = -1e-6;
     refused(d, IMK_ERROR_RANGE, "gimbal.output_inertia");
@@ -362,7 +362,7 @@ static void test_refusals(void **state)
     imk_error error = {0};
     void *s = started(gyro, &good, &settings);
     settings.step = 0.005; /* a cycle of 33 ms has 8 of 4.2 ms */
-    CHECK_STATUS(gyro->init(&good, &settings, s, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &good, &settings, s, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     free(s);
 }

@@ -299,7 +299,7 @@ static void test_copies_and_grade(void **state)
         assert_memory_equal(x, y, sizeof x);
         free(a);
         free(b);
-        gyro->reduce(&d, model);
+        imk_instrument_reduce(gyro, &d, model);
         CHECK_OK(imk_model_validate(model, &error));
         imk_model_three_axes(model);
         assert_int_equal(imk_grade_model(model).gyro, IMK_GRADE_STRATEGIC);
@@ -319,7 +319,7 @@ static void test_refusals(void **state)
     (void)state;
     const design_of good = imk_rate_integrating_gyro_default();
     design_of d = {0};
-    refused(d, IMK_ERROR_UNINITIALISED, "rate_integrating_gyro");
+    refused(d, IMK_ERROR_UNINITIALISED, "design");
     d = good;
     d.damping = 0.0;
     refused(d, IMK_ERROR_RANGE, "float.damping");
@@ -338,12 +338,12 @@ static void test_refusals(void **state)
     void *s = started(gyro, &d, &settings);
     settings.step = 0.026; /* a cycle of the loop has 10 of 25 ms */
     settings.rate = 10.0;
-    CHECK_STATUS(gyro->init(&d, &settings, s, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &d, &settings, s, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     d.rebalance = IMK_REBALANCE_BINARY;
     settings.step = 0.0;
     settings.rate = 300.0; /* 21.3 pulses to a sample */
-    CHECK_STATUS(gyro->init(&d, &settings, s, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &d, &settings, s, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "rate");
     free(s);
 }

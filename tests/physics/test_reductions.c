@@ -121,9 +121,9 @@ static void check_variant(const variant *v)
     instrument->set_default(design);
     for (int i = 0; i < CHANGES && v->changes[i].path; i++)
         set_field(instrument, &v->changes[i], design);
-    if (instrument->validate(design, &error) != IMK_OK)
+    if (imk_design_check(instrument, design, &error) != IMK_OK)
         fail_msg("%s: %s %s", v->instrument, error.field, error.expected);
-    instrument->reduce(design, model);
+    imk_instrument_reduce(instrument, design, model);
     CHECK_OK(imk_model_validate(model, &error));
     imk_distortion distortion;
     CHECK_OK(imk_distortion_start(&distortion, model, NULL, IMK_KERNEL_SCALAR, &error));

@@ -464,10 +464,10 @@ static void noise_outweighs_the_dead_band(void **state)
     imk_model *model = malloc(sizeof *model);
     assert_non_null(model);
     d.lock_in.rate *= 0.99;
-    laser->reduce(&d, model);
+    imk_instrument_reduce(laser, &d, model);
     CHECK_CLOSE(model->gyro.dead_band.value[0], 0.0, 0.0);
     d.lock_in.rate *= 1.02;
-    laser->reduce(&d, model);
+    imk_instrument_reduce(laser, &d, model);
     CHECK_RELATIVE(model->gyro.dead_band.value[0], d.lock_in.rate, 1e-15);
     free(model);
 }
@@ -552,7 +552,7 @@ static void slow_errors(void **state)
     d.alignment.z = -2e-3;
     imk_model *model = malloc(sizeof *model);
     assert_non_null(model);
-    laser->reduce(&d, model);
+    imk_instrument_reduce(laser, &d, model);
     CHECK_OK(imk_model_validate(model, NULL));
     const imk_triad *gyro = &model->gyro;
     const double rate[3] = {0.5, 0.2, -0.1}, warmer = 20.0;
@@ -639,7 +639,7 @@ static void default_design(void **state)
     imk_model *model = malloc(sizeof *model);
     assert_non_null(model);
     CHECK_OK(imk_ring_laser_validate(&d, NULL));
-    laser->reduce(&d, model);
+    imk_instrument_reduce(laser, &d, model);
     CHECK_OK(imk_model_validate(model, NULL));
     const imk_noise *noise = &model->gyro.noise;
     CHECK_CLOSE(noise->white.value[0] / degree * 60.0, 0.0035, 1e-6);
@@ -656,10 +656,10 @@ static void default_design(void **state)
     assert_ptr_equal(imk_instrument_find("ring laser"), laser);
 
     const imk_ring_laser without = undithered(), sine = checked();
-    laser->reduce(&without, model);
+    imk_instrument_reduce(laser, &without, model);
     CHECK_RELATIVE(model->gyro.dead_band.value[0], without.lock_in.rate, 1e-15);
     CHECK_RELATIVE(model->gyro.noise.white.value[0], imk_ring_laser_quantum_noise(&without), 1e-14);
-    laser->reduce(&sine, model);
+    imk_instrument_reduce(laser, &sine, model);
     CHECK_RELATIVE(model->gyro.dead_band.value[0], imk_ring_laser_dead_band(&sine), 1e-15);
     free(model);
 }
@@ -733,24 +733,24 @@ static void wrong_settings(void **state)
     imk_physics_settings settings = settings_of(IMK_LEVEL_FULL, true);
     /* twice as long as allowed: curvature of the phase, then lock-in without dither */
     settings.step = 5.0 * laser->step_length(&d, &settings);
-    CHECK_STATUS(laser->init(&d, &settings, memory, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(laser, &d, &settings, memory, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     d.dither.rate = 0.0;
     settings.step = 0.0;
     settings.step = 10.0 * laser->step_length(&d, &settings);
-    CHECK_STATUS(laser->init(&d, &settings, memory, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(laser, &d, &settings, memory, &error), IMK_ERROR_RANGE);
     settings = settings_of(IMK_LEVEL_SLOW, true);
-    CHECK_STATUS(laser->init(&d, &settings, memory, &error), IMK_ERROR_UNSUPPORTED);
+    CHECK_STATUS(imk_instrument_init(laser, &d, &settings, memory, &error), IMK_ERROR_UNSUPPORTED);
     assert_string_equal(error.field, "level");
     d = checked();
     d.dither.rate = 5.0 * degree; /* 18.6 rad */
-    CHECK_STATUS(laser->init(&d, &settings, memory, &error), IMK_ERROR_UNSUPPORTED);
+    CHECK_STATUS(imk_instrument_init(laser, &d, &settings, memory, &error), IMK_ERROR_UNSUPPORTED);
     d = checked();
     d.lock_in.rate = 2.0 * degree; /* kicks of 0.97 rad */
-    CHECK_STATUS(laser->init(&d, &settings, memory, &error), IMK_ERROR_UNSUPPORTED);
+    CHECK_STATUS(imk_instrument_init(laser, &d, &settings, memory, &error), IMK_ERROR_UNSUPPORTED);
     d = checked();
     settings.step = 1.0;
-    CHECK_STATUS(laser->init(&d, &settings, memory, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(laser, &d, &settings, memory, &error), IMK_ERROR_RANGE);
     free(memory);
 }
 

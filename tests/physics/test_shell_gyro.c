@@ -181,7 +181,7 @@ static void test_error_model_of_a_ring(void **unused)
     design.anisotropy.frequency_split = 0.1;
     design.forcer.limit = 0.0;
     imk_model model;
-    shell->reduce(&design, &model);
+    imk_instrument_reduce(shell, &design, &model);
     CHECK_OK(imk_model_validate(&model, NULL));
     const imk_triad *gyro = &model.gyro;
     const double bias = gyro->bias.fixed.value[0], scale = gyro->scale_factor.fixed.value[0];
@@ -221,7 +221,7 @@ static void test_bandwidth(void **unused)
     (void)unused;
     imk_shell_gyro design = perfect(IMK_SHELL_REBALANCE);
     imk_model model;
-    shell->reduce(&design, &model);
+    imk_instrument_reduce(shell, &design, &model);
     const double bandwidth = model.gyro.bandwidth.value[0];
     /* the delay of an update, a twelfth of 1/20 s, takes an eighth of it */
     CHECK_CLOSE(bandwidth, 20.0, 0.15 * 20.0);
@@ -276,7 +276,7 @@ static void test_hemispherical_gyro(void **unused)
     (void)unused;
     const imk_shell_gyro design = hemispherical();
     imk_model model;
-    shell->reduce(&design, &model);
+    imk_instrument_reduce(shell, &design, &model);
     CHECK_OK(imk_model_validate(&model, NULL));
     /* the published figures: .00025 deg/sqrt(h) and .005 deg/h (1 sigma) within 10 % */
     CHECK_RELATIVE(model.gyro.noise.white.value[0] * 180.0 / pi * 60.0, 2.5e-4, 0.1);
@@ -307,7 +307,7 @@ static void test_range(void **unused)
     imk_shell_gyro design = perfect(IMK_SHELL_REBALANCE);
     design.forcer.limit = imk_shell_gyro_rebalance_force(&design, 2.0);
     imk_model model;
-    shell->reduce(&design, &model);
+    imk_instrument_reduce(shell, &design, &model);
     CHECK_RELATIVE(model.gyro.range.value[0], 2.0, 1e-12);
     CHECK_RELATIVE(steady(&design, IMK_LEVEL_FULL, 1.9), 1.9, 1e-5);
     CHECK_RELATIVE(steady(&design, IMK_LEVEL_FULL, 3.0), 2.0, 1e-12);
@@ -358,7 +358,7 @@ static void test_preset(void **unused)
     const imk_shell_gyro design = imk_shell_gyro_default();
     imk_model model;
     CHECK_OK(imk_shell_gyro_validate(&design, NULL));
-    shell->reduce(&design, &model);
+    imk_instrument_reduce(shell, &design, &model);
     CHECK_OK(imk_model_validate(&model, NULL));
     imk_model_three_axes(&model);
     const imk_grade_result grade = imk_grade_model(&model);
@@ -382,8 +382,8 @@ static void test_example_file(void **unused)
     CHECK_OK(
         imk_design_read(SOURCE_DIRECTORY "/examples/instruments/hemispherical.yaml", &file, NULL));
     assert_ptr_equal(file.instrument, shell);
-    shell->reduce(file.design, &read);
-    shell->reduce(&design, &expected);
+    imk_instrument_reduce(shell, file.design, &read);
+    imk_instrument_reduce(shell, &design, &expected);
     const imk_triad *a = &read.gyro, *b = &expected.gyro;
     CHECK_RELATIVE(a->bias.fixed.value[0], b->bias.fixed.value[0], 1e-9);
     CHECK_RELATIVE(a->bias.repeatability.value[0], b->bias.repeatability.value[0], 1e-12);
@@ -440,7 +440,7 @@ static void check_not_started(const imk_shell_gyro *design, const imk_physics_se
     const size_t size = (shell->state_size + 63) / 64 * 64;
     void *state = aligned_alloc(64, size);
     assert_non_null(state);
-    CHECK_STATUS(shell->init(design, settings, state, &error), status);
+    CHECK_STATUS(imk_instrument_init(shell, design, settings, state, &error), status);
     assert_string_equal(error.field, field);
     free(state);
 }

@@ -42,7 +42,7 @@ static void check_random_walk(const imk_shell_gyro *design, imk_level level, dou
                               size_t count)
 {
     imk_model model;
-    shell->reduce(design, &model);
+    imk_instrument_reduce(shell, design, &model);
     const double n = model.gyro.noise.white.value[0], bias = model.gyro.bias.fixed.value[0];
     CHECK_RELATIVE(n, imk_shell_gyro_thermal_random_walk(design, 293.15), 1e-12);
     CHECK_RELATIVE(n, 1e-3, 0.01);
@@ -115,7 +115,7 @@ static void test_repeatability(void **unused)
     design.resonator.mass = 1.0; /* no Brownian motion to speak of */
     design.anisotropy.damping_repeatability = 0.01;
     imk_model model;
-    shell->reduce(&design, &model);
+    imk_instrument_reduce(shell, &design, &model);
     const double sigma = model.gyro.bias.repeatability.value[0];
     CHECK_RELATIVE(sigma, 0.01 / (2.0 * 0.554), 1e-12);
     const imk_exposure exposure = imk_exposure_default();

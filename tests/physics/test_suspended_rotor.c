@@ -227,7 +227,7 @@ static void levels_agree_with_model(void **unused)
     d.torque[1] = -2e-12;
     d.torque[2] = 3e-12;
     imk_model *model = malloc(sizeof *model);
-    gyro->reduce(&d, model);
+    imk_instrument_reduce(gyro, &d, model);
     const imk_triad *g = &model->gyro;
     CHECK_OK(imk_model_validate(model, NULL));
     const double size = fabs(g->g_sensitivity.value[0][0]) * gravity; /* 5e-8 rad/s */
@@ -254,7 +254,7 @@ static void levels_agree_with_model(void **unused)
     }
     imk_suspended_rotor warm = d;
     warm.torque_temperature = 1e-13;
-    gyro->reduce(&warm, model);
+    imk_instrument_reduce(gyro, &warm, model);
     imk_exposure x = imk_exposure_default();
     x.temperature += 20.0;
     const imk_physics_settings settings = settings_of(IMK_LEVEL_SLOW, 10.0, false);
@@ -328,7 +328,7 @@ static void angle_random_walk(void **unused)
     d.torque_noise = 1e-11;
     d.start_tilt = 0.5;
     imk_model *model = malloc(sizeof *model);
-    gyro->reduce(&d, model);
+    imk_instrument_reduce(gyro, &d, model);
     const double n = model->gyro.noise.white.value[0];
     const imk_exposure x = imk_exposure_default();
     for (int level = 0; level < 2; level++) {
@@ -368,7 +368,7 @@ static void grade(void **unused)
     (void)unused;
     const imk_suspended_rotor d = imk_suspended_rotor_default();
     imk_model *model = malloc(sizeof *model);
-    gyro->reduce(&d, model);
+    imk_instrument_reduce(gyro, &d, model);
     imk_model_three_axes(model);
     CHECK_OK(imk_model_validate(model, NULL));
     const imk_grade found = imk_grade_model(model).gyro;
@@ -406,7 +406,7 @@ static void ball_falls(void **unused)
 static void refused(const imk_suspended_rotor *d, imk_status status, const char *field)
 {
     imk_error error = {0};
-    CHECK_STATUS(gyro->validate(d, &error), status);
+    CHECK_STATUS(imk_design_check(gyro, d, &error), status);
     assert_string_equal(error.field, field);
 }
 
@@ -414,9 +414,9 @@ static void refusals(void **unused)
 {
     (void)unused;
     imk_suspended_rotor d = {0};
-    CHECK_STATUS(gyro->validate(&d, NULL), IMK_ERROR_UNINITIALISED);
+    CHECK_STATUS(imk_design_check(gyro, &d, NULL), IMK_ERROR_UNINITIALISED);
     const imk_suspended_rotor good = imk_suspended_rotor_default();
-    CHECK_OK(gyro->validate(&good, NULL));
+    CHECK_OK(imk_design_check(gyro, &good, NULL));
     d = good;
     d.density = (double)NAN;
     refused(&d, IMK_ERROR_NOT_FINITE, "ball.density");
@@ -433,7 +433,7 @@ static void refusals(void **unused)
     imk_error error = {0};
     void *state = started(gyro, &good, &settings);
     settings.step = 0.2;
-    CHECK_STATUS(gyro->init(&good, &settings, state, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &good, &settings, state, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     settings.step = 0.0;
     CHECK_CLOSE(gyro->step_length(&good, &settings), 0.01, 0.0);

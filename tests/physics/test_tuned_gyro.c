@@ -394,7 +394,7 @@ static void test_copies_and_grade(void **state)
     free(b);
     imk_model *model = malloc(sizeof *model);
     imk_error error;
-    gyro->reduce(&d, model);
+    imk_instrument_reduce(gyro, &d, model);
     CHECK_OK(imk_model_validate(model, &error));
     imk_model_three_axes(model);
     assert_int_equal(imk_grade_model(model).gyro, IMK_GRADE_TACTICAL);
@@ -413,7 +413,7 @@ static void test_refusals(void **state)
     (void)state;
     const imk_tuned_gyro good = imk_tuned_gyro_default();
     imk_tuned_gyro d = {0};
-    refused(d, IMK_ERROR_UNINITIALISED, "tuned_gyro");
+    refused(d, IMK_ERROR_UNINITIALISED, "design");
     d = good;
     d.gimbal_inertia_x = -1e-7;
     refused(d, IMK_ERROR_RANGE, "gimbal.inertia_x");
@@ -439,7 +439,7 @@ static void test_refusals(void **state)
     imk_error error = {0};
     void *s = started(gyro, &good, &settings);
     settings.step = 0.7e-3; /* a turn of 5 ms has 8 of 0.625 ms */
-    CHECK_STATUS(gyro->init(&good, &settings, s, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &good, &settings, s, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     free(s);
 }

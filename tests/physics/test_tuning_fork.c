@@ -113,8 +113,8 @@ enum { ROWS = IMKI_FORK_ROWS };
  * whatever the damping and the rate. */
 static void equilibrium(const imk_tuning_fork *design, double p[16])
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
-    const double heat = 1.380649e-23 * IMKI_FORK_REFERENCE / design->mass;
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
+    const double heat = 1.380649e-23 * IMKI_DESIGN_TEMPERATURE / design->mass;
     const double xx = point.drive * point.drive, yy = point.sense * point.sense;
     const double xy =
         4.0 * PI * design->angular_gain * design->drive.frequency * design->quadrature;
@@ -128,7 +128,7 @@ static void equilibrium(const imk_tuning_fork *design, double p[16])
 
 static imki_fork_frame *warm_frame(const imk_tuning_fork *design, double rate, double cycles)
 {
-    const imki_fork_condition condition = {rate, 0.0, IMKI_FORK_REFERENCE};
+    const imki_fork_condition condition = {rate, 0.0, IMKI_DESIGN_TEMPERATURE};
     const int steps = 18;
     imki_fork_frame *frame = malloc(sizeof *frame);
     assert_non_null(frame);
@@ -187,7 +187,7 @@ static void test_frame_phasor_noise(void **unused)
     imki_fork_frame *frame = warm_frame(&design, 0.0, 0.93);
     const int n = frame->steps;
     const double w0 = 2.0 * PI * 1560.0, a = 2.0 * PI * 0.93 / n, h = a / (2.0 * PI * 1500.0);
-    const double heat = 1.380649e-23 * IMKI_FORK_REFERENCE / design.mass;
+    const double heat = 1.380649e-23 * IMKI_DESIGN_TEMPERATURE / design.mass;
     const double ripple = sin(n * a) / sin(a), mean = sin(0.5 * n * a) / (n * sin(0.5 * a));
     const double c = 0.5 * (n + ripple) - n * mean * mean;
     double p[16], whole[2] = {0.0, 0.0}, with_end = 0.0, readings = 0.0;
@@ -252,7 +252,7 @@ static void test_no_numerical_damping(void **unused)
     design.drive.q = design.sense.q = 1e12;
     design.quadrature = 2.0;
     imki_fork_frame *frame = warm_frame(&design, 5.0, 1.01);
-    const imki_fork_point point = imki_fork_at(&design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(&design, IMKI_DESIGN_TEMPERATURE);
     double input[IMKI_FORK_COLUMNS] = {5e-6, 0.0, 1e-6, 0.1}, out[ROWS], energy[2] = {0.0, 0.0};
     for (int f = 0; f <= FRAMES; f++) {
         if (f == 0 || f == FRAMES)
@@ -674,17 +674,17 @@ static void test_refused_steps(void **unused)
     void *state = aligned_alloc(64, (gyro->state_size + 63) / 64 * 64);
     assert_non_null(state);
     settings.step = 1.0 / (15.0 * 14e3);
-    CHECK_STATUS(gyro->init(&design, &settings, state, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &design, &settings, state, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     settings.step = 1.0 / (200.0 * 14e3);
-    CHECK_STATUS(gyro->init(&design, &settings, state, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &design, &settings, state, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     settings.step = 0.0;
     settings.rate = 200.0 * 14e3;
-    CHECK_STATUS(gyro->init(&design, &settings, state, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(gyro, &design, &settings, state, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "rate");
     settings.rate = 100.0;
-    CHECK_OK(gyro->init(&design, &settings, state, &error));
+    CHECK_OK(imk_instrument_init(gyro, &design, &settings, state, &error));
     CHECK_RELATIVE(gyro->step_length(&design, &settings), 1.0 / (16.0 * 14e3), 1e-12);
     free(state);
 }

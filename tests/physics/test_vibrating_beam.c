@@ -334,7 +334,7 @@ static void impossible_designs_are_refused(void **state)
     assert_string_equal(error.field, "arrangement");
     d = imk_vibrating_beam_default();
     settings.step = 1e-5;
-    CHECK_STATUS(beam->init(&d, &settings, memory, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_instrument_init(beam, &d, &settings, memory, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "step");
     free(memory);
 }

@@ -10,6 +10,7 @@
 #include "imukit/simulate.h"
 #include "imukit/thread_pool.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -294,6 +295,47 @@ static void test_threads_and_blocks(void **state)
     }
 }
 
+/* A redundant unit whose sixteen axes all have a filter and a resonance: on one thread they are
+ * more sequences than are computed together. */
+static void test_sixteen_filtered_axes(void **state)
+{
+    (void)state;
+    enum { COUNT = 1024, AXES = 2 * IMK_AXES_MAX };
+    static double value[3][AXES][COUNT];
+    imk_model model = full_model();
+    imk_triad *triads[2] = {&model.gyro, &model.accel};
+    for (int sensor = 0; sensor < 2; sensor++) {
+        triads[sensor]->axis_count = IMK_AXES_MAX;
+        for (int i = 0; i < IMK_AXES_MAX; i++) {
+            const double angle = 0.4 * i, z = 0.1 * i;
+            const double direction[3] = {sqrt(1.0 - z * z) * cos(angle),
+                                         sqrt(1.0 - z * z) * sin(angle), z};
+            memcpy(triads[sensor]->direction[i], direction, sizeof direction);
+            triads[sensor]->noise.white.value[i] = 1e-3 * (i + 1);
+            triads[sensor]->bandwidth.value[i] = 20.0 + i;
+            triads[sensor]->noise.resonance[0].sigma.value[i] = 1e-3;
+            triads[sensor]->noise.resonance[0].frequency.value[i] = 10.0 + i;
+            triads[sensor]->noise.resonance[0].q.value[i] = 5.0;
+        }
+    }
+    const imk_simulation simulation = imk_simulation_default();
+    for (size_t threads = 1; threads <= 3; threads++) {
+        double *columns[AXES];
+        imk_thread_pool *pool = imk_thread_pool_create(threads);
+        imk_executor executor = imk_thread_pool_executor(pool);
+        imk_simulator *simulator = start(&model, &simulation);
+        assert_int_equal(imk_simulator_channels(simulator), AXES);
+        for (size_t i = 0; i < AXES; i++)
+            columns[i] = value[threads - 1][i];
+        imk_simulator_next(simulator, COUNT, columns, &executor);
+        free(simulator);
+        imk_thread_pool_destroy(pool);
+        assert_memory_equal(value[0], value[threads - 1], sizeof value[0]);
+    }
+    for (size_t i = 1; i < AXES; i++)
+        assert_memory_not_equal(value[0][0], value[0][i], sizeof value[0][0]);
+}
+
 /* FNV-1a of the bits, least significant byte first. */
 static uint64_t hash_of(const log6 *log)
 {
@@ -473,6 +515,7 @@ int main(void)
         cmocka_unit_test(test_axes_do_not_touch_each_other),
         cmocka_unit_test(test_seeds_and_runs),
         cmocka_unit_test(test_threads_and_blocks),
+        cmocka_unit_test(test_sixteen_filtered_axes),
         cmocka_unit_test(test_golden_hash),
         cmocka_unit_test(test_range_resolution_counts),
         cmocka_unit_test(test_quantization),

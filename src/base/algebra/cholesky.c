@@ -5,16 +5,10 @@
  *     l[i][i] = sqrt(a[i][i] - sum_{k<i} l[i][k]^2)                    [GOLUB2013, sec. 4.2] */
 #include "imukit/linear_algebra.h"
 
+#include "vector_internal.h"
+
 #include <float.h>
 #include <math.h>
-
-static double dot(size_t count, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < count; k++)
-        sum += a[k] * b[k];
-    return sum;
-}
 
 imk_status imk_cholesky_factor(size_t n, double *a)
 {
@@ -22,8 +16,8 @@ imk_status imk_cholesky_factor(size_t n, double *a)
         double *row = a + i * n;
         const double diagonal = row[i];
         for (size_t j = 0; j < i; j++)
-            row[j] = (row[j] - dot(j, row, a + j * n)) / a[j * n + j];
-        const double pivot = diagonal - dot(i, row, row);
+            row[j] = (row[j] - imki_dot(j, row, a + j * n)) / a[j * n + j];
+        const double pivot = diagonal - imki_dot(i, row, row);
         /* A pivot this small beside its diagonal element is made of rounding errors only. */
         if (!(pivot > DBL_EPSILON * diagonal) || !isfinite(pivot))
             return IMK_ERROR_SINGULAR;
@@ -37,7 +31,7 @@ imk_status imk_cholesky_factor(size_t n, double *a)
 void imk_cholesky_solve(size_t n, const double *l, double *b)
 {
     for (size_t i = 0; i < n; i++)
-        b[i] = (b[i] - dot(i, l + i * n, b)) / l[i * n + i];
+        b[i] = (b[i] - imki_dot(i, l + i * n, b)) / l[i * n + i];
     for (size_t i = n; i-- > 0;) {
         b[i] /= l[i * n + i];
         for (size_t j = 0; j < i; j++)

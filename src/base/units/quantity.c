@@ -2,6 +2,7 @@
 /* Reading a quantity of the model file: numbers, ± and their 1-sigma values, and a unit. */
 #include "imukit/units.h"
 
+#include "base/text_internal.h"
 #include "imukit/decimal.h"
 #include "unit_table_internal.h"
 
@@ -39,19 +40,10 @@ static imk_status refuse(const source *s, imk_status status, const char *begin, 
 }
 
 /* Text to compose in an imk_error, cut where it ends. */
-static void append(char *text, size_t size, const char *more)
-{
-    const size_t used = strlen(text);
-    const size_t length = strlen(more);
-    const size_t fits = length < size - used - 1 ? length : size - used - 1;
-    memcpy(text + used, more, fits);
-    text[used + fits] = '\0';
-}
-
 static void append_examples(imk_error *text, const char *before, imk_dimension dimension)
 {
-    append(text->expected, sizeof text->expected, before);
-    append(text->expected, sizeof text->expected, imk_dimension_examples(dimension));
+    imki_append_text(text->expected, sizeof text->expected, before);
+    imki_append_text(text->expected, sizeof text->expected, imk_dimension_examples(dimension));
 }
 
 static imk_status refuse_dimension(const source *s, const char *unit_begin, imk_dimension found,
@@ -61,11 +53,11 @@ static imk_status refuse_dimension(const source *s, const char *unit_begin, imk_
     char si[IMKI_SI_TEXT_SIZE];
     (void)imk_error_set(&text, IMK_ERROR_DIMENSION, "", "is ", imk_dimension_name(expected));
     if (imki_dimension_known(found)) {
-        append(text.found, sizeof text.found, imk_dimension_name(found));
+        imki_append_text(text.found, sizeof text.found, imk_dimension_name(found));
     } else {
         imki_unit_si_text(found, false, si);
-        append(text.found, sizeof text.found, "in ");
-        append(text.found, sizeof text.found, si);
+        imki_append_text(text.found, sizeof text.found, "in ");
+        imki_append_text(text.found, sizeof text.found, si);
     }
     append_examples(&text, " like ", expected);
     /* The unit alone is to blame when the numbers take too much room. */

@@ -100,7 +100,7 @@ static size_t list_parameters(const imk_model *model, imk_model_parameter *param
         for (unsigned k = 0; k < 9; k++) {
             const imk_model_parameter place = {(uint8_t)sensor, IMK_MODEL_MISALIGNMENT,
                                                (uint8_t)(k / 3), (uint8_t)(k % 3)};
-            const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+            const imk_triad *triad = imk_model_triad(model, sensor);
             bool is_listed = k % 4 == 0 || !triad->present || triad->axis_count != 3;
             for (size_t p = 0; !is_listed && p < count; p++)
                 is_listed = memcmp(&parameter[p], &place, sizeof place) == 0;

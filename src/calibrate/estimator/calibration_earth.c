@@ -17,6 +17,7 @@
  * turns counts. Above, g-sensitivity, which both tell of, would be stated too well. */
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -27,11 +28,6 @@ static const double negligible_share = 0.02;
 /* What a turn leaves unknown of the Earth's horizontal rate, over its size: errors of scale and
  * misalignment from which the solution starts, 1 or 2 % of a turn of 90 to 180 deg. */
 static const double carried = 0.03;
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* ---- start ------------------------------------------------------------------------------------
  */
@@ -113,7 +109,7 @@ void imki_earth_spread(imki_estimator *e)
                 isnan(e->reading[i][IMK_GYRO][axis]))
                 continue;
             const double *n = e->now.attitude[i], *d = e->problem->model.gyro.direction[axis];
-            const double along = dot(n, d);
+            const double along = imki_dot3(n, d);
             e->known_variance[i][axis] = e->horizontal_variance * fmax(0.0, 1.0 - along * along);
         }
     for (size_t t = 0; t < e->turns; t++) {
@@ -142,7 +138,7 @@ static const imk_turn *turn_into(const imki_estimator *e, size_t index)
 static void horizontal_row(const imki_estimator *e, const imki_point *point, size_t index,
                            const imk_turn *turn, const double across[3], size_t k, imki_row *row)
 {
-    *row = (imki_row){.residual = -dot(across, point->horizontal[index]),
+    *row = (imki_row){.residual = -imki_dot3(across, point->horizontal[index]),
                       .sigma = sqrt(e->horizontal_variance),
                       .locals = 1,
                       .local = {(size_t)e->local_first[index] + 2 + k},
@@ -155,11 +151,11 @@ static void horizontal_row(const imki_estimator *e, const imki_point *point, siz
     row->sigma *= carried;
     imki_across(point->attitude[from], start[0], start[1]);
     for (size_t j = 0; j < 3; j++)
-        row->residual += across[j] * dot(d + 3 * j, point->horizontal[from]);
+        row->residual += across[j] * imki_dot3(d + 3 * j, point->horizontal[from]);
     for (size_t l = 0; l < 2; l++) {
         double by = 0.0;
         for (size_t j = 0; j < 3; j++)
-            by -= across[j] * dot(d + 3 * j, start[l]);
+            by -= across[j] * imki_dot3(d + 3 * j, start[l]);
         row->local[row->locals] = (size_t)e->local_first[from] + 2 + l;
         row->by_local[row->locals++] = by;
     }

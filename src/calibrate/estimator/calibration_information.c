@@ -3,6 +3,7 @@
  * values, attitudes, placements, fixtures and the Earth's unknown part eliminated. */
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -32,8 +33,7 @@ static imk_status check_forces(const imk_calibration *c, imk_error *error)
 {
     for (size_t i = 0; i < c->observation_count; i++) {
         const imk_observation *o = &c->observation[i];
-        if (o->knowledge != IMK_INPUT_GRAVITY ||
-            o->force[0] * o->force[0] + o->force[1] * o->force[1] + o->force[2] * o->force[2] > 0.0)
+        if (o->knowledge != IMK_INPUT_GRAVITY || imki_dot3(o->force, o->force) > 0.0)
             continue;
         imk_error_set(error, IMK_ERROR_KEY_MISSING, "force", NULL,
                       "the direction of gravity in the pose");

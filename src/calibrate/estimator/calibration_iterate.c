@@ -5,6 +5,8 @@
  * integrated again at the solution. */
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -205,7 +207,7 @@ static double left_out(const imki_estimator *e)
         if (!e->turn[t].usable)
             continue;
         moved_by(e, t, moved);
-        const double size = sqrt(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2]);
+        const double size = imki_norm3(moved);
         largest = fmax(largest, size * (size + 0.01) / e->turn[t].sigma);
     }
     return largest;
@@ -229,8 +231,7 @@ double imki_turns_linearise(imki_estimator *e, double tolerance)
         double before[3];
         moved_by(e, t, before);
         for (int j = 0; j < 3; j++)
-            before[j] += linear->turn[3 * j] * start[0] + linear->turn[3 * j + 1] * start[1] +
-                         linear->turn[3 * j + 2] * start[2];
+            before[j] += imki_dot3(linear->turn + 3 * j, start);
         imki_turn_prediction prediction;
         imki_turn_predict(e->problem, &e->problem->model, turn, start, &prediction, jacobian);
         memcpy(linear->turn, prediction.turn, sizeof linear->turn);

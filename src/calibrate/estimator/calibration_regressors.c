@@ -11,6 +11,7 @@
  *     dv/dw = (w.r) I + w r^T - 2 r w^T,   dv/dalpha = -[r x],   dv/dr = [alpha x] + w w^T - w^2 I
  */
 #include "axis_reading_internal.h"
+#include "base/algebra/vector_internal.h"
 #include "calibration_internal.h"
 
 #include "model/model_internal.h"
@@ -18,18 +19,6 @@
 
 #include <math.h>
 #include <string.h>
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /* T above the reference, T clipped to the valid range. */
 static double warmth(const imk_temperature_polynomial *polynomial, double temperature)
@@ -71,9 +60,9 @@ static void force_at(const double r[3], const imki_input *input, double v[3])
     memcpy(v, input->force, 3 * sizeof *v);
     if (r[0] == 0.0 && r[1] == 0.0 && r[2] == 0.0)
         return;
-    const double along = dot(w, r), square = dot(w, w);
+    const double along = imki_dot3(w, r), square = imki_dot3(w, w);
     double turning[3];
-    cross(input->angular_acceleration, r, turning);
+    imki_cross3(input->angular_acceleration, r, turning);
     for (int j = 0; j < 3; j++)
         v[j] += turning[j] + w[j] * along - r[j] * square;
 }
@@ -93,7 +82,7 @@ static void by_input(const imk_triad *triad, int sensor, int i, const imki_input
         return;
     }
     const double *r = triad->lever_arm.value[i];
-    const double along = dot(w, r), d_w = dot(d, w), d_r = dot(d, r);
+    const double along = imki_dot3(w, r), d_w = imki_dot3(d, w), d_r = imki_dot3(d, r);
     memcpy(y->by_force, d, sizeof y->by_force);
     memset(y->by_rate, 0, sizeof y->by_rate);
     memset(y->by_angular_acceleration, 0, sizeof y->by_angular_acceleration);
@@ -101,7 +90,7 @@ static void by_input(const imk_triad *triad, int sensor, int i, const imki_input
         return;
     for (int j = 0; j < 3; j++)
         y->by_rate[j] = along * d[j] + d_w * r[j] - 2.0 * d_r * w[j];
-    cross(r, d, y->by_angular_acceleration); /* d.(alpha x r) = alpha.(r x d) */
+    imki_cross3(r, d, y->by_angular_acceleration); /* d.(alpha x r) = alpha.(r x d) */
 }
 
 static void add_cross_products(const imk_triad *triad, int axis, imki_axis_reading *y)
@@ -112,8 +101,8 @@ static void add_cross_products(const imk_triad *triad, int axis, imki_axis_readi
         return;
     double p[3], o[3];
     (void)imki_pendulous_axis(triad, axis, p);
-    cross(p, e, o);
-    const double along_p = dot(p, y->seen), along_o = dot(o, y->seen);
+    imki_cross3(p, e, o);
+    const double along_p = imki_dot3(p, y->seen), along_o = imki_dot3(o, y->seen);
     y->value += k[0] * u * along_p + k[1] * u * along_o + k[2] * along_p * along_o;
     for (int j = 0; j < 3; j++)
         y->by_seen[j] += (k[0] * along_p + k[1] * along_o) * e[j] +
@@ -144,7 +133,7 @@ static void add_powers(const imk_triad *triad, int axis, imki_axis_reading *y, d
 imki_axis_reading imki_axis_read(const imk_model *model, int sensor, int axis,
                                  const imki_input *input)
 {
-    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, sensor);
     const double *e = triad->direction[axis];
     imki_axis_reading y;
     y.triad = triad;
@@ -152,7 +141,7 @@ imki_axis_reading imki_axis_read(const imk_model *model, int sensor, int axis,
         memcpy(y.seen, input->rate, sizeof y.seen);
     else
         force_at(triad->lever_arm.value[axis], input, y.seen);
-    const double u = dot(e, y.seen);
+    const double u = imki_dot3(e, y.seen);
     const double scale =
         triad->scale_factor.fixed.value[axis] +
         imki_polynomial_at(&triad->scale_factor.temperature, axis, input->temperature);
@@ -171,7 +160,7 @@ imki_axis_reading imki_axis_read(const imk_model *model, int sensor, int axis,
         add_cross_products(triad, axis, &y);
     } else {
         const double *f = input->force, *q = triad->g2_sensitivity.value[axis];
-        y.value += dot(triad->g_sensitivity.value[axis], f) + q[0] * f[0] * f[0] +
+        y.value += imki_dot3(triad->g_sensitivity.value[axis], f) + q[0] * f[0] * f[0] +
                    q[1] * f[1] * f[1] + q[2] * f[2] * f[2] + q[3] * f[0] * f[1] +
                    q[4] * f[1] * f[2] + q[5] * f[2] * f[0];
     }
@@ -185,16 +174,16 @@ static double by_lever_arm(const imki_axis_reading *y, const imki_input *input, 
     const double *d = y->by_seen, *w = input->rate;
     double column[3]; /* alpha x unit vector j */
     const double unit[3] = {j == 0, j == 1, j == 2};
-    cross(input->angular_acceleration, unit, column);
-    return dot(d, column) + dot(d, w) * w[j] - dot(w, w) * d[j];
+    imki_cross3(input->angular_acceleration, unit, column);
+    return imki_dot3(d, column) + imki_dot3(d, w) * w[j] - imki_dot3(w, w) * d[j];
 }
 
 static double by_cross_product(const imki_axis_reading *y, int axis, int k)
 {
     double p[3], o[3];
     (void)imki_pendulous_axis(y->triad, axis, p);
-    cross(p, y->triad->direction[axis], o);
-    const double along_p = dot(p, y->seen), along_o = dot(o, y->seen);
+    imki_cross3(p, y->triad->direction[axis], o);
+    const double along_p = imki_dot3(p, y->seen), along_o = imki_dot3(o, y->seen);
     return k == 0 ? y->along * along_p : k == 1 ? y->along * along_o : along_p * along_o;
 }
 

@@ -16,16 +16,12 @@
  * vectors a and b, the residual is minus (angle between e and m) (a.e, b.e)/sin(angle). */
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/attitude.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
 #include <string.h>
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static void add_cross(const double a[3], const double b[3], double out[3])
 {
@@ -188,18 +184,18 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
                 by_rotations(&x, &y, first, row);
                 continue;
             }
-            const double rate = dot(x.input.rate, x.vertical);
+            const double rate = imki_dot3(x.input.rate, x.vertical);
             double by[3]; /* the vertical */
             for (int j = 0; j < 3; j++)
                 by[j] = y.by_force[j] * problem->gravity + y.by_rate[j] * rate;
-            add_local(row, (size_t)first, dot(by, x.a));
-            add_local(row, (size_t)first + 1, dot(by, x.b));
+            add_local(row, (size_t)first, imki_dot3(by, x.a));
+            add_local(row, (size_t)first + 1, imki_dot3(by, x.b));
             if (sensor == IMK_GYRO && e->earth[index]) {
-                add_local(row, (size_t)first + 2, dot(y.by_rate, x.a));
-                add_local(row, (size_t)first + 3, dot(y.by_rate, x.b));
+                add_local(row, (size_t)first + 2, imki_dot3(y.by_rate, x.a));
+                add_local(row, (size_t)first + 3, imki_dot3(y.by_rate, x.b));
             }
             if (e->vertical_global >= 0)
-                add_global(row, e->vertical_global, dot(y.by_rate, x.vertical));
+                add_global(row, e->vertical_global, imki_dot3(y.by_rate, x.vertical));
         }
     return count;
 }
@@ -215,7 +211,7 @@ static int turn_rows(const imki_estimator *e, const imki_point *point, size_t in
     if (!linear->usable)
         return 0;
     for (int j = 0; j < 3; j++) {
-        end[j] = dot(linear->turn + 3 * j, from);
+        end[j] = imki_dot3(linear->turn + 3 * j, from);
         for (size_t p = 0; p < e->parameters; p++)
             end[j] +=
                 jacobian[(size_t)j * e->parameters + p] * (point->global[p] - e->turn_reference[p]);
@@ -224,34 +220,35 @@ static int turn_rows(const imki_estimator *e, const imki_point *point, size_t in
         double moved[3] = {0.0, 0.0, 0.0};
         add_cross(point->horizontal[turn->from], from, moved);
         for (int j = 0; j < 3; j++)
-            end[j] += linear->duration * dot(linear->turn + 3 * j, moved);
+            end[j] += linear->duration * imki_dot3(linear->turn + 3 * j, moved);
     }
     imki_across(to, across[0], across[1]);
     imki_across(from, start[0], start[1]);
-    const double u = dot(across[0], end), v = dot(across[1], end), s = sqrt(u * u + v * v);
-    const double along = dot(to, end), angle = imk_atan2(s, along);
+    const double u = imki_dot3(across[0], end), v = imki_dot3(across[1], end),
+                 s = sqrt(u * u + v * v);
+    const double along = imki_dot3(to, end), angle = imk_atan2(s, along);
     const double stretch = s > 1e-9 ? angle / s : 1.0;
     for (int i = 0; i < 2; i++) {
         imki_row *row = &rows[i];
         *row = (imki_row){.group = IMK_GROUP_TURN,
                           .sensor = -1,
                           .axis = i,
-                          .residual = -stretch * dot(across[i], end),
+                          .residual = -stretch * imki_dot3(across[i], end),
                           .sigma = linear->sigma};
         const size_t a = (size_t)e->local_first[turn->from], b = (size_t)e->local_first[turn->to];
         for (size_t k = 0; k < 2; k++) {
             double moved[3];
             for (int j = 0; j < 3; j++)
-                moved[j] = dot(linear->turn + 3 * j, start[k]);
-            add_local(row, a + k, stretch * dot(across[i], moved));
+                moved[j] = imki_dot3(linear->turn + 3 * j, start[k]);
+            add_local(row, a + k, stretch * imki_dot3(across[i], moved));
         }
         add_local(row, b + (size_t)i, -1.0);
         for (size_t k = 0; earth && k < 2; k++) {
             double by_rate[3] = {0.0, 0.0, 0.0}, moved[3];
             add_cross(start[k], from, by_rate);
             for (int j = 0; j < 3; j++)
-                moved[j] = linear->duration * dot(linear->turn + 3 * j, by_rate);
-            add_local(row, a + 2 + k, stretch * dot(across[i], moved));
+                moved[j] = linear->duration * imki_dot3(linear->turn + 3 * j, by_rate);
+            add_local(row, a + 2 + k, stretch * imki_dot3(across[i], moved));
         }
         for (size_t p = 0; p < e->parameters; p++) {
             if (e->problem->parameter[p].sensor != IMK_GYRO)

@@ -2,6 +2,7 @@
 /* Before the estimator iterates: checks, the frame it solves in, memory, and where it starts. */
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "base/workspace_internal.h"
 #include "imukit/attitude.h"
 #include "model/model_internal.h"
@@ -53,19 +54,7 @@ static size_t band_width(const imk_calibration *c, size_t rest)
     return widest;
 }
 
-typedef struct arena {
-    char *memory; /* NULL: only count */
-    size_t used;
-} arena;
-
-static void *take(arena *a, size_t size)
-{
-    void *start = a->memory ? a->memory + a->used : NULL;
-    a->used += (size + 63) / 64 * 64;
-    return start;
-}
-
-static void lay_out(imki_estimator *e, const imk_calibration *c, arena *a)
+static void lay_out(imki_estimator *e, const imk_calibration *c, imki_arena *a)
 {
     const size_t n = c->observation_count, m = c->turn_count;
     const size_t rest = m > 0 && c->earth_rate != 0.0 ? 4 : 2; /* at most */
@@ -75,54 +64,54 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, arena *a)
     const size_t globals = c->parameter_count + 3 * c->fixture_count + 1; /* at most */
     const size_t band = locals * (band_width(c, rest) + 1);
     const size_t number = sizeof(double);
-    e->problem = take(a, sizeof *e->problem);
-    e->result = take(a, sizeof *e->result);
-    e->local_first = take(a, n * sizeof *e->local_first);
-    e->turn_into = take(a, n * sizeof *e->turn_into);
-    e->sigma = take(a, n * sizeof *e->sigma);
-    e->known_variance = take(a, n * sizeof *e->known_variance);
-    e->reading = take(a, n * sizeof *e->reading);
-    e->weight = take(a, (n + m) * number);
-    e->turn = take(a, m * sizeof *e->turn);
-    e->turn_jacobian = take(a, m * 3 * c->parameter_count * number);
-    e->now.attitude = take(a, n * sizeof *e->now.attitude);
-    e->trial.attitude = take(a, n * sizeof *e->trial.attitude);
-    e->best.attitude = take(a, n * sizeof *e->best.attitude);
-    e->now.horizontal = take(a, n * sizeof *e->now.horizontal);
-    e->trial.horizontal = take(a, n * sizeof *e->trial.horizontal);
-    e->best.horizontal = take(a, n * sizeof *e->best.horizontal);
-    e->best_weight = take(a, (n + m) * number);
-    e->row = take(a, IMKI_ROWS_MAX * sizeof *e->row);
-    e->distance = take(a, 3 * (n + m) * number);
-    e->sorted = take(a, (n + m) * number);
-    e->state = take(a, n + m);
-    e->earth = take(a, n * sizeof *e->earth);
-    e->slow.order = take(a, n * sizeof *e->slow.order);
-    e->slow.covariance = take(a, globals * globals * number);
-    e->slow.axis = take(a, globals * globals * number);
-    e->slow.sums = take(a, imki_slow_noise_sums());
+    e->problem = imki_take(a, sizeof *e->problem);
+    e->result = imki_take(a, sizeof *e->result);
+    e->local_first = imki_take(a, n * sizeof *e->local_first);
+    e->turn_into = imki_take(a, n * sizeof *e->turn_into);
+    e->sigma = imki_take(a, n * sizeof *e->sigma);
+    e->known_variance = imki_take(a, n * sizeof *e->known_variance);
+    e->reading = imki_take(a, n * sizeof *e->reading);
+    e->weight = imki_take(a, (n + m) * number);
+    e->turn = imki_take(a, m * sizeof *e->turn);
+    e->turn_jacobian = imki_take(a, m * 3 * c->parameter_count * number);
+    e->now.attitude = imki_take(a, n * sizeof *e->now.attitude);
+    e->trial.attitude = imki_take(a, n * sizeof *e->trial.attitude);
+    e->best.attitude = imki_take(a, n * sizeof *e->best.attitude);
+    e->now.horizontal = imki_take(a, n * sizeof *e->now.horizontal);
+    e->trial.horizontal = imki_take(a, n * sizeof *e->trial.horizontal);
+    e->best.horizontal = imki_take(a, n * sizeof *e->best.horizontal);
+    e->best_weight = imki_take(a, (n + m) * number);
+    e->row = imki_take(a, IMKI_ROWS_MAX * sizeof *e->row);
+    e->distance = imki_take(a, 3 * (n + m) * number);
+    e->sorted = imki_take(a, (n + m) * number);
+    e->state = imki_take(a, n + m);
+    e->earth = imki_take(a, n * sizeof *e->earth);
+    e->slow.order = imki_take(a, n * sizeof *e->slow.order);
+    e->slow.covariance = imki_take(a, globals * globals * number);
+    e->slow.axis = imki_take(a, globals * globals * number);
+    e->slow.sums = imki_take(a, imki_slow_noise_sums());
     imki_normal *normal = &e->normal;
-    normal->band = take(a, band * number);
-    normal->factor = take(a, band * number);
-    normal->local_inverse = take(a, band * number);
-    normal->border = take(a, locals * globals * number);
-    normal->half = take(a, locals * globals * number);
-    normal->whole = take(a, locals * globals * number);
-    normal->local_gradient = take(a, locals * number);
-    normal->local_step = take(a, locals * number);
-    normal->core = take(a, globals * globals * number);
-    normal->schur = take(a, globals * globals * number);
-    normal->covariance = take(a, globals * globals * number);
-    normal->global_gradient = take(a, globals * number);
-    normal->global_step = take(a, globals * number);
+    normal->band = imki_take(a, band * number);
+    normal->factor = imki_take(a, band * number);
+    normal->local_inverse = imki_take(a, band * number);
+    normal->border = imki_take(a, locals * globals * number);
+    normal->half = imki_take(a, locals * globals * number);
+    normal->whole = imki_take(a, locals * globals * number);
+    normal->local_gradient = imki_take(a, locals * number);
+    normal->local_step = imki_take(a, locals * number);
+    normal->core = imki_take(a, globals * globals * number);
+    normal->schur = imki_take(a, globals * globals * number);
+    normal->covariance = imki_take(a, globals * globals * number);
+    normal->global_gradient = imki_take(a, globals * number);
+    normal->global_step = imki_take(a, globals * number);
 }
 
 size_t imki_estimator_size(const imk_calibration *calibration)
 {
     imki_estimator unused;
-    arena a = {NULL, 0};
+    imki_arena a = imki_arena_of(NULL);
     lay_out(&unused, calibration, &a);
-    return a.used + IMKI_ALIGNMENT_SLACK;
+    return imki_arena_size(&a);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -320,7 +309,7 @@ static imk_status enter_frame(imk_calibration *c, imk_error *error)
 static double si(const imk_calibration *c, const imk_observation *o, int sensor, int axis,
                  bool difference)
 {
-    const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+    const imk_triad *triad = imk_model_triad(&c->model, sensor);
     const imk_test_record *record = record_of(c, o);
     const double x = difference ? o->sigma[sensor][axis] : o->reading[sensor][axis];
     if (!record || !record->counts[sensor])
@@ -363,7 +352,7 @@ static void start_attitude(imki_estimator *e, size_t index, bool readings_matter
         return;
     if (!readings_matter || !force_of_readings(e, index, force))
         memcpy(force, o->force, sizeof force);
-    const double norm = sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+    const double norm = imki_norm3(force);
     for (int j = 0; j < 3; j++)
         attitude[j] = norm > 0.0 ? force[j] / norm : j == 2;
 }
@@ -389,7 +378,7 @@ static imk_status start_parameters(imki_estimator *e, imk_error *error)
     memset(e->axis_parameters, 0, sizeof e->axis_parameters);
     for (size_t p = 0; p < e->parameters; p++) {
         const imk_model_parameter place = c->parameter[p];
-        const imk_triad *triad = place.sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+        const imk_triad *triad = imk_model_triad(&c->model, place.sensor);
         e->place[p] = imk_model_parameter_at(&c->model, place, NULL);
         const bool beyond = (place.term == IMK_MODEL_BIAS_TEMPERATURE &&
                              place.element >= triad->bias.temperature.order) ||
@@ -434,7 +423,7 @@ imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibr
     imk_status status = check(calibration, workspace_size, error);
     if (status != IMK_OK)
         return status;
-    arena a = {(char *)imki_align(workspace), 0};
+    imki_arena a = imki_arena_of(workspace);
     memset(e, 0, sizeof *e);
     lay_out(e, calibration, &a);
     memcpy(e->problem, calibration, sizeof *calibration);

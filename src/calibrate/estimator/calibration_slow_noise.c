@@ -67,11 +67,6 @@ typedef struct run {
     size_t first, end;
 } run;
 
-static const imk_triad *triad_of(const imki_estimator *e, int sensor)
-{
-    return sensor == IMK_GYRO ? &e->problem->model.gyro : &e->problem->model.accel;
-}
-
 static bool is_stated(const imk_noise *noise, int axis)
 {
     bool any = noise->bias_instability.value[axis] > 0.0 || noise->random_walk.value[axis] > 0.0;
@@ -126,8 +121,8 @@ void imki_slow_noise_start(imki_estimator *e)
     const imk_calibration *c = e->problem;
     bool stated = false;
     for (int sensor = 0; sensor < 2; sensor++)
-        for (int axis = 0; axis < triad_of(e, sensor)->axis_count; axis++)
-            stated = stated || is_stated(&triad_of(e, sensor)->noise, axis);
+        for (int axis = 0; axis < imk_model_triad(&e->problem->model, sensor)->axis_count; axis++)
+            stated = stated || is_stated(&imk_model_triad(&e->problem->model, sensor)->noise, axis);
     e->slow.count = 0;
     for (size_t i = 0; stated && i < e->observations; i++)
         if (has_time(c, i))
@@ -190,10 +185,11 @@ static bool process_of(const imki_estimator *e, const run *r, process *p)
 {
     const imk_calibration *c = e->problem;
     const imk_test_record *record = c->record[r->record];
-    const imk_noise *noise = &triad_of(e, r->sensor)->noise;
+    const imk_noise *noise = &imk_model_triad(&e->problem->model, r->sensor)->noise;
     double shortest = (double)INFINITY, sum = 0.0, count = 0.0;
     *p = (process){.length = length_of(record)};
-    if (!triad_of(e, r->sensor)->present || r->axis >= triad_of(e, r->sensor)->axis_count ||
+    if (!imk_model_triad(&e->problem->model, r->sensor)->present ||
+        r->axis >= imk_model_triad(&e->problem->model, r->sensor)->axis_count ||
         !is_stated(noise, r->axis))
         return false;
     for (size_t i = r->first; i < r->end; i++)

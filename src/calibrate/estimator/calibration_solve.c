@@ -7,6 +7,7 @@
  * Turns are integrated again until that changes nothing. */
 #include "estimator_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -283,8 +284,7 @@ static void turn_verticals(imk_calibration *calibration, const double rotation[9
         double *v = calibration->observation[i].vertical;
         const double old[3] = {v[0], v[1], v[2]};
         for (int j = 0; j < 3; j++)
-            v[j] = rotation[3 * j] * old[0] + rotation[3 * j + 1] * old[1] +
-                   rotation[3 * j + 2] * old[2];
+            v[j] = imki_dot3(rotation + 3 * j, old);
     }
 }
 

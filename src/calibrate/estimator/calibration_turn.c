@@ -29,6 +29,7 @@
 #include "axis_reading_internal.h"
 #include "calibration_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "model/model_schema_internal.h"
 
 #include "imukit/attitude.h"
@@ -94,10 +95,7 @@ static inverse invert(const turn_model *turn, int sensor, const imk_triad *triad
     const bool spans = imk_matrix3_inverse(normal, &inverse_normal) == IMK_OK;
     for (int j = 0; j < 3; j++)
         for (int i = 0; i < count; i++) {
-            out.p[j][i] = !spans ? (double)NAN
-                                 : inverse_normal.m[j][0] * row[i][0] +
-                                       inverse_normal.m[j][1] * row[i][1] +
-                                       inverse_normal.m[j][2] * row[i][2];
+            out.p[j][i] = !spans ? (double)NAN : imki_dot3(inverse_normal.m[j], row[i]);
             out.weight[j][i] = out.p[j][i] * unit[i];
             out.constant[j] += out.p[j][i] * offset[i];
         }
@@ -203,7 +201,7 @@ static void solve_nonlinear(const turn_model *turn, const double f[3], double w[
         double sum[3] = {0.0, 0.0, 0.0};
         for (int i = 0; i < turn->gyro.count; i++) {
             const double *e = gyro->direction[i];
-            const double u = e[0] * w[0] + e[1] * w[1] + e[2] * w[2];
+            const double u = imki_dot3(e, w);
             double n = 0.0;
             for (size_t k = 0; k < imki_input_power_count; k++) {
                 power[i][k] = imki_power_at(&imki_input_powers[k], u);
@@ -284,8 +282,7 @@ static void integrate(const turn_model *turn, size_t begin, size_t end, bool sum
             components(&turn->accel, record->reading[IMK_ACCEL], k, f);
         if (turn->force_changes)
             for (int j = 0; j < 3; j++)
-                w[j] -= turn->force_to_rate[j][0] * f[0] + turn->force_to_rate[j][1] * f[1] +
-                        turn->force_to_rate[j][2] * f[2];
+                w[j] -= imki_dot3(turn->force_to_rate[j], f);
         if (turn->nonlinear)
             solve_nonlinear(turn, f, w, product, power);
         const double x = w[0] * dt, y = w[1] * dt, z = w[2] * dt;
@@ -380,13 +377,10 @@ static void map_parameters(const turn_model *turn, const imk_calibration *calibr
                 v[j] = s[3 * j] * turn->gyro.p[0][parameter.axis] +
                        s[3 * j + 1] * turn->gyro.p[1][parameter.axis] +
                        s[3 * j + 2] * turn->gyro.p[2][parameter.axis];
-            moved[0] = v[1] * start[2] - v[2] * start[1];
-            moved[1] = v[2] * start[0] - v[0] * start[2];
-            moved[2] = v[0] * start[1] - v[1] * start[0];
+            imki_cross3(v, start, moved);
         }
         for (int j = 0; j < 3; j++)
-            jacobian[(size_t)j * count + p] =
-                d[3 * j] * moved[0] + d[3 * j + 1] * moved[1] + d[3 * j + 2] * moved[2];
+            jacobian[(size_t)j * count + p] = imki_dot3(d + 3 * j, moved);
     }
 }
 

@@ -3,6 +3,8 @@
  * divided, and the figures are made one after the other. */
 #include "evaluate_internal.h"
 
+#include "base/refuse_internal.h"
+#include "base/workspace_internal.h"
 #include "imukit/distributions.h"
 #include "imukit/random.h"
 #include "imukit/samples.h"
@@ -20,28 +22,22 @@ imk_evaluation_settings imk_evaluation_default(void)
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static imk_status bad_row(imk_status status, size_t row, const char *field, const char *expected,
-                          imk_error *error)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error)
-        error->index = (int)row;
-    return status;
-}
-
 static imk_status check_rows(const imk_evaluation_table *table, imk_error *error)
 {
     for (size_t row = 0; row < table->count; row++) {
         if (!(fabs(table->reference[row]) <= IMK_READING_MAX))
-            return bad_row(IMK_ERROR_NOT_FINITE, row, "reference", "a number up to 1e60", error);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "reference", row, 0.0, 0.0,
+                                  "a number up to 1e60");
         if (!(fabs(table->reading[row]) <= IMK_READING_MAX))
-            return bad_row(IMK_ERROR_NOT_FINITE, row, "reading", "a number up to 1e60", error);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "reading", row, 0.0, 0.0,
+                                  "a number up to 1e60");
         if (table->sigma && !(table->sigma[row] > 0.0 && table->sigma[row] < HUGE_VAL))
-            return bad_row(IMK_ERROR_RANGE, row, "sigma", "above 0", error);
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "sigma", row, 0.0, 0.0, "above 0");
         if (table->direction && (table->direction[row] < -1 || table->direction[row] > 1))
-            return bad_row(IMK_ERROR_RANGE, row, "direction", "-1, 0 or 1", error);
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "direction", row, 0.0, 0.0, "-1, 0 or 1");
         if (table->run && (table->run[row] < 0 || table->run[row] >= IMK_EVALUATION_RUNS_MAX))
-            return bad_row(IMK_ERROR_RANGE, row, "run", "a number from 0 to 63", error);
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "run", row, 0.0, 0.0,
+                                  "a number from 0 to 63");
     }
     return IMK_OK;
 }
@@ -58,12 +54,8 @@ static imk_status check(const imk_evaluation_table *table, const imk_evaluation_
     if (!(settings->level_width >= 0.0 && settings->level_width < HUGE_VAL))
         return imk_error_set(error, IMK_ERROR_RANGE, "level_width", NULL, "0 or more");
     if (table->count < 2) {
-        imk_error_set(error, IMK_ERROR_TOO_SHORT, "readings", NULL, "at least two readings");
-        if (error) {
-            error->value = (double)table->count;
-            error->limit = 2;
-        }
-        return IMK_ERROR_TOO_SHORT;
+        return imki_refuse(error, IMK_ERROR_TOO_SHORT, "readings", (double)table->count, 2,
+                           "at least two readings");
     }
     return check_rows(table, error);
 }
@@ -78,50 +70,38 @@ static size_t draws_for(size_t rows)
                                     : draws;
 }
 
-typedef struct arena {
-    char *base; /* NULL: only counted */
-    size_t used;
-} arena;
-
-static void *take(arena *a, size_t count, size_t size)
-{
-    void *place = a->base ? a->base + a->used : NULL;
-    a->used += (count * size + 63) / 64 * 64;
-    return place;
-}
-
-static void lay_out(imki_evaluation *e, arena *a)
+static void lay_out(imki_evaluation *e, imki_arena *a)
 {
     const size_t n = e->rows, runs = e->table->run ? 2 * (size_t)IMK_EVALUATION_RUNS_MAX : 0;
-    e->level_of = take(a, n, sizeof *e->level_of);
-    e->side = take(a, n, sizeof *e->side);
-    e->reading = take(a, n, sizeof *e->reading);
-    e->order = take(a, n, sizeof *e->order);
-    e->reference = take(a, n, sizeof *e->reference);
-    e->cell = take(a, n * IMKI_CELLS, sizeof *e->cell);
-    e->level_sigma = take(a, n, sizeof *e->level_sigma);
-    e->pattern = take(a, n, sizeof *e->pattern);
-    e->noise = take(a, n, sizeof *e->noise);
-    e->shifted = take(a, n, sizeof *e->shifted);
-    e->trial = take(a, n, sizeof *e->trial);
-    e->weight = take(a, n, sizeof *e->weight);
-    e->moment = take(a, n, sizeof *e->moment);
-    e->centred = take(a, n, sizeof *e->centred);
-    e->factor = take(a, e->draws, sizeof *e->factor);
-    e->sorted = take(a, e->draws, sizeof *e->sorted);
-    e->none = take(a, e->draws, sizeof *e->none);
-    e->near = take(a, e->draws, sizeof *e->near);
-    e->draw = take(a, e->draws * n, sizeof *e->draw);
-    e->hull = take(a, 2 * n, sizeof *e->hull);
-    e->matrix = runs > 0 ? take(a, runs * (runs + 1), sizeof *e->matrix) : NULL;
+    e->level_of = imki_take(a, n * sizeof *e->level_of);
+    e->side = imki_take(a, n * sizeof *e->side);
+    e->reading = imki_take(a, n * sizeof *e->reading);
+    e->order = imki_take(a, n * sizeof *e->order);
+    e->reference = imki_take(a, n * sizeof *e->reference);
+    e->cell = imki_take(a, n * IMKI_CELLS * sizeof *e->cell);
+    e->level_sigma = imki_take(a, n * sizeof *e->level_sigma);
+    e->pattern = imki_take(a, n * sizeof *e->pattern);
+    e->noise = imki_take(a, n * sizeof *e->noise);
+    e->shifted = imki_take(a, n * sizeof *e->shifted);
+    e->trial = imki_take(a, n * sizeof *e->trial);
+    e->weight = imki_take(a, n * sizeof *e->weight);
+    e->moment = imki_take(a, n * sizeof *e->moment);
+    e->centred = imki_take(a, n * sizeof *e->centred);
+    e->factor = imki_take(a, e->draws * sizeof *e->factor);
+    e->sorted = imki_take(a, e->draws * sizeof *e->sorted);
+    e->none = imki_take(a, e->draws * sizeof *e->none);
+    e->near = imki_take(a, e->draws * sizeof *e->near);
+    e->draw = imki_take(a, e->draws * n * sizeof *e->draw);
+    e->hull = imki_take(a, 2 * n * sizeof *e->hull);
+    e->matrix = runs > 0 ? imki_take(a, runs * (runs + 1) * sizeof *e->matrix) : NULL;
 }
 
 size_t imk_evaluation_workspace_size(const imk_evaluation_table *table)
 {
     imki_evaluation e = {.table = table, .rows = table->count, .draws = draws_for(table->count)};
-    arena a = {NULL, 0};
+    imki_arena a = imki_arena_of(NULL);
     lay_out(&e, &a);
-    return a.used + 64;
+    return imki_arena_size(&a);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
@@ -226,8 +206,7 @@ imk_status imk_evaluate(const imk_evaluation_table *table, const imk_evaluation_
         return status;
     if (workspace_size < imk_evaluation_workspace_size(table))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL, NULL);
-    const uintptr_t address = (uintptr_t)workspace;
-    arena a = {(char *)workspace + ((address + 63) / 64 * 64 - address), 0};
+    imki_arena a = imki_arena_of(workspace);
     imki_evaluation e = {.table = table,
                          .settings = settings,
                          .result = result,

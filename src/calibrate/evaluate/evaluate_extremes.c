@@ -14,6 +14,7 @@
  * noise is drawn: f s z with z normal and f^2 = freedom/chi-square. */
 #include "evaluate_internal.h"
 
+#include "base/sort_internal.h"
 #include "imukit/distributions.h"
 #include "imukit/elementary.h"
 
@@ -117,37 +118,11 @@ static void draw_noise(imki_evaluation *e, largest_of largest, double *added)
     }
 }
 
-static void sift(double *value, size_t root, size_t count)
-{
-    for (size_t child = 2 * root + 1; child < count; child = 2 * root + 1) {
-        if (child + 1 < count && value[child + 1] > value[child])
-            child++;
-        if (!(value[child] > value[root]))
-            return;
-        const double swap = value[root];
-        value[root] = value[child];
-        value[child] = swap;
-        root = child;
-    }
-}
-
-static void sort(double *value, size_t count)
-{
-    for (size_t root = count / 2; root-- > 0;)
-        sift(value, root, count);
-    for (size_t last = count; last-- > 1;) {
-        const double swap = value[0];
-        value[0] = value[last];
-        value[last] = swap;
-        sift(value, 0, last);
-    }
-}
-
 static double quantile(imki_evaluation *e, const double *value, double probability)
 {
     for (size_t b = 0; b < e->draws; b++)
         e->sorted[b] = value[b];
-    sort(e->sorted, e->draws);
+    imki_sort(e->sorted, e->draws);
     return e->sorted[(size_t)(probability * (double)(e->draws - 1) + 0.5)];
 }
 

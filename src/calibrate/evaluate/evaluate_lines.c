@@ -4,6 +4,7 @@
  * sum of w_L^2 sigma_L^2 whatever the noise was found from. */
 #include "evaluate_internal.h"
 
+#include "imukit/attitude.h"
 #include "imukit/distributions.h"
 
 #include <string.h>
@@ -76,25 +77,6 @@ void imki_line_intervals(imki_evaluation *e)
 
 /* ---- asymmetry ------------------------------------------------------------------------------- */
 
-/* Inverse of a symmetric 3x3 matrix by cofactors; false when it is singular to rounding. */
-static bool invert(const double m[3][3], double inverse[3][3])
-{
-    double largest = 0.0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            inverse[i][j] = m[(j + 1) % 3][(i + 1) % 3] * m[(j + 2) % 3][(i + 2) % 3] -
-                            m[(j + 1) % 3][(i + 2) % 3] * m[(j + 2) % 3][(i + 1) % 3];
-    double determinant = 0.0;
-    for (int k = 0; k < 3; k++) {
-        determinant += m[0][k] * inverse[k][0];
-        largest = fmax(largest, fabs(m[0][k] * inverse[k][0]));
-    }
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            inverse[i][j] /= determinant;
-    return fabs(determinant) > 1e-9 * largest;
-}
-
 /* Limits of a/k, two normal estimates: where (a - r k)^2 = t^2 var(a - r k) [FIELLER1954]. */
 static imk_evaluation_figure ratio(double a, double k, double aa, double ak, double kk, double t)
 {
@@ -108,23 +90,29 @@ static imk_evaluation_figure ratio(double a, double k, double aa, double ak, dou
 /* y = zero + K x + A |x|/2, so that K+ - K- = A and K is their mean. */
 void imki_asymmetry(imki_evaluation *e)
 {
-    double m[3][3] = {{0.0}}, inverse[3][3], value[2] = {0.0, 0.0}, cov[2][2] = {{0.0}};
+    imk_matrix3 normal = {{{0.0}}}, inverse;
+    double largest = 0.0, value[2] = {0.0, 0.0}, cov[2][2] = {{0.0}};
     if (e->levels < 3 || !(e->reference[0] < 0.0) || !(e->reference[e->levels - 1] > 0.0))
         return;
     for (size_t k = 0; k < e->levels; k++) {
         const double u = e->reference[k] / e->scale, row[3] = {1.0, u, 0.5 * fabs(u)};
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
-                m[i][j] += weight_of(e, k) * row[i] * row[j];
+                normal.m[i][j] += weight_of(e, k) * row[i] * row[j];
     }
-    if (!invert((const double(*)[3])m, inverse))
+    if (imk_matrix3_inverse(normal, &inverse) != IMK_OK)
+        return;
+    /* Of what the determinant is summed up from, it is a billionth or less: rounding. */
+    for (int k = 0; k < 3; k++)
+        largest = fmax(largest, fabs(normal.m[0][k] * inverse.m[k][0]));
+    if (!(largest < 1e9))
         return;
     for (size_t k = 0; k < e->levels; k++) {
         const double u = e->reference[k] / e->scale, row[3] = {1.0, u, 0.5 * fabs(u)};
         double w[2] = {0.0, 0.0}, variance;
         for (int i = 0; i < 2; i++)
             for (int j = 0; j < 3; j++)
-                w[i] += weight_of(e, k) * inverse[i + 1][j] * row[j];
+                w[i] += weight_of(e, k) * inverse.m[i + 1][j] * row[j];
         const double mean = imki_level_mean(e, k, &variance);
         for (int i = 0; i < 2; i++) {
             value[i] += w[i] * mean;

@@ -201,7 +201,7 @@ bool imki_plan_is_list(imk_procedure procedure)
 
 static imk_status free_term(imk_calibration *c, int sensor, int term, int elements)
 {
-    const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+    const imk_triad *triad = imk_model_triad(&c->model, sensor);
     imk_status status = IMK_OK;
     for (int axis = 0; triad->present && axis < triad->axis_count && status == IMK_OK; axis++)
         for (int element = 0; element < elements && status == IMK_OK; element++) {

@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LINE = 64, SEARCH_STEPS = 14, ADDED_AT_ONCE = 4, STEPS_MOST = 10000 };
+enum { SEARCH_STEPS = 14, ADDED_AT_ONCE = 4, STEPS_MOST = 10000 };
 
 /* No candidate. */
 static const size_t NONE = SIZE_MAX;
@@ -59,31 +59,19 @@ typedef struct plan_job {
 /* ---- memory ------------------------------------------------------------------------------------
  */
 
-typedef struct arena {
-    char *memory; /* NULL: only count */
-    size_t used;
-} arena;
-
-static void *take(arena *a, size_t size)
-{
-    void *start = a->memory ? a->memory + a->used : NULL;
-    a->used += (size + LINE - 1) / LINE * LINE;
-    return start;
-}
-
-static void lay_out(plan_job *job, const imk_plan_settings *settings, arena *a)
+static void lay_out(plan_job *job, const imk_plan_settings *settings, imki_arena *a)
 {
     const size_t square = (size_t)IMK_CORRELATED_MAX * IMK_CORRELATED_MAX * sizeof(double);
     const size_t samples = settings->steps_maximum * IMKI_PLAN_TURN_SAMPLES + 1;
-    job->saved = take(a, sizeof *job->saved);
-    job->candidate = take(a, IMKI_PLAN_CANDIDATES_MAX * sizeof *job->candidate);
-    job->of_candidate = take(a, IMKI_PLAN_CANDIDATES_MAX * square);
-    job->before = take(a, square);
-    job->sum = take(a, square);
-    job->trial = take(a, square);
-    job->work = take(a, 2 * square);
+    job->saved = imki_take(a, sizeof *job->saved);
+    job->candidate = imki_take(a, IMKI_PLAN_CANDIDATES_MAX * sizeof *job->candidate);
+    job->of_candidate = imki_take(a, IMKI_PLAN_CANDIDATES_MAX * square);
+    job->before = imki_take(a, square);
+    job->sum = imki_take(a, square);
+    job->trial = imki_take(a, square);
+    job->work = imki_take(a, 2 * square);
     for (int c = 0; c < 6; c++)
-        job->plan.reading[c] = take(a, samples * sizeof(double));
+        job->plan.reading[c] = imki_take(a, samples * sizeof(double));
 }
 
 /* What the solver needs for the whole programme. */
@@ -115,7 +103,7 @@ static size_t solver_size(imk_calibration *c, const imk_plan_settings *settings)
 size_t imk_plan_workspace_size(imk_calibration *calibration, const imk_plan_settings *settings)
 {
     plan_job unused;
-    arena a = {NULL, 0};
+    imki_arena a = imki_arena_of(NULL);
     if (!calibration || !settings || settings->steps_maximum > STEPS_MOST)
         return 0;
     lay_out(&unused, settings, &a);
@@ -472,7 +460,7 @@ static imk_status plan(plan_job *job, double *hold)
     c->fixture_count = imki_plan_has_fixture(s);
     c->fixture_sigma[0] = s->fixture_sigma;
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+        const imk_triad *triad = imk_model_triad(&c->model, sensor);
         job->plan.record.axis_count[sensor] = triad->present && triad->axis_count == 3 ? 3 : 0;
         for (int i = 0; i < 3; i++)
             job->plan.record.reading[sensor][i] = job->plan.reading[3 * sensor + i];
@@ -522,7 +510,7 @@ imk_status imk_plan_make(imk_calibration *calibration, const imk_plan_settings *
     if (status != IMK_OK)
         return status;
     plan_job job = {.settings = settings, .step = step, .error = error};
-    arena a = {(char *)imki_align(workspace), 0};
+    imki_arena a = imki_arena_of(workspace);
     lay_out(&job, settings, &a);
     job.plan.settings = settings;
     job.plan.calibration = calibration;

@@ -79,7 +79,7 @@ static void prepare(pose_job *job, const imk_calibration *c, double sigma)
     o->fixture = -1;
     o->temperature = (double)NAN;
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+        const imk_triad *triad = imk_model_triad(&c->model, sensor);
         for (int i = 0; i < IMK_AXES_MAX; i++) {
             const bool there = triad->present && i < triad->axis_count;
             const double usual =
@@ -94,7 +94,7 @@ static void prepare(pose_job *job, const imk_calibration *c, double sigma)
         const imk_test_record *r =
             record >= 0 && record < (int)c->record_count ? c->record[record] : NULL;
         for (int sensor = 0; r && sensor < 2; sensor++) {
-            const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+            const imk_triad *triad = imk_model_triad(&c->model, sensor);
             for (int k = 0; r->counts[sensor] && k < triad->axis_count; k++)
                 if (triad->sensitivity.value[k] != 0.0 && !(sensor == IMK_ACCEL && sigma > 0.0))
                     o->sigma[sensor][k] /= fabs(triad->sensitivity.value[k]);

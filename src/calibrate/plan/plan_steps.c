@@ -69,7 +69,7 @@ static imk_observation observation_of(const imki_plan *plan, const imk_plan_step
     for (int i = 0; i < 3; i++)
         o.force[i] = step->force[i];
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+        const imk_triad *triad = imk_model_triad(model, sensor);
         for (int i = 0; i < IMK_AXES_MAX; i++) {
             const bool there = triad->present && i < triad->axis_count;
             o.reading[sensor][i] = there ? 0.0 : (double)NAN;

@@ -5,6 +5,8 @@
  *     dK_i = sum over j of R_ij dM_ij,     dR_ij = (dM_ij - R_ij dK_i)/K_i. */
 #include "six_position_internal.h"
 
+#include "base/algebra/vector_internal.h"
+#include "base/refuse_internal.h"
 #include "imukit/attitude.h"
 
 #include <math.h>
@@ -22,11 +24,8 @@ typedef struct pool {
 
 static imk_status wrong_stretch(size_t k, imk_error *error)
 {
-    imk_error_set(error, IMK_ERROR_ARGUMENT, "stretch", NULL,
-                  "samples of the record, axis 0 to 2, sense 1 or -1");
-    if (error)
-        error->index = (int)k;
-    return IMK_ERROR_ARGUMENT;
+    return imki_refuse_at(error, IMK_ERROR_ARGUMENT, "stretch", k, 0.0, 0.0,
+                          "samples of the record, axis 0 to 2, sense 1 or -1");
 }
 
 static void add_hold(const imk_test_record *record, const imk_ferraris_stretch *at, pool *p)
@@ -75,11 +74,8 @@ static imk_status gather(const imk_test_record *record, size_t count,
         if (!at->turn) {
             add_hold(record, at, p);
         } else if (!add_turn(record, at, turn_angle, p)) {
-            imk_error_set(error, IMK_ERROR_GAP, "turn", NULL,
-                          "a turn without gap and missing readings");
-            if (error)
-                error->index = (int)k;
-            return IMK_ERROR_GAP;
+            return imki_refuse_at(error, IMK_ERROR_GAP, "turn", k, 0.0, 0.0,
+                                  "a turn without gap and missing readings");
         }
     }
     for (int a = 0; a < 3; a++) {
@@ -98,7 +94,7 @@ static imk_status gather(const imk_test_record *record, size_t count,
 static bool split_rows(double m[3][3], double variance[3][3], imk_ferraris_triad *t)
 {
     for (int i = 0; i < 3; i++) {
-        const double k = sqrt(m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2]);
+        const double k = imki_norm3(m[i]);
         double of_k = 0.0;
         if (!(k > 0.0) || !isfinite(k))
             return false;

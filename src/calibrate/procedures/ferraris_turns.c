@@ -5,6 +5,8 @@
  * integrate to whole turns about one axis and to nothing about the others. */
 #include "six_position_internal.h"
 
+#include "base/refuse_internal.h"
+#include "base/text_internal.h"
 #include "imukit/samples.h"
 
 #include <math.h>
@@ -141,16 +143,11 @@ static imk_status turns_missing(int axes, const bool seen[3], imk_error *error)
     for (int i = 0; i < 3; i++) {
         if (seen[i])
             continue;
-        imki_append(missing, sizeof missing, first ? "" : ", ");
-        imki_append(missing, sizeof missing, i == 0 ? "x" : i == 1 ? "y" : "z");
+        imki_append_text(missing, sizeof missing, first ? "" : ", ");
+        imki_append_text(missing, sizeof missing, i == 0 ? "x" : i == 1 ? "y" : "z");
         first = false;
     }
-    imk_error_set(error, IMK_ERROR_TOO_SHORT, "turn", NULL, missing);
-    if (error) {
-        error->value = axes;
-        error->limit = 3;
-    }
-    return IMK_ERROR_TOO_SHORT;
+    return imki_refuse(error, IMK_ERROR_TOO_SHORT, "turn", axes, 3, missing);
 }
 
 imk_status imki_turns_find(const imk_test_record *record, const imk_procedure_settings *settings,

@@ -6,6 +6,7 @@
  * stretch from the end of one to the beginning of the next is a turn. How well both are known:
  * multiposition_sigma.c; what counts stand for when the model does not say: multiposition_start.c.
  */
+#include "base/refuse_internal.h"
 #include "multiposition_internal.h"
 #include "procedure_internal.h"
 
@@ -67,12 +68,7 @@ size_t imki_multiposition_workspace(const imk_test_record *record,
 static imk_status too_few(imk_error *error, const char *field, size_t found, size_t needed,
                           const char *expected)
 {
-    imk_error_set(error, IMK_ERROR_TOO_SHORT, field, NULL, expected);
-    if (error) {
-        error->value = (double)found;
-        error->limit = (double)needed;
-    }
-    return IMK_ERROR_TOO_SHORT;
+    return imki_refuse(error, IMK_ERROR_TOO_SHORT, field, (double)found, (double)needed, expected);
 }
 
 static imk_status find_holds(gathering *g)
@@ -108,12 +104,6 @@ static imk_status find_holds(gathering *g)
     return IMK_OK;
 }
 
-static const imk_triad *triad_of(const gathering *g, int sensor)
-{
-    const imk_model *model = &g->call->calibration->model;
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 /* No step longer than a sample. */
 static bool without_gap(const imk_test_record *record, size_t begin, size_t end)
 {
@@ -128,7 +118,7 @@ static bool within_range(const gathering *g, int sensor, size_t begin, size_t en
 {
     for (int i = 0; i < g->record->axis_count[sensor]; i++) {
         const double *reading = g->record->reading[sensor][i];
-        const double range = triad_of(g, sensor)->range.value[i];
+        const double range = imk_model_triad(&g->call->calibration->model, sensor)->range.value[i];
         /* A hair below full scale is there. */
         const double limit =
             range > 0.0 ? 0.9999 * range / fabs(g->scaling[sensor].unit[i]) : (double)INFINITY;
@@ -181,17 +171,20 @@ static void set_nominal(gathering *g, int sensor, const imki_scaling *found)
 static bool needs_nominal(const gathering *g, int sensor)
 {
     return g->record->counts[sensor] && g->record->axis_count[sensor] > 0 &&
-           triad_of(g, sensor)->sensitivity.value[0] == 0.0;
+           imk_model_triad(&g->call->calibration->model, sensor)->sensitivity.value[0] == 0.0;
 }
 
 static void take_nominal(gathering *g)
 {
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++) {
-            const double sensitivity = triad_of(g, sensor)->sensitivity.value[i];
+            const double sensitivity =
+                imk_model_triad(&g->call->calibration->model, sensor)->sensitivity.value[i];
             const bool counts = g->record->counts[sensor] && sensitivity != 0.0;
             g->scaling[sensor].unit[i] = counts ? 1.0 / sensitivity : 1.0;
-            g->scaling[sensor].zero[i] = counts ? triad_of(g, sensor)->zero_offset.value[i] : 0.0;
+            g->scaling[sensor].zero[i] =
+                counts ? imk_model_triad(&g->call->calibration->model, sensor)->zero_offset.value[i]
+                       : 0.0;
         }
 }
 
@@ -246,7 +239,9 @@ static imk_status find_gyro_nominal(gathering *g)
 /* Step of a reading, in its unit; 0: not known. */
 static double step_of(const gathering *g, int sensor, int axis)
 {
-    return g->record->counts[sensor] ? 1.0 : triad_of(g, sensor)->resolution.value[axis];
+    return g->record->counts[sensor]
+               ? 1.0
+               : imk_model_triad(&g->call->calibration->model, sensor)->resolution.value[axis];
 }
 
 static imki_turn_surroundings surroundings_of(const gathering *g)
@@ -331,14 +326,11 @@ static imk_status check_amount(const gathering *g)
     const size_t observations = calibration->observation_count + g->hold_count;
     if (observations > calibration->observation_capacity || turns > calibration->turn_capacity) {
         const bool of_turns = observations <= calibration->observation_capacity;
-        imk_error_set(error, IMK_ERROR_WORKSPACE, of_turns ? "turn" : "observation", NULL,
-                      "room for them");
-        if (error) {
-            error->value = (double)(of_turns ? turns : observations);
-            error->limit =
-                (double)(of_turns ? calibration->turn_capacity : calibration->observation_capacity);
-        }
-        return IMK_ERROR_WORKSPACE;
+        return imki_refuse(
+            error, IMK_ERROR_WORKSPACE, of_turns ? "turn" : "observation",
+            (double)(of_turns ? turns : observations),
+            (double)(of_turns ? calibration->turn_capacity : calibration->observation_capacity),
+            "room for them");
     }
     return IMK_OK;
 }
@@ -394,8 +386,7 @@ static imk_status append(gathering *g)
     imk_calibration *calibration = call->calibration;
     imk_procedure_findings *findings = call->findings;
     for (int sensor = 0; sensor < 2; sensor++) {
-        imk_triad *triad =
-            sensor == IMK_GYRO ? &calibration->model.gyro : &calibration->model.accel;
+        imk_triad *triad = imk_model_triad_to_set(&calibration->model, sensor);
         for (int i = 0; g->found[sensor] && i < 3; i++) {
             triad->sensitivity.value[i] = four_digits(1.0 / g->scaling[sensor].unit[i]);
             triad->zero_offset.value[i] = g->scaling[sensor].zero[i];

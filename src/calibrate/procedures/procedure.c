@@ -3,6 +3,7 @@
  * putting the calibration back when one fails. */
 #include "procedure_internal.h"
 
+#include "base/refuse_internal.h"
 #include "calibrate/estimator/calibration_internal.h"
 
 #include <math.h>
@@ -116,10 +117,8 @@ static imk_status check_settings(const imk_procedure_settings *s, imk_error *err
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
         if (rules[i].valid)
             continue;
-        imk_error_set(error, IMK_ERROR_RANGE, rules[i].field, NULL, rules[i].expected);
-        if (error)
-            error->value = rules[i].value;
-        return IMK_ERROR_RANGE;
+        return imki_refuse(error, IMK_ERROR_RANGE, rules[i].field, rules[i].value, 0.0,
+                           rules[i].expected);
     }
     return IMK_OK;
 }

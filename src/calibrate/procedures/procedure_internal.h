@@ -59,8 +59,6 @@ double imki_counts_per_unit(const imk_model *model, const imk_test_record *recor
                             int axis);
 /* False: readings in counts, and nobody knows how many make a unit. */
 bool imki_unit_known(const imk_model *model, const imk_test_record *record, int sensor);
-/* Append to a text of so many bytes, as far as there is room. */
-void imki_append(char *text, size_t size, const char *more);
 /* x to so many significant digits. */
 double imki_round_digits(double x, int digits);
 

@@ -5,11 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static const imk_triad *triad_of(const imk_model *model, int sensor)
-{
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 /* Elements of the misalignments or cross-axis terms of accelerometers that a frame leaves free; a
  * symmetric one ties the pairs, so that all have a value. */
 static bool frame_leaves(imk_triad_frame frame, int axis, int element)
@@ -21,7 +16,7 @@ imk_status imki_free_term(const imki_procedure_call *call, int sensor, int term,
                           bool attitudes_known)
 {
     imk_calibration *c = call->calibration;
-    const imk_triad *triad = triad_of(&c->model, sensor);
+    const imk_triad *triad = imk_model_triad(&c->model, sensor);
     const int axes = c->record[call->record]->axis_count[sensor];
     const bool rows = term == IMK_MODEL_MISALIGNMENT || term == IMK_MODEL_CROSS_AXIS;
     if (call->keep_free)
@@ -47,7 +42,7 @@ imk_status imki_free_term(const imki_procedure_call *call, int sensor, int term,
 double imki_reading_si(const imk_model *model, const imk_test_record *record, int sensor, int axis,
                        double reading)
 {
-    const imk_triad *triad = triad_of(model, sensor);
+    const imk_triad *triad = imk_model_triad(model, sensor);
     if (!record || !record->counts[sensor])
         return reading;
     return (reading - triad->zero_offset.value[axis]) / triad->sensitivity.value[axis];
@@ -56,7 +51,7 @@ double imki_reading_si(const imk_model *model, const imk_test_record *record, in
 double imki_counts_per_unit(const imk_model *model, const imk_test_record *record, int sensor,
                             int axis)
 {
-    return record->counts[sensor] ? triad_of(model, sensor)->sensitivity.value[axis] : 1.0;
+    return record->counts[sensor] ? imk_model_triad(model, sensor)->sensitivity.value[axis] : 1.0;
 }
 
 bool imki_unit_known(const imk_model *model, const imk_test_record *record, int sensor)
@@ -65,14 +60,6 @@ bool imki_unit_known(const imk_model *model, const imk_test_record *record, int 
         if (imki_counts_per_unit(model, record, sensor, i) == 0.0)
             return false;
     return true;
-}
-
-void imki_append(char *text, size_t size, const char *more)
-{
-    const size_t length = strlen(text), room = size - 1 - length, wanted = strlen(more);
-    const size_t taken = wanted < room ? wanted : room;
-    memcpy(text + length, more, taken);
-    text[length + taken] = '\0';
 }
 
 double imki_round_digits(double x, int digits)

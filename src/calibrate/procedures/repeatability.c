@@ -9,6 +9,7 @@
  * [SATTERTHWAITE1946]. */
 #include "imukit/repeatability.h"
 
+#include "base/refuse_internal.h"
 #include "imukit/distributions.h"
 
 #include <math.h>
@@ -113,15 +114,6 @@ static double variance_sigma(const sample *s, double t)
     return 1.0 / sqrt(information);
 }
 
-static imk_status bad_run(imk_status status, size_t k, const char *field, const char *expected,
-                          imk_error *error)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error)
-        error->index = (int)k;
-    return status;
-}
-
 static imk_status check(size_t runs, const double *value, const double *sigma,
                         const double *freedom, double confidence, imk_error *error)
 {
@@ -140,11 +132,12 @@ static imk_status check(size_t runs, const double *value, const double *sigma,
         return imk_error_set(error, IMK_ERROR_RANGE, "confidence", NULL, "between 0 and 1");
     for (size_t k = 0; k < runs; k++) {
         if (!isfinite(value[k]))
-            return bad_run(IMK_ERROR_NOT_FINITE, k, "run", "a finite value of every run", error);
+            return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "run", k, 0.0, 0.0,
+                                  "a finite value of every run");
         if (!(sigma[k] >= 0.0 && sigma[k] < HUGE_VAL))
-            return bad_run(IMK_ERROR_RANGE, k, "sigma", "0 or more", error);
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "sigma", k, 0.0, 0.0, "0 or more");
         if (freedom && !(freedom[k] > 0.0))
-            return bad_run(IMK_ERROR_RANGE, k, "freedom", "above 0", error);
+            return imki_refuse_at(error, IMK_ERROR_RANGE, "freedom", k, 0.0, 0.0, "above 0");
     }
     return IMK_OK;
 }

@@ -38,11 +38,6 @@ imk_status imk_repeatability_runs(const imk_test_record *record, double trim, do
     return IMK_OK;
 }
 
-static const imk_triad *triad_of(const imk_model *model, int sensor)
-{
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 /* ---- holds -------------------------------------------------------------------------------------
  */
 
@@ -104,7 +99,7 @@ imk_status imk_repeatability_of_holds(const imk_model *model, const bool counts[
     memset(&found, 0, sizeof found);
     found.attitude = (double)NAN;
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *triad = triad_of(model, sensor);
+        const imk_triad *triad = imk_model_triad(model, sensor);
         found.axis_count[sensor] = triad->present ? triad->axis_count : 0;
         for (int i = 0; i < found.axis_count[sensor]; i++) {
             if (counts[sensor] && triad->sensitivity.value[i] == 0.0)
@@ -213,7 +208,7 @@ static void store(const imk_repeatability *from, int axes, imk_axes *to, imk_evi
 void imk_repeatability_to_model(const imk_repeatability_result *result, imk_model *model)
 {
     for (int sensor = 0; sensor < 2; sensor++) {
-        imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+        imk_triad *triad = imk_model_triad_to_set(model, sensor);
         imk_evidence *evidence =
             sensor == IMK_GYRO ? &model->gyro_evidence : &model->accel_evidence;
         const int axes = result->axis_count[sensor];

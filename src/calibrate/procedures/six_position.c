@@ -10,6 +10,7 @@
  * W cos(latitude)/sqrt(2) to the sigma of both gyros across the vertical. */
 #include "six_position_internal.h"
 
+#include "base/refuse_internal.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -18,11 +19,6 @@ size_t imki_six_position_workspace(const imk_test_record *record,
                                    const imk_procedure_settings *settings)
 {
     return imki_stretches_workspace(record, settings);
-}
-
-static const imk_triad *triad_of(const imk_model *model, int sensor)
-{
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
 }
 
 /* ---- the Earth --------------------------------------------------------------------------------
@@ -56,7 +52,7 @@ static double smallest_sigma(const imk_model *model, const imk_test_record *reco
                              int axis)
 {
     static const double uniform = 0.28867513459481287; /* 1/sqrt(12) */
-    const double resolution = triad_of(model, sensor)->resolution.value[axis];
+    const double resolution = imk_model_triad(model, sensor)->resolution.value[axis];
     if (record->counts[sensor])
         return uniform;
     return resolution > 0.0 ? uniform * resolution : 1e-9;
@@ -117,13 +113,9 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_bench_
     const imk_procedure_settings *settings = call->settings;
     const size_t needed = c->observation_count + list->count + more;
     if (needed > c->observation_capacity) {
-        imk_error_set(call->error, IMK_ERROR_WORKSPACE, "observations", NULL,
-                      "room for an observation a hold and turn");
-        if (call->error) {
-            call->error->value = (double)needed;
-            call->error->limit = (double)c->observation_capacity;
-        }
-        return IMK_ERROR_WORKSPACE;
+        return imki_refuse(call->error, IMK_ERROR_WORKSPACE, "observations", (double)needed,
+                           (double)c->observation_capacity,
+                           "room for an observation a hold and turn");
     }
     *fixture = add_fixture(call);
     if (*fixture == -2)

@@ -6,6 +6,8 @@
  * gravity, as they are when every face was held:
  *
  *     u_i = (reading_i - (max_i + min_i)/2) / ((max_i - min_i)/2) */
+#include "base/refuse_internal.h"
+#include "base/text_internal.h"
 #include "base/workspace_internal.h"
 #include "six_position_internal.h"
 
@@ -314,12 +316,8 @@ imk_status imki_stretches_find(const imk_test_record *record,
         return status;
     const size_t needed = imki_stretches_workspace(record, settings);
     if (workspace_size < needed) {
-        imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL, NULL);
-        if (error) {
-            error->value = (double)needed;
-            error->limit = (double)workspace_size;
-        }
-        return IMK_ERROR_WORKSPACE;
+        return imki_refuse(error, IMK_ERROR_WORKSPACE, "workspace", (double)needed,
+                           (double)workspace_size, NULL);
     }
     char *aligned = (char *)imki_align(workspace);
     memset(list, 0, sizeof *list);
@@ -360,16 +358,11 @@ imk_status imki_faces_complete(const imki_bench_stretches *list, imk_error *erro
         faces += seen[f];
         if (seen[f])
             continue;
-        imki_append(missing, sizeof missing, first ? "" : ", ");
-        imki_append(missing, sizeof missing, names[f]);
+        imki_append_text(missing, sizeof missing, first ? "" : ", ");
+        imki_append_text(missing, sizeof missing, names[f]);
         first = false;
     }
     if (faces == FACES)
         return IMK_OK;
-    imk_error_set(error, IMK_ERROR_TOO_SHORT, "hold", NULL, missing);
-    if (error) {
-        error->value = faces;
-        error->limit = FACES;
-    }
-    return IMK_ERROR_TOO_SHORT;
+    return imki_refuse(error, IMK_ERROR_TOO_SHORT, "hold", faces, FACES, missing);
 }

@@ -3,6 +3,8 @@
  * is in ferraris.h. */
 #include "six_position_internal.h"
 
+#include "base/text_internal.h"
+
 #include <string.h>
 
 enum { LONGEST = 12 };
@@ -28,14 +30,9 @@ static bool is_word(char c)
     return is_letter(c) || (c >= '0' && c <= '9');
 }
 
-static char lower(char c)
-{
-    return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-}
-
 static int axis_of(char c)
 {
-    const char l = lower(c);
+    const char l = imki_lower(c);
     return l >= 'x' && l <= 'z' ? l - 'x' : -1;
 }
 
@@ -59,7 +56,7 @@ static int meaning_of(const char *text, size_t length)
     if (length >= sizeof word)
         return 0;
     for (size_t i = 0; i < length; i++)
-        word[i] = lower(text[i]);
+        word[i] = imki_lower(text[i]);
     word[length] = '\0';
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (strcmp(word, words[i].word) == 0)

@@ -16,6 +16,7 @@
  *     E' = E + [psi x],   psi from the elements of E that are to vanish or to become equal. */
 #include "calibrate/estimator/calibration_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/attitude.h"
 
 #include <math.h>
@@ -63,7 +64,7 @@ static void apply(const double c[3][3], const double v[3], double out[3])
 {
     double made[3];
     for (int i = 0; i < 3; i++)
-        made[i] = c[i][0] * v[0] + c[i][1] * v[1] + c[i][2] * v[2];
+        made[i] = imki_dot3(c[i], v);
     memcpy(out, made, sizeof made);
 }
 
@@ -129,7 +130,7 @@ static bool orthogonalise(const double r[3][3], const int order[3], double c[3][
         for (int pass = 0; pass < 2; pass++) /* twice is enough [BJORCK1996, sec. 2.4.5] */
             for (int l = 0; l < k; l++) {
                 const double *other = c[order[l]];
-                const double along = row[0] * other[0] + row[1] * other[1] + row[2] * other[2];
+                const double along = imki_dot3(row, other);
                 for (int j = 0; j < 3; j++)
                     row[j] -= along * other[j];
             }

@@ -7,6 +7,7 @@
  * variance of u in the log, at least one sample. */
 #include "reference_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/samples.h"
 
 #include <math.h>
@@ -33,7 +34,7 @@ static double relative_steps(const imk_test_record *record, const double *const 
             value[j] = channel[j][k] - channel[j][0];
             step[j] = channel[j][k] - channel[j][k - 1];
         }
-        const double square = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
+        const double square = imki_dot3(step, step);
         if (!(square < HUGE_VAL))
             continue;
         steps += square;

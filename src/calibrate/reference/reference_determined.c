@@ -12,6 +12,7 @@
  *
  * The three components of g-sensitivity go together: where one of them is a combination of the
  * others and the bias, as in three attitudes only, the others would take it in. */
+#include "base/algebra/vector_internal.h"
 #include "calibrate/estimator/calibration_internal.h"
 #include "model/model_schema_internal.h"
 #include "reference_internal.h"
@@ -76,15 +77,10 @@ static void scale_of(const design *d, int term, double *effect, double *limit)
     }
 }
 
-static double norm3(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 static void add_observation(design *d, const imk_calibration *c, const imk_observation *o,
                             int sensor, int axis)
 {
-    const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+    const imk_triad *triad = imk_model_triad(&c->model, sensor);
     double row[COLUMNS], sigma = o->sigma[sensor][axis];
     if (c->record[o->record]->counts[sensor])
         sigma /= fabs(triad->sensitivity.value[axis]);
@@ -98,10 +94,10 @@ static void add_observation(design *d, const imk_calibration *c, const imk_obser
         for (size_t j = 0; j <= i; j++)
             d->normal[i * COLUMNS + j] += weight * row[i] * row[j];
     d->weight += weight;
-    const double rate = norm3(o->rate), force = norm3(o->force);
+    const double rate = imki_norm3(o->rate), force = imki_norm3(o->force);
     d->input = fmax(d->input, sensor == IMK_GYRO ? rate : force);
     d->force = fmax(d->force, force);
-    d->spin = fmax(d->spin, fmax(rate * rate, norm3(o->angular_acceleration)));
+    d->spin = fmax(d->spin, fmax(rate * rate, imki_norm3(o->angular_acceleration)));
 }
 
 static double normal_at(const design *d, size_t i, size_t j)
@@ -183,7 +179,7 @@ static bool fixed_by_frame(const imk_calibration *c, const imk_model_parameter *
 static void collect(design *d, const imk_calibration *c, int sensor, int axis, size_t count,
                     const imki_candidate *candidate)
 {
-    const imk_triad *triad = sensor == IMK_GYRO ? &c->model.gyro : &c->model.accel;
+    const imk_triad *triad = imk_model_triad(&c->model, sensor);
     for (size_t p = 0; p < c->parameter_count; p++)
         if (c->parameter[p].sensor == sensor && c->parameter[p].axis == axis)
             add_column(d, c->parameter[p], false);

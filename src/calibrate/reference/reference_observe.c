@@ -16,6 +16,7 @@
  *     spin         accelerometers: lever arms */
 #include "reference_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "base/workspace_internal.h"
 #include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
@@ -114,7 +115,7 @@ static imk_status check_units(const imki_procedure_call *call, const imk_test_re
         const bool table = call->procedure == IMK_PROCEDURE_RATE_TABLE;
         const bool unread = table || (call->procedure == IMK_PROCEDURE_SPIN && sensor == IMK_GYRO &&
                                       imki_reference_channels(record, IMK_GYRO));
-        const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+        const imk_triad *triad = imk_model_triad(model, sensor);
         for (int axis = 0; axis < record->axis_count[sensor] && !unread; axis++)
             if (record->counts[sensor] && triad->sensitivity.value[axis] == 0.0)
                 return imki_reference_refuse(call, IMK_ERROR_UNIT_MISSING, fields[sensor], axis,
@@ -130,7 +131,7 @@ static imk_status check_units(const imki_procedure_call *call, const imk_test_re
 static imki_linear_fit along_axis(const observed *o, int sensor, int axis)
 {
     const imk_model *model = &o->calibration->model;
-    const double *e = (sensor == IMK_GYRO ? &model->gyro : &model->accel)->direction[axis];
+    const double *e = imk_model_triad(model, sensor)->direction[axis];
     const double *const *channel = imki_reference_channels(o->record, sensor);
     imki_linear_fit fit = {.count = 0};
     const size_t stride = o->record->count / FIT_SAMPLES + 1;
@@ -145,7 +146,7 @@ static imki_linear_fit along_axis(const observed *o, int sensor, int axis)
     for (size_t i = 0; !o->moving && i < o->count; i++) {
         const imk_reference_stretch *s = &o->stretch[i];
         const double *input = sensor == IMK_GYRO ? s->rate : s->force;
-        const double u[3] = {e[0] * input[0] + e[1] * input[1] + e[2] * input[2], 0.0, 0.0};
+        const double u[3] = {imki_dot3(e, input), 0.0, 0.0};
         const double y = s->reading.mean[sensor][axis];
         if (fabs(u[0]) < HUGE_VAL && fabs(y) < HUGE_VAL)
             imki_linear_fit_add(&fit, u, y);
@@ -238,7 +239,7 @@ static void earth_at_rest(const observed *o, imk_observation *observation)
 {
     const imk_calibration *c = o->calibration;
     const double *f = observation->force;
-    const double size = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+    const double size = imki_norm3(f);
     if (!(size > 0.0) || c->earth_rate == 0.0)
         return;
     const bool known = fabs(c->latitude) < HUGE_VAL;
@@ -248,7 +249,7 @@ static void earth_at_rest(const observed *o, imk_observation *observation)
         observation->rate[j] = vertical * f[j] / size;
     for (int axis = 0; axis < o->record->axis_count[IMK_GYRO]; axis++) {
         const double *e = c->model.gyro.direction[axis];
-        const double up = (e[0] * f[0] + e[1] * f[1] + e[2] * f[2]) / size;
+        const double up = imki_dot3(e, f) / size;
         const double across = known ? 0.5 * (1.0 - up * up) : 1.0 / 3.0;
         const double spread = level * imki_reference_sensitivity(o->call, IMK_GYRO, axis);
         double *sigma = &observation->sigma[IMK_GYRO][axis];
@@ -320,7 +321,7 @@ static double spread_of(const imk_calibration *c, size_t first)
     double sum[9] = {0.0}, values[3];
     for (size_t i = first; i < c->observation_count; i++) {
         const double *f = c->observation[i].force;
-        const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+        const double square = imki_dot3(f, f);
         for (int j = 0; j < 9 && square > 0.0; j++)
             sum[j] += f[j / 3] * f[j % 3] / square / (double)(c->observation_count - first);
     }
@@ -342,14 +343,14 @@ static bool is_moving(const observed *o)
     }
     for (size_t i = 0; i < o->count; i++) {
         const double *r = o->stretch[i].rate;
-        still = fmax(still, r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+        still = fmax(still, imki_dot3(r, r));
     }
     return still < reached * reached * all;
 }
 
 static double rate_of(const imk_reference_stretch *s)
 {
-    return sqrt(s->rate[0] * s->rate[0] + s->rate[1] * s->rate[1] + s->rate[2] * s->rate[2]);
+    return imki_norm3(s->rate);
 }
 
 /* Stretches of steady rate for what turns, though gravity may turn with the table; at rest forces

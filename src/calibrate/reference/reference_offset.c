@@ -13,6 +13,7 @@
  * with nothing, are left out throughout, so that all shifts are judged by the same readings. */
 #include "reference_internal.h"
 
+#include "base/refuse_internal.h"
 #include "base/workspace_internal.h"
 #include "imukit/elementary.h"
 
@@ -202,29 +203,18 @@ static void find_axis(const search *s, double lag, imk_reference_shift *shift)
         }
 }
 
-static imk_status refuse(imk_error *error, imk_status status, const char *field, double value,
-                         double limit, const char *expected)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error) {
-        error->value = value;
-        error->limit = limit;
-    }
-    return status;
-}
-
 static imk_status check(const imk_test_record *record, double max_shift, size_t workspace_size,
                         imk_error *error)
 {
     const double length = (double)record->count * record->dt;
     if (!(record->dt > 0.0) || !(max_shift > 0.0 && max_shift < HUGE_VAL))
-        return refuse(error, IMK_ERROR_RANGE, "max_shift", max_shift, 0.0, "a time above 0");
+        return imki_refuse(error, IMK_ERROR_RANGE, "max_shift", max_shift, 0.0, "a time above 0");
     if (!(length >= 3.0 * max_shift) || record->count < 16)
-        return refuse(error, IMK_ERROR_TOO_SHORT, "record", length, 3.0 * max_shift,
-                      "a log of three times the largest shift, or a smaller shift");
+        return imki_refuse(error, IMK_ERROR_TOO_SHORT, "record", length, 3.0 * max_shift,
+                           "a log of three times the largest shift, or a smaller shift");
     if (workspace_size < imk_reference_offset_workspace_size(record, max_shift))
-        return refuse(error, IMK_ERROR_WORKSPACE, "workspace", (double)workspace_size, 0.0,
-                      "imk_reference_offset_workspace_size() bytes");
+        return imki_refuse(error, IMK_ERROR_WORKSPACE, "workspace", (double)workspace_size, 0.0,
+                           "imk_reference_offset_workspace_size() bytes");
     return IMK_OK;
 }
 
@@ -250,8 +240,9 @@ imk_status imk_reference_offset(const imk_test_record *record, double max_shift,
     double lag = ((double)best - (double)s.shift) * (double)s.part;
     const double limit = 4.0 * (double)s.part + 4.0;
     if (!imki_reference_lag(record, s.used[0] + 2 * s.used[1], limit, &lag, &found.sigma))
-        return refuse(error, IMK_ERROR_NO_CONVERGENCE, "max_shift", lag * record->dt, max_shift,
-                      "readings that follow the reference, and a shift within the one allowed");
+        return imki_refuse(
+            error, IMK_ERROR_NO_CONVERGENCE, "max_shift", lag * record->dt, max_shift,
+            "readings that follow the reference, and a shift within the one allowed");
     find_rival(&s, best, &found);
     find_axis(&s, lag, &found);
     found.offset = lag * record->dt;

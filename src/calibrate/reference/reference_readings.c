@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Readings of stretches as observations: means with their sigma, and what is not usable. */
+#include "base/error_internal.h"
 #include "reference_internal.h"
 
 #include "imukit/attitude.h"
@@ -10,12 +11,6 @@
 /* Standard deviation of a rounded number, in steps. */
 static const double rounding = 0.28867513459481287;
 
-static const imk_triad *triad_of(const imki_procedure_call *call, int sensor)
-{
-    const imk_model *model = &call->calibration->model;
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 static const imk_test_record *record_of(const imki_procedure_call *call)
 {
     return call->calibration->record[call->record];
@@ -25,13 +20,7 @@ imk_status imki_reference_refuse(const imki_procedure_call *call, imk_status sta
                                  const char *field, int index, double value, double limit,
                                  const char *expected)
 {
-    imk_error_set(call->error, status, field, NULL, expected);
-    if (call->error) {
-        call->error->index = index;
-        call->error->value = value;
-        call->error->limit = limit;
-    }
-    return status;
+    return imki_error_number(call->error, status, field, (size_t)index, value, limit, expected);
 }
 
 imk_status imki_reference_room(const imki_procedure_call *call, size_t wanted)
@@ -46,14 +35,16 @@ imk_status imki_reference_room(const imki_procedure_call *call, size_t wanted)
 
 double imki_reference_sensitivity(const imki_procedure_call *call, int sensor, int axis)
 {
-    return record_of(call)->counts[sensor] ? triad_of(call, sensor)->sensitivity.value[axis] : 1.0;
+    return record_of(call)->counts[sensor]
+               ? imk_model_triad(&call->calibration->model, sensor)->sensitivity.value[axis]
+               : 1.0;
 }
 
 /* A tenth of what rounding to the output's step leaves: nothing is better known than that by the
  * mean of equal samples. Without a known step, a part in 1e9 of 1 unit. */
 double imki_reference_floor(const imki_procedure_call *call, int sensor, int axis)
 {
-    const imk_triad *triad = triad_of(call, sensor);
+    const imk_triad *triad = imk_model_triad(&call->calibration->model, sensor);
     if (record_of(call)->counts[sensor])
         return 0.1 * rounding;
     const double step = triad->resolution.value[axis];
@@ -80,7 +71,7 @@ imk_observation imki_reference_blank(const imki_procedure_call *call, size_t beg
 bool imki_reference_usable(const imki_procedure_call *call, int sensor, size_t begin, size_t end)
 {
     const imk_test_record *record = record_of(call);
-    const imk_triad *triad = triad_of(call, sensor);
+    const imk_triad *triad = imk_model_triad(&call->calibration->model, sensor);
     for (int axis = 0; axis < record->axis_count[sensor]; axis++) {
         const double *reading = record->reading[sensor][axis];
         const double range = triad->range.value[axis] > 0.0 ? triad->range.value[axis] : HUGE_VAL;
@@ -139,7 +130,7 @@ void imki_reference_own(const imki_procedure_call *call, int sensor, const doubl
                         double vector[3])
 {
     const imk_test_record *record = record_of(call);
-    const imk_triad *triad = triad_of(call, sensor);
+    const imk_triad *triad = imk_model_triad(&call->calibration->model, sensor);
     /* Sums of e e^T and e y: their solution is the vector of least squares. */
     imk_matrix3 sum = {{{0.0}}};
     imk_vector3 right = {{0.0, 0.0, 0.0}};

@@ -14,6 +14,7 @@
  *
  * Two neighbouring stretches share a rest between them; the variance of the two rests' mean is
  * counted twice, which is right for the mean of many stretches. */
+#include "base/algebra/vector_internal.h"
 #include "calibrate/estimator/axis_reading_internal.h"
 #include "reference_internal.h"
 
@@ -24,11 +25,6 @@ static const double rest_share = 0.05;
 /* Sine of the angle between axis and vertical that is still taken for upright. What gravity then
  * turns by goes in sines over the turn, and cancels over whole turns. */
 static const double upright = 0.1;
-
-static double norm3(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
 
 static void rate_of(const imki_procedure_call *call, const imk_reference_stretch *stretch,
                     double rate[3])
@@ -47,7 +43,7 @@ static double fastest_of(const imki_procedure_call *call, size_t count,
     double fastest = 0.0, rate[3];
     for (size_t i = 0; i < count; i++) {
         rate_of(call, &stretch[i], rate);
-        fastest = fmax(fastest, norm3(rate));
+        fastest = fmax(fastest, imki_norm3(rate));
     }
     return fastest;
 }
@@ -66,7 +62,7 @@ static bool is_rest(const rests *r, const imk_reference_stretch *stretch)
 {
     double rate[3];
     rate_of(r->call, stretch, rate);
-    return norm3(rate) <= r->limit;
+    return imki_norm3(rate) <= r->limit;
 }
 
 /* The last rest that ends before sample `k`, and the first that begins after it; NULL: none. */
@@ -86,11 +82,10 @@ static void neighbours(const rests *r, size_t k, const imk_reference_stretch *fo
 /* Is the axis of a rotation along what the unit reads at rest? */
 static bool is_upright(const rests *r, const imk_reference_stretch *rest, const double w[3])
 {
-    double f[3];
+    double f[3], across[3];
     imki_reference_own(r->call, IMK_ACCEL, rest->reading.mean[IMK_ACCEL], f);
-    const double across[3] = {w[1] * f[2] - w[2] * f[1], w[2] * f[0] - w[0] * f[2],
-                              w[0] * f[1] - w[1] * f[0]};
-    return norm3(across) <= upright * norm3(w) * norm3(f);
+    imki_cross3(w, f, across);
+    return imki_norm3(across) <= upright * imki_norm3(w) * imki_norm3(f);
 }
 
 /* Take the readings at rest off an observation's. @return false when the axis is not upright, or
@@ -162,7 +157,7 @@ static imk_status take_rests_off(const imki_procedure_call *call, const rests *r
     imk_calibration *c = call->calibration;
     size_t kept = first;
     for (size_t i = first; i < c->observation_count; i++) {
-        if (norm3(c->observation[i].rate) <= r->limit)
+        if (imki_norm3(c->observation[i].rate) <= r->limit)
             continue;
         c->observation[kept] = c->observation[i];
         if (!take_off(r, noise, &c->observation[kept++]))

@@ -101,8 +101,7 @@ static bool saturation(const imki_doubt_call *call, int sensor, int axis, double
     const imk_test_record *r = call->record;
     const double *x = r->reading[sensor][axis];
     const imki_axis_unit unit = imki_record_unit(r, call->model, sensor, axis);
-    const imk_triad *triad =
-        !call->model ? NULL : (sensor == IMK_GYRO ? &call->model->gyro : &call->model->accel);
+    const imk_triad *triad = !call->model ? NULL : imk_model_triad(call->model, sensor);
     const double step = imki_static_step(x, 0, r->count < 4096 ? r->count : 4096);
     if (triad && triad->present && axis < triad->axis_count && unit.unit != 0.0 &&
         triad->range.value[axis] > 0.0) {

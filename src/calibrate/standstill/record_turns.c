@@ -15,6 +15,7 @@
  * left-handed axes give -1 times the unit matrix. */
 #include "record_doubts_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/attitude.h"
 #include "imukit/elementary.h"
 #include "imukit/samples.h"
@@ -34,7 +35,7 @@ imki_axis_unit imki_record_unit(const imk_test_record *record, const imk_model *
         return (imki_axis_unit){1.0, 0.0};
     if (!model)
         return (imki_axis_unit){0.0, 0.0};
-    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, sensor);
     const double sensitivity = triad->sensitivity.value[axis];
     if (!triad->present || axis >= triad->axis_count || sensitivity == 0.0)
         return (imki_axis_unit){0.0, 0.0};
@@ -94,10 +95,9 @@ static bool unit_vertical(const imki_doubt_call *call, const imk_static_interval
 
 static double angle_between(const double a[3], const double b[3])
 {
-    const double cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                             a[0] * b[1] - a[1] * b[0]};
-    return imk_atan2(sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]),
-                     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    double across[3];
+    imki_cross3(a, b, across);
+    return imk_atan2(imki_norm3(across), imki_dot3(a, b));
 }
 
 /* A turn that is complete: no gap, no border of a section, all readings numbers. */

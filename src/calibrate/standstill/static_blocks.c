@@ -32,7 +32,7 @@ static void axis_ranges(const imk_test_record *record, const imk_model *model,
     axis->unit = record->counts[axis->sensor] ? 0.0 : 1.0;
     if (!model)
         return;
-    const imk_triad *triad = axis->sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, axis->sensor);
     if (!triad->present || axis->axis >= triad->axis_count)
         return;
     double per_unit = 1.0;

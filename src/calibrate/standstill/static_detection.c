@@ -14,6 +14,7 @@
  * A window that is not given is the longest of 0.4, 0.8 and 1.6 s (at least 16 samples) that still
  * finds 85 % of the intervals and 80 % of the standing time: a long one sees slower turning, a
  * short one loses less of a short hold. */
+#include "base/refuse_internal.h"
 #include "base/workspace_internal.h"
 #include "static_internal.h"
 
@@ -323,17 +324,6 @@ static size_t write_intervals(const imki_static_job *job, const imk_static_setti
     return count;
 }
 
-static imk_status refuse(imk_error *error, imk_status status, const char *field, double value,
-                         double limit, const char *expected)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error) {
-        error->value = value;
-        error->limit = limit;
-    }
-    return status;
-}
-
 static imk_status check(const imk_test_record *record, const imk_static_settings *settings,
                         size_t workspace_size, imk_error *error)
 {
@@ -341,33 +331,33 @@ static imk_status check(const imk_test_record *record, const imk_static_settings
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "static_settings", NULL,
                              "imk_static_default()");
     if (!(settings->window >= 0.0 && settings->window <= 1e6))
-        return refuse(error, IMK_ERROR_RANGE, "window", settings->window, 0.0,
-                      "a time in seconds, or 0 to have it chosen");
+        return imki_refuse(error, IMK_ERROR_RANGE, "window", settings->window, 0.0,
+                           "a time in seconds, or 0 to have it chosen");
     if (!(settings->false_alarm > 1e-12 && settings->false_alarm < 0.5))
-        return refuse(error, IMK_ERROR_RANGE, "false_alarm", settings->false_alarm, 0.5,
-                      "a probability, such as 1e-4");
+        return imki_refuse(error, IMK_ERROR_RANGE, "false_alarm", settings->false_alarm, 0.5,
+                           "a probability, such as 1e-4");
     if (!(settings->minimum >= 0.0 && settings->minimum <= 1e6))
-        return refuse(error, IMK_ERROR_RANGE, "minimum", settings->minimum, 0.0,
-                      "a time in seconds");
+        return imki_refuse(error, IMK_ERROR_RANGE, "minimum", settings->minimum, 0.0,
+                           "a time in seconds");
     if (!(settings->guard >= -1.0 && settings->guard <= 1e6))
-        return refuse(error, IMK_ERROR_RANGE, "guard", settings->guard, 0.0,
-                      "a time in seconds, or -1 for a window");
+        return imki_refuse(error, IMK_ERROR_RANGE, "guard", settings->guard, 0.0,
+                           "a time in seconds, or -1 for a window");
     if (!(settings->initial_rest >= 0.0 && settings->initial_rest <= 1e6))
-        return refuse(error, IMK_ERROR_RANGE, "initial_rest", settings->initial_rest, 0.0,
-                      "a time in seconds, or 0 to have the quietest part searched for");
+        return imki_refuse(error, IMK_ERROR_RANGE, "initial_rest", settings->initial_rest, 0.0,
+                           "a time in seconds, or 0 to have the quietest part searched for");
     if (!(record->dt > 0.0 && isfinite(record->dt)) || axes_of(record) == 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "record", NULL,
                              "a sample interval and readings");
     const size_t block = block_length(record, settings);
     const size_t needed = block * IMKI_WINDOW_BLOCKS * 2;
     if (record->count < needed || record->count < SAMPLES_MIN)
-        return refuse(error, IMK_ERROR_TOO_SHORT, "samples", (double)record->count,
-                      (double)(needed > SAMPLES_MIN ? needed : SAMPLES_MIN),
-                      "two windows at least");
+        return imki_refuse(error, IMK_ERROR_TOO_SHORT, "samples", (double)record->count,
+                           (double)(needed > SAMPLES_MIN ? needed : SAMPLES_MIN),
+                           "two windows at least");
     if (workspace_size < imk_static_workspace_size(record, settings))
-        return refuse(error, IMK_ERROR_WORKSPACE, "workspace", (double)workspace_size,
-                      (double)imk_static_workspace_size(record, settings),
-                      "imk_static_workspace_size() bytes");
+        return imki_refuse(error, IMK_ERROR_WORKSPACE, "workspace", (double)workspace_size,
+                           (double)imk_static_workspace_size(record, settings),
+                           "imk_static_workspace_size() bytes");
     return IMK_OK;
 }
 

@@ -14,6 +14,7 @@
  *
  * Readings coarser than their noise: its variance changes with where the value lies within a step
  * q, by up to q^2/4, and one that drifts across the edge of a step shifts a half by up to q. */
+#include "base/sort_internal.h"
 #include "imukit/distributions.h"
 #include "static_internal.h"
 
@@ -207,18 +208,6 @@ void imki_static_learn(imki_static_job *job, size_t begin, size_t end)
 /* ---- the quietest stretch ----------------------------------------------------------------------
  */
 
-static void sort(double *x, size_t count)
-{
-    for (size_t gap = count / 2; gap > 0; gap /= 2) /* Shell: a thousand values */
-        for (size_t i = gap; i < count; i++) {
-            const double v = x[i];
-            size_t j = i;
-            for (; j >= gap && x[j - gap] > v; j -= gap)
-                x[j] = x[j - gap];
-            x[j] = v;
-        }
-}
-
 /* A variance that windows of this axis often have: what they are compared by. */
 static double usual_variance(const imki_static_job *job, int a)
 {
@@ -231,7 +220,7 @@ static double usual_variance(const imki_static_job *job, int a)
             value[count++] = imki_static_window(b, a, w).variance;
     if (count == 0)
         return 1.0;
-    sort(value, count);
+    imki_sort(value, count);
     return value[count / 10] + 0.25 * job->axis[a].step * job->axis[a].step;
 }
 

@@ -364,7 +364,7 @@ static imk_status check(const imk_test_record *record, const imk_thermal_setting
         return imk_error_set(error, IMK_ERROR_KEY_MISSING, "temperature", NULL,
                              "a column of temperature");
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+        const imk_triad *triad = imk_model_triad(model, sensor);
         for (int axis = 0; axis < record->axis_count[sensor]; axis++)
             if (record->counts[sensor] && !(triad->sensitivity.value[axis] != 0.0))
                 return imk_error_set(error, IMK_ERROR_UNIT_MISSING,

@@ -3,6 +3,7 @@
  * means of its columns is exact, whatever the temperature does within a block; nearly a hundred
  * blocks keep what a polynomial of order 5 and a loop can follow, and are few enough that the
  * covariance of all of them is handled as a whole. */
+#include "base/refuse_internal.h"
 #include "calibrate/standstill/median_internal.h"
 #include "thermal_internal.h"
 
@@ -11,15 +12,10 @@
 #include <math.h>
 #include <string.h>
 
-static const imk_triad *triad_of(const imk_model *model, int sensor)
-{
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 double imki_thermal_reading(const imk_test_record *record, const imk_model *model, int sensor,
                             int axis, size_t sample)
 {
-    const imk_triad *triad = triad_of(model, sensor);
+    const imk_triad *triad = imk_model_triad(model, sensor);
     const double *const *reference =
         sensor == IMK_GYRO ? record->reference_rate : record->reference_force;
     double y = record->reading[sensor][axis][sample];
@@ -296,12 +292,7 @@ void imki_thermal_merge(imki_thermal_blocks *blocks)
 static imk_status too_short(imk_error *error, const char *field, double value, double limit,
                             const char *expected)
 {
-    imk_error_set(error, IMK_ERROR_TOO_SHORT, field, NULL, expected);
-    if (error) {
-        error->value = value;
-        error->limit = limit;
-    }
-    return IMK_ERROR_TOO_SHORT;
+    return imki_refuse(error, IMK_ERROR_TOO_SHORT, field, value, limit, expected);
 }
 
 /* 24 blocks of 4 samples: three for each of eight unknowns. */

@@ -22,6 +22,7 @@
  * points, each with its likelihood as weight. A log has few periods of its own length, so how
  * strong its slow noise is can not be known well; the best point alone is without any in many a log
  * that has it. */
+#include "base/algebra/vector_internal.h"
 #include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 #include "thermal_internal.h"
@@ -132,14 +133,6 @@ void imki_thermal_whiten(const imki_thermal_work *work, double *x)
     }
 }
 
-static double dot(size_t n, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
 static void fill_moments(imki_thermal_work *work, int point)
 {
     const imki_thermal_blocks *blocks = &work->blocks;
@@ -155,16 +148,16 @@ static void fill_moments(imki_thermal_work *work, int point)
         imki_thermal_whiten(work, x[c]);
         for (int d = 0; d <= c; d++)
             m->xx[c * IMKI_THERMAL_COLUMNS + d] = m->xx[d * IMKI_THERMAL_COLUMNS + c] =
-                dot(n, x[c], x[d]);
+                imki_dot(n, x[c], x[d]);
     }
     for (int a = 0; a < IMKI_THERMAL_AXES; a++) {
         if (!blocks->used[a])
             continue;
         memcpy(y, blocks->reading[a], n * sizeof *y);
         imki_thermal_whiten(work, y);
-        m->yy[a] = dot(n, y, y);
+        m->yy[a] = imki_dot(n, y, y);
         for (int c = 0; c < IMKI_THERMAL_COLUMNS; c++)
-            m->xy[a][c] = dot(n, x[c], y);
+            m->xy[a][c] = imki_dot(n, x[c], y);
     }
 }
 
@@ -208,7 +201,7 @@ double imki_thermal_weighted_rss(const imki_thermal_work *work, int axis, unsign
     if (information)
         *information = imk_cholesky_log_determinant(q, a);
     /* Of readings without noise rounding is left. */
-    return fmax(m->yy[axis] - dot(q, b, c), 1e-15 * m->yy[axis]);
+    return fmax(m->yy[axis] - imki_dot(q, b, c), 1e-15 * m->yy[axis]);
 }
 
 /* Flicker every sensor has; a random walk besides is the exception over hours: three quarters of
@@ -267,18 +260,18 @@ static void fill_equal(imki_thermal_work *work)
     for (int c = 0; c < N; c++) {
         const double *x = blocks->column[c];
         for (size_t i = 0; i < n; i++) {
-            fx[i] = dot(n, work->flicker + i * n, x);
-            rx[i] = dot(n, work->walk + i * n, x);
+            fx[i] = imki_dot(n, work->flicker + i * n, x);
+            rx[i] = imki_dot(n, work->walk + i * n, x);
             dx[i] = blocks->per_block / blocks->size[i] * x[i];
         }
         for (int d = 0; d < N; d++) {
-            work->square_moment[d * N + c] = dot(n, blocks->column[d], x);
-            work->white_moment[d * N + c] = dot(n, blocks->column[d], dx);
-            work->flicker_moment[d * N + c] = dot(n, blocks->column[d], fx);
-            work->walk_moment[d * N + c] = dot(n, blocks->column[d], rx);
+            work->square_moment[d * N + c] = imki_dot(n, blocks->column[d], x);
+            work->white_moment[d * N + c] = imki_dot(n, blocks->column[d], dx);
+            work->flicker_moment[d * N + c] = imki_dot(n, blocks->column[d], fx);
+            work->walk_moment[d * N + c] = imki_dot(n, blocks->column[d], rx);
         }
         for (int a = 0; a < IMKI_THERMAL_AXES; a++)
-            work->reading_moment[a][c] = dot(n, x, blocks->reading[a]);
+            work->reading_moment[a][c] = imki_dot(n, x, blocks->reading[a]);
     }
 }
 

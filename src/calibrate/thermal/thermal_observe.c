@@ -15,6 +15,7 @@
  * not move; only their sigmas are what they must be.
  *
  * Several poses, or a reference: thermal_poses.c. */
+#include "base/algebra/vector_internal.h"
 #include "calibrate/procedures/procedure_internal.h"
 #include "imukit/correct.h"
 #include "imukit/elementary.h"
@@ -44,7 +45,7 @@ static imk_status set_free(const imki_procedure_call *call, int sensor, int term
 static double in_record_unit(const imk_model *model, const imk_test_record *record, int sensor,
                              int axis, double reading)
 {
-    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, sensor);
     if (!record->counts[sensor])
         return reading;
     return reading * triad->sensitivity.value[axis] + triad->zero_offset.value[axis];
@@ -53,7 +54,7 @@ static double in_record_unit(const imk_model *model, const imk_test_record *reco
 static double sigma_in_record_unit(const imk_model *model, const imk_test_record *record,
                                    int sensor, int axis, double sigma)
 {
-    const imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, sensor);
     return record->counts[sensor] ? sigma * fabs(triad->sensitivity.value[axis]) : sigma;
 }
 
@@ -87,7 +88,7 @@ static void force_of(const imki_procedure_call *call, const imk_thermal_findings
         for (int i = 0; i < IMK_AXES_MAX; i++) {
             if (i < record->axis_count[sensor])
                 reading[sensor][i] = findings->axis[sensor][i].constant.value;
-            const imk_triad *triad = imki_thermal_triad(model, sensor);
+            const imk_triad *triad = imk_model_triad(model, sensor);
             if (triad->present && i < triad->axis_count && triad->sensitivity.value[i] != 0.0)
                 reading[sensor][i] =
                     reading[sensor][i] * triad->sensitivity.value[i] + triad->zero_offset.value[i];
@@ -96,11 +97,6 @@ static void force_of(const imki_procedure_call *call, const imk_thermal_findings
         }
     imk_correct(correction, &readings, 1, (double *const(*)[IMK_AXES_MAX])to);
     memcpy(force, out[IMK_ACCEL], 3 * sizeof *force);
-}
-
-static double length_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 static imk_status look_around(const imki_procedure_call *call, const imk_thermal_findings *findings,
@@ -113,7 +109,7 @@ static imk_status look_around(const imki_procedure_call *call, const imk_thermal
     if (findings->axis_count[IMK_ACCEL] == 0)
         return IMK_OK;
     force_of(call, findings, &work->correction, s->force);
-    const double length = length_of(s->force);
+    const double length = imki_norm3(s->force);
     if (!(length > 0.0))
         return IMK_OK;
     for (int k = 0; k < 3; k++)
@@ -249,7 +245,7 @@ static imk_status free_one_pose(const imki_procedure_call *call,
             order =
                 findings->axis[sensor][i].order > order ? findings->axis[sensor][i].order : order;
         imki_thermal_set_range(
-            &imki_thermal_triad(model, sensor)->bias.temperature, order, findings->reference,
+            &imk_model_triad_to_set(model, sensor)->bias.temperature, order, findings->reference,
             findings->minimum, findings->maximum,
             imki_thermal_is_free(call->calibration, sensor, IMK_MODEL_BIAS_TEMPERATURE));
         for (int i = 0; i < findings->axis_count[sensor] && status == IMK_OK; i++) {
@@ -279,7 +275,7 @@ static imk_status observe_one_pose(const imki_procedure_call *call)
     for (int sensor = 0; sensor < 2; sensor++)
         if (imki_thermal_is_free(c, sensor, IMK_MODEL_BIAS_TEMPERATURE))
             settings.reference_temperature =
-                imki_thermal_triad(&c->model, sensor)->bias.temperature.reference;
+                imk_model_triad_to_set(&c->model, sensor)->bias.temperature.reference;
     imk_status status = imk_thermal_analyse(c->record[call->record], &settings, &c->model,
                                             workspace, size, findings, call->error);
     if (status == IMK_OK)
@@ -300,7 +296,7 @@ imk_status imki_thermal_observe(const imki_procedure_call *call)
                              "a column of temperature");
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; record->counts[sensor] && i < record->axis_count[sensor]; i++)
-            if (!(imki_thermal_triad(&call->calibration->model, sensor)->sensitivity.value[i] !=
+            if (!(imk_model_triad_to_set(&call->calibration->model, sensor)->sensitivity.value[i] !=
                   0.0))
                 return imk_error_set(call->error, IMK_ERROR_UNIT_MISSING,
                                      sensor == IMK_GYRO ? "gyro" : "accel", "counts",

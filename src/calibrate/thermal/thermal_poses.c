@@ -2,6 +2,7 @@
 /* The thermal procedure with several poses, or a reference: each stretch at rest is cut where its
  * temperature moves by more than a bin; the observations have unknown attitudes, or the reference.
  * Bias and scale factor are told apart. */
+#include "base/refuse_internal.h"
 #include "calibrate/procedures/procedure_internal.h"
 #include "thermal_internal.h"
 #include "thermal_procedure_internal.h"
@@ -44,7 +45,7 @@ static imk_status free_poses(const imki_procedure_call *call, int levels, double
     const int scale = wanted == 0 ? 0 : order_of(wanted, 1, levels);
     imk_status status = IMK_OK;
     for (int sensor = 0; sensor < 2 && status == IMK_OK; sensor++) {
-        imk_triad *triad = imki_thermal_triad(&c->model, sensor);
+        imk_triad *triad = imk_model_triad_to_set(&c->model, sensor);
         const bool scaled = sensor == IMK_ACCEL || has[IMK_GYRO];
         if (record->axis_count[sensor] == 0)
             continue;
@@ -128,13 +129,8 @@ imk_status imki_thermal_observe_poses(const imki_procedure_call *call)
         }
     const int levels = levels_of(count, interval, high - low);
     if (levels < 2) {
-        imk_error_set(call->error, IMK_ERROR_TOO_SHORT, "temperature", NULL,
-                      "poses at two temperatures at least");
-        if (call->error) {
-            call->error->value = levels;
-            call->error->limit = 2.0;
-        }
-        return IMK_ERROR_TOO_SHORT;
+        return imki_refuse(call->error, IMK_ERROR_TOO_SHORT, "temperature", levels, 2.0,
+                           "poses at two temperatures at least");
     }
     const double usual = 298.15, set = call->settings->reference_temperature;
     const double reference = isfinite(set)                   ? set

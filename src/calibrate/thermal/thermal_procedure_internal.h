@@ -5,11 +5,6 @@
 
 #include "calibrate/procedures/procedure_internal.h"
 
-static inline imk_triad *imki_thermal_triad(imk_model *model, int sensor)
-{
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
-}
-
 /* True when a term of a sensor is free on any axis. */
 bool imki_thermal_is_free(const imk_calibration *calibration, int sensor, int term);
 /* The polynomial of a model becomes one about this reference, over this range; what a model had

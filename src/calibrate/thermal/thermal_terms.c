@@ -2,6 +2,8 @@
 /* What the two ways of the thermal procedure share. */
 #include "thermal_procedure_internal.h"
 
+#include "base/refuse_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -31,10 +33,7 @@ imk_status imki_thermal_add(const imki_procedure_call *call, const imk_observati
 {
     if (imk_calibration_observe(call->calibration, observation) >= 0)
         return IMK_OK;
-    imk_error_set(call->error, IMK_ERROR_WORKSPACE, "observations", NULL, "room for more");
-    if (call->error) {
-        call->error->value = (double)call->calibration->observation_count + 1.0;
-        call->error->limit = (double)call->calibration->observation_capacity;
-    }
-    return IMK_ERROR_WORKSPACE;
+    return imki_refuse(call->error, IMK_ERROR_WORKSPACE, "observations",
+                       (double)call->calibration->observation_count + 1.0,
+                       (double)call->calibration->observation_capacity, "room for more");
 }

@@ -32,12 +32,6 @@ static double degrees_of_freedom(imk_allan_statistic statistic, imk_power_law ty
     }
 }
 
-double imk_allan_edf_greenhall_riley(imk_allan_statistic statistic, imk_power_law type, size_t n,
-                                     size_t m)
-{
-    return degrees_of_freedom(statistic, type, true, n, m);
-}
-
 double imk_allan_edf_exact(imk_allan_statistic statistic, imk_power_law type, size_t n, size_t m)
 {
     return degrees_of_freedom(statistic, type, false, n, m);

@@ -7,6 +7,7 @@
  * drawn v are then the model's but for the curvature of the quantile, some percent at d of a few.
  */
 #include "allan_fit_internal.h"
+#include "base/sort_internal.h"
 #include "imukit/distributions.h"
 #include "imukit/linear_algebra.h"
 
@@ -83,29 +84,6 @@ static void draw(bootstrap_work *w, imk_random random, size_t number)
 }
 
 /* Heap sort, ascending. */
-static void sort(double *x, size_t count)
-{
-    for (size_t phase = count + count / 2; phase > 1; phase--) {
-        size_t end = count, root = phase - 1 - count;
-        if (phase <= count) {
-            end = phase - 1;
-            const double top = x[0];
-            x[0] = x[end];
-            x[end] = top;
-            root = 0;
-        }
-        for (size_t child = 2 * root + 1; child < end; child = 2 * root + 1) {
-            child += child + 1 < end && x[child + 1] > x[child];
-            if (!(x[child] > x[root]))
-                break;
-            const double lifted = x[child];
-            x[child] = x[root];
-            x[root] = lifted;
-            root = child;
-        }
-    }
-}
-
 static void summarise(const bootstrap_work *w, double *values, double confidence, size_t draws,
                       int term, struct imk_allan_bootstrap_term *out)
 {
@@ -117,7 +95,7 @@ static void summarise(const bootstrap_work *w, double *values, double confidence
         square += (values[i] / truth - mean) * (values[i] / truth - mean) / (double)(draws - 1);
     out->bias = mean - 1;
     out->sigma = sqrt(square);
-    sort(values, draws);
+    imki_sort(values, draws);
     const double tail = 0.5 * (1 - confidence) * (double)(draws - 1);
     const size_t low = (size_t)floor(tail), high = draws - 1 - low;
     out->lower = sqrt(values[low]);

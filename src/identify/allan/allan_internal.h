@@ -16,6 +16,30 @@
 #define IMKI_OUTLINED static
 #endif
 
+/* name_portable(), name_avx2() and name_avx512(): `name` inlined into a function of the same
+ * parameters for each instruction set, of which IMKI_ALLAN_CALL() takes one. */
+#define IMKI_ALLAN_VERSION(name, set, parameters, ...)                                             \
+    set double name parameters                                                                     \
+    {                                                                                              \
+        return __VA_ARGS__;                                                                        \
+    }
+#if defined(__x86_64__) && defined(__GNUC__)
+#define IMKI_ALLAN_VERSIONS(name, parameters, ...)                                                 \
+    IMKI_ALLAN_VERSION(name##_portable, IMKI_OUTLINED, parameters, name(__VA_ARGS__))              \
+    IMKI_ALLAN_VERSION(name##_avx2, __attribute__((target("avx2"))) static, parameters,            \
+                       name(__VA_ARGS__))                                                          \
+    IMKI_ALLAN_VERSION(name##_avx512, __attribute__((target("avx512f"))) static, parameters,       \
+                       name(__VA_ARGS__))
+#define IMKI_ALLAN_CALL(kernel, name, ...)                                                         \
+    ((kernel) == IMK_KERNEL_AVX512 ? name##_avx512(__VA_ARGS__)                                    \
+     : (kernel) == IMK_KERNEL_AVX2 ? name##_avx2(__VA_ARGS__)                                      \
+                                   : name##_portable(__VA_ARGS__))
+#else
+#define IMKI_ALLAN_VERSIONS(name, parameters, ...)                                                 \
+    IMKI_ALLAN_VERSION(name##_portable, IMKI_OUTLINED, parameters, name(__VA_ARGS__))
+#define IMKI_ALLAN_CALL(kernel, name, ...) ((void)(kernel), name##_portable(__VA_ARGS__))
+#endif
+
 enum {
     IMKI_ALLAN_LANES = 16,  /* partial sums, added up in a fixed order */
     IMKI_ALLAN_BLOCK = 1024 /* consecutive terms handled at once; their arrays stay in L1 */

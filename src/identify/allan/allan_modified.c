@@ -26,8 +26,8 @@ IMKI_INLINED double window_sum(const double *s, size_t m)
     return imki_sum_lanes(lane);
 }
 
-IMKI_INLINED void modified_block(imki_allan_cursor *c, const double *sums, size_t first,
-                                 size_t size)
+IMKI_INLINED double modified_block(imki_allan_cursor *c, const double *sums, size_t first,
+                                   size_t size)
 {
     _Alignas(64) double step[IMKI_ALLAN_BLOCK];
     const size_t m = c->m;
@@ -46,43 +46,16 @@ IMKI_INLINED void modified_block(imki_allan_cursor *c, const double *sums, size_
         whole ? (e[steps - 1] - a[steps - 1]) - 3 * (d[steps - 1] - b[steps - 1]) : 0;
     double square = 0;
     c->window = imki_running_squares(c->window, step, size, &square) + last;
-    c->total += square;
+    return square;
 }
 
-/* By itself: its array would stand on the stack beside those of the others. */
-IMKI_OUTLINED void block_portable(imki_allan_cursor *c, const double *sums, size_t first,
-                                  size_t size)
-{
-    modified_block(c, sums, first, size);
-}
-
-#if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx512f"))) static void
-block_avx512(imki_allan_cursor *c, const double *sums, size_t first, size_t size)
-{
-    modified_block(c, sums, first, size);
-}
-
-__attribute__((target("avx2"))) static void block_avx2(imki_allan_cursor *c, const double *sums,
-                                                       size_t first, size_t size)
-{
-    modified_block(c, sums, first, size);
-}
-#endif
+/* By itself: its arrays would stand on the stack beside those of the others. */
+IMKI_ALLAN_VERSIONS(modified_block,
+                    (imki_allan_cursor * c, const double *sums, size_t first, size_t size), c, sums,
+                    first, size)
 
 void imki_allan_modified_block(imki_allan_cursor *c, imk_kernel kernel, const double *sums,
                                size_t first, size_t size)
 {
-#if defined(__x86_64__) && defined(__GNUC__)
-    if (kernel == IMK_KERNEL_AVX512) {
-        block_avx512(c, sums, first, size);
-        return;
-    }
-    if (kernel == IMK_KERNEL_AVX2) {
-        block_avx2(c, sums, first, size);
-        return;
-    }
-#endif
-    (void)kernel;
-    block_portable(c, sums, first, size);
+    c->total += IMKI_ALLAN_CALL(kernel, modified_block, c, sums, first, size);
 }

@@ -38,8 +38,8 @@ IMKI_INLINED void window_sums(imki_allan_cursor *c, const double *s)
     c->slope = imki_sum_lanes(slope);
 }
 
-IMKI_INLINED void parabolic_block(imki_allan_cursor *c, const double *sums, size_t first,
-                                  size_t size)
+IMKI_INLINED double parabolic_block(imki_allan_cursor *c, const double *sums, size_t first,
+                                    size_t size)
 {
     _Alignas(64) double step[IMKI_ALLAN_BLOCK], near[IMKI_ALLAN_BLOCK], value[IMKI_ALLAN_BLOCK];
     const size_t m = c->m;
@@ -49,7 +49,7 @@ IMKI_INLINED void parabolic_block(imki_allan_cursor *c, const double *sums, size
         window_sums(c, a);
     }
     if (size == 0)
-        return;
+        return 0;
     const double before = 0.5 * ((double)m + 1), after = 0.5 * ((double)m - 1);
     const size_t steps = first + size < c->count ? size : size - 1;
     for (size_t j = 0; j < steps; j++) {
@@ -65,43 +65,16 @@ IMKI_INLINED void parabolic_block(imki_allan_cursor *c, const double *sums, size
     const double end = steps == size ? step[size - 1] : 0;
     double square = 0;
     c->slope = imki_running_squares(c->slope, step, size, &square) + end;
-    c->total += square;
+    return square;
 }
 
 /* By itself: its arrays would stand on the stack beside those of the others. */
-IMKI_OUTLINED void block_portable(imki_allan_cursor *c, const double *sums, size_t first,
-                                  size_t size)
-{
-    parabolic_block(c, sums, first, size);
-}
-
-#if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx512f"))) static void
-block_avx512(imki_allan_cursor *c, const double *sums, size_t first, size_t size)
-{
-    parabolic_block(c, sums, first, size);
-}
-
-__attribute__((target("avx2"))) static void block_avx2(imki_allan_cursor *c, const double *sums,
-                                                       size_t first, size_t size)
-{
-    parabolic_block(c, sums, first, size);
-}
-#endif
+IMKI_ALLAN_VERSIONS(parabolic_block,
+                    (imki_allan_cursor * c, const double *sums, size_t first, size_t size), c, sums,
+                    first, size)
 
 void imki_allan_parabolic_block(imki_allan_cursor *c, imk_kernel kernel, const double *sums,
                                 size_t first, size_t size)
 {
-#if defined(__x86_64__) && defined(__GNUC__)
-    if (kernel == IMK_KERNEL_AVX512) {
-        block_avx512(c, sums, first, size);
-        return;
-    }
-    if (kernel == IMK_KERNEL_AVX2) {
-        block_avx2(c, sums, first, size);
-        return;
-    }
-#endif
-    (void)kernel;
-    block_portable(c, sums, first, size);
+    c->total += IMKI_ALLAN_CALL(kernel, parabolic_block, c, sums, first, size);
 }

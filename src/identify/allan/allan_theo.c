@@ -33,37 +33,14 @@ IMKI_INLINED double block_squares(const double *s, size_t m, size_t count)
     return total;
 }
 
-#if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx512f"))) static double block_avx512(const double *s, size_t m,
-                                                              size_t count)
-{
-    return block_squares(s, m, count);
-}
-
-__attribute__((target("avx2"))) static double block_avx2(const double *s, size_t m, size_t count)
-{
-    return block_squares(s, m, count);
-}
-#endif
-
-static double block_for(imk_kernel kernel, const double *s, size_t m, size_t count)
-{
-#if defined(__x86_64__) && defined(__GNUC__)
-    if (kernel == IMK_KERNEL_AVX512)
-        return block_avx512(s, m, count);
-    if (kernel == IMK_KERNEL_AVX2)
-        return block_avx2(s, m, count);
-#endif
-    (void)kernel;
-    return block_squares(s, m, count);
-}
+IMKI_ALLAN_VERSIONS(block_squares, (const double *s, size_t m, size_t count), s, m, count)
 
 static double by_definition(imk_kernel kernel, const double *sums, size_t m, size_t count)
 {
     double total = 0;
     for (size_t i = 0; i < count; i += IMKI_ALLAN_BLOCK)
-        total += block_for(kernel, sums + i, m,
-                           count - i < IMKI_ALLAN_BLOCK ? count - i : IMKI_ALLAN_BLOCK);
+        total += IMKI_ALLAN_CALL(kernel, block_squares, sums + i, m,
+                                 count - i < IMKI_ALLAN_BLOCK ? count - i : IMKI_ALLAN_BLOCK);
     return total;
 }
 

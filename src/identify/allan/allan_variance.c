@@ -56,32 +56,8 @@ IMKI_INLINED double differences(bool third, const double *s, size_t m, size_t co
     return third ? third_differences(s, m, count) : second_differences(s, m, count);
 }
 
-#if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx512f"))) static double differences_avx512(bool third, const double *s,
-                                                                    size_t m, size_t count)
-{
-    return differences(third, s, m, count);
-}
-
-__attribute__((target("avx2"))) static double differences_avx2(bool third, const double *s,
-                                                               size_t m, size_t count)
-{
-    return differences(third, s, m, count);
-}
-#endif
-
-static double differences_for(imk_kernel kernel, bool third, const double *s, size_t m,
-                              size_t count)
-{
-#if defined(__x86_64__) && defined(__GNUC__)
-    if (kernel == IMK_KERNEL_AVX512)
-        return differences_avx512(third, s, m, count);
-    if (kernel == IMK_KERNEL_AVX2)
-        return differences_avx2(third, s, m, count);
-#endif
-    (void)kernel;
-    return differences(third, s, m, count);
-}
+IMKI_ALLAN_VERSIONS(differences, (bool third, const double *s, size_t m, size_t count), third, s, m,
+                    count)
 
 static double plain_sum(bool third, const double *s, size_t m, size_t count)
 {
@@ -140,8 +116,8 @@ static void add_block(const variance_work *w, imki_allan_cursor *c, size_t first
     else if (w->statistic == IMK_ALLAN_PARABOLIC && c->m > 1)
         imki_allan_parabolic_block(c, w->kernel, w->sums, first, size);
     else
-        c->total += differences_for(w->kernel, w->statistic == IMK_ALLAN_HADAMARD, w->sums + first,
-                                    c->m, size);
+        c->total += IMKI_ALLAN_CALL(w->kernel, differences, w->statistic == IMK_ALLAN_HADAMARD,
+                                    w->sums + first, c->m, size);
 }
 
 /* Mean of the squares, scaled as the statistic is defined. */

@@ -7,6 +7,8 @@
  * a set of bands like that of one record, and goes the same way: terms, then intervals. */
 #include "joint_internal.h"
 
+#include "base/refuse_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -103,11 +105,8 @@ static imk_status check(const imk_identify_settings *settings, size_t count,
             return imk_error_set(error, IMK_ERROR_UNINITIALISED, "summary", NULL,
                                  "identify each record with settings.summary first");
         if (!(fabs(summaries[r]->bands.dt / summaries[0]->bands.dt - 1) < 1e-3)) {
-            imk_error_set(error, IMK_ERROR_CONFLICT, "sample interval", NULL,
-                          "records of one sample rate");
-            if (error)
-                error->index = (int)r;
-            return IMK_ERROR_CONFLICT;
+            return imki_refuse_at(error, IMK_ERROR_CONFLICT, "sample interval", r, 0.0, 0.0,
+                                  "records of one sample rate");
         }
     }
     return IMK_OK;
@@ -134,21 +133,13 @@ static void gather_resonances(size_t count, const imk_identification *single,
         }
 }
 
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
-
 size_t imk_identify_joint_workspace_size(void)
 {
-    return 64 + 2 * aligned(sizeof(imki_bands)) + 3 * aligned(sizeof(imki_fit));
-}
-
-static void *take(char **memory, size_t size)
-{
-    void *start = *memory;
-    *memory += aligned(size);
-    return start;
+    imki_work unused;
+    imki_arena arena = imki_arena_of(NULL);
+    imki_work_take_fits(&unused, &arena);
+    imki_take(&arena, sizeof(imki_bands));
+    return imki_arena_size(&arena);
 }
 
 imk_status imk_identify_joint(const imk_identify_settings *settings, size_t count,
@@ -160,13 +151,10 @@ imk_status imk_identify_joint(const imk_identify_settings *settings, size_t coun
     const imk_status status = check(settings, count, summaries, workspace_size, error);
     if (status != IMK_OK)
         return status;
-    char *memory = (char *)workspace + (64 - (uintptr_t)workspace % 64) % 64;
+    imki_arena arena = imki_arena_of(workspace);
     imki_work work = {.settings = settings, .scale = summaries[0]->scale, .bands_given = true};
-    work.bands = take(&memory, sizeof(imki_bands));
-    imki_bands *other = take(&memory, sizeof(imki_bands));
-    work.fit = take(&memory, sizeof(imki_fit));
-    work.trial = take(&memory, sizeof(imki_fit));
-    work.chosen = take(&memory, sizeof(imki_fit));
+    imki_work_take_fits(&work, &arena);
+    imki_bands *other = imki_take(&arena, sizeof *other);
     if (!join(count, summaries, work.bands, other))
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "records", NULL,
                              "fewer of them, or of the same length");

@@ -2,6 +2,7 @@
 /* Identification of one channel: checks and memory, then spectrum and lines (identify_lines.c), the
  * fit and the choice of terms (identify_terms.c), intervals (identify_intervals.c), and how far it
  * agrees with the Allan deviation (identify_verdict.c). */
+#include "base/refuse_internal.h"
 #include "identify/records/missing_internal.h"
 #include "identify_internal.h"
 #include "imukit/fourier.h"
@@ -16,22 +17,31 @@ imk_identify_settings imk_identify_default(void)
         .cookie = COOKIE, .confidence = 0.95, .significance = 0.01, .shape = true};
 }
 
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
-
 /* At most three quarters of a record may be missing. */
 static size_t missing_maximum(size_t n)
 {
     return n - n / 4;
 }
 
+static void lay_out(imki_work *w, size_t missing, imki_arena *arena)
+{
+    w->samples = imki_take(arena, (w->n + 1) * sizeof(double));
+    w->coefficients = imki_take(arena, (w->n + 1) * sizeof(double));
+    w->cumulative = imki_take(arena, (w->n + 1) * sizeof(double));
+    w->points = imki_take(arena, IMKI_POINTS_MAX * sizeof(imk_allan_point));
+    imki_work_take_fits(w, arena);
+    w->transform_size = imk_cosine_workspace_size(w->n);
+    w->transform = imki_take(arena, w->transform_size);
+    void *place = imki_take(arena, missing > 0 ? imki_missing_size(missing) : 0);
+    w->missing = place && missing > 0 ? imki_missing_place(place, missing) : NULL;
+}
+
 size_t imk_identify_workspace_size(size_t n)
 {
-    return 64 + 3 * aligned((n + 1) * sizeof(double)) + aligned(sizeof(imki_bands)) +
-           aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) + 3 * aligned(sizeof(imki_fit)) +
-           aligned(imk_cosine_workspace_size(n)) + imki_missing_size(missing_maximum(n));
+    imki_work unused = {.n = n};
+    imki_arena arena = imki_arena_of(NULL);
+    lay_out(&unused, missing_maximum(n), &arena);
+    return imki_arena_size(&arena);
 }
 
 /* Cut NaN off the ends of a record; returns how many at its start. A length with large prime
@@ -53,29 +63,6 @@ static size_t trim(size_t *n, const double **samples)
     *n = length;
     *samples += before;
     return before;
-}
-
-static void *take(char **memory, size_t size)
-{
-    void *start = *memory;
-    *memory += aligned(size);
-    return start;
-}
-
-static void lay_out(imki_work *w, void *workspace, size_t missing)
-{
-    char *memory = (char *)workspace + (64 - (uintptr_t)workspace % 64) % 64;
-    w->samples = take(&memory, (w->n + 1) * sizeof(double));
-    w->coefficients = take(&memory, (w->n + 1) * sizeof(double));
-    w->cumulative = take(&memory, (w->n + 1) * sizeof(double));
-    w->points = take(&memory, IMKI_POINTS_MAX * sizeof(imk_allan_point));
-    w->bands = take(&memory, sizeof(imki_bands));
-    w->fit = take(&memory, sizeof(imki_fit));
-    w->trial = take(&memory, sizeof(imki_fit));
-    w->chosen = take(&memory, sizeof(imki_fit));
-    w->transform_size = imk_cosine_workspace_size(w->n);
-    w->transform = take(&memory, w->transform_size);
-    w->missing = missing > 0 ? imki_missing_place(memory, missing) : NULL;
 }
 
 imk_status imki_identify_check(const imk_identify_settings *settings, imk_error *error)
@@ -119,12 +106,10 @@ static imk_status check_arguments(const imk_identify_settings *settings, size_t 
         constant = constant && samples[i] == samples[0];
     }
     if (constant) {
-        imk_error_set(error, IMK_ERROR_CONSTANT, NULL, NULL,
-                      "check its wiring and driver: a working sensor never repeats itself for a "
-                      "whole record");
-        if (error)
-            error->value = samples[0];
-        return IMK_ERROR_CONSTANT;
+        return imki_refuse(
+            error, IMK_ERROR_CONSTANT, NULL, samples[0], 0.0,
+            "check its wiring and driver: a working sensor never repeats itself for a "
+            "whole record");
     }
     if (*missing > missing_maximum(n) || n - *missing < SAMPLES_MIN)
         return imk_error_set(error, IMK_ERROR_TOO_SHORT, NULL, NULL,
@@ -241,7 +226,8 @@ imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
     if (status != IMK_OK)
         return status;
     imki_work work = {.settings = settings, .n = n, .scale = scale_of(n, samples)}, *w = &work;
-    lay_out(w, workspace, missing);
+    imki_arena arena = imki_arena_of(workspace);
+    lay_out(w, missing, &arena);
     imk_identification found = {0};
     take_record(w, samples, &found);
     check_record(w, samples, &found);

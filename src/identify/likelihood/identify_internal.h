@@ -4,6 +4,7 @@
 #ifndef IMUKIT_IDENTIFY_INTERNAL_H
 #define IMUKIT_IDENTIFY_INTERNAL_H
 
+#include "base/workspace_internal.h"
 #include "identify/records/screen_internal.h" /* the record's faults */
 #include "imukit/identify.h"
 
@@ -194,6 +195,14 @@ typedef struct imki_work {
     const imki_spectrum *spectra;
     imk_allan_point *points; /* room for IMKI_POINTS_MAX */
 } imki_work;
+
+static inline void imki_work_take_fits(imki_work *w, imki_arena *arena)
+{
+    w->bands = imki_take(arena, sizeof *w->bands);
+    w->fit = imki_take(arena, sizeof *w->fit);
+    w->trial = imki_take(arena, sizeof *w->trial);
+    w->chosen = imki_take(arena, sizeof *w->chosen);
+}
 
 /* fast_shape.c: fits the filter and the wide resonances jointly with all amounts, and adds the
  * resonances that the residuals ask for; returns how many. Uses `trial` and `chosen`. */

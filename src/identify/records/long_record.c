@@ -14,11 +14,6 @@ enum {
     MISSING_SHARE = 100       /* a segment with more than a hundredth missing is left out */
 };
 
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
-
 /* Blocks of at most 128 samples, so that the slow spectrum and the fast one overlap well. */
 imki_record_sizes imki_record_sizes_for(size_t expected)
 {
@@ -38,37 +33,36 @@ static size_t sums_size(const imki_record_sizes *sizes)
     return chunk_of(sizes) + 2 * IMKI_STRIDE_ONE + 1;
 }
 
-size_t imki_record_memory(const imki_record_sizes *sizes)
+static void lay_out(imk_identify_record *r, const imki_record_sizes *sizes, imki_arena *arena)
 {
     const size_t segment = (sizes->segment + 1) * sizeof(double);
-    return 64 + aligned(sizeof(imk_identify_record)) + 3 * aligned(segment) +
-           aligned(imk_cosine_workspace_size(sizes->segment)) +
-           aligned(sizes->capacity * sizeof(double)) + aligned(sums_size(sizes) * sizeof(double));
+    r->buffer = imki_take(arena, segment);
+    r->spectrum = imki_take(arena, segment);
+    r->power = imki_take(arena, segment);
+    r->transform_size = imk_cosine_workspace_size(sizes->segment);
+    r->transform = imki_take(arena, r->transform_size);
+    r->means = imki_take(arena, sizes->capacity * sizeof(double));
+    r->sums = imki_take(arena, sums_size(sizes) * sizeof(double));
 }
 
-static void *take(char **memory, size_t size)
+size_t imki_record_memory(const imki_record_sizes *sizes)
 {
-    void *start = *memory;
-    *memory += aligned(size);
-    return start;
+    imk_identify_record unused;
+    imki_arena arena = imki_arena_of(NULL);
+    imki_take(&arena, sizeof unused);
+    lay_out(&unused, sizes, &arena);
+    return imki_arena_size(&arena);
 }
 
 imk_identify_record *imki_record_start(const imki_record_sizes *sizes, void *memory)
 {
-    const size_t segment = (sizes->segment + 1) * sizeof(double);
-    char *place = (char *)memory + (64 - (uintptr_t)memory % 64) % 64;
-    imk_identify_record *r = take(&place, sizeof *r);
+    imki_arena arena = imki_arena_of(memory);
+    imk_identify_record *r = imki_take(&arena, sizeof *r);
     memset(r, 0, sizeof *r);
     r->sizes = *sizes;
     r->chunk = chunk_of(sizes);
-    r->buffer = take(&place, segment);
-    r->spectrum = take(&place, segment);
-    r->power = take(&place, segment);
-    r->transform_size = imk_cosine_workspace_size(sizes->segment);
-    r->transform = take(&place, r->transform_size);
-    r->means = take(&place, sizes->capacity * sizeof(double));
-    r->sums = take(&place, sums_size(sizes) * sizeof(double));
-    memset(r->power, 0, segment);
+    lay_out(r, sizes, &arena);
+    memset(r->power, 0, (sizes->segment + 1) * sizeof(double));
     r->block = IMKI_BLOCK_LEAST;
     r->scale = 1;
     r->checks.last = (double)NAN;

@@ -2,6 +2,7 @@
 /* From what was gathered of a long record to its identification: the last segment, the slow
  * spectrum, Allan deviations, lines; then the same fit, intervals and verdict as for a record that
  * was transformed as a whole. */
+#include "base/refuse_internal.h"
 #include "imukit/fourier.h"
 #include "long_record_internal.h"
 
@@ -9,11 +10,6 @@
 #include <string.h>
 
 enum { SEGMENTS_LEAST = 8, LARGEST_PRIME = 13 };
-
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
 
 /* Has n no prime factor above 13? Other lengths take the transform ten times as long. */
 static bool is_smooth(size_t n)
@@ -51,22 +47,16 @@ static parts parts_of(const imk_identify_record *r)
     const size_t means = means_at_end(r);
     parts p = {.points = transform_length(means)};
     p.transform_size = imk_cosine_workspace_size(p.points);
-    p.total = 64 + 2 * aligned((means + 1) * sizeof(double)) + aligned(p.transform_size) +
-              aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) + aligned(sizeof(imki_bands)) +
-              3 * aligned(sizeof(imki_fit)) + aligned(sizeof(imki_record_spectra));
+    p.total = 64 + 2 * imki_aligned((means + 1) * sizeof(double)) + imki_aligned(p.transform_size) +
+              imki_aligned(IMKI_POINTS_MAX * sizeof(imk_allan_point)) +
+              imki_aligned(sizeof(imki_bands)) + 3 * imki_aligned(sizeof(imki_fit)) +
+              imki_aligned(sizeof(imki_record_spectra));
     return p;
 }
 
 size_t imk_identify_record_workspace_size(const imk_identify_record *record)
 {
     return parts_of(record).total;
-}
-
-static void *take(char **memory, size_t size)
-{
-    void *start = *memory;
-    *memory += aligned(size);
-    return start;
 }
 
 /* Weight and degrees of the segments' powers. The samples behind the last whole segment make one
@@ -106,12 +96,10 @@ static imk_status check_record(const imk_identify_record *r, const imk_identify_
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
                              "imk_identify_record_workspace_size() bytes");
     if (r->checks.high.distinct == 1) {
-        imk_error_set(error, IMK_ERROR_CONSTANT, NULL, NULL,
-                      "check its wiring and driver: a working sensor never repeats itself for a "
-                      "whole record");
-        if (error)
-            error->value = r->checks.high.value[0] / r->scale + r->shift;
-        return IMK_ERROR_CONSTANT;
+        return imki_refuse(
+            error, IMK_ERROR_CONSTANT, NULL, r->checks.high.value[0] / r->scale + r->shift, 0.0,
+            "check its wiring and driver: a working sensor never repeats itself for a "
+            "whole record");
     }
     if (r->segments <= r->skipped || empty > r->mean_count / 20)
         return imk_error_set(error, IMK_ERROR_GAP, NULL, NULL,
@@ -173,21 +161,18 @@ imk_status imk_identify_record_finish(imk_identify_record *r, const imk_identify
     describe_samples(r, &found);
 
     const parts p = parts_of(r);
-    char *memory = (char *)workspace + (64 - (uintptr_t)workspace % 64) % 64;
-    double *coefficients = take(&memory, (r->mean_count + 1) * sizeof(double));
-    double *cumulative = take(&memory, (r->mean_count + 1) * sizeof(double));
-    void *transform = take(&memory, p.transform_size);
-    imki_record_spectra *spectra = take(&memory, sizeof *spectra);
+    imki_arena arena = imki_arena_of(workspace);
+    double *coefficients = imki_take(&arena, (r->mean_count + 1) * sizeof(double));
+    double *cumulative = imki_take(&arena, (r->mean_count + 1) * sizeof(double));
+    void *transform = imki_take(&arena, p.transform_size);
+    imki_record_spectra *spectra = imki_take(&arena, sizeof *spectra);
     imki_work work = {.settings = settings, .n = p.points * r->block, .scale = r->scale};
-    work.points = take(&memory, IMKI_POINTS_MAX * sizeof(imk_allan_point));
+    work.points = imki_take(&arena, IMKI_POINTS_MAX * sizeof(imk_allan_point));
     work.point_count = transform_means(r, settings, p.points, coefficients, cumulative, transform,
                                        p.transform_size, work.points);
     work.spectrum_count = 2;
     work.spectra = spectra->part;
-    work.bands = take(&memory, sizeof(imki_bands));
-    work.fit = take(&memory, sizeof(imki_fit));
-    work.trial = take(&memory, sizeof(imki_fit));
-    work.chosen = take(&memory, sizeof(imki_fit));
+    imki_work_take_fits(&work, &arena);
 
     double weight, degrees;
     add_last_segment(r, &weight, &degrees);

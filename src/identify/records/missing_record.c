@@ -14,6 +14,7 @@
  * known less well than its terms, and lend its errors to the filling. */
 #include "missing_internal.h"
 
+#include "base/workspace_internal.h"
 #include "imukit/fourier.h"
 
 #include <math.h>
@@ -31,27 +32,21 @@ static const double LOST_DEGREES = 400;
  * of it. */
 static const double BANDS_SETTLED = 1, FIT_SETTLED = 0.01;
 
-static size_t aligned(size_t size)
-{
-    return (size + 63) / 64 * 64;
-}
-
 size_t imki_missing_size(size_t count)
 {
-    return aligned(sizeof(imki_missing)) + aligned(count * sizeof(uint32_t)) +
-           3 * aligned(count * sizeof(double));
+    return imki_aligned(sizeof(imki_missing)) + imki_aligned(count * sizeof(uint32_t)) +
+           3 * imki_aligned(count * sizeof(double));
 }
 
 imki_missing *imki_missing_place(void *memory, size_t count)
 {
-    char *next = memory;
-    imki_missing *m = memory;
+    imki_arena arena = {memory, 0};
+    imki_missing *m = imki_take(&arena, sizeof *m);
     memset(m, 0, offsetof(imki_missing, scratch));
     m->count = count;
-    next += aligned(sizeof *m);
-    for (int i = 0; i < 3; i++, next += aligned(count * sizeof(double)))
-        m->vector[i] = (double *)next;
-    m->index = (uint32_t *)next;
+    for (int i = 0; i < 3; i++)
+        m->vector[i] = imki_take(&arena, count * sizeof(double));
+    m->index = imki_take(&arena, count * sizeof(uint32_t));
     return m;
 }
 

@@ -5,32 +5,6 @@
 
 #include <math.h>
 
-/* Heap sort, ascending: the C library's qsort may allocate. */
-static void sift(double *a, size_t root, size_t count)
-{
-    for (size_t child; (child = 2 * root + 1) < count; root = child) {
-        if (child + 1 < count && a[child + 1] > a[child])
-            child++;
-        if (a[root] >= a[child])
-            return;
-        const double swap = a[root];
-        a[root] = a[child];
-        a[child] = swap;
-    }
-}
-
-void imki_sort(double *a, size_t count)
-{
-    for (size_t i = count / 2; i-- > 0;)
-        sift(a, i, count);
-    for (size_t end = count; end-- > 1;) {
-        const double swap = a[0];
-        a[0] = a[end];
-        a[end] = swap;
-        sift(a, 0, end);
-    }
-}
-
 /* Smallest step between different ones of some sorted values that lie on a grid of that step (to
  * 1 %, so that a unit conversion's rounding does not hide it); else 0. */
 static double step_among(size_t count, const double *sorted)

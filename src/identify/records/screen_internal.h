@@ -4,6 +4,7 @@
 #ifndef IMUKIT_SCREEN_INTERNAL_H
 #define IMUKIT_SCREEN_INTERNAL_H
 
+#include "base/sort_internal.h"
 #include "imukit/record_screen.h"
 
 static inline bool imki_is_there(double value)
@@ -12,8 +13,6 @@ static inline bool imki_is_there(double value)
 }
 
 /* record_checks.c */
-/* Heap sort, ascending. */
-void imki_sort(double *a, size_t count);
 /* Smallest step between different values in a sample of the record, when the values lie on a grid
  * of that step; else 0. */
 double imki_record_resolution(size_t n, const double *samples, double *scratch,

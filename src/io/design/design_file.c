@@ -4,10 +4,8 @@
 
 #include "design_file_internal.h"
 #include "io/file/text_file_internal.h"
-#include "io/motion/step_sentence_internal.h"
 
 #include "imukit/names.h"
-#include "imukit/output_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,34 +30,24 @@ static void expected_names(const char *name, char *expected, size_t size)
 }
 
 /* The kind that the document says. With `due`, it must be that one. */
-static imk_status read_instrument(const imk_document *document, const imk_instrument *due,
-                                  const imk_instrument **instrument, imk_error *error)
+static const imk_instrument *read_instrument(imki_reading *r, const imk_instrument *due)
 {
-    char expected[sizeof error->expected];
-    const int node = imki_document_value(document, 0, "instrument");
-    if (node == IMKI_NONE)
-        return imki_document_error(document, 0, IMK_ERROR_KEY_MISSING, "instrument",
-                                   "write instrument: NAME, as imukit physics lists them", error);
-    const imk_status status =
-        imki_value_require(document, node, IMKI_NODE_SCALAR, "the name of an instrument", error);
-    if (status != IMK_OK)
-        return status;
-    const char *name = document->node[node].text;
-    if (due && strcmp(due->name, name) == 0) {
-        *instrument = due;
-        return IMK_OK;
-    }
-    if (due) {
-        char found[sizeof error->found];
+    char expected[sizeof r->error->expected], found[sizeof r->error->found];
+    int node;
+    if (!imki_value_find(r, 0, "instrument", "write instrument: NAME, as imukit physics lists them",
+                         &node) ||
+        !imki_value_require(r, node, IMKI_NODE_SCALAR, "the name of an instrument"))
+        return NULL;
+    const char *name = r->document->node[node].text;
+    const imk_instrument *instrument = due ? due : imk_instrument_find(name);
+    if (!instrument) {
+        expected_names(name, expected, sizeof expected);
+        imki_value_refuse(r, node, IMK_ERROR_NAME_UNKNOWN, name, expected);
+    } else if (due && strcmp(due->name, name) != 0) {
         snprintf(found, sizeof found, "\"%.30s\" is not \"%.30s\"", name, due->name);
-        return imki_document_error(document, node, IMK_ERROR_CONFLICT, found,
-                                   "a design of this instrument", error);
+        imki_value_refuse(r, node, IMK_ERROR_CONFLICT, found, "a design of this instrument");
     }
-    *instrument = imk_instrument_find(name);
-    if (*instrument)
-        return IMK_OK;
-    expected_names(name, expected, sizeof expected);
-    return imki_document_error(document, node, IMK_ERROR_NAME_UNKNOWN, name, expected, error);
+    return instrument;
 }
 
 static imk_status make(const imk_instrument *instrument, imk_design_file *file, imk_error *error)
@@ -75,20 +63,16 @@ static imk_status make(const imk_instrument *instrument, imk_design_file *file, 
 static imk_status read_document(const imk_document *document, const imk_instrument *due,
                                 imk_design_file *file, imk_error *error)
 {
-    const imk_instrument *instrument = NULL;
-    imk_status status = imki_value_version(document, "imukit", error);
-    if (status == IMK_OK)
-        status = read_instrument(document, due, &instrument, error);
-    if (status == IMK_OK)
-        status = imki_value_name(document, "name", file->name, sizeof file->name, error);
-    if (status == IMK_OK)
-        status = imki_value_name(document, "description", file->description,
-                                 sizeof file->description, error);
-    if (status == IMK_OK)
-        status = make(instrument, file, error);
-    if (status == IMK_OK)
-        status = imki_design_read_fields(document, instrument, file->design, error);
-    return status;
+    imki_reading r = {.document = document, .error = error};
+    imki_value_version(&r, "imukit");
+    const imk_instrument *instrument = read_instrument(&r, due);
+    imki_value_name(&r, "name", file->name, sizeof file->name);
+    imki_value_name(&r, "description", file->description, sizeof file->description);
+    if (r.status == IMK_OK)
+        r.status = make(instrument, file, error);
+    if (r.status == IMK_OK)
+        imki_design_read_fields(&r, instrument, file->design);
+    return r.status;
 }
 
 imk_status imk_design_parse_as(const imk_instrument *instrument, const char *text, size_t size,
@@ -156,15 +140,9 @@ imk_status imk_design_write(const char *path, const imk_design_file *file, imk_e
 {
     char *text = NULL;
     size_t size = 0;
-    imk_output_file *output = NULL;
     imk_status status = imk_design_print(file, &text, &size, error);
     if (status == IMK_OK)
-        status = imk_output_file_open(path, &output, error);
-    if (status == IMK_OK) {
-        /* A failed write is reported by commit. */
-        (void)imk_output_file_write(output, text, size);
-        status = imk_output_file_commit(output, error);
-    }
+        status = imki_text_file_write(path, text, size, error);
     free(text);
     return status;
 }

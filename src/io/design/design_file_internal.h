@@ -3,7 +3,7 @@
 #ifndef IMUKI_DESIGN_FILE_INTERNAL_H
 #define IMUKI_DESIGN_FILE_INTERNAL_H
 
-#include "io/model/document_internal.h"
+#include "io/motion/step_sentence_internal.h"
 
 #include "imukit/design_file.h"
 
@@ -11,8 +11,7 @@ enum { IMKI_DESIGN_FIELDS_MAX = 256, IMKI_DESIGN_TEXT_SIZE = 128 };
 
 /* design_read.c: the parameters that the document gives, and the validation of the design.
  * @param design  the default on entry */
-imk_status imki_design_read_fields(const imk_document *document, const imk_instrument *instrument,
-                                   void *design, imk_error *error);
+void imki_design_read_fields(imki_reading *reading, const imk_instrument *instrument, void *design);
 
 /* Is `name` the component of `path` behind `prefix` (which ends with a dot, or is empty)? `rest` is
  * what follows: "" for the field itself, ".…" within a group. */

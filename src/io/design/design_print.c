@@ -123,7 +123,7 @@ imk_status imk_design_print(const imk_design_file *file, char **text, size_t *si
                             imk_error *error)
 {
     imki_writer writer = {.layout = IMKI_BLOCK};
-    const imk_status status = file->instrument->validate(file->design, error);
+    const imk_status status = imk_design_check(file->instrument, file->design, error);
     if (status != IMK_OK) {
         imk_design_error_in_units(file->instrument, file->design, error);
         return status;

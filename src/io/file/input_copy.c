@@ -5,6 +5,7 @@
 #define _GNU_SOURCE /* mkostemp(), memrchr() */
 #include "input_copy_internal.h"
 
+#include "imukit/log.h"
 #include "io/log/log_text_internal.h"
 #include "leftovers_internal.h"
 #include "system_error_internal.h"
@@ -109,20 +110,22 @@ typedef struct seen {
 static imk_status look_at_begin(seen *s, const char *block, size_t size, const char *path,
                                 imk_error *error)
 {
-    static const char *const others[] = {"\x1F\x8B", "\x28\xB5\x2F\xFD", "\x93NUMPY", "\xFF\xFE",
-                                         "\xFE\xFF"};
+    static const char *const others[] = {"\x1F\x8B", "\x28\xB5\x2F\xFD", "\xFF\xFE", "\xFE\xFF"};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         if (size >= strlen(others[i]) && memcmp(block, others[i], strlen(others[i])) == 0)
             return IMK_OK;
     /* A skippable frame of zstd. */
     if (size >= 4 && (block[0] & 0xF0) == 0x50 && memcmp(block + 1, "\x2A\x4D\x18", 3) == 0)
         return IMK_OK;
+    if (imk_log_format_begun(block, size))
+        return IMK_OK;
     s->text = imki_is_text(block, size < LOOK ? size : LOOK);
-    return s->text ? IMK_OK
-                   : imk_error_set(error, IMK_ERROR_FORMAT, path,
-                                   "it is neither text nor .npy, and not compressed by gzip or "
-                                   "zstd",
-                                   "");
+    if (s->text)
+        return IMK_OK;
+    char logs[96], found[200];
+    snprintf(found, sizeof found, "it is neither text%s, and not compressed by gzip or zstd",
+             imk_log_formats_text(" nor ", false, sizeof logs, logs));
+    return imk_error_set(error, IMK_ERROR_FORMAT, path, found, "");
 }
 
 static imk_status look_at_line(seen *s, const char *block, size_t size, const char *path,

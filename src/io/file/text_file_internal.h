@@ -8,10 +8,18 @@
 #include <stdbool.h>
 
 /* All bytes of a file ("-": standard input; compressed ones unpacked), but at most limit + 1, so
- * that the reader sees that it is too long. *bytes is from malloc. The errors of imki_input_open()
- * and imki_input_read(). */
+ * that the reader sees that it is too long, and a zero that does not count. *bytes is from malloc.
+ * The errors of imki_input_open() and imki_input_read().
+ * @param reopened  it is opened again after this */
+imk_status imki_file_read(const char *path, bool reopened, size_t limit, char **bytes, size_t *size,
+                          imk_error *error);
+/* The same of a file that is no results file of a campaign. */
 imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, size_t *size,
                                imk_error *error);
+
+/* Write all bytes of a file, which appears whole or not at all. The errors of
+ * imk_output_file_open() and imk_output_file_commit(). */
+imk_status imki_text_file_write(const char *path, const char *bytes, size_t size, imk_error *error);
 
 /* No control characters but those between lines and words stand in a text. */
 static inline bool imki_is_text(const char *bytes, size_t size)

@@ -209,7 +209,7 @@ imk_status imki_emit_test(imki_emission *e, imk_error *error)
         return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
     for (int sensor = 0; sensor < 2; sensor++) {
         double *limit = sensor == IMK_GYRO ? &settings.rate_limit : &settings.force_limit;
-        const imk_triad *triad = sensor == IMK_GYRO ? &e->plan->model.gyro : &e->plan->model.accel;
+        const imk_triad *triad = imk_model_triad(&e->plan->model, sensor);
         for (int j = 0; triad->present && j < e->plan->output_count[sensor]; j++)
             *limit = fmax(*limit, e->plan->correction.limit[sensor][j]);
         for (int i = 0; triad->present && i < triad->axis_count; i++)

@@ -8,7 +8,6 @@
  * T and T_cal, the temperature at which offset and scale were found, clipped to TMIN … TMAX. So
  * forward bias = offset + p(T) - p(T_cal), and scale factor = 1/scale - 1. Units are rad/s, m/s^2
  * and degC. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
 
 #include <math.h>
@@ -45,19 +44,19 @@ static void offset_name(char *name, size_t size, int kind, int imu, const char *
     if (imu > 0)
         snprintf(number, sizeof number, "%d", imu + 1);
     /* "GYROFFS" of the first, "GYR2OFFS" of others */
-    snprintf(name, size, "INS_%s%s%s_%c", kind == IMKI_GYRO ? "GYR" : "ACC", number, what,
+    snprintf(name, size, "INS_%s%s%s_%c", kind == IMK_GYRO ? "GYR" : "ACC", number, what,
              axis_letters[axis]);
 }
 
 static void thermal_name(char *name, size_t size, int kind, int imu, int order, int axis)
 {
-    snprintf(name, size, "INS_TCAL%d_%s%d_%c", imu + 1, kind == IMKI_GYRO ? "GYR" : "ACC", order,
+    snprintf(name, size, "INS_TCAL%d_%s%d_%c", imu + 1, kind == IMK_GYRO ? "GYR" : "ACC", order,
              axis_letters[axis]);
 }
 
 static void temperature_name(char *name, size_t size, int kind, int imu)
 {
-    snprintf(name, size, "INS_%s%d_CALTEMP", kind == IMKI_GYRO ? "GYR" : "ACC", imu + 1);
+    snprintf(name, size, "INS_%s%d_CALTEMP", kind == IMK_GYRO ? "GYR" : "ACC", imu + 1);
 }
 
 /* Axis of a name that is the pattern but for its last letter, X, Y or Z; -1 for others. */
@@ -77,7 +76,7 @@ static bool find_target(ardupilot_sensor *s, const char *name, int kind, int imu
     int offset, scale = -1;
     offset_name(pattern, sizeof pattern, kind, imu, "OFFS", 0);
     offset = axis_of(name, pattern);
-    if (kind == IMKI_ACCEL) {
+    if (kind == IMK_ACCEL) {
         offset_name(pattern, sizeof pattern, kind, imu, "SCAL", 0);
         scale = axis_of(name, pattern);
     }
@@ -100,8 +99,9 @@ static bool find_target(ardupilot_sensor *s, const char *name, int kind, int imu
 }
 
 /* Where the value of a parameter goes; NULL when it is none of ours. */
-static double *target_of(ardupilot_imu *imus, const char *name, size_t line)
+static double *target_of(void *context, const char *name, size_t line)
 {
+    ardupilot_imu *imus = context;
     for (int imu = 0; imu < IMUS; imu++) {
         static const char *const names[3] = {"ENABLE", "TMIN", "TMAX"};
         ardupilot_imu *m = &imus[imu];
@@ -126,57 +126,16 @@ static double *target_of(ardupilot_imu *imus, const char *name, size_t line)
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-static bool is_separator(char c)
+static void read_file(imki_parameters *p, ardupilot_imu imus[IMUS])
 {
-    return c == ' ' || c == '\t' || c == ',' || c == '=' || c == '\r';
-}
-
-static imk_status take_line(imki_parameters *p, ardupilot_imu *imus, const char *line,
-                            const char *end, size_t number)
-{
-    char name[32], found[32];
-    const char *word = line, *stop;
-    while (word < end && is_separator(*word))
-        word++;
-    for (stop = word; stop < end && !is_separator(*stop);)
-        stop++;
-    if (stop == word || *word == '#' || stop - word >= (ptrdiff_t)sizeof name)
-        return IMK_OK;
-    memcpy(name, word, (size_t)(stop - word));
-    name[stop - word] = '\0';
-    double *target = target_of(imus, name, number);
-    if (!target)
-        return IMK_OK;
-    for (word = stop; word < end && is_separator(*word);)
-        word++;
-    for (stop = word; stop < end && !is_separator(*stop);)
-        stop++;
-    if (imki_number(word, stop, target) && isfinite(*target))
-        return IMK_OK;
-    snprintf(found, sizeof found, "%.*s", (int)(stop - word > 30 ? 30 : stop - word), word);
-    return imki_place_error(p, (imki_place){name, number, (size_t)(word - line) + 1},
-                            IMK_ERROR_SYNTAX, found, "a finite number");
-}
-
-static imk_status read_file(imki_parameters *p, ardupilot_imu imus[IMUS])
-{
-    const char *end = p->text + p->size;
-    imk_status status = IMK_OK;
-    size_t number = 1;
     for (int imu = 0; imu < IMUS; imu++) {
         imus[imu] = (ardupilot_imu){.enable = (double)NAN, .minimum = 0, .maximum = 70};
         for (int kind = 0; kind < 2; kind++)
             imus[imu].sensor[kind] =
                 (ardupilot_sensor){.scale = {1, 1, 1}, .temperature = no_temperature};
     }
-    for (const char *line = p->text; line < end && status == IMK_OK; number++) {
-        const char *line_end = memchr(line, '\n', (size_t)(end - line));
-        if (!line_end)
-            line_end = end;
-        status = take_line(p, imus, line, line_end, number);
-        line = line_end < end ? line_end + 1 : end;
-    }
-    return status;
+    imki_read_assignments(
+        p, &(imki_assignments){.separators = " \t,=\r", .target_of = target_of, .context = imus});
 }
 
 static bool has_numbers(const ardupilot_imu *imu)
@@ -194,36 +153,22 @@ static bool has_numbers(const ardupilot_imu *imu)
 }
 
 /* A file from a vehicle lists all IMUs, those it has not with the default values. */
-static imk_status choose(imki_parameters *p, const ardupilot_imu imus[IMUS], int *chosen)
+static int choose(imki_parameters *p, const ardupilot_imu imus[IMUS])
 {
-    const char *wanted = p->settings->sensor;
-    char list[16] = "", expected[64];
-    int found = 0;
-    *chosen = 0;
-    for (int i = 0; i < IMUS; i++) {
-        if (!imus[i].any || (i > 0 && !has_numbers(&imus[i])))
-            continue;
-        size_t length = strlen(list);
-        snprintf(list + length, sizeof list - length, "%s%d", length > 0 ? ", " : "", i + 1);
-        if (!wanted || (wanted[0] == '1' + i && wanted[1] == '\0')) {
-            *chosen = i;
-            found++;
-        }
-    }
-    if (found == 1)
-        return IMK_OK;
-    if (list[0] == '\0')
-        return imk_error_set(p->error, IMK_ERROR_KEY_MISSING, "INS_ACCOFFS_X", "INS_ACCOFFS_X",
-                             "calibration parameters INS_ACC…, INS_GYR… or INS_TCAL…");
-    snprintf(expected, sizeof expected, "add --sensor NUMBER with one of %s", list);
-    return imk_error_set(
-        p->error, wanted ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING, "sensor",
-        wanted ? wanted : "\"sensor\" is missing: the file has several IMUs", expected);
+    imki_choice choice = {.found = 0};
+    for (int i = 0; i < IMUS; i++)
+        if (imus[i].any && (i == 0 || has_numbers(&imus[i])))
+            imki_choice_add(p, &choice, (char[2]){(char)('1' + i), '\0'}, i);
+    if (choice.count == 0)
+        imki_refuse(p, IMK_ERROR_KEY_MISSING, "INS_ACCOFFS_X", "INS_ACCOFFS_X",
+                    "calibration parameters INS_ACC…, INS_GYR… or INS_TCAL…");
+    imki_choice_end(p, choice.found, choice.names, "NUMBER", "the file has several IMUs");
+    return choice.chosen;
 }
 
 /* p(T) - p(T_cal), as a polynomial about T_cal. */
-static imk_status fill_thermal(imki_parameters *p, const ardupilot_imu *imu,
-                               const ardupilot_sensor *s, int number, imk_triad *triad)
+static void fill_thermal(imki_parameters *p, const ardupilot_imu *imu, const ardupilot_sensor *s,
+                         int number, imk_triad *triad)
 {
     imk_temperature_polynomial *t = &triad->bias.temperature;
     int order = 0;
@@ -232,13 +177,13 @@ static imk_status fill_thermal(imki_parameters *p, const ardupilot_imu *imu,
             if (s->coefficient[k][i] != 0)
                 order = k + 1;
     if (order == 0)
-        return IMK_OK;
+        return;
     if (imu->enable == 0 || imu->enable == 2) {
         imki_note(p, true,
                   "INS_TCAL%d_ENABLE is %g: ArduPilot does not use INS_TCAL%d_…, which "
                   "are left out",
                   number, imu->enable, number);
-        return IMK_OK;
+        return;
     }
     if (isnan(imu->enable))
         imki_note(p, false,
@@ -246,9 +191,8 @@ static imk_status fill_thermal(imki_parameters *p, const ardupilot_imu *imu,
                   "use",
                   number, number);
     if (!(imu->minimum < imu->maximum && imu->minimum >= -kelvin))
-        return imki_place_error(p, (imki_place){"TMIN", s->line, 0}, IMK_ERROR_RANGE,
-                                "TMIN and TMAX",
-                                "temperatures from a lower to a higher one [degC]");
+        imki_refuse_at(p, (imki_place){"TMIN", s->line, 0}, IMK_ERROR_RANGE, "TMIN and TMAX",
+                       "temperatures from a lower to a higher one [degC]");
     const double calibrated = fmin(fmax(s->temperature, imu->minimum), imu->maximum);
     imk_temperature_polynomial about = {.order = order, .reference = thermal_reference + kelvin};
     for (int k = 0; k < order; k++)
@@ -264,52 +208,41 @@ static imk_status fill_thermal(imki_parameters *p, const ardupilot_imu *imu,
     t->reference = calibrated + kelvin;
     t->minimum = imu->minimum + kelvin;
     t->maximum = imu->maximum + kelvin;
-    return IMK_OK;
 }
 
-static imk_status fill(imki_parameters *p, const ardupilot_imu *imu, int number, int kind,
-                       imk_triad *triad)
+static void fill(imki_parameters *p, const ardupilot_imu *imu, int number, int kind)
 {
     const ardupilot_sensor *s = &imu->sensor[kind];
-    const imki_unit unit = {kind == IMKI_GYRO ? "rad/s" : "m/s^2", 1};
-    imki_place place = {"OFFS", s->line, 0};
+    imk_triad *triad = p->triad[kind];
     triad->present = s->line > 0;
     if (!triad->present)
-        return IMK_OK;
-    imk_status status = fill_thermal(p, imu, s, number, triad);
-    if (status == IMK_OK)
-        status = imki_accept(p, place, kind, IMKI_BIAS, s->offset, unit, triad->bias.fixed.value);
-    for (int i = 0; i < 3 && status == IMK_OK; i++) {
-        place.field = "SCAL";
+        return;
+    fill_thermal(p, imu, s, number, triad);
+    imki_accept(p, (imki_place){"OFFS", s->line, 0}, kind, IMKI_BIAS, s->offset,
+                (imki_unit){imki_kind_units[kind], 1}, triad->bias.fixed.value);
+    for (int i = 0; i < 3; i++) {
         /* ArduPilot's own limits are 0.8 and 1.2, which files of raw sensors may pass. */
         if (!(s->scale[i] >= 0.1 && s->scale[i] <= 10))
-            return imki_place_error(p, place, IMK_ERROR_RANGE, "", "a scale between 0.8 and 1.2");
+            imki_refuse_at(p, (imki_place){"SCAL", s->line, 0}, IMK_ERROR_RANGE, "",
+                           "a scale between 0.8 and 1.2");
         triad->scale_factor.fixed.value[i] = s->scale[i] == 1 ? 0 : 1 / s->scale[i] - 1;
     }
-    return status;
 }
 
-imk_status imki_ardupilot_read(imki_parameters *p)
+void imki_ardupilot_read(imki_parameters *p)
 {
     ardupilot_imu imus[IMUS];
-    int chosen = 0;
-    imk_status status = read_file(p, imus);
-    if (status == IMK_OK)
-        status = choose(p, imus, &chosen);
-    if (status == IMK_OK)
-        status = fill(p, &imus[chosen], chosen + 1, IMKI_GYRO, &p->model->gyro);
-    if (status == IMK_OK)
-        status = fill(p, &imus[chosen], chosen + 1, IMKI_ACCEL, &p->model->accel);
-    return status;
+    read_file(p, imus);
+    const int chosen = choose(p, imus);
+    for (int kind = 0; kind < 2; kind++)
+        fill(p, &imus[chosen], chosen + 1, kind);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
 static void write_parameter(imki_parameters *p, const char *name, double value)
 {
-    imki_text_add(&p->out, "%s,", name);
-    imki_text_numbers(&p->out, &value, 1, "");
-    imki_text_add(&p->out, "\n");
+    imki_text_add(&p->out, "%s,%s\n", name, imki_shortest(value).text);
 }
 
 /* Of the polynomial about its reference; the constant is what p(T_cal) changes of the offset. */
@@ -328,7 +261,7 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, d
         offset_name(name, sizeof name, kind, 0, "OFFS", i);
         write_parameter(p, name, offset);
     }
-    for (int i = 0; i < 3 && kind == IMKI_ACCEL; i++) {
+    for (int i = 0; i < 3 && kind == IMK_ACCEL; i++) {
         const double s = triad->scale_factor.fixed.value[i];
         offset_name(name, sizeof name, kind, 0, "SCAL", i);
         write_parameter(p, name, s == 0 ? 1 : 1 / (1 + s));
@@ -347,8 +280,7 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, d
         }
 }
 
-static void write_thermal(imki_parameters *p, const imk_triad *const triads[2], double minimum,
-                          double maximum)
+static void write_thermal(imki_parameters *p, double minimum, double maximum)
 {
     const bool any = minimum < maximum;
     write_parameter(p, "INS_TCAL1_ENABLE", any);
@@ -357,41 +289,38 @@ static void write_thermal(imki_parameters *p, const imk_triad *const triads[2], 
     write_parameter(p, "INS_TCAL1_TMIN", minimum);
     write_parameter(p, "INS_TCAL1_TMAX", maximum);
     for (int kind = 0; kind < 2; kind++)
-        if (!triads[kind]->present || triads[kind]->bias.temperature.order == 0)
+        if (!p->origin[kind]->present || p->origin[kind]->bias.temperature.order == 0)
             imki_note(p, false, "INS_TCAL1_%s1_X … are not written: they must be 0, their default",
-                      kind == IMKI_GYRO ? "GYR" : "ACC");
+                      kind == IMK_GYRO ? "GYR" : "ACC");
 }
 
-imk_status imki_ardupilot_write(imki_parameters *p)
+void imki_ardupilot_write(imki_parameters *p)
 {
-    const imk_triad *const triads[2] = {&p->source->gyro, &p->source->accel};
-    static const char *const names[2] = {"gyro", "accel"}, *const units[2] = {"rad/s", "m/s^2"};
     double minimum = -HUGE_VAL, maximum = HUGE_VAL;
     bool any = false;
     /* Both sensors share the range: where they differ it is what they have in common. */
     for (int kind = 0; kind < 2; kind++) {
-        const imk_temperature_polynomial *t = &triads[kind]->bias.temperature;
-        if (!triads[kind]->present || t->order == 0)
+        const imk_temperature_polynomial *t = &p->origin[kind]->bias.temperature;
+        if (!p->origin[kind]->present || t->order == 0)
             continue;
         minimum = fmax(minimum, t->minimum - kelvin);
         maximum = fmin(maximum, t->maximum - kelvin);
         any = true;
     }
     if (any && !(minimum < maximum))
-        return imk_error_set(
-            p->error, IMK_ERROR_UNSUPPORTED, "gyro.bias.temperature",
-            "gyros and accelerometers have no temperature in common, and ArduPilot "
-            "has one range for both",
-            "leave one of the polynomials out");
+        imki_refuse(p, IMK_ERROR_UNSUPPORTED, "gyro.bias.temperature",
+                    "gyros and accelerometers have no temperature in common, and ArduPilot has one "
+                    "range for both",
+                    "leave one of the polynomials out");
     imki_text_add(
         &p->out, "# ArduPilot calibration of IMU 1: offsets [rad/s], [m/s^2], scale [1]; corrected "
                  "= (reading - thermal\n# - offset) scale; temperatures [degC], INS_TCAL1_…k [1e-6 "
                  "of the offset's unit/degC^k], from 35 degC\n");
     for (int kind = 0; kind < 2; kind++) {
-        const imk_temperature_polynomial *t = &triads[kind]->bias.temperature;
+        const imk_temperature_polynomial *t = &p->origin[kind]->bias.temperature;
         const double calibrated = fmin(fmax(t->reference - kelvin, minimum), maximum);
         double cubic[3][4] = {{0}}, worst = 0;
-        if (!triads[kind]->present)
+        if (!p->origin[kind]->present)
             continue;
         for (int i = 0; i < 3 && t->order > 0; i++)
             worst = fmax(worst, imki_cubic(t, i, thermal_reference + kelvin, cubic[i]));
@@ -399,13 +328,12 @@ imk_status imki_ardupilot_write(imki_parameters *p)
             imki_note(p, true,
                       "%s.bias.temperature: ArduPilot has cubics; the nearest one is up to %.2g %s "
                       "off",
-                      names[kind], worst, units[kind]);
-        write_sensor(p, kind, triads[kind], cubic, calibrated);
+                      imki_kind_names[kind], worst, imki_kind_units[kind]);
+        write_sensor(p, kind, p->origin[kind], cubic, calibrated);
     }
-    write_thermal(p, triads, any ? minimum : 0, any ? maximum : 0);
-    if (triads[IMKI_GYRO]->present)
+    write_thermal(p, any ? minimum : 0, any ? maximum : 0);
+    if (p->origin[IMK_GYRO]->present)
         imki_note(p, false,
                   "INS_GYROFFS_X …: ArduPilot measures them anew at each start, unless INS_GYR_CAL "
                   "is 0");
-    return IMK_OK;
 }

@@ -6,11 +6,10 @@
 #define _POSIX_C_SOURCE 200809L
 #include "imukit/parameter_file.h"
 
-#include "io/file/input_stream_internal.h"
+#include "io/file/text_file_internal.h"
 #include "parameter_internal.h"
 
 #include "imukit/names.h"
-#include "imukit/output_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,7 +88,7 @@ static imk_parameter_format recognise_keys(const imk_document *document, int nod
     if (has_any(document, node, 5, openvins))
         return IMK_PARAMETERS_OPENVINS;
     if (has_any(document, node, 2, kalibr) ||
-        has_any(document, node, IMKI_KALIBR_NOISE_KEYS, imki_kalibr_noise_keys))
+        has_any(document, node, IMKI_DENSITIES, imki_kalibr_noise_keys))
         return IMK_PARAMETERS_KALIBR;
     return IMK_PARAMETERS_UNKNOWN;
 }
@@ -119,9 +118,9 @@ static imk_parameter_format recognise_tree(const char *text, size_t size)
 {
     imk_parameter_settings settings = imk_parameter_settings_default();
     imki_parameters p = {.settings = &settings, .text = text, .size = size};
-    imk_document *document = NULL;
-    if (imki_parameters_document(&p, &document) != IMK_OK)
+    if (!imki_parameters_document(&p))
         return recognise_words(text);
+    const imk_document *document = p.document;
     imk_parameter_format format = IMK_PARAMETERS_UNKNOWN;
     /* A model file has the last word about itself. */
     if (imki_document_value(document, 0, "imukit") == IMKI_NONE) {
@@ -132,7 +131,7 @@ static imk_parameter_format recognise_tree(const char *text, size_t size)
             key = document->node[document->node[key].next].next;
         }
     }
-    imk_document_free(document);
+    imk_document_free(p.document);
     return format;
 }
 
@@ -185,31 +184,14 @@ static imk_parameter_format recognise(const char *text, size_t size)
 static imk_status read_all(const char *path, bool reopened, char **text, size_t *size,
                            imk_error *error)
 {
-    enum { CAPACITY = IMKI_DOCUMENT_SIZE_MAX };
-    imki_input *input = NULL;
-    imk_status status =
-        reopened ? imki_input_open_kept(path, &input, error) : imki_input_open(path, &input, error);
-    if (status != IMK_OK)
+    enum { LIMIT = IMKI_DOCUMENT_SIZE_MAX - 1 };
+    const imk_status status = imki_file_read(path, reopened, LIMIT, text, size, error);
+    if (status != IMK_OK || *size <= LIMIT)
         return status;
-    char *buffer = malloc(CAPACITY + 1);
-    if (!buffer)
-        status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    *size = 0;
-    for (size_t got = 1; status == IMK_OK && got > 0 && *size < CAPACITY; *size += got) {
-        got = 0;
-        status = imki_input_read(input, buffer + *size, CAPACITY - *size, &got, error);
-    }
-    imki_input_close(input);
-    if (status == IMK_OK && *size == CAPACITY)
-        status = imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "a file longer than 1 MiB",
-                               "a parameter file");
-    if (status != IMK_OK) {
-        free(buffer);
-        return status;
-    }
-    buffer[*size] = '\0';
-    *text = buffer;
-    return IMK_OK;
+    free(*text);
+    *text = NULL;
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "a file longer than 1 MiB",
+                         "a parameter file");
 }
 
 imk_status imk_parameter_format_detect(const char *path, imk_parameter_format *format,
@@ -273,7 +255,8 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
                          .error = error,
                          .text = text,
                          .size = size,
-                         .model = made};
+                         .model = made,
+                         .triad = {&made->gyro, &made->accel}};
     imk_parameter_format format = settings->format;
     imk_model_default(made);
     if (memchr(text, '\0', size))
@@ -284,12 +267,13 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "",
                              "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, "
                              "openvins, vins, px4, ardupilot or filter (--from says which)");
-    imk_status status = check_density(settings, format, error);
-    if (status == IMK_OK)
-        status = check_sensor(settings, format, error);
-    if (status == IMK_OK)
-        status = formats[format].read(&p);
-    return status == IMK_OK ? imk_model_validate(made, error) : status;
+    p.status = check_density(settings, format, error);
+    if (p.status == IMK_OK)
+        p.status = check_sensor(settings, format, error);
+    if (p.status == IMK_OK)
+        formats[format].read(&p);
+    imk_document_free(p.document);
+    return p.status == IMK_OK ? imk_model_validate(made, error) : p.status;
 }
 
 imk_status imk_parameters_parse(const char *text, size_t size,
@@ -368,16 +352,16 @@ imk_status imk_parameters_print(const char *path, const imk_parameter_settings *
                          .notes = &found,
                          .error = error,
                          .source = model,
+                         .origin = {&model->gyro, &model->accel},
                          .is_json = imk_has_ending(path, ".json")};
-    status = formats[settings->format].write(&p);
-    if (status == IMK_OK && p.out.failed)
-        status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    if (status == IMK_OK)
-        status = imki_parameters_compare(&p, formats[settings->format].read,
-                                         formats[settings->format].name);
-    if (status != IMK_OK) {
+    formats[settings->format].write(&p);
+    if (p.out.failed)
+        imki_refuse(&p, IMK_ERROR_MEMORY, "", "", "");
+    if (p.status == IMK_OK)
+        imki_parameters_compare(&p, formats[settings->format].read, formats[settings->format].name);
+    if (p.status != IMK_OK) {
         free(p.out.bytes);
-        return status;
+        return p.status;
     }
     if (notes)
         *notes = found;
@@ -392,15 +376,9 @@ imk_status imk_parameters_write(const char *path, const imk_parameter_settings *
 {
     char *text = NULL;
     size_t size = 0;
-    imk_output_file *file = NULL;
     imk_status status = imk_parameters_print(path, settings, model, &text, &size, notes, error);
     if (status == IMK_OK)
-        status = imk_output_file_open(path, &file, error);
-    if (status == IMK_OK) {
-        /* A failed write is reported by commit. */
-        (void)imk_output_file_write(file, text, size);
-        status = imk_output_file_commit(file, error);
-    }
+        status = imki_text_file_write(path, text, size, error);
     free(text);
     return status;
 }

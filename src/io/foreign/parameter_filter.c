@@ -4,7 +4,6 @@
  *
  * The numbers of the model are read back; the matrices and everything that follows from the numbers
  * and the rate are not, nor are states that stand for bias instability. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
 
 #include "imukit/filter_noise.h"
@@ -249,29 +248,29 @@ static void note_what_is_lost(imki_parameters *p, const char *sensor,
                   sensor);
 }
 
-static imk_status write_sensor(tree_writer *w, int kind)
+static void write_sensor(tree_writer *w, int kind)
 {
-    static const char *const names[2] = {"gyro", "accel"};
     imki_parameters *p = w->p;
-    const imk_triad *triad = kind == IMKI_GYRO ? &p->source->gyro : &p->source->accel;
+    const imk_triad *triad = p->origin[kind];
     const char *const *unit = units[kind];
     const double dt = 1 / p->settings->rate;
     imk_filter_noise noise[3];
     double white[3], sampled[3], angle[3], quantization[3];
     if (!triad->present)
-        return IMK_OK;
+        return;
     for (int axis = 0; axis < 3; axis++) {
-        const imk_status status =
-            imk_filter_noise_of(triad, axis, &p->settings->filter, &noise[axis], p->error);
-        if (status != IMK_OK)
-            return status;
+        if (p->status == IMK_OK)
+            p->status =
+                imk_filter_noise_of(triad, axis, &p->settings->filter, &noise[axis], p->error);
+        if (p->status != IMK_OK)
+            return;
         white[axis] = noise[axis].white;
         sampled[axis] = white[axis] / sqrt(dt);
         angle[axis] = white[axis] * sqrt(dt);
         quantization[axis] = noise[axis].quantization;
     }
-    note_what_is_lost(p, names[kind], noise, &p->settings->filter);
-    put_key(w, names[kind]);
+    note_what_is_lost(p, imki_kind_names[kind], noise, &p->settings->filter);
+    put_key(w, imki_kind_names[kind]);
     open_branch(w, '{');
     put_word(w, "unit", unit[UNIT_READING]);
     put_vector(w, "white_noise", white, unit[UNIT_WHITE],
@@ -297,7 +296,6 @@ static imk_status write_sensor(tree_writer *w, int kind)
     for (int axis = 0; axis < 3; axis++)
         write_axis(w, &noise[axis], (const char[2]){(char)('x' + axis), '\0'}, dt);
     close_branch(w, '}');
-    return IMK_OK;
 }
 
 static const char explanation[] =
@@ -320,12 +318,12 @@ static const char explanation[] =
     "# m^2/s^4. x0 of the three gyros is the attitude error, of the accelerometers the velocity "
     "error.";
 
-imk_status imki_filter_write(imki_parameters *p)
+void imki_filter_write(imki_parameters *p)
 {
     if (!(p->settings->rate > 0))
-        return imk_error_set(p->error, IMK_ERROR_KEY_MISSING, "rate",
-                             "\"Phi\" and \"Q_d\" depend on the sample rate, which is not known",
-                             "add --rate 200Hz (samples per second)");
+        imki_refuse(p, IMK_ERROR_KEY_MISSING, "rate",
+                    "\"Phi\" and \"Q_d\" depend on the sample rate, which is not known",
+                    "add --rate 200Hz (samples per second)");
     tree_writer w = {.p = p};
     if (p->is_json)
         imki_text_add(&p->out, "{");
@@ -336,53 +334,43 @@ imk_status imki_filter_write(imki_parameters *p)
     put_key(&w, "imukit_filter");
     imki_text_add(&p->out, " 1");
     put_key(&w, "rate");
-    imki_text_add(&p->out, " ");
-    imki_text_numbers(&p->out, &p->settings->rate, 1, "");
+    imki_text_add(&p->out, " %s", imki_shortest(p->settings->rate).text);
     put_comment(&w, "Hz", "of the matrices and of what is per sample");
-    imk_status status = write_sensor(&w, IMKI_GYRO);
-    if (status == IMK_OK)
-        status = write_sensor(&w, IMKI_ACCEL);
+    for (int kind = 0; kind < 2; kind++)
+        write_sensor(&w, kind);
     if (p->is_json)
         close_branch(&w, '}');
     imki_text_add(&p->out, "\n");
-    return status;
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-static imk_status read_state(imki_parameters *p, const imk_document *document, int node, int kind,
-                             imk_triad *triad)
+static void read_state(imki_parameters *p, int node, int kind, imk_triad *triad)
 {
-    const int from = imki_document_value(document, node, "from");
-    const char *source = from == IMKI_NONE ? "" : imki_node_text(document, from);
+    const char *source = imki_node_text(p, imki_node_value(p, node, "from"));
     const char *const *unit = units[kind];
-    double sigma[3] = {0}, time[3] = {0}, driving[3] = {0};
-    imk_status status = IMK_OK;
+    double sigma[3] = {0}, time[3] = {0};
     if (strcmp(source, sources[IMK_FILTER_FROM_RANDOM_WALK]) == 0) {
-        status = imki_node_accept(p, document, node, "driving_noise", kind, IMKI_RANDOM_WALK,
-                                  (imki_unit){unit[UNIT_DRIVING], 1}, driving);
-        imki_to_axes(driving, &triad->noise.random_walk);
+        imki_node_accept(p, node, "driving_noise", kind, IMKI_RANDOM_WALK,
+                         (imki_unit){unit[UNIT_DRIVING], 1}, triad->noise.random_walk.value);
     } else if (strcmp(source, sources[IMK_FILTER_FROM_GAUSS_MARKOV]) == 0) {
-        status = imki_node_accept(p, document, node, "sigma", kind, IMKI_DRIFT,
-                                  (imki_unit){unit[UNIT_BIAS], 1}, sigma);
-        if (status == IMK_OK)
-            status = imki_node_accept(p, document, node, "correlation_time", kind, IMKI_PLAIN,
-                                      (imki_unit){"s", 1}, time);
-        if (status == IMK_OK && triad->noise.gauss_markov_count == IMK_TERMS_MAX)
-            return imki_document_error(document, node, IMK_ERROR_RANGE, "bias_states",
-                                       "at most 8 Gauss-Markov states", p->error);
-        if (status == IMK_OK)
+        imki_node_accept(p, node, "sigma", kind, IMKI_DRIFT, (imki_unit){unit[UNIT_BIAS], 1},
+                         sigma);
+        imki_node_accept(p, node, "correlation_time", kind, IMKI_PLAIN, (imki_unit){"s", 1}, time);
+        if (triad->noise.gauss_markov_count == IMK_TERMS_MAX)
+            imki_refuse_node(p, node, IMK_ERROR_RANGE, "bias_states",
+                             "at most 8 Gauss-Markov states");
+        else
             imki_add_gauss_markov(triad, sigma, time);
     } else if (strcmp(source, sources[IMK_FILTER_FROM_BIAS_INSTABILITY]) == 0) {
         imki_note(p, true, "a state that stands for bias instability is not read");
     } else {
-        return imki_document_error(document, node, IMK_ERROR_SYNTAX, "from",
-                                   "random_walk, gauss_markov or bias_instability", p->error);
+        imki_refuse_node(p, node, IMK_ERROR_SYNTAX, "from",
+                         "random_walk, gauss_markov or bias_instability");
     }
-    return status;
 }
 
-static imk_status read_sensor(imki_parameters *p, const imk_document *document, int node, int kind)
+static void read_sensor(imki_parameters *p, int node, int kind)
 {
     static const char *const known[] = {"unit",
                                         "white_noise",
@@ -394,56 +382,33 @@ static imk_status read_sensor(imki_parameters *p, const imk_document *document, 
                                         "x",
                                         "y",
                                         "z"};
-    enum { KNOWN = sizeof known / sizeof known[0] };
-    imk_triad *triad = kind == IMKI_GYRO ? &p->model->gyro : &p->model->accel;
+    imk_triad *triad = p->triad[kind];
     const char *const *unit = units[kind];
-    double white[3] = {0}, quantization[3] = {0}, initial[3] = {0};
-    imk_status status = imki_node_accept(p, document, node, "white_noise", kind, IMKI_WHITE,
-                                         (imki_unit){unit[UNIT_WHITE], 1}, white);
-    if (status == IMK_OK)
-        status = imki_node_accept(p, document, node, "quantization", kind, IMKI_PLAIN,
-                                  (imki_unit){unit[UNIT_INTEGRAL], 1}, quantization);
-    if (status == IMK_OK)
-        status = imki_node_accept(p, document, node, "initial_bias_sigma", kind, IMKI_BIAS,
-                                  (imki_unit){unit[UNIT_BIAS], 1}, initial);
-    imki_to_axes(white, &triad->noise.white);
-    imki_to_axes(quantization, &triad->noise.quantization);
-    imki_to_axes(initial, &triad->bias.repeatability);
-    const int states = imki_document_value(document, node, "bias_states");
-    if (status == IMK_OK && states != IMKI_NONE &&
-        document->node[states].kind == IMKI_NODE_SEQUENCE)
-        for (int item = document->node[states].first; item != IMKI_NONE && status == IMK_OK;
-             item = document->node[item].next)
-            status = read_state(p, document, item, kind, triad);
-    for (int key = document->node[node].first; key != IMKI_NONE && status == IMK_OK;) {
-        size_t i = 0;
-        while (i < KNOWN && strcmp(document->node[key].text, known[i]) != 0)
-            i++;
-        if (i == KNOWN)
-            status = imki_foreign_key(p, document, key, KNOWN, known);
-        key = document->node[document->node[key].next].next;
-    }
-    return status;
+    imki_node_accept(p, node, "white_noise", kind, IMKI_WHITE, (imki_unit){unit[UNIT_WHITE], 1},
+                     triad->noise.white.value);
+    imki_node_accept(p, node, "quantization", kind, IMKI_PLAIN, (imki_unit){unit[UNIT_INTEGRAL], 1},
+                     triad->noise.quantization.value);
+    imki_node_accept(p, node, "initial_bias_sigma", kind, IMKI_BIAS,
+                     (imki_unit){unit[UNIT_BIAS], 1}, triad->bias.repeatability.value);
+    const int states = imki_node_value(p, node, "bias_states");
+    if (imki_node_is(p, states, IMKI_NODE_SEQUENCE))
+        for (int item = p->document->node[states].first; item != IMKI_NONE && p->status == IMK_OK;
+             item = p->document->node[item].next)
+            read_state(p, item, kind, triad);
+    imki_foreign_keys(p, node, sizeof known / sizeof known[0], known);
 }
 
-imk_status imki_filter_read(imki_parameters *p)
+void imki_filter_read(imki_parameters *p)
 {
-    static const char *const names[2] = {"gyro", "accel"};
-    imk_document *document = NULL;
-    imk_status status = imki_parameters_document(p, &document);
-    if (status != IMK_OK)
-        return status;
-    p->model->gyro.present = p->model->accel.present = false;
-    for (int kind = 0; kind < 2 && status == IMK_OK; kind++) {
-        const int node = imki_document_value(document, 0, names[kind]);
-        if (node == IMKI_NONE)
-            continue;
-        (kind == IMKI_GYRO ? &p->model->gyro : &p->model->accel)->present = true;
-        status = document->node[node].kind == IMKI_NODE_MAPPING
-                     ? read_sensor(p, document, node, kind)
-                     : imki_document_error(document, node, IMK_ERROR_SYNTAX, names[kind],
-                                           "a mapping with white_noise and bias_states", p->error);
+    if (!imki_parameters_document(p))
+        return;
+    for (int kind = 0; kind < 2; kind++) {
+        const int node = imki_node_value(p, 0, imki_kind_names[kind]);
+        p->triad[kind]->present = node != IMKI_NONE;
+        if (imki_node_is(p, node, IMKI_NODE_MAPPING))
+            read_sensor(p, node, kind);
+        else if (node != IMKI_NONE)
+            imki_refuse_node(p, node, IMK_ERROR_SYNTAX, imki_kind_names[kind],
+                             "a mapping with white_noise and bias_states");
     }
-    imk_document_free(document);
-    return status;
 }

@@ -10,7 +10,6 @@
  * of density s, sigma = s sqrt(T/2). precision is the resolution.
  *
  * The file of SDF 1.4 and before (<imu><noise><type>, <rate>, <accel>) is read as well. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
 
 #include <expat.h>
@@ -53,7 +52,6 @@ typedef struct sensor {
 typedef struct xml_reader {
     imki_parameters *p;
     XML_Parser parser;
-    imk_status status;
     int depth;
     char path[DEPTH_MAX][NAME_SIZE]; /* names of the open elements */
     char text[TEXT_SIZE];            /* of the innermost */
@@ -72,9 +70,10 @@ static imki_place place_of(const xml_reader *r, const char *name)
                         XML_GetCurrentColumnNumber(r->parser) + 1};
 }
 
-static void fail(xml_reader *r, imk_status status)
+static void fail(xml_reader *r, const char *name, imk_status status, const char *found,
+                 const char *expected)
 {
-    r->status = status;
+    imki_refuse_at(r->p, place_of(r, name), status, found, expected);
     XML_StopParser(r->parser, XML_FALSE);
 }
 
@@ -88,8 +87,7 @@ static void open_sensor(xml_reader *r, const char **attributes)
     if (strcmp(type, "imu") != 0)
         return;
     if (r->count == SENSORS_MAX) {
-        fail(r, imki_place_error(r->p, place_of(r, "sensor"), IMK_ERROR_UNSUPPORTED,
-                                 "too many sensors", "at most 16 IMUs in a file"));
+        fail(r, "sensor", IMK_ERROR_UNSUPPORTED, "too many sensors", "at most 16 IMUs in a file");
         return;
     }
     sensor *s = &r->sensor[r->count++];
@@ -103,8 +101,7 @@ static void XMLCALL start_element(void *data, const char *name, const char **att
 {
     xml_reader *r = data;
     if (r->depth == DEPTH_MAX) {
-        fail(r, imki_place_error(r->p, place_of(r, "sensor"), IMK_ERROR_UNSUPPORTED,
-                                 "nested too deeply", "at most 32 levels"));
+        fail(r, "sensor", IMK_ERROR_UNSUPPORTED, "nested too deeply", "at most 32 levels");
         return;
     }
     snprintf(r->path[r->depth++], NAME_SIZE, "%s", name);
@@ -165,12 +162,12 @@ static void take_value(xml_reader *r, const char *name)
     bool is_noise = key < KEYS && find_axes(r, &kind, &first, &last);
     if (!is_rate && !is_noise)
         return;
-    imki_place place = place_of(r, is_rate ? "update_rate" : key_names[key]);
+    const char *field = is_rate ? "update_rate" : key_names[key];
     if (!imki_number(r->text, r->text + r->length, &value) || !(fabs(value) < 1e300)) {
         bool is_macro = strstr(r->text, "${") != NULL;
-        fail(r, imki_place_error(r->p, place, IMK_ERROR_SYNTAX, r->text,
-                                 is_macro ? "expand the macros first: xacro FILE > expanded.urdf"
-                                          : "a number without a unit"));
+        fail(r, field, IMK_ERROR_SYNTAX, r->text,
+             is_macro ? "expand the macros first: xacro FILE > expanded.urdf"
+                      : "a number without a unit");
         return;
     }
     if (is_rate) {
@@ -181,13 +178,13 @@ static void take_value(xml_reader *r, const char *name)
         s->noise[kind].present[axis] = true;
         s->noise[kind].value[key][axis] = r->is_none ? 0 : value;
     }
-    s->noise[kind].place[key] = place;
+    s->noise[kind].place[key] = place_of(r, field);
 }
 
 static void XMLCALL end_element(void *data, const char *name)
 {
     xml_reader *r = data;
-    if (r->status != IMK_OK) /* a stopped parser still closes an empty element */
+    if (r->p->status != IMK_OK) /* a stopped parser still closes an empty element */
         return;
     if (r->is_open) {
         if (strcmp(name, "type") == 0 && is_open_element(r, 1, "noise"))
@@ -207,94 +204,76 @@ static void XMLCALL refuse_doctype(void *data, const char *name, const char *sys
 {
     xml_reader *r = data;
     (void)name, (void)system, (void)public_name, (void)has_subset;
-    fail(r, imki_place_error(r->p, place_of(r, ""), IMK_ERROR_UNSUPPORTED, "a document type",
-                             "remove <!DOCTYPE …>: SDF has none"));
+    fail(r, "", IMK_ERROR_UNSUPPORTED, "a document type", "remove <!DOCTYPE …>: SDF has none");
 }
 
-static imk_status parse(xml_reader *r, imki_parameters *p)
+static void parse(xml_reader *r, imki_parameters *p)
 {
     r->p = p;
     r->parser = XML_ParserCreate(NULL);
-    if (!r->parser)
-        return imk_error_set(p->error, IMK_ERROR_MEMORY, "", "", "");
+    if (!r->parser) {
+        imki_refuse(p, IMK_ERROR_MEMORY, "", "", "");
+        return;
+    }
     XML_SetUserData(r->parser, r);
     XML_SetElementHandler(r->parser, start_element, end_element);
     XML_SetCharacterDataHandler(r->parser, take_characters);
     XML_SetStartDoctypeDeclHandler(r->parser, refuse_doctype);
     enum XML_Status result = XML_Parse(r->parser, p->text, (int)p->size, XML_TRUE);
-    if (result != XML_STATUS_OK && r->status == IMK_OK)
-        r->status = imki_place_error(p, place_of(r, ""), IMK_ERROR_SYNTAX, "",
-                                     XML_ErrorString(XML_GetErrorCode(r->parser)));
+    if (result != XML_STATUS_OK)
+        imki_refuse_at(p, place_of(r, ""), IMK_ERROR_SYNTAX, "",
+                       XML_ErrorString(XML_GetErrorCode(r->parser)));
     XML_ParserFree(r->parser);
-    return r->status;
 }
 
-static imk_status choose(imki_parameters *p, const xml_reader *r, const sensor **chosen)
+static const sensor *choose(imki_parameters *p, const xml_reader *r)
 {
-    const char *wanted = p->settings->sensor;
-    char names[96] = "", expected[140];
-    int found = 0;
-    for (int i = 0; i < r->count; i++) {
-        size_t length = strlen(names);
-        snprintf(names + length, sizeof names - length, "%s%.30s", i > 0 ? ", " : "",
-                 r->sensor[i].name);
-        if (!wanted || strcmp(wanted, r->sensor[i].name) == 0) {
-            *chosen = &r->sensor[i];
-            found++;
-        }
-    }
-    if (found == 1)
-        return IMK_OK;
+    imki_choice choice = {.found = 0};
+    for (int i = 0; i < r->count; i++)
+        imki_choice_add(p, &choice, r->sensor[i].name, i);
     if (r->count == 0)
-        return imk_error_set(p->error, IMK_ERROR_KEY_MISSING, "sensor", "<sensor type=\"imu\">",
-                             "an IMU: <sensor name=\"imu\" type=\"imu\">");
-    snprintf(expected, sizeof expected, "add --sensor NAME with one of %s", names);
-    return imk_error_set(
-        p->error, wanted ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING, "sensor",
-        wanted ? wanted : "\"sensor\" is missing: the file has several IMUs", expected);
+        imki_refuse(p, IMK_ERROR_KEY_MISSING, "sensor", "<sensor type=\"imu\">",
+                    "an IMU: <sensor name=\"imu\" type=\"imu\">");
+    imki_choice_end(p, choice.found, choice.names, "NAME", "the file has several IMUs");
+    return &r->sensor[choice.chosen];
 }
 
-static imk_status find_rate(imki_parameters *p, const sensor *s, double *rate)
+static double find_rate(imki_parameters *p, const sensor *s)
 {
-    double given = p->settings->rate;
+    const double given = p->settings->rate, rate = given > 0 ? given : s->rate;
     bool white = false;
     for (int i = 0; i < 6; i++)
         white = white || s->noise[i / 3].value[STDDEV][i % 3] != 0;
-    *rate = given > 0 ? given : s->rate;
     if (given > 0 && s->rate > 0 && given != s->rate)
         imki_note(p, false,
                   "stddev is taken per sample at %g Hz, the option, not at update_rate %g", given,
                   s->rate);
-    if (!white || *rate > 0)
-        return IMK_OK;
-    imki_place place = s->noise[0].place[STDDEV];
-    if (!place.field)
-        place = s->noise[1].place[STDDEV];
-    return imki_place_error(p, place, IMK_ERROR_KEY_MISSING,
-                            "\"stddev\" is per sample, and update_rate is missing",
-                            "add --rate 200Hz (samples per second)");
+    if (white && !(rate > 0))
+        imki_refuse_at(p, s->noise[s->noise[0].place[STDDEV].field ? 0 : 1].place[STDDEV],
+                       IMK_ERROR_KEY_MISSING,
+                       "\"stddev\" is per sample, and update_rate is missing",
+                       "add --rate 200Hz (samples per second)");
+    return rate;
 }
 
-static imk_status fill(imki_parameters *p, const noise *n, int kind, double rate, imk_triad *triad)
+static void fill(imki_parameters *p, const noise *n, int kind, double rate)
 {
-    static const char *const units[2] = {"rad/s", "m/s^2"};
-    double si[KEYS][3] = {{0}};
     static const imki_quantity quantities[KEYS] = {
         IMKI_BIAS, IMKI_WHITE, IMKI_BIAS, IMKI_DRIFT, IMKI_RANDOM_WALK, IMKI_TIME, IMKI_DRIFT};
+    imk_triad *triad = p->triad[kind];
+    double si[KEYS][3] = {{0}};
     triad->present = n->present[0] || n->present[1] || n->present[2];
     for (int key = 0; key < KEYS; key++) {
         char unit[40];
-        snprintf(unit, sizeof unit, "%s%s", units[kind],
+        snprintf(unit, sizeof unit, "%s%s", imki_kind_units[kind],
                  key == STDDEV           ? " per sample"
                  : key == DYNAMIC_STDDEV ? "/s/sqrt(Hz)"
                                          : "");
         double scale = key == STDDEV && rate > 0 ? 1 / sqrt(rate) : 1;
         imki_place place = n->place[key];
         place.field = key_names[key];
-        imk_status status = imki_accept(p, place, kind, quantities[key], n->value[key],
-                                        (imki_unit){unit, scale}, si[key]);
-        if (status != IMK_OK)
-            return status;
+        imki_accept(p, place, kind, quantities[key], n->value[key], (imki_unit){unit, scale},
+                    si[key]);
     }
     double sigma[3] = {0}, time[3] = {0};
     for (int i = 0; i < 3; i++) {
@@ -313,33 +292,24 @@ static imk_status fill(imki_parameters *p, const noise *n, int kind, double rate
         imki_note(p, false,
                   "dynamic_bias_stddev s is the density of the noise that drives the bias: sigma = "
                   "s*sqrt(correlation_time/2)");
-    imki_to_axes(si[STDDEV], &triad->noise.white);
-    imki_to_axes(si[BIAS_STDDEV], &triad->bias.repeatability);
-    imki_to_axes(si[PRECISION], &triad->resolution);
+    memcpy(triad->noise.white.value, si[STDDEV], sizeof si[STDDEV]);
+    memcpy(triad->bias.repeatability.value, si[BIAS_STDDEV], sizeof si[BIAS_STDDEV]);
+    memcpy(triad->resolution.value, si[PRECISION], sizeof si[PRECISION]);
     imki_add_gauss_markov(triad, sigma, time);
-    return IMK_OK;
 }
 
-imk_status imki_gazebo_read(imki_parameters *p)
+void imki_gazebo_read(imki_parameters *p)
 {
     xml_reader reader = {.count = 0};
-    const sensor *chosen = NULL;
-    double rate = 0;
-    imk_status status = parse(&reader, p);
-    if (status == IMK_OK)
-        status = choose(p, &reader, &chosen);
-    if (status == IMK_OK)
-        status = find_rate(p, chosen, &rate);
-    if (status == IMK_OK)
-        status = fill(p, &chosen->noise[0], IMKI_GYRO, rate, &p->model->gyro);
-    if (status == IMK_OK)
-        status = fill(p, &chosen->noise[1], IMKI_ACCEL, rate, &p->model->accel);
-    if (status == IMK_OK && !p->model->gyro.present && !p->model->accel.present)
-        return imk_error_set(p->error, IMK_ERROR_KEY_MISSING, "noise", "<noise>",
-                             "a noise in angular_velocity or linear_acceleration");
-    if (status == IMK_OK)
-        snprintf(p->model->name, sizeof p->model->name, "%s", chosen->name);
-    return status;
+    parse(&reader, p);
+    const sensor *chosen = choose(p, &reader);
+    const double rate = find_rate(p, chosen);
+    for (int kind = 0; kind < 2; kind++)
+        fill(p, &chosen->noise[kind], kind, rate);
+    if (!p->model->gyro.present && !p->model->accel.present)
+        imki_refuse(p, IMK_ERROR_KEY_MISSING, "noise", "<noise>",
+                    "a noise in angular_velocity or linear_acceleration");
+    snprintf(p->model->name, sizeof p->model->name, "%s", chosen->name);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -360,50 +330,44 @@ static void write_axis(imki_parameters *p, const imk_triad *triad, int axis, dou
     for (int key = 0; key < KEYS; key++) {
         if (key > BIAS_STDDEV && value[key] == 0)
             continue;
-        imki_text_add(&p->out, "                <%s>", key_names[key]);
-        imki_text_numbers(&p->out, &value[key], 1, "");
-        imki_text_add(&p->out, "</%s>\n", key_names[key]);
+        imki_text_add(&p->out, "                <%s>%s</%s>\n", key_names[key],
+                      imki_shortest(value[key]).text, key_names[key]);
     }
     imki_text_add(&p->out, "              </noise>\n            </%c>\n", 'x' + axis);
 }
 
 static bool has_white(const imk_triad *triad)
 {
-    return triad->present && (triad->noise.white.value[0] != 0 ||
-                              triad->noise.white.value[1] != 0 || triad->noise.white.value[2] != 0);
+    return triad->present && imki_any(triad->noise.white.value);
 }
 
-imk_status imki_gazebo_write(imki_parameters *p)
+void imki_gazebo_write(imki_parameters *p)
 {
     static const char *const names[2] = {"angular_velocity", "linear_acceleration"};
-    static const char *const units[2] = {"[rad/s]", "[m/s^2]"};
-    const imk_triad *triads[2] = {&p->source->gyro, &p->source->accel};
-    double rate = p->settings->rate;
-    if (!(rate > 0) && (has_white(triads[0]) || has_white(triads[1])))
-        return imk_error_set(p->error, IMK_ERROR_KEY_MISSING, "stddev",
-                             "\"stddev\" is per sample, and the sample rate is not known",
-                             "add --rate 200Hz (samples per second)");
+    const double rate = p->settings->rate;
+    if (!(rate > 0) && (has_white(p->origin[0]) || has_white(p->origin[1])))
+        imki_refuse(p, IMK_ERROR_KEY_MISSING, "stddev",
+                    "\"stddev\" is per sample, and the sample rate is not known",
+                    "add --rate 200Hz (samples per second)");
     imki_text_add(&p->out, "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model "
                            "name=\"imu\">\n    <link name=\"link\">\n      <sensor name=\"imu\" "
                            "type=\"imu\">\n        <always_on>true</always_on>\n");
-    if (rate > 0) {
-        imki_text_add(&p->out, "        <update_rate>");
-        imki_text_numbers(&p->out, &rate, 1, "");
-        imki_text_add(&p->out, "</update_rate>\n        <!-- stddev is per sample at this rate "
-                               "-->\n");
-    }
+    if (rate > 0)
+        imki_text_add(&p->out,
+                      "        <update_rate>%s</update_rate>\n        <!-- stddev is per sample at "
+                      "this rate -->\n",
+                      imki_shortest(rate).text);
     imki_text_add(&p->out, "        <imu>\n");
     for (int kind = 0; kind < 2; kind++) {
-        if (!triads[kind]->present)
+        if (!p->origin[kind]->present)
             continue;
         imki_text_add(&p->out,
-                      "          <%s> <!-- %s; dynamic_bias_stddev per s per sqrt(Hz), "
+                      "          <%s> <!-- [%s]; dynamic_bias_stddev per s per sqrt(Hz), "
                       "correlation time [s] -->\n",
-                      names[kind], units[kind]);
+                      names[kind], imki_kind_units[kind]);
         for (int axis = 0; axis < 3; axis++)
-            write_axis(p, triads[kind], axis, rate);
+            write_axis(p, p->origin[kind], axis, rate);
         imki_text_add(&p->out, "          </%s>\n", names[kind]);
     }
     imki_text_add(&p->out, "        </imu>\n      </sensor>\n    </link>\n  </model>\n</sdf>\n");
-    return IMK_OK;
 }

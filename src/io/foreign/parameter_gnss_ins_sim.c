@@ -7,7 +7,6 @@
  * its correlation time is a Gauss-Markov process, as documented; what the program then simulates is
  * smaller, see docs/other-formats.md. Without a time, or with an infinite one, the program draws
  * the drift anew for each sample (pathgen.py), which is white noise. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
 
 #include <math.h>
@@ -28,69 +27,52 @@ static const struct key {
      {"accel_b_stability", IMKI_DRIFT, true, {"m/s^2", 1}},
      {"accel_b_corr", IMKI_TIME, false, {"s", 1}}}};
 
-static imk_status read_triad(imki_parameters *p, const imk_document *document, int kind,
-                             imk_triad *triad)
+static void read_triad(imki_parameters *p, int kind)
 {
+    imk_triad *triad = p->triad[kind];
     double si[4][3] = {{0}};
     imki_place place = {"", 0, 0};
     for (int i = 0; i < 4; i++) {
         const struct key *key = &keys[kind][i];
-        int node = imki_document_value(document, 0, key->name);
+        const int node = imki_node_value(p, 0, key->name);
         if (node == IMKI_NONE && key->required)
-            return imki_document_error(document, 0, IMK_ERROR_KEY_MISSING, key->name,
-                                       "the keys gyro_b, gyro_arw, gyro_b_stability, accel_b, "
-                                       "accel_vrw, accel_b_stability",
-                                       p->error);
-        imk_status status =
-            imki_node_accept(p, document, 0, key->name, kind, key->quantity, key->unit, si[i]);
-        if (status != IMK_OK)
-            return status;
+            imki_refuse_node(p, 0, IMK_ERROR_KEY_MISSING, key->name,
+                             "the keys gyro_b, gyro_arw, gyro_b_stability, accel_b, accel_vrw, "
+                             "accel_b_stability");
+        imki_node_accept(p, 0, key->name, kind, key->quantity, key->unit, si[i]);
         if (node != IMKI_NONE)
-            place = imki_node_place(document, node);
+            place = imki_node_place(p, node);
         else
             si[i][0] = si[i][1] = si[i][2] = INFINITY;
     }
-    imki_to_axes(si[0], &triad->bias.fixed);
-    imki_to_axes(si[1], &triad->noise.white);
+    memcpy(triad->bias.fixed.value, si[0], sizeof si[0]);
+    memcpy(triad->noise.white.value, si[1], sizeof si[1]);
     place.field = keys[kind][3].name;
-    imk_status status =
-        imki_white_where_infinite(p, place, triad, p->settings->rate, "gnss-ins-sim", si[2], si[3]);
-    if (status != IMK_OK)
-        return status;
+    imki_white_where_infinite(p, place, triad, p->settings->rate, "gnss-ins-sim", si[2], si[3]);
     imki_add_gauss_markov(triad, si[2], si[3]);
     if (triad->noise.gauss_markov_count > 0)
         imki_note(p, false,
                   "%s is taken as sigma of a Gauss-Markov process, as documented; gnss-ins-sim "
                   "itself simulates sigma*sqrt(corr/(2 rate)), starting at 0",
                   keys[kind][2].name);
-    return IMK_OK;
 }
 
-imk_status imki_gnss_ins_sim_read(imki_parameters *p)
+void imki_gnss_ins_sim_read(imki_parameters *p)
 {
-    imk_document *document = NULL;
     const char *known[8];
-    imk_status status = imki_parameters_document(p, &document);
-    if (status != IMK_OK)
-        return status;
+    if (!imki_parameters_document(p))
+        return;
     for (int i = 0; i < 8; i++)
         known[i] = keys[i / 4][i % 4].name;
-    status = read_triad(p, document, IMKI_GYRO, &p->model->gyro);
-    if (status == IMK_OK)
-        status = read_triad(p, document, IMKI_ACCEL, &p->model->accel);
-    for (int key = document->node[0].first; key != IMKI_NONE && status == IMK_OK;) {
-        const char *name = document->node[key].text;
-        bool is_known = false;
-        for (int i = 0; i < 8; i++)
-            is_known = is_known || strcmp(name, known[i]) == 0;
+    for (int kind = 0; kind < 2; kind++)
+        read_triad(p, kind);
+    for (int key = p->document->node[0].first; key != IMKI_NONE; key = imki_key_after(p, key)) {
+        const char *name = p->document->node[key].text;
         if (strncmp(name, "mag_", 4) == 0)
             imki_note(p, true, "%.60s: a model has no magnetometer", name);
-        else if (!is_known)
-            status = imki_foreign_key(p, document, key, 8, known);
-        key = document->node[document->node[key].next].next;
+        else if (!imki_is_one_of(name, 8, known))
+            imki_foreign_key(p, key, 8, known);
     }
-    imk_document_free(document);
-    return status;
 }
 
 static void write_line(imki_parameters *p, const struct key *key, const double si[3], bool is_last)
@@ -106,13 +88,13 @@ static void write_line(imki_parameters *p, const struct key *key, const double s
         imki_text_add(&p->out, "  # [%s]\n", key->unit.name);
 }
 
-imk_status imki_gnss_ins_sim_write(imki_parameters *p)
+void imki_gnss_ins_sim_write(imki_parameters *p)
 {
     imki_text_add(&p->out, p->is_json ? "{\n"
                                       : "# gnss-ins-sim: the dictionary accuracy of its class IMU; "
                                         "make numpy arrays of the lists\n");
     for (int kind = 0; kind < 2; kind++) {
-        const imk_triad *triad = kind == IMKI_GYRO ? &p->source->gyro : &p->source->accel;
+        const imk_triad *triad = p->origin[kind];
         imk_triad none = {.present = false};
         if (!triad->present)
             triad = &none;
@@ -124,9 +106,8 @@ imk_status imki_gnss_ins_sim_write(imki_parameters *p)
         write_line(p, &keys[kind][0], triad->bias.fixed.value, false);
         write_line(p, &keys[kind][1], triad->noise.white.value, false);
         write_line(p, &keys[kind][2], sigma, false);
-        write_line(p, &keys[kind][3], time, kind == IMKI_ACCEL);
+        write_line(p, &keys[kind][3], time, kind == IMK_ACCEL);
     }
     if (p->is_json)
         imki_text_add(&p->out, "}\n");
-    return IMK_OK;
 }

@@ -6,12 +6,19 @@
 #define IMUKIT_PARAMETER_INTERNAL_H
 
 #include "io/model/document_internal.h"
+#include "model/model_schema_internal.h"
 #include "report/growing_text_internal.h"
 
+#include "imukit/decimal.h"
 #include "imukit/parameter_file.h"
 
 /* ---- text being written ---------------------------------------------------------------------- */
 
+/* The shortest decimal; negative zero is of no use to anyone. */
+typedef struct imki_decimal {
+    char text[IMK_DECIMAL_SIZE];
+} imki_decimal;
+imki_decimal imki_shortest(double value);
 /* Shortest decimals, `count` of them. */
 void imki_text_numbers(imki_text *text, const double *values, int count, const char *separator);
 /* "[a, b, c]". */
@@ -22,16 +29,25 @@ void imki_text_vector(imki_text *text, const double values[3]);
 typedef struct imki_parameters {
     const imk_parameter_settings *settings;
     imk_parameter_notes *notes; /* may be NULL */
-    imk_error *error;           /* may be NULL */
+    imk_status status;          /* the first failure: what comes after it counts for nothing */
+    imk_error *error;           /* of that; may be NULL */
     const char *text;           /* reading: the file, ends with a zero */
     size_t size;
-    imk_model *model;        /* reading: to be filled, from its default */
-    const imk_model *source; /* writing: valid, triads of three axes */
-    imki_text out;           /* writing */
-    bool is_json;            /* writing to a file whose name ends in .json */
+    imk_document *document;     /* reading: the same as a tree, by imki_parameters_document() */
+    imk_model *model;           /* reading: to be filled, from its default */
+    imk_triad *triad[2];        /* its triads */
+    const imk_model *source;    /* writing: valid, triads of three axes */
+    const imk_triad *origin[2]; /* its triads */
+    imki_text out;              /* writing */
+    bool is_json;               /* writing to a file whose name ends in .json */
 } imki_parameters;
 
-typedef imk_status imki_parameter_function(imki_parameters *p);
+/* Fills p->model or p->out, or p->status says why not. */
+typedef void imki_parameter_function(imki_parameters *p);
+
+/* Of IMK_GYRO and IMK_ACCEL. */
+static const char *const imki_kind_names[2] = {"gyro", "accel"};
+static const char *const imki_kind_units[2] = {"rad/s", "m/s^2"};
 
 imki_parameter_function imki_kalibr_read, imki_kalibr_write, imki_gazebo_read, imki_gazebo_write,
     imki_matlab_read, imki_matlab_write, imki_gnss_ins_sim_read, imki_gnss_ins_sim_write,
@@ -40,14 +56,28 @@ imki_parameter_function imki_kalibr_read, imki_kalibr_write, imki_gazebo_read, i
     imki_filter_read, imki_filter_write;
 
 /* Read back what was written and note what is not there (parameter_compare.c). `format` is the name
- * for the notes.
- * @return IMK_ERROR_UNSUPPORTED when nothing came back, errors of reading */
-imk_status imki_parameters_compare(imki_parameters *p, imki_parameter_function *read,
-                                   const char *format);
+ * for the notes. Fails with IMK_ERROR_UNSUPPORTED when nothing came back. */
+void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, const char *format);
 
 /* A note: what was left out, or what was assumed. The same text is kept once. */
 void imki_note(imki_parameters *p, bool lost, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* A failure, unless there was one before. */
+void imki_refuse(imki_parameters *p, imk_status status, const char *field, const char *found,
+                 const char *expected);
+
+/* Which of several sensors of a file is meant: that of settings->sensor, or the only one. */
+typedef struct imki_choice {
+    char names[96]; /* of all, "imu0, imu1" */
+    int count, found, chosen;
+} imki_choice;
+void imki_choice_add(const imki_parameters *p, imki_choice *choice, const char *name, int chosen);
+/* Fails when none or several are meant. `several` is "the file has several IMUs", `placeholder`
+ * what
+ * --sensor takes, "NAME". */
+void imki_choice_end(imki_parameters *p, int found, const char *names, const char *placeholder,
+                     const char *several);
 
 /* ---- numbers --------------------------------------------------------------------------------- */
 
@@ -57,8 +87,8 @@ typedef struct imki_place {
     size_t line, column;
 } imki_place;
 
-imk_status imki_place_error(imki_parameters *p, imki_place place, imk_status status,
-                            const char *found, const char *expected);
+void imki_refuse_at(imki_parameters *p, imki_place place, imk_status status, const char *found,
+                    const char *expected);
 
 /* What a number is, for the check whether it can be in the format's unit. */
 typedef enum imki_quantity {
@@ -71,38 +101,63 @@ typedef enum imki_quantity {
 } imki_quantity;
 
 /* Three numbers of a file, in `unit`, which is `scale` SI units: checked and converted. kind is
- * IMKI_GYRO or IMKI_ACCEL of the model's schema. */
+ * IMK_GYRO or IMK_ACCEL. */
 typedef struct imki_unit {
     const char *name;
     double scale;
 } imki_unit;
-imk_status imki_accept(imki_parameters *p, imki_place place, int kind, imki_quantity quantity,
-                       const double raw[3], imki_unit unit, double si[3]);
+void imki_accept(imki_parameters *p, imki_place place, int kind, imki_quantity quantity,
+                 const double raw[3], imki_unit unit, double si[3]);
+bool imki_any(const double values[3]); /* is one of them not 0? */
 
 /* The number between begin and end, nothing behind it; "inf" is one. */
 bool imki_number(const char *begin, const char *end, double *value);
 
+/* ---- lines ----------------------------------------------------------------------------------- */
+
+/* Each line of the file, from `line` to `end`, until one fails. */
+typedef void imki_line_function(imki_parameters *p, void *context, const char *line,
+                                const char *end, size_t number);
+void imki_each_line(imki_parameters *p, imki_line_function *take, void *context);
+
+/* Lines `NAME VALUE`, with `separators` between them; the value goes where target_of() says, NULL:
+ * the name means nothing. Up to `numbers` numbers may stand before the name. */
+typedef struct imki_assignments {
+    const char *separators;
+    int numbers;
+    double *(*target_of)(void *context, const char *name, size_t line);
+    void *context;
+} imki_assignments;
+void imki_read_assignments(imki_parameters *p, imki_assignments *assignments);
+
 /* ---- YAML and JSON --------------------------------------------------------------------------- */
 
-/* The file as a tree. The first line %YAML:1.0 and the tags of OpenCV are taken for blanks. */
-imk_status imki_parameters_document(imki_parameters *p, imk_document **document);
+/* The file as p->document. The first line %YAML:1.0 and the tags of OpenCV are taken for blanks.
+ * @return false when it has failed */
+bool imki_parameters_document(imki_parameters *p);
 
-imki_place imki_node_place(const imk_document *document, int node);
+/* What p->document has at a node. */
+imki_place imki_node_place(const imki_parameters *p, int node);
+bool imki_node_is(const imki_parameters *p, int node, imki_node_kind kind); /* IMKI_NONE: no */
 /* The text of a scalar node, or "". */
-const char *imki_node_text(const imk_document *document, int node);
+const char *imki_node_text(const imki_parameters *p, int node);
+int imki_node_value(const imki_parameters *p, int mapping, const char *key);
+/* The key of a mapping behind another, whose value lies between them. */
+int imki_key_after(const imki_parameters *p, int key);
+void imki_refuse_node(imki_parameters *p, int node, imk_status status, const char *found,
+                      const char *expected);
 /* One number for all, or `count` in a list. */
-imk_status imki_node_numbers(imki_parameters *p, const imk_document *document, int node, int count,
-                             double *values);
+void imki_node_numbers(imki_parameters *p, int node, int count, double *values);
 /* A list of three lists of three. */
-imk_status imki_node_matrix(imki_parameters *p, const imk_document *document, int node,
-                            double matrix[3][3]);
+void imki_node_matrix(imki_parameters *p, int node, double matrix[3][3]);
 /* imki_node_numbers() and imki_accept() of a key's value; nothing happens when it is not there. */
-imk_status imki_node_accept(imki_parameters *p, const imk_document *document, int mapping,
-                            const char *key, int kind, imki_quantity quantity, imki_unit unit,
-                            double si[3]);
+void imki_node_accept(imki_parameters *p, int mapping, const char *key, int kind,
+                      imki_quantity quantity, imki_unit unit, double si[3]);
+bool imki_is_one_of(const char *name, size_t count, const char *const *names);
 /* A key that means nothing here: refused when it is a known one misspelt, else noted as lost. */
-imk_status imki_foreign_key(imki_parameters *p, const imk_document *document, int key, size_t count,
-                            const char *const *known);
+void imki_foreign_key(imki_parameters *p, int key, size_t count, const char *const *known);
+/* All keys of a mapping but the known ones. */
+void imki_foreign_keys(imki_parameters *p, int mapping, size_t count, const char *const *known);
 
 /* ---- model ----------------------------------------------------------------------------------- */
 
@@ -111,9 +166,8 @@ void imki_response_of(const imk_triad *triad, double matrix[3][3]);
 bool imki_is_identity(double matrix[3][3]);
 /* The opposite: scale factors and misalignment about the body axes, or, where the matrix turns the
  * axes by more than half a right angle or so, directions and scale factors. cross_axis becomes 0.
- * IMK_ERROR_RANGE when a row is nearly zero. */
-imk_status imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad,
-                             double matrix[3][3]);
+ * Fails with IMK_ERROR_RANGE when a row is nearly zero. */
+void imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad, double matrix[3][3]);
 /* matrix = lower * rotation, lower triangular with positive diagonal. False when the matrix is
  * singular or mirrors. */
 bool imki_lower_and_rotation(double matrix[3][3], double lower[3][3], double rotation[3][3]);
@@ -125,10 +179,15 @@ void imki_add_gauss_markov(imk_triad *triad, const double sigma[3], const double
 void imki_first_gauss_markov(const imk_triad *triad, double sigma[3], double time[3]);
 /* Infinite correlation times: the program then draws the drift anew for each sample. Those axes'
  * sigma goes into the white noise of `rate` and becomes 0 here, their time too. */
-imk_status imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *triad,
-                                     double rate, const char *program, double sigma[3],
-                                     double time[3]);
-void imki_to_axes(const double values[3], imk_axes *axes);
+void imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *triad, double rate,
+                               const char *program, double sigma[3], double time[3]);
+/* The four densities of a visual-inertial estimator: white noise and random walk of the gyros, then
+ * of the accelerometers. */
+enum { IMKI_DENSITIES = 4 };
+void imki_densities_read(imki_parameters *p, int mapping, const char *const keys[IMKI_DENSITIES],
+                         const imki_unit units[IMKI_DENSITIES]);
+/* One number for all axes: see imki_largest(). */
+double imki_density(imki_parameters *p, int index, const char *key);
 /* For formats with one number for all axes: the largest, with a note when they differ. */
 double imki_largest(imki_parameters *p, const char *name, const imk_axes *axes);
 
@@ -138,15 +197,13 @@ double imki_cubic(const imk_temperature_polynomial *polynomial, int axis, double
                   double c[4]);
 
 /* kalibr's four noise keys, which OpenVINS shares. */
-enum { IMKI_KALIBR_NOISE_KEYS = 4 };
-extern const char *const imki_kalibr_noise_keys[IMKI_KALIBR_NOISE_KEYS];
-imk_status imki_kalibr_noise_read(imki_parameters *p, const imk_document *document, int imu);
+extern const char *const imki_kalibr_noise_keys[IMKI_DENSITIES];
+void imki_kalibr_noise_read(imki_parameters *p, int imu);
 void imki_kalibr_noise_write(imki_parameters *p, const char *indent);
 /* The mapping that describes the IMU: the root, or one of its values, by settings->sensor. */
-imk_status imki_kalibr_imu(imki_parameters *p, const imk_document *document, int *imu);
-/* Keys of the set-up, not of the sensor; and one note that names those that say something. */
-bool imki_kalibr_is_setup(const char *key);
-void imki_kalibr_note_setup(imki_parameters *p, const imk_document *document, int imu);
+int imki_kalibr_imu(imki_parameters *p);
+/* One note that names the keys of the set-up, not of the sensor, that say something. */
+void imki_kalibr_note_setup(imki_parameters *p, int imu);
 /* "  - [a, b, c]" three times. */
 void imki_text_matrix(imki_text *text, const char *indent, double matrix[3][3]);
 

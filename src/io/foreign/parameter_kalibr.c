@@ -8,17 +8,16 @@
  *
  * Noise per sample is density * sqrt(update_rate) (ConfigReader.py): the densities are two-sided,
  * N and K of the model. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
 
 #include <stdio.h>
 #include <string.h>
 
-const char *const imki_kalibr_noise_keys[IMKI_KALIBR_NOISE_KEYS] = {
+const char *const imki_kalibr_noise_keys[IMKI_DENSITIES] = {
     "gyroscope_noise_density", "gyroscope_random_walk", "accelerometer_noise_density",
     "accelerometer_random_walk"};
 
-static const imki_unit noise_units[IMKI_KALIBR_NOISE_KEYS] = {
+static const imki_unit noise_units[IMKI_DENSITIES] = {
     {"rad/s/sqrt(Hz)", 1}, {"rad/s^2/sqrt(Hz)", 1}, {"m/s^2/sqrt(Hz)", 1}, {"m/s^3/sqrt(Hz)", 1}};
 
 static const char explanation[] =
@@ -41,118 +40,74 @@ static const char explanation[] =
 
 /* ---- the parts OpenVINS shares --------------------------------------------------------------- */
 
-static bool describes_imu(const imk_document *document, int node)
+static bool describes_imu(const imki_parameters *p, int node)
 {
-    for (int i = 0; i < IMKI_KALIBR_NOISE_KEYS; i++)
-        if (imki_document_value(document, node, imki_kalibr_noise_keys[i]) != IMKI_NONE)
+    for (int i = 0; i < IMKI_DENSITIES; i++)
+        if (imki_node_value(p, node, imki_kalibr_noise_keys[i]) != IMKI_NONE)
             return true;
-    return imki_document_value(document, node, "gyroscopes") != IMKI_NONE ||
-           imki_document_value(document, node, "accelerometers") != IMKI_NONE;
+    return imki_node_value(p, node, "gyroscopes") != IMKI_NONE ||
+           imki_node_value(p, node, "accelerometers") != IMKI_NONE;
 }
 
-imk_status imki_kalibr_imu(imki_parameters *p, const imk_document *document, int *imu)
+int imki_kalibr_imu(imki_parameters *p)
 {
-    const char *wanted = p->settings->sensor;
-    int found = 0;
-    char names[64] = "";
-    if (describes_imu(document, 0)) {
-        *imu = 0;
-        return IMK_OK;
-    }
-    for (int key = document->node[0].first; key != IMKI_NONE;) {
-        int value = document->node[key].next;
-        const char *name = document->node[key].text;
-        if (describes_imu(document, value)) {
-            if (!wanted || strcmp(wanted, name) == 0) {
-                *imu = value;
-                found++;
-            }
-            size_t length = strlen(names);
-            snprintf(names + length, sizeof names - length, "%s%.20s", length > 0 ? ", " : "",
-                     name);
-        }
-        key = document->node[value].next;
-    }
-    if (found == 1)
-        return IMK_OK;
-    if (names[0] == '\0')
-        return imki_document_error(document, 0, IMK_ERROR_KEY_MISSING, "gyroscope_noise_density",
-                                   "the noise of an IMU, at the top or under imu0:", p->error);
-    char expected[96];
-    snprintf(expected, sizeof expected, "add --sensor NAME with one of %s", names);
-    imk_error_set(p->error, wanted ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING, "sensor",
-                  wanted ? wanted : "\"sensor\" is missing: the file describes several IMUs",
-                  expected);
-    return wanted ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING;
+    imki_choice choice = {.found = 0};
+    if (describes_imu(p, 0))
+        return 0;
+    for (int key = p->document->node[0].first; key != IMKI_NONE; key = imki_key_after(p, key))
+        if (describes_imu(p, p->document->node[key].next))
+            imki_choice_add(p, &choice, p->document->node[key].text, p->document->node[key].next);
+    if (choice.count == 0)
+        imki_refuse_node(p, 0, IMK_ERROR_KEY_MISSING, "gyroscope_noise_density",
+                         "the noise of an IMU, at the top or under imu0:");
+    imki_choice_end(p, choice.found, choice.names, "NAME", "the file describes several IMUs");
+    return choice.chosen;
 }
 
-imk_status imki_kalibr_noise_read(imki_parameters *p, const imk_document *document, int imu)
+void imki_kalibr_noise_read(imki_parameters *p, int imu)
 {
-    imk_triad *triads[2] = {&p->model->gyro, &p->model->accel};
-    imk_status status = IMK_OK;
-    for (int i = 0; i < IMKI_KALIBR_NOISE_KEYS && status == IMK_OK; i++) {
-        imk_noise *noise = &triads[i / 2]->noise;
-        double si[3] = {0};
-        status = imki_node_accept(p, document, imu, imki_kalibr_noise_keys[i], i / 2,
-                                  i % 2 == 0 ? IMKI_WHITE : IMKI_RANDOM_WALK, noise_units[i], si);
-        imki_to_axes(si, i % 2 == 0 ? &noise->white : &noise->random_walk);
-    }
-    return status;
+    imki_densities_read(p, imu, imki_kalibr_noise_keys, noise_units);
 }
 
 void imki_kalibr_noise_write(imki_parameters *p, const char *indent)
 {
-    const imk_triad *triads[2] = {&p->source->gyro, &p->source->accel};
-    for (int i = 0; i < IMKI_KALIBR_NOISE_KEYS; i++) {
-        if (!triads[i / 2]->present)
+    for (int i = 0; i < IMKI_DENSITIES; i++) {
+        if (!p->origin[i / 2]->present)
             continue;
-        const imk_noise *noise = &triads[i / 2]->noise;
-        double largest = imki_largest(p, imki_kalibr_noise_keys[i],
-                                      i % 2 == 0 ? &noise->white : &noise->random_walk);
-        imki_text_add(&p->out, "%s%s: ", indent, imki_kalibr_noise_keys[i]);
-        imki_text_numbers(&p->out, &largest, 1, "");
-        imki_text_add(&p->out, "  # [%s], two-sided\n", noise_units[i].name);
+        const double largest = imki_density(p, i, imki_kalibr_noise_keys[i]);
+        imki_text_add(&p->out, "%s%s: %s  # [%s], two-sided\n", indent, imki_kalibr_noise_keys[i],
+                      imki_shortest(largest).text, noise_units[i].name);
         if (largest == 0)
             imki_note(p, true, "%s is 0, which kalibr and OpenVINS do not take: set it",
                       imki_kalibr_noise_keys[i]);
     }
 }
 
-bool imki_kalibr_is_setup(const char *key)
-{
-    static const char *const names[] = {"model", "rostopic", "time_offset", "update_rate", "T_i_b"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        if (strcmp(key, names[i]) == 0)
-            return true;
-    return false;
-}
-
 /* The pose is of interest only when it is not that of the reference IMU, the offset when there is
  * one. */
-static bool says_something(const imk_document *document, int node)
+static bool says_something(const imki_parameters *p, int node)
 {
-    const imki_node *n = &document->node[node];
+    const imki_node *nodes = p->document->node, *n = &nodes[node];
     double value;
     if (n->kind == IMKI_NODE_SCALAR)
         return !imki_number(n->text, n->text + n->length, &value) || value != 0;
-    for (int row = n->first, i = 0; row != IMKI_NONE; row = document->node[row].next, i++)
-        for (int cell = document->node[row].first, j = 0; cell != IMKI_NONE;
-             cell = document->node[cell].next, j++) {
-            const char *text = imki_node_text(document, cell);
+    for (int row = n->first, i = 0; row != IMKI_NONE; row = nodes[row].next, i++)
+        for (int cell = nodes[row].first, j = 0; cell != IMKI_NONE; cell = nodes[cell].next, j++) {
+            const char *text = imki_node_text(p, cell);
             if (!imki_number(text, text + strlen(text), &value) || value != (i == j))
                 return true;
         }
     return false;
 }
 
-void imki_kalibr_note_setup(imki_parameters *p, const imk_document *document, int imu)
+void imki_kalibr_note_setup(imki_parameters *p, int imu)
 {
     static const char *const names[] = {"rostopic", "update_rate", "time_offset", "T_i_b"};
     char list[64] = "";
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        int node = imki_document_value(document, imu, names[i]);
-        size_t length = strlen(list);
-        if (node != IMKI_NONE && says_something(document, node))
+        const int node = imki_node_value(p, imu, names[i]);
+        const size_t length = strlen(list);
+        if (node != IMKI_NONE && says_something(p, node))
             snprintf(list + length, sizeof list - length, "%s%s", length > 0 ? ", " : "", names[i]);
     }
     if (list[0])
@@ -161,75 +116,58 @@ void imki_kalibr_note_setup(imki_parameters *p, const imk_document *document, in
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-static imk_status matrix_of(imki_parameters *p, const imk_document *document, int mapping,
-                            const char *key, double matrix[3][3], int *node)
+/* The matrix of a key; as it was where there is none. @return the node of the last one read */
+static int read_matrix(imki_parameters *p, int mapping, const char *key, double matrix[3][3],
+                       int last)
 {
-    *node = imki_document_value(document, mapping, key);
-    return *node == IMKI_NONE ? IMK_OK : imki_node_matrix(p, document, *node, matrix);
+    const int node = imki_node_value(p, mapping, key);
+    if (node == IMKI_NONE)
+        return last;
+    imki_node_matrix(p, node, matrix);
+    return node;
 }
 
-static imk_status read_gyroscopes(imki_parameters *p, const imk_document *document, int mapping)
+static void read_gyroscopes(imki_parameters *p, int mapping)
 {
     static const char *const known[] = {"M", "A", "C_gyro_i"};
     double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, c[3][3], a[3][3] = {{0}};
-    int node, last = mapping;
     memcpy(c, m, sizeof c);
-    imk_status status = matrix_of(p, document, mapping, "M", m, &node);
-    if (status == IMK_OK && node != IMKI_NONE)
-        last = node;
-    if (status == IMK_OK)
-        status = matrix_of(p, document, mapping, "C_gyro_i", c, &node);
-    if (status == IMK_OK)
-        status = matrix_of(p, document, mapping, "A", a, &node);
-    for (int key = document->node[mapping].first; key != IMKI_NONE && status == IMK_OK;) {
-        const char *name = document->node[key].text;
-        if (strcmp(name, "M") != 0 && strcmp(name, "A") != 0 && strcmp(name, "C_gyro_i") != 0)
-            status = imki_foreign_key(p, document, key, 3, known);
-        key = document->node[document->node[key].next].next;
-    }
-    if (status != IMK_OK)
-        return status;
+    const int place = read_matrix(p, mapping, "M", m, mapping);
+    read_matrix(p, mapping, "C_gyro_i", c, 0);
+    read_matrix(p, mapping, "A", a, 0);
+    imki_foreign_keys(p, mapping, 3, known);
     imki_multiply(m, c, m);
     imki_multiply(a, c, a);
     for (int i = 0; i < 3; i++)
         memcpy(p->model->gyro.g_sensitivity.value[i], a[i], sizeof a[i]);
-    return imki_response_set(p, imki_node_place(document, last), &p->model->gyro, m);
+    imki_response_set(p, imki_node_place(p, place), &p->model->gyro, m);
 }
 
-static imk_status read_accelerometers(imki_parameters *p, const imk_document *document, int mapping)
+static void read_accelerometers(imki_parameters *p, int mapping)
 {
     static const char *const known[] = {"M", "rx_i", "ry_i", "rz_i"};
     double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     imk_triad *accel = &p->model->accel;
-    int node, last;
-    imk_status status = matrix_of(p, document, mapping, "M", m, &node);
-    last = node == IMKI_NONE ? mapping : node;
-    for (int i = 0; i < 3 && status == IMK_OK; i++) {
-        node = imki_document_value(document, mapping, known[i + 1]);
+    const int place = read_matrix(p, mapping, "M", m, mapping);
+    for (int i = 0; i < 3; i++) {
+        const int node = imki_node_value(p, mapping, known[i + 1]);
         double position[3] = {0};
         if (node != IMKI_NONE)
-            status = imki_node_numbers(p, document, node, 3, position);
+            imki_node_numbers(p, node, 3, position);
         memcpy(accel->lever_arm.value[i], position, sizeof position);
-        if (position[0] != 0 || position[1] != 0 || position[2] != 0)
+        if (imki_any(position))
             imki_note(p, false,
                       "lever arms: kalibr lets M mix the components of several places; here axis i "
                       "senses all of them at its own (a difference of misalignment times lever "
                       "arm)");
     }
-    for (int key = document->node[mapping].first; key != IMKI_NONE && status == IMK_OK;) {
-        bool is_known = false;
-        for (int i = 0; i < 4; i++)
-            is_known = is_known || strcmp(document->node[key].text, known[i]) == 0;
-        if (!is_known)
-            status = imki_foreign_key(p, document, key, 4, known);
-        key = document->node[document->node[key].next].next;
-    }
-    return status == IMK_OK ? imki_response_set(p, imki_node_place(document, last), accel, m)
-                            : status;
+    imki_foreign_keys(p, mapping, 4, known);
+    imki_response_set(p, imki_node_place(p, place), accel, m);
 }
 
-static imk_status read_keys(imki_parameters *p, const imk_document *document, int imu)
+static void read_keys(imki_parameters *p, int imu)
 {
+    /* The last three are of the set-up, and nothing is taken for one of them misspelt. */
     static const char *const known[] = {"gyroscope_noise_density",
                                         "gyroscope_random_walk",
                                         "accelerometer_noise_density",
@@ -237,54 +175,45 @@ static imk_status read_keys(imki_parameters *p, const imk_document *document, in
                                         "gyroscopes",
                                         "accelerometers",
                                         "update_rate",
-                                        "time_offset"};
+                                        "time_offset",
+                                        "model",
+                                        "rostopic",
+                                        "T_i_b"};
     enum { KNOWN = sizeof known / sizeof known[0] };
-    imk_status status = IMK_OK;
-    for (int key = document->node[imu].first; key != IMKI_NONE && status == IMK_OK;) {
-        int value = document->node[key].next;
-        const char *name = document->node[key].text;
-        bool is_mapping = document->node[value].kind == IMKI_NODE_MAPPING;
-        bool is_known = imki_kalibr_is_setup(name);
-        for (size_t i = 0; i < KNOWN; i++)
-            is_known = is_known || strcmp(name, known[i]) == 0;
+    for (int key = p->document->node[imu].first; key != IMKI_NONE; key = imki_key_after(p, key)) {
+        const int value = p->document->node[key].next;
+        const char *name = p->document->node[key].text;
+        const bool is_mapping = imki_node_is(p, value, IMKI_NODE_MAPPING);
         if (strcmp(name, "gyroscopes") == 0 && is_mapping)
-            status = read_gyroscopes(p, document, value);
+            read_gyroscopes(p, value);
         else if (strcmp(name, "accelerometers") == 0 && is_mapping)
-            status = read_accelerometers(p, document, value);
-        else if (!is_known)
-            status = imki_foreign_key(p, document, key, KNOWN, known);
-        key = document->node[value].next;
+            read_accelerometers(p, value);
+        else if (!imki_is_one_of(name, KNOWN, known))
+            imki_foreign_key(p, key, KNOWN - 3, known);
     }
-    return status;
 }
 
-imk_status imki_kalibr_read(imki_parameters *p)
+void imki_kalibr_read(imki_parameters *p)
 {
-    imk_document *document = NULL;
-    int imu = 0;
-    imk_status status = imki_parameters_document(p, &document);
-    if (status != IMK_OK)
-        return status;
-    status = imki_kalibr_imu(p, document, &imu);
-    if (status == IMK_OK)
-        status = imki_kalibr_noise_read(p, document, imu);
-    if (status == IMK_OK)
-        status = read_keys(p, document, imu);
-    if (status == IMK_OK)
-        imki_kalibr_note_setup(p, document, imu);
-    imk_document_free(document);
-    return status;
+    if (!imki_parameters_document(p))
+        return;
+    const int imu = imki_kalibr_imu(p);
+    imki_kalibr_noise_read(p, imu);
+    read_keys(p, imu);
+    imki_kalibr_note_setup(p, imu);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-static imk_status write_gyroscopes(imki_parameters *p)
+static void write_gyroscopes(imki_parameters *p)
 {
     double response[3][3], m[3][3], c[3][3], a[3][3], c_transposed[3][3];
     imki_response_of(&p->source->gyro, response);
-    if (!imki_lower_and_rotation(response, m, c))
-        return imk_error_set(p->error, IMK_ERROR_UNSUPPORTED, "gyro.direction",
-                             "the gyro axes are not a right-handed set", "");
+    if (!imki_lower_and_rotation(response, m, c)) {
+        imki_refuse(p, IMK_ERROR_UNSUPPORTED, "gyro.direction",
+                    "the gyro axes are not a right-handed set", "");
+        return;
+    }
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             a[i][j] = p->source->gyro.g_sensitivity.value[i][j];
@@ -297,7 +226,6 @@ static imk_status write_gyroscopes(imki_parameters *p)
     imki_text_matrix(&p->out, "    ", a);
     imki_text_add(&p->out, "    C_gyro_i:\n");
     imki_text_matrix(&p->out, "    ", c);
-    return IMK_OK;
 }
 
 static void write_accelerometers(imki_parameters *p, bool lever_arms)
@@ -331,9 +259,8 @@ static void write_setup(imki_parameters *p, bool intrinsics, bool lever_arms)
     const char *indent = intrinsics ? "  " : "";
     imki_text_add(&p->out, "%srostopic: /imu0\n", indent);
     if (p->settings->rate > 0) {
-        imki_text_add(&p->out, "%supdate_rate: ", indent);
-        imki_text_numbers(&p->out, &p->settings->rate, 1, "");
-        imki_text_add(&p->out, "  # [Hz]\n");
+        imki_text_add(&p->out, "%supdate_rate: %s  # [Hz]\n", indent,
+                      imki_shortest(p->settings->rate).text);
     } else {
         imki_text_add(&p->out, "%s# update_rate: [Hz], add it\n", indent);
         imki_note(p, true, "kalibr needs update_rate: add it to the file, or convert with --rate");
@@ -343,7 +270,7 @@ static void write_setup(imki_parameters *p, bool intrinsics, bool lever_arms)
 }
 
 /* With intrinsics the file is like a result (imu0: …), without like the input imu.yaml. */
-imk_status imki_kalibr_write(imki_parameters *p)
+void imki_kalibr_write(imki_parameters *p)
 {
     const imk_triad *gyro = &p->source->gyro, *accel = &p->source->accel;
     double response[2][3][3] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -357,9 +284,9 @@ imk_status imki_kalibr_write(imki_parameters *p)
                       !imki_is_identity(response[0]) || !imki_is_identity(response[1]);
     imki_text_add(&p->out, "%s%s", explanation, intrinsics ? "imu0:\n" : "");
     imki_kalibr_noise_write(p, intrinsics ? "  " : "");
-    imk_status status = intrinsics && gyro->present ? write_gyroscopes(p) : IMK_OK;
+    if (intrinsics && gyro->present)
+        write_gyroscopes(p);
     if (intrinsics && accel->present)
         write_accelerometers(p, lever_arms);
     write_setup(p, intrinsics, lever_arms);
-    return status;
 }

@@ -11,7 +11,6 @@
  *
  * so that N = NoiseDensity/sqrt(2) and K = sqrt(2) RandomWalk when double-sided, N = NoiseDensity
  * and K = RandomWalk when single-sided: its names are the other way round than one would think. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
 
 #include <math.h>
@@ -19,7 +18,6 @@
 #include <string.h>
 
 static const char *const sensor_names[2] = {"Gyroscope", "Accelerometer"};
-static const char *const units[2] = {"rad/s", "m/s^2"};
 
 static const char *const keys[] = {"MeasurementRange",
                                    "Resolution",
@@ -47,15 +45,14 @@ typedef struct noise_scale {
     double white, random_walk;
 } noise_scale;
 
-static imk_status read_noise_type(imki_parameters *p, const imk_document *document, int sensor,
-                                  noise_scale *scale)
+static noise_scale read_noise_type(imki_parameters *p, int sensor)
 {
-    int node = imki_document_value(document, sensor, "NoiseType");
-    const char *type = imki_node_text(document, node);
+    const int node = imki_node_value(p, sensor, "NoiseType");
+    const char *type = imki_node_text(p, node);
     bool single = strcmp(type, "single-sided") == 0;
     if (node != IMKI_NONE && !single && strcmp(type, "double-sided") != 0)
-        return imki_document_error(document, node, IMK_ERROR_SYNTAX, type,
-                                   "a noise type: \"single-sided\" or \"double-sided\"", p->error);
+        imki_refuse_node(p, node, IMK_ERROR_SYNTAX, type,
+                         "a noise type: \"single-sided\" or \"double-sided\"");
     if (p->settings->density != IMK_DENSITY_UNSTATED) {
         single = p->settings->density == IMK_DENSITY_TWO_SIDED;
         imki_note(p, false, "NoiseDensity is taken as %s, as the option says",
@@ -67,57 +64,47 @@ static imk_status read_noise_type(imki_parameters *p, const imk_document *docume
                   "NoiseDensity/sqrt(2)",
                   node == IMKI_NONE ? "is not given; its default " : "");
     }
-    *scale = single ? (noise_scale){1, 1} : (noise_scale){sqrt(0.5), sqrt(2.0)};
-    return IMK_OK;
+    return single ? (noise_scale){1, 1} : (noise_scale){sqrt(0.5), sqrt(2.0)};
 }
 
 /* A scalar or three: the off-diagonal elements of the columns [%]; or the matrix. */
-static imk_status read_misalignment(imki_parameters *p, const imk_document *document, int sensor,
-                                    imk_triad *triad)
+static void read_misalignment(imki_parameters *p, int sensor, imk_triad *triad)
 {
-    int node = imki_document_value(document, sensor, "AxesMisalignment");
-    double matrix[3][3], column[3];
-    imk_status status;
+    const int node = imki_node_value(p, sensor, "AxesMisalignment");
+    double matrix[3][3] = {{0}}, column[3] = {0};
     if (node == IMKI_NONE)
-        return IMK_OK;
-    const imki_node *n = &document->node[node];
+        return;
+    const imki_node *n = &p->document->node[node];
     if (n->kind == IMKI_NODE_SEQUENCE && n->count == 3 &&
-        document->node[n->first].kind == IMKI_NODE_SEQUENCE) {
-        status = imki_node_matrix(p, document, node, matrix);
+        imki_node_is(p, n->first, IMKI_NODE_SEQUENCE)) {
+        imki_node_matrix(p, node, matrix);
     } else {
-        status = imki_node_numbers(p, document, node, 3, column);
-        for (int i = 0; i < 9 && status == IMK_OK; i++)
+        imki_node_numbers(p, node, 3, column);
+        for (int i = 0; i < 9; i++)
             matrix[i / 3][i % 3] = i % 4 == 0 ? 100 : column[i % 3];
     }
-    if (status != IMK_OK)
-        return status;
     for (int i = 0; i < 9; i++)
         matrix[i / 3][i % 3] /= 100;
-    return imki_response_set(p, imki_node_place(document, node), triad, matrix);
+    imki_response_set(p, imki_node_place(p, node), triad, matrix);
 }
 
 static void set_linear(imk_temperature_polynomial *polynomial, const double slope[3])
 {
-    if (slope[0] == 0 && slope[1] == 0 && slope[2] == 0)
+    if (!imki_any(slope))
         return;
     polynomial->order = 1;
-    imki_to_axes(slope, &polynomial->coefficient[0]);
+    memcpy(polynomial->coefficient[0].value, slope, 3 * sizeof slope[0]);
     polynomial->reference = reference_temperature;
     polynomial->minimum = minimum_temperature;
     polynomial->maximum = maximum_temperature;
 }
 
-static imk_status read_temperature(imki_parameters *p, const imk_document *document, int sensor,
-                                   int kind, imk_triad *triad)
+static void read_temperature(imki_parameters *p, int sensor, int kind, imk_triad *triad)
 {
     double bias[3] = {0}, scale[3] = {0};
-    imk_status status = imki_node_accept(p, document, sensor, "TemperatureBias", kind, IMKI_PLAIN,
-                                         (imki_unit){"", 1}, bias);
-    if (status == IMK_OK)
-        status = imki_node_accept(p, document, sensor, "TemperatureScaleFactor", kind, IMKI_PLAIN,
-                                  (imki_unit){"%/degC", 0.01}, scale);
-    if (status != IMK_OK)
-        return status;
+    imki_node_accept(p, sensor, "TemperatureBias", kind, IMKI_PLAIN, (imki_unit){"", 1}, bias);
+    imki_node_accept(p, sensor, "TemperatureScaleFactor", kind, IMKI_PLAIN,
+                     (imki_unit){"%/degC", 0.01}, scale);
     set_linear(&triad->bias.temperature, bias);
     set_linear(&triad->scale_factor.temperature, scale);
     if (triad->bias.temperature.order + triad->scale_factor.temperature.order > 0)
@@ -128,172 +115,109 @@ static imk_status read_temperature(imki_parameters *p, const imk_document *docum
         imki_note(p, false,
                   "MATLAB multiplies bias and noise by the temperature scale factor as well; the "
                   "model does not");
-    return IMK_OK;
 }
 
-static imk_status read_acceleration_bias(imki_parameters *p, const imk_document *document,
-                                         int sensor, imk_triad *triad)
+static void read_acceleration_bias(imki_parameters *p, int sensor, imk_triad *triad)
 {
     double g[3] = {0};
-    imk_status status = imki_node_accept(p, document, sensor, "AccelerationBias", IMKI_GYRO,
-                                         IMKI_PLAIN, (imki_unit){"(rad/s)/(m/s^2)", 1}, g);
+    imki_node_accept(p, sensor, "AccelerationBias", IMK_GYRO, IMKI_PLAIN,
+                     (imki_unit){"(rad/s)/(m/s^2)", 1}, g);
     for (int i = 0; i < 3; i++)
         triad->g_sensitivity.value[i][i] = g[i];
-    if (g[0] != 0 || g[1] != 0 || g[2] != 0)
+    if (imki_any(g))
         imki_note(p, false,
                   "AccelerationBias becomes the diagonal of g_sensitivity, which multiplies the "
                   "specific force; MATLAB multiplies the acceleration it is given");
-    return status;
 }
 
-static imk_status read_output(imki_parameters *p, const imk_document *document, int sensor,
-                              int kind, imk_triad *triad)
+static void read_output(imki_parameters *p, int sensor, int kind, imk_triad *triad)
 {
-    double range[3] = {INFINITY, INFINITY, INFINITY}, resolution[3] = {0};
-    int node = imki_document_value(document, sensor, "MeasurementRange");
-    imk_status status = IMK_OK;
+    double range[3] = {INFINITY, INFINITY, INFINITY};
+    const int node = imki_node_value(p, sensor, "MeasurementRange");
     if (node != IMKI_NONE)
-        status = imki_node_numbers(p, document, node, 3, range);
-    if (status == IMK_OK)
-        status = imki_node_accept(p, document, sensor, "Resolution", kind, IMKI_PLAIN,
-                                  (imki_unit){units[kind], 1}, resolution);
-    for (int i = 0; i < 3 && status == IMK_OK; i++) {
+        imki_node_numbers(p, node, 3, range);
+    imki_node_accept(p, sensor, "Resolution", kind, IMKI_PLAIN,
+                     (imki_unit){imki_kind_units[kind], 1}, triad->resolution.value);
+    for (int i = 0; i < 3; i++) {
         if (!(range[i] > 0))
-            return imki_document_error(document, node, IMK_ERROR_RANGE,
-                                       imki_node_text(document, node), "a positive range",
-                                       p->error);
+            imki_refuse_node(p, node, IMK_ERROR_RANGE, imki_node_text(p, node), "a positive range");
         triad->range.value[i] = isinf(range[i]) ? 0 : range[i];
-        triad->resolution.value[i] = resolution[i];
     }
-    return status;
 }
 
-static imk_status read_noise(imki_parameters *p, const imk_document *document, int sensor, int kind,
-                             imk_triad *triad)
+static void read_noise(imki_parameters *p, int sensor, int kind, imk_triad *triad)
 {
     static const char *const white[2] = {"rad/s/sqrt(Hz)", "m/s^2/sqrt(Hz)"};
     static const char *const walk[2] = {"rad/s*sqrt(Hz)", "m/s^2*sqrt(Hz)"};
-    double bias[3] = {0}, n[3] = {0}, b[3] = {0}, k[3] = {0};
-    noise_scale scale = {1, 1};
-    imk_status status = read_noise_type(p, document, sensor, &scale);
-    if (status == IMK_OK)
-        status = imki_node_accept(p, document, sensor, "ConstantBias", kind, IMKI_BIAS,
-                                  (imki_unit){units[kind], 1}, bias);
-    if (status == IMK_OK)
-        status = imki_node_accept(p, document, sensor, "NoiseDensity", kind, IMKI_WHITE,
-                                  (imki_unit){white[kind], scale.white}, n);
-    if (status == IMK_OK)
-        status = imki_node_accept(p, document, sensor, "BiasInstability", kind, IMKI_DRIFT,
-                                  (imki_unit){units[kind], 1}, b);
-    if (status == IMK_OK)
-        status = imki_node_accept(p, document, sensor, "RandomWalk", kind, IMKI_RANDOM_WALK,
-                                  (imki_unit){walk[kind], scale.random_walk}, k);
-    if (b[0] != 0 || b[1] != 0 || b[2] != 0)
+    const imki_unit unit = {imki_kind_units[kind], 1};
+    const noise_scale scale = read_noise_type(p, sensor);
+    imki_node_accept(p, sensor, "ConstantBias", kind, IMKI_BIAS, unit, triad->bias.fixed.value);
+    imki_node_accept(p, sensor, "NoiseDensity", kind, IMKI_WHITE,
+                     (imki_unit){white[kind], scale.white}, triad->noise.white.value);
+    imki_node_accept(p, sensor, "BiasInstability", kind, IMKI_DRIFT, unit,
+                     triad->noise.bias_instability.value);
+    imki_node_accept(p, sensor, "RandomWalk", kind, IMKI_RANDOM_WALK,
+                     (imki_unit){walk[kind], scale.random_walk}, triad->noise.random_walk.value);
+    if (imki_any(triad->noise.bias_instability.value))
         imki_note(p, false,
                   "BiasInstability is taken as B (the Allan floor is 0.664 B); what MATLAB "
                   "simulates depends on BiasInstabilityCoefficients, which are not read");
-    imki_to_axes(bias, &triad->bias.fixed);
-    imki_to_axes(n, &triad->noise.white);
-    imki_to_axes(b, &triad->noise.bias_instability);
-    imki_to_axes(k, &triad->noise.random_walk);
-    return status;
 }
 
-static imk_status read_sensor(imki_parameters *p, const imk_document *document, int sensor,
-                              int kind, imk_triad *triad)
+static void read_sensor(imki_parameters *p, int part, int kind)
 {
+    const int sensor = imki_node_value(p, part, sensor_names[kind]);
+    imk_triad *triad = p->triad[kind];
     triad->present = sensor != IMKI_NONE;
     if (!triad->present)
-        return IMK_OK;
-    if (document->node[sensor].kind != IMKI_NODE_MAPPING)
-        return imki_document_error(document, sensor, IMK_ERROR_SYNTAX, "",
-                                   "an object with the properties of the sensor", p->error);
-    imk_status status = read_noise(p, document, sensor, kind, triad);
-    if (status == IMK_OK)
-        status = read_misalignment(p, document, sensor, triad);
-    if (status == IMK_OK)
-        status = read_temperature(p, document, sensor, kind, triad);
-    if (status == IMK_OK)
-        status = read_output(p, document, sensor, kind, triad);
-    if (status == IMK_OK && kind == IMKI_GYRO)
-        status = read_acceleration_bias(p, document, sensor, triad);
-    for (int key = document->node[sensor].first; key != IMKI_NONE && status == IMK_OK;) {
-        size_t i = 0;
-        while (i < KEYS && strcmp(document->node[key].text, keys[i]) != 0)
-            i++;
-        if (i == KEYS)
-            status = imki_foreign_key(p, document, key, KEYS, keys);
-        key = document->node[document->node[key].next].next;
+        return;
+    if (!imki_node_is(p, sensor, IMKI_NODE_MAPPING)) {
+        imki_refuse_node(p, sensor, IMK_ERROR_SYNTAX, "",
+                         "an object with the properties of the sensor");
+        return;
     }
-    return status;
+    read_noise(p, sensor, kind, triad);
+    read_misalignment(p, sensor, triad);
+    read_temperature(p, sensor, kind, triad);
+    read_output(p, sensor, kind, triad);
+    if (kind == IMK_GYRO)
+        read_acceleration_bias(p, sensor, triad);
+    imki_foreign_keys(p, sensor, KEYS, keys);
 }
 
-static bool is_part(const imk_document *document, int node)
+static bool is_part(const imki_parameters *p, int node)
 {
-    return imki_document_value(document, node, sensor_names[0]) != IMKI_NONE ||
-           imki_document_value(document, node, sensor_names[1]) != IMKI_NONE;
+    return imki_node_value(p, node, sensor_names[0]) != IMKI_NONE ||
+           imki_node_value(p, node, sensor_names[1]) != IMKI_NONE;
 }
 
 /* The part of settings->sensor, or the only one; the root itself may be one. */
-static imk_status find_part(imki_parameters *p, const imk_document *document, int *part)
+static int find_part(imki_parameters *p)
 {
-    const char *wanted = p->settings->sensor;
-    char names[96] = "";
-    int found = 0;
-    *part = 0;
-    if (is_part(document, 0))
-        return IMK_OK;
-    for (int key = document->node[0].first; key != IMKI_NONE;) {
-        int value = document->node[key].next;
-        const char *name = document->node[key].text;
-        if (is_part(document, value)) {
-            size_t length = strlen(names);
-            snprintf(names + length, sizeof names - length, "%s%.30s", length > 0 ? ", " : "",
-                     name);
-            if (!wanted || strcmp(wanted, name) == 0) {
-                *part = value;
-                found++;
-            }
-        }
-        key = document->node[value].next;
-    }
-    if (found == 1)
-        return IMK_OK;
-    char expected[140];
-    snprintf(expected, sizeof expected,
-             names[0] ? "add --sensor NAME with one of %s"
-                      : "a part with a Gyroscope or an "
-                        "Accelerometer%s",
-             names);
-    imk_status status = wanted && names[0] ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING;
-    return imk_error_set(p->error, status, "sensor",
-                         status == IMK_ERROR_NAME_UNKNOWN ? wanted
-                         : names[0] ? "\"sensor\" is missing: the file has several parts"
-                                    : "Gyroscope",
-                         expected);
+    imki_choice choice = {.found = 0};
+    if (is_part(p, 0))
+        return 0;
+    for (int key = p->document->node[0].first; key != IMKI_NONE; key = imki_key_after(p, key))
+        if (is_part(p, p->document->node[key].next))
+            imki_choice_add(p, &choice, p->document->node[key].text, p->document->node[key].next);
+    if (choice.count == 0)
+        imki_refuse(p, IMK_ERROR_KEY_MISSING, "sensor", "Gyroscope",
+                    "a part with a Gyroscope or an Accelerometer");
+    imki_choice_end(p, choice.found, choice.names, "NAME", "the file has several parts");
+    return choice.chosen;
 }
 
-imk_status imki_matlab_read(imki_parameters *p)
+void imki_matlab_read(imki_parameters *p)
 {
-    imk_document *document = NULL;
-    int part = 0;
-    imk_status status = imki_parameters_document(p, &document);
-    if (status != IMK_OK)
-        return status;
-    status = find_part(p, document, &part);
-    if (status == IMK_OK && document->node[part].key != IMKI_NONE)
-        snprintf(p->model->name, sizeof p->model->name, "%.90s",
-                 document->node[document->node[part].key].text);
-    if (status == IMK_OK)
-        status = read_sensor(p, document, imki_document_value(document, part, sensor_names[0]),
-                             IMKI_GYRO, &p->model->gyro);
-    if (status == IMK_OK)
-        status = read_sensor(p, document, imki_document_value(document, part, sensor_names[1]),
-                             IMKI_ACCEL, &p->model->accel);
-    if (status == IMK_OK && imki_document_value(document, part, "Magnetometer") != IMKI_NONE)
+    if (!imki_parameters_document(p))
+        return;
+    const int part = find_part(p), key = p->document->node[part].key;
+    if (key != IMKI_NONE)
+        snprintf(p->model->name, sizeof p->model->name, "%.90s", p->document->node[key].text);
+    for (int kind = 0; kind < 2; kind++)
+        read_sensor(p, part, kind);
+    if (imki_node_value(p, part, "Magnetometer") != IMKI_NONE)
         imki_note(p, true, "Magnetometer: a model has none");
-    imk_document_free(document);
-    return status;
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -315,14 +239,9 @@ static void write_output(imki_parameters *p, const imk_triad *triad)
         range = x > 0 && (range == 0 || x < range) ? x : range;
         resolution = fmax(resolution, triad->resolution.value[i]);
     }
-    imki_text_add(&p->out, "      \"MeasurementRange\": ");
-    if (range > 0)
-        imki_text_numbers(&p->out, &range, 1, "");
-    else
-        imki_text_add(&p->out, "\"Inf\"");
-    imki_text_add(&p->out, ",\n      \"Resolution\": ");
-    imki_text_numbers(&p->out, &resolution, 1, "");
-    imki_text_add(&p->out, ",\n");
+    imki_text_add(&p->out, "      \"MeasurementRange\": %s,\n      \"Resolution\": %s,\n",
+                  range > 0 ? imki_shortest(range).text : "\"Inf\"",
+                  imki_shortest(resolution).text);
 }
 
 static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, bool is_last)
@@ -352,7 +271,7 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, b
               single ? "single-sided: set it in MATLAB" : "double-sided, MATLAB's default");
     for (int i = 0; i < 3; i++)
         diagonal[i] = triad->g_sensitivity.value[i][i];
-    if (kind == IMKI_GYRO)
+    if (kind == IMK_GYRO)
         write_vector(p, "AccelerationBias", diagonal, 1);
     write_vector(p, "TemperatureBias", bias->order > 0 ? bias->coefficient[0].value : none, 1);
     imki_text_add(&p->out, "      \"TemperatureScaleFactor\": [");
@@ -362,13 +281,12 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, b
             imki_note(p, true,
                       "TemperatureScaleFactor must not be negative in MATLAB: it will "
                       "refuse the file");
-        imki_text_numbers(&p->out, &percent, 1, "");
-        imki_text_add(&p->out, i < 2 ? ", " : "]\n");
+        imki_text_add(&p->out, "%s%s", imki_shortest(percent).text, i < 2 ? ", " : "]\n");
     }
     imki_text_add(&p->out, is_last ? "    }\n" : "    },\n");
 }
 
-imk_status imki_matlab_write(imki_parameters *p)
+void imki_matlab_write(imki_parameters *p)
 {
     char name[sizeof p->source->name];
     size_t length = 0;
@@ -379,10 +297,8 @@ imk_status imki_matlab_write(imki_parameters *p)
             name[length++] = *c;
     name[length] = '\0';
     imki_text_add(&p->out, "{\n  \"%s\": {\n", length > 0 ? name : "imu");
-    if (p->source->gyro.present)
-        write_sensor(p, IMKI_GYRO, &p->source->gyro, !p->source->accel.present);
-    if (p->source->accel.present)
-        write_sensor(p, IMKI_ACCEL, &p->source->accel, true);
+    for (int kind = 0; kind < 2; kind++)
+        if (p->origin[kind]->present)
+            write_sensor(p, kind, p->origin[kind], kind == IMK_ACCEL || !p->source->accel.present);
     imki_text_add(&p->out, "  }\n}\n");
-    return IMK_OK;
 }

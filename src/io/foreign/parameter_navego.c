@@ -7,7 +7,6 @@
  * [deg/sqrt(h)/s], vrrw [m/s/sqrt(h)/s], gb_sta and gb_dyn [deg/s], ab_sta and ab_dyn [mg], gb_corr
  * and ab_corr [s], freq [Hz]. *_dyn and *_corr are sigma and time of a Gauss-Markov process; with
  * an infinite time noise_b_dyn.m draws white noise. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
 
 #include <math.h>
@@ -99,8 +98,8 @@ static void add_structure(script *s, const char *name)
 }
 
 /* structure.name = expression */
-static imk_status take_field(imki_parameters *p, script *s, const char *structure, const char *name,
-                             imki_place place, const char *begin, const char *end)
+static void take_field(imki_parameters *p, script *s, const char *structure, const char *name,
+                       imki_place place, const char *begin, const char *end)
 {
     int kind = 0, index = 0, length;
     double value[3];
@@ -110,28 +109,29 @@ static imk_status take_field(imki_parameters *p, script *s, const char *structur
     if (is_known)
         add_structure(s, structure);
     if (p->settings->sensor && strcmp(p->settings->sensor, structure) != 0)
-        return IMK_OK;
+        return;
     bool good = imki_expression(begin, end, &s->variables, &length, value, &stop);
     if (is_rate && good && length == 1 && value[0] > 0 && isfinite(value[0]))
         s->rate = value[0];
     if (!is_known) {
         if (!is_rate)
             imki_note(p, true, "%s.%s (line %zu) is not read", structure, name, place.line);
-        return IMK_OK;
+        return;
     }
     place.field = fields[kind][index].name;
     if (!good) {
         char found[64];
         snprintf(found, sizeof found, "%.*s", (int)(end - begin > 60 ? 60 : end - begin), begin);
         place.column += (size_t)(stop - begin);
-        return imki_place_error(p, place, IMK_ERROR_SYNTAX, found,
-                                "a number or three: 2, [1 2 3], 2 .* ones(1,3)");
+        imki_refuse_at(p, place, IMK_ERROR_SYNTAX, found,
+                       "a number or three: 2, [1 2 3], 2 .* ones(1,3)");
+        return;
     }
     s->seen[kind][index] = true;
     s->place[kind][index] = place;
     snprintf(s->structure, sizeof s->structure, "%s", structure);
-    return imki_accept(p, place, kind, fields[kind][index].quantity, value,
-                       fields[kind][index].unit, s->si[kind][index]);
+    imki_accept(p, place, kind, fields[kind][index].quantity, value, fields[kind][index].unit,
+                s->si[kind][index]);
 }
 
 static void take_variable(script *s, const char *name, const char *begin, const char *end)
@@ -153,95 +153,71 @@ static void take_variable(script *s, const char *name, const char *begin, const 
 }
 
 /* One line; what is no assignment means nothing here. */
-static imk_status take_line(imki_parameters *p, script *s, const char *line, const char *end,
-                            size_t number)
+static void take_line(imki_parameters *p, void *context, const char *line, const char *end,
+                      size_t number)
 {
+    script *s = context;
     char name[NAME_SIZE], field[NAME_SIZE] = "";
     const char *at = take_name(skip_blanks(line, end), end, name);
     if (name[0] == '\0')
-        return IMK_OK;
+        return;
     if (at < end && *at == '.')
         at = take_name(at + 1, end, field);
     at = skip_blanks(at, end);
     if (at == end || *at != '=' || (at + 1 < end && at[1] == '='))
-        return IMK_OK;
+        return;
     at = skip_blanks(at + 1, end);
     const char *stop = statement_end(at, end);
     while (stop > at && (stop[-1] == ' ' || stop[-1] == '\t' || stop[-1] == '\r'))
         stop--;
     imki_place place = {field, number, (size_t)(at - line) + 1};
     if (field[0])
-        return take_field(p, s, name, field, place, at, stop);
-    take_variable(s, name, at, stop);
-    return IMK_OK;
+        take_field(p, s, name, field, place, at, stop);
+    else
+        take_variable(s, name, at, stop);
 }
 
-static imk_status check_structure(imki_parameters *p, const script *s)
+static void check_structure(imki_parameters *p, const script *s)
 {
-    char expected[140];
-    bool named = p->settings->sensor != NULL;
-    if (s->structure[0] && (named || s->structure_count == 1))
-        return IMK_OK;
-    if (s->structure_count == 0)
-        return imk_error_set(p->error, IMK_ERROR_KEY_MISSING, "arw", "arw",
-                             "assignments such as imu.arw = 2 .* ones(1,3);");
-    snprintf(expected, sizeof expected, "add --sensor NAME with one of %s", s->others);
-    return imk_error_set(p->error, named ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING, "sensor",
-                         named ? p->settings->sensor
-                               : "\"sensor\" is missing: the file has several structures",
-                         expected);
+    const bool named = p->settings->sensor != NULL;
+    if (s->structure_count == 0 && !(s->structure[0] && named))
+        imki_refuse(p, IMK_ERROR_KEY_MISSING, "arw", "arw",
+                    "assignments such as imu.arw = 2 .* ones(1,3);");
+    imki_choice_end(p, s->structure[0] && (named || s->structure_count == 1), s->others, "NAME",
+                    "the file has several structures");
 }
 
-static imk_status fill(imki_parameters *p, script *s, int kind, imk_triad *triad)
+static void fill(imki_parameters *p, script *s, int kind)
 {
+    imk_triad *triad = p->triad[kind];
     double(*si)[3] = s->si[kind];
     triad->present = false;
     for (int i = 0; i < FIELDS; i++)
         triad->present = triad->present || s->seen[kind][i];
-    imki_to_axes(si[0], &triad->noise.white);
-    imki_to_axes(si[1], &triad->noise.random_walk);
-    imki_to_axes(si[2], &triad->bias.fixed);
-    double rate = s->rate > 0 ? s->rate : p->settings->rate;
-    imki_place place = s->place[kind][4];
-    if (!s->seen[kind][4])
-        place = s->place[kind][3];
-    imk_status status = imki_white_where_infinite(p, place, triad, rate, "NaveGo", si[3], si[4]);
-    if (status != IMK_OK)
-        return status;
+    memcpy(triad->noise.white.value, si[0], sizeof si[0]);
+    memcpy(triad->noise.random_walk.value, si[1], sizeof si[1]);
+    memcpy(triad->bias.fixed.value, si[2], sizeof si[2]);
+    imki_white_where_infinite(p, s->place[kind][s->seen[kind][4] ? 4 : 3], triad,
+                              s->rate > 0 ? s->rate : p->settings->rate, "NaveGo", si[3], si[4]);
     imki_add_gauss_markov(triad, si[3], si[4]);
-    if (si[2][0] != 0 || si[2][1] != 0 || si[2][2] != 0)
+    if (imki_any(si[2]))
         imki_note(p, false, "%s: NaveGo adds a random tenth of it in each run, which is left out",
                   fields[kind][2].name);
-    if (si[1][0] != 0 || si[1][1] != 0 || si[1][2] != 0)
+    if (imki_any(si[1]))
         imki_note(p, false,
                   "%s is taken as documented; NaveGo's simulation makes steps of K/rate instead of "
                   "K/sqrt(rate)",
                   fields[kind][1].name);
-    return IMK_OK;
 }
 
-imk_status imki_navego_read(imki_parameters *p)
+void imki_navego_read(imki_parameters *p)
 {
     script s = {.variables = {.count = 0}};
-    const char *end = p->text + p->size;
-    imk_status status = IMK_OK;
-    size_t number = 1;
-    for (const char *line = p->text; line < end && status == IMK_OK; number++) {
-        const char *line_end = memchr(line, '\n', (size_t)(end - line));
-        if (!line_end)
-            line_end = end;
-        status = take_line(p, &s, line, line_end, number);
-        line = line_end < end ? line_end + 1 : end;
-    }
-    if (status == IMK_OK)
-        status = check_structure(p, &s);
-    if (status == IMK_OK)
-        status = fill(p, &s, IMKI_GYRO, &p->model->gyro);
-    if (status == IMK_OK)
-        status = fill(p, &s, IMKI_ACCEL, &p->model->accel);
-    if (status == IMK_OK)
-        snprintf(p->model->name, sizeof p->model->name, "%s", s.structure);
-    return status;
+    imki_each_line(p, take_line, &s);
+    check_structure(p, &s);
+    for (int kind = 0; kind < 2; kind++)
+        fill(p, &s, kind);
+    snprintf(p->model->name, sizeof p->model->name, "%s", s.structure);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -267,7 +243,7 @@ static void write_triad(imki_parameters *p, const char *structure, int kind, con
     }
 }
 
-imk_status imki_navego_write(imki_parameters *p)
+void imki_navego_write(imki_parameters *p)
 {
     char structure[NAME_SIZE];
     size_t length = 0;
@@ -278,16 +254,12 @@ imk_status imki_navego_write(imki_parameters *p)
     if (length == 0)
         snprintf(structure, sizeof structure, "imu");
     imki_text_add(&p->out, "%% NaveGo: error profile of an IMU, for imu_si_errors(); x y z\n");
-    if (p->source->gyro.present)
-        write_triad(p, structure, IMKI_GYRO, &p->source->gyro);
-    if (p->source->accel.present)
-        write_triad(p, structure, IMKI_ACCEL, &p->source->accel);
-    if (p->settings->rate > 0) {
-        imki_text_add(&p->out, "%s.freq = ", structure);
-        imki_text_numbers(&p->out, &p->settings->rate, 1, "");
-        imki_text_add(&p->out, ";  %% [Hz]\n");
-    } else {
+    for (int kind = 0; kind < 2; kind++)
+        if (p->origin[kind]->present)
+            write_triad(p, structure, kind, p->origin[kind]);
+    if (p->settings->rate > 0)
+        imki_text_add(&p->out, "%s.freq = %s;  %% [Hz]\n", structure,
+                      imki_shortest(p->settings->rate).text);
+    else
         imki_note(p, true, "NaveGo needs freq: add it to the file, or convert with --rate");
-    }
-    return IMK_OK;
 }

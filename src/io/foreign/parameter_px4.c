@@ -7,10 +7,7 @@
  *
  * so that forward bias = XOFF + X0 and scale factor = 1/XSCALE - 1. Units are rad/s, m/s^2 and
  * degC. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
-
-#include "imukit/decimal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -71,8 +68,9 @@ static double *thermal_value(px4_sensor *s, const char *name)
 }
 
 /* Where the value of a parameter goes; NULL when it is none of ours. */
-static double *target_of(px4_file *file, const char *name, size_t line)
+static double *target_of(void *context, const char *name, size_t line)
 {
+    px4_file *file = context;
     for (int kind = 0; kind < 2; kind++) {
         char prefix[16];
         int length = snprintf(prefix, sizeof prefix, "CAL_%s", calibration_names[kind]);
@@ -100,60 +98,18 @@ static double *target_of(px4_file *file, const char *name, size_t line)
     return NULL;
 }
 
-/* The next word of a line; separators are blanks, tabs and commas. */
-static const char *next_word(const char *at, const char *end, const char **word_end)
+static void read_file(imki_parameters *p, px4_file *file)
 {
-    while (at < end && (*at == ' ' || *at == '\t' || *at == ',' || *at == '\r'))
-        at++;
-    const char *stop = at;
-    while (stop < end && *stop != ' ' && *stop != '\t' && *stop != ',' && *stop != '\r')
-        stop++;
-    *word_end = stop;
-    return at;
-}
-
-static imk_status take_line(imki_parameters *p, px4_file *file, const char *line, const char *end,
-                            size_t number)
-{
-    char name[24];
-    const char *stop, *word = next_word(line, end, &stop);
-    for (int i = 0; i < 2 && stop > word && *word >= '0' && *word <= '9'; i++)
-        word = next_word(stop, end, &stop); /* vehicle and component */
-    if (stop == word || *word == '#' || stop - word >= (ptrdiff_t)sizeof name)
-        return IMK_OK;
-    memcpy(name, word, (size_t)(stop - word));
-    name[stop - word] = '\0';
-    double *target = target_of(file, name, number);
-    if (!target)
-        return IMK_OK;
-    word = next_word(stop, end, &stop);
-    if (imki_number(word, stop, target) && isfinite(*target))
-        return IMK_OK;
-    char found[32];
-    snprintf(found, sizeof found, "%.*s", (int)(stop - word > 30 ? 30 : stop - word), word);
-    imki_place place = {name, number, (size_t)(word - line) + 1};
-    return imki_place_error(p, place, IMK_ERROR_SYNTAX, found, "a finite number");
-}
-
-static imk_status read_file(imki_parameters *p, px4_file *file)
-{
-    const char *end = p->text + p->size;
-    imk_status status = IMK_OK;
     file->enable[0] = file->enable[1] = NAN;
     for (int i = 0; i < 2 * SENSORS_MAX; i++) {
         px4_sensor *s = &file->sensor[i / SENSORS_MAX][i % SENSORS_MAX];
         *s = (px4_sensor){.scale = {1, 1, 1}, .reference = 25, .maximum = 100, .rotation = -1};
         s->id = s->thermal_id = NAN;
     }
-    size_t number = 1;
-    for (const char *line = p->text; line < end && status == IMK_OK; number++) {
-        const char *line_end = memchr(line, '\n', (size_t)(end - line));
-        if (!line_end)
-            line_end = end;
-        status = take_line(p, file, line, line_end, number);
-        line = line_end < end ? line_end + 1 : end;
-    }
-    return status;
+    imki_read_assignments(p, &(imki_assignments){.separators = " \t,\r",
+                                                 .numbers = 2, /* vehicle and component */
+                                                 .target_of = target_of,
+                                                 .context = file});
 }
 
 static bool has_numbers(const px4_sensor *s)
@@ -181,32 +137,17 @@ static bool in_use(const px4_file *file, int kind, int slot)
     return (any ? s->calibrated : s->thermal) && (id != 0 || has_numbers(s));
 }
 
-static imk_status choose(imki_parameters *p, const px4_file *file, int *chosen)
+static int choose(imki_parameters *p, const px4_file *file)
 {
-    const char *wanted = p->settings->sensor;
-    char list[16] = "", expected[64];
-    int found = 0;
-    *chosen = 0;
-    for (int i = 0; i < SENSORS_MAX; i++) {
-        if (!in_use(file, 0, i) && !in_use(file, 1, i))
-            continue;
-        size_t length = strlen(list);
-        snprintf(list + length, sizeof list - length, "%s%d", length > 0 ? ", " : "", i);
-        if (!wanted || (wanted[0] == '0' + i && wanted[1] == '\0')) {
-            *chosen = i;
-            found++;
-        }
-    }
-    if (found == 1)
-        return IMK_OK;
-    if (list[0] == '\0')
-        return imk_error_set(p->error, IMK_ERROR_KEY_MISSING, "CAL_GYRO0_XOFF", "CAL_GYRO0_XOFF",
-                             "calibration parameters CAL_GYRO…, CAL_ACC…, TC_G… or TC_A… that are "
-                             "set");
-    snprintf(expected, sizeof expected, "add --sensor NUMBER with one of %s", list);
-    return imk_error_set(
-        p->error, wanted ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING, "sensor",
-        wanted ? wanted : "\"sensor\" is missing: the file has several IMUs", expected);
+    imki_choice choice = {.found = 0};
+    for (int i = 0; i < SENSORS_MAX; i++)
+        if (in_use(file, 0, i) || in_use(file, 1, i))
+            imki_choice_add(p, &choice, (char[2]){(char)('0' + i), '\0'}, i);
+    if (choice.count == 0)
+        imki_refuse(p, IMK_ERROR_KEY_MISSING, "CAL_GYRO0_XOFF", "CAL_GYRO0_XOFF",
+                    "calibration parameters CAL_GYRO…, CAL_ACC…, TC_G… or TC_A… that are set");
+    imki_choice_end(p, choice.found, choice.names, "NUMBER", "the file has several IMUs");
+    return choice.chosen;
 }
 
 /* The thermal parameters belong to a device: of the same ID, or of the same slot without IDs. */
@@ -220,11 +161,10 @@ static const px4_sensor *thermal_of(const px4_sensor sensors[SENSORS_MAX], int c
     return other ? NULL : &sensors[chosen];
 }
 
-static imk_status fill_thermal(imki_parameters *p, const px4_sensor *thermal, int kind,
-                               double enable, imk_triad *triad, double offset[3])
+static void fill_thermal(imki_parameters *p, const px4_sensor *thermal, int kind, double enable,
+                         double offset[3])
 {
-    imk_temperature_polynomial *polynomial = &triad->bias.temperature;
-    imki_place place = {"TMIN", thermal->line, 0};
+    imk_temperature_polynomial *polynomial = &p->triad[kind]->bias.temperature;
     int order = 0;
     bool any = false;
     for (int k = 0; k <= ORDER; k++)
@@ -234,78 +174,69 @@ static imk_status fill_thermal(imki_parameters *p, const px4_sensor *thermal, in
                 any = true;
             }
     if (!any)
-        return IMK_OK;
+        return;
     if (enable == 0) {
         imki_note(p, true, "TC_%c_ENABLE is 0: PX4 does not use TC_%c…, which are left out",
                   thermal_letters[kind], thermal_letters[kind]);
-        return IMK_OK;
+        return;
     }
     if (isnan(enable))
         imki_note(p, false, "TC_%c_ENABLE is not in the file: TC_%c… are taken to be in use",
                   thermal_letters[kind], thermal_letters[kind]);
     if (order > 0 && !(thermal->minimum < thermal->maximum && thermal->minimum >= -kelvin))
-        return imki_place_error(p, place, IMK_ERROR_RANGE, "TMIN and TMAX",
-                                "temperatures from a lower to a higher one [degC]");
+        imki_refuse_at(p, (imki_place){"TMIN", thermal->line, 0}, IMK_ERROR_RANGE, "TMIN and TMAX",
+                       "temperatures from a lower to a higher one [degC]");
     for (int i = 0; i < 3; i++)
         offset[i] += thermal->coefficient[0][i];
     polynomial->order = order;
     for (int k = 0; k < order; k++)
-        imki_to_axes(thermal->coefficient[k + 1], &polynomial->coefficient[k]);
+        memcpy(polynomial->coefficient[k].value, thermal->coefficient[k + 1],
+               sizeof thermal->coefficient[k + 1]);
     polynomial->reference = thermal->reference + kelvin;
     polynomial->minimum = thermal->minimum + kelvin;
     polynomial->maximum = thermal->maximum + kelvin;
-    return IMK_OK;
 }
 
-static imk_status fill(imki_parameters *p, const px4_file *file, int kind, int chosen,
-                       imk_triad *triad)
+static void fill(imki_parameters *p, const px4_file *file, int kind, int chosen)
 {
+    imk_triad *triad = p->triad[kind];
     const px4_sensor *s = &file->sensor[kind][chosen];
     const px4_sensor *thermal = thermal_of(file->sensor[kind], chosen);
-    const imki_unit unit = {kind == IMKI_GYRO ? "rad/s" : "m/s^2", 1};
     triad->present = in_use(file, kind, chosen);
     if (!triad->present)
-        return IMK_OK;
+        return;
     double offset[3] = {s->offset[0], s->offset[1], s->offset[2]};
-    imk_status status =
-        thermal ? fill_thermal(p, thermal, kind, file->enable[kind], triad, offset) : IMK_OK;
-    imki_place place = {"XOFF", s->line, 0};
-    if (status == IMK_OK)
-        status = imki_accept(p, place, kind, IMKI_BIAS, offset, unit, triad->bias.fixed.value);
-    for (int i = 0; i < 3 && status == IMK_OK; i++) {
-        place.field = "XSCALE";
+    if (thermal)
+        fill_thermal(p, thermal, kind, file->enable[kind], offset);
+    imki_accept(p, (imki_place){"XOFF", s->line, 0}, kind, IMKI_BIAS, offset,
+                (imki_unit){imki_kind_units[kind], 1}, triad->bias.fixed.value);
+    for (int i = 0; i < 3; i++) {
         /* The limits of PX4's own parameter definition. */
         if (!(s->scale[i] >= 0.1 && s->scale[i] <= 3))
-            return imki_place_error(p, place, IMK_ERROR_RANGE, "", "a scale between 0.1 and 3");
+            imki_refuse_at(p, (imki_place){"XSCALE", s->line, 0}, IMK_ERROR_RANGE, "",
+                           "a scale between 0.1 and 3");
         triad->scale_factor.fixed.value[i] = s->scale[i] == 1 ? 0 : 1 / s->scale[i] - 1;
     }
     if (s->rotation > 0)
         imki_note(p, true, "CAL_%s%d_ROT %g: the model is in the axes of the sensor, not rotated",
                   calibration_names[kind], chosen, s->rotation);
-    return status;
 }
 
-imk_status imki_px4_read(imki_parameters *p)
+void imki_px4_read(imki_parameters *p)
 {
     px4_file file;
-    int chosen = 0;
-    imk_status status = read_file(p, &file);
-    if (status == IMK_OK)
-        status = choose(p, &file, &chosen);
-    if (status == IMK_OK)
-        status = fill(p, &file, IMKI_GYRO, chosen, &p->model->gyro);
-    if (status == IMK_OK)
-        status = fill(p, &file, IMKI_ACCEL, chosen, &p->model->accel);
-    return status;
+    read_file(p, &file);
+    const int chosen = choose(p, &file);
+    for (int kind = 0; kind < 2; kind++)
+        fill(p, &file, kind, chosen);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
 static void write_parameter(imki_parameters *p, const char *name, double value, bool integer)
 {
-    imki_text_add(&p->out, "1\t1\t%s\t", name);
-    imki_text_numbers(&p->out, &value, 1, "");
-    imki_text_add(&p->out, "\t%d\n", integer ? 6 : 9); /* MAV_PARAM_TYPE: INT32, REAL32 */
+    /* MAV_PARAM_TYPE: INT32, REAL32 */
+    imki_text_add(&p->out, "1\t1\t%s\t%s\t%d\n", name, imki_shortest(value).text, integer ? 6 : 9);
 }
 
 static void write_thermal(imki_parameters *p, int kind, const imk_temperature_polynomial *t)
@@ -323,9 +254,9 @@ static void write_thermal(imki_parameters *p, int kind, const imk_temperature_po
     for (int i = 0; i < 3; i++)
         worst = fmax(worst, imki_cubic(t, i, t->reference, cubic[i]));
     if (worst > 0)
-        imki_note(
-            p, true, "%s.bias.temperature: PX4 has cubics; the nearest one is up to %.2g %s off",
-            kind == IMKI_GYRO ? "gyro" : "accel", worst, kind == IMKI_GYRO ? "rad/s" : "m/s^2");
+        imki_note(p, true,
+                  "%s.bias.temperature: PX4 has cubics; the nearest one is up to %.2g %s off",
+                  imki_kind_names[kind], worst, imki_kind_units[kind]);
     for (int k = 0; k <= ORDER; k++)
         for (int i = 0; i < 3; i++) {
             snprintf(name, sizeof name, "TC_%c0_X%d_%d", letter, k, i);
@@ -340,15 +271,15 @@ static void write_thermal(imki_parameters *p, int kind, const imk_temperature_po
 static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad)
 {
     char name[24];
-    bool scaled = kind == IMKI_ACCEL;
+    bool scaled = kind == IMK_ACCEL;
     for (int i = 0; i < 3; i++)
         scaled = scaled || triad->scale_factor.fixed.value[i] != 0;
-    if (kind == IMKI_GYRO && scaled)
+    if (kind == IMK_GYRO && scaled)
         imki_note(p, false, "CAL_GYRO0_XSCALE …: only early versions of PX4 have a gyro scale");
     imki_text_add(&p->out,
                   "# CAL_%s0: offset [%s], scale [1]; corrected = (reading - offset) "
                   "scale\n",
-                  calibration_names[kind], kind == IMKI_GYRO ? "rad/s" : "m/s^2");
+                  calibration_names[kind], imki_kind_units[kind]);
     for (int i = 0; i < 3; i++) {
         snprintf(name, sizeof name, "CAL_%s0_%cOFF", calibration_names[kind], 'X' + i);
         write_parameter(p, name, triad->bias.fixed.value[i], false);
@@ -361,15 +292,13 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad)
     write_thermal(p, kind, &triad->bias.temperature);
 }
 
-imk_status imki_px4_write(imki_parameters *p)
+void imki_px4_write(imki_parameters *p)
 {
     imki_text_add(&p->out, "# PX4 calibration parameters; temperatures [degC], TC_…_Xk [unit of "
                            "the offset/degC^k]\n#\n# Vehicle-Id Component-Id Name Value Type\n");
-    if (p->source->gyro.present)
-        write_sensor(p, IMKI_GYRO, &p->source->gyro);
-    if (p->source->accel.present)
-        write_sensor(p, IMKI_ACCEL, &p->source->accel);
+    for (int kind = 0; kind < 2; kind++)
+        if (p->origin[kind]->present)
+            write_sensor(p, kind, p->origin[kind]);
     imki_note(p, true,
               "CAL_GYRO0_ID, CAL_ACC0_ID are not known: set them to the IDs of the devices");
-    return IMK_OK;
 }

@@ -7,6 +7,8 @@
  * tells only their sum: reading one gives scale factors and misalignment. */
 #include "parameter_internal.h"
 
+#include "base/algebra/vector_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -36,23 +38,19 @@ void imki_multiply(double a[3][3], double b[3][3], double product[3][3])
     memcpy(product, result, sizeof result);
 }
 
-static double norm(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* Misalignments are small angles; beyond this share of the diagonal, the axes are turned. */
 static const double small_share = 0.5;
 
-imk_status imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad,
-                             double matrix[3][3])
+void imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad, double matrix[3][3])
 {
     bool small = true;
     for (int i = 0; i < 3; i++) {
-        double length = norm(matrix[i]);
-        if (!(length >= 0.05 && length <= 20))
-            return imki_place_error(p, place, IMK_ERROR_RANGE, "",
-                                    "a matrix near a rotation: rows of a length near 1");
+        double length = imki_norm3(matrix[i]);
+        if (!(length >= 0.05 && length <= 20)) {
+            imki_refuse_at(p, place, IMK_ERROR_RANGE, "",
+                           "a matrix near a rotation: rows of a length near 1");
+            return;
+        }
         for (int j = 0; j < 3; j++)
             small = small &&
                     (i == j ? matrix[i][i] > 0 : fabs(matrix[i][j]) <= small_share * matrix[i][i]);
@@ -60,7 +58,7 @@ imk_status imki_response_set(imki_parameters *p, imki_place place, imk_triad *tr
     memset(&triad->misalignment, 0, sizeof triad->misalignment);
     memset(&triad->cross_axis, 0, sizeof triad->cross_axis);
     for (int i = 0; i < 3; i++) {
-        double length = norm(matrix[i]);
+        double length = imki_norm3(matrix[i]);
         triad->scale_factor.fixed.value[i] = (small ? matrix[i][i] : length) - 1;
         for (int j = 0; j < 3; j++) {
             triad->direction[i][j] = small ? i == j : matrix[i][j] / length;
@@ -70,7 +68,6 @@ imk_status imki_response_set(imki_parameters *p, imki_place place, imk_triad *tr
     }
     if (!small)
         imki_note(p, false, "the matrices turn the axes by large angles: written as directions");
-    return IMK_OK;
 }
 
 /* Gram-Schmidt on the rows: exact where the matrix is lower triangular already. */
@@ -81,35 +78,29 @@ bool imki_lower_and_rotation(double matrix[3][3], double lower[3][3], double rot
         double rest[3] = {matrix[i][0], matrix[i][1], matrix[i][2]};
         for (int k = 0; k < i; k++) {
             const double *q = rotation[k];
-            lower[i][k] = rest[0] * q[0] + rest[1] * q[1] + rest[2] * q[2];
+            lower[i][k] = imki_dot3(rest, q);
             for (int j = 0; j < 3; j++)
                 rest[j] -= lower[i][k] * q[j];
         }
-        lower[i][i] = norm(rest);
+        lower[i][i] = imki_norm3(rest);
         if (!(lower[i][i] > 1e-6))
             return false;
         for (int j = 0; j < 3; j++)
             rotation[i][j] = rest[j] / lower[i][i];
     }
-    const double *x = rotation[0], *y = rotation[1], *z = rotation[2];
-    return z[0] * (x[1] * y[2] - x[2] * y[1]) + z[1] * (x[2] * y[0] - x[0] * y[2]) +
-               z[2] * (x[0] * y[1] - x[1] * y[0]) >
-           0;
+    double across[3];
+    imki_cross3(rotation[0], rotation[1], across);
+    return imki_dot3(rotation[2], across) > 0;
 }
 
 /* ---- noise ----------------------------------------------------------------------------------- */
 
-void imki_to_axes(const double values[3], imk_axes *axes)
-{
-    memcpy(axes->value, values, 3 * sizeof values[0]);
-}
-
 void imki_add_gauss_markov(imk_triad *triad, const double sigma[3], const double time[3])
 {
     struct imk_gauss_markov_term term = {.sigma = {{0}, {0}}};
-    if (sigma[0] == 0 && sigma[1] == 0 && sigma[2] == 0)
+    if (!imki_any(sigma))
         return;
-    imki_to_axes(sigma, &term.sigma);
+    memcpy(term.sigma.value, sigma, 3 * sizeof sigma[0]);
     for (int i = 0; i < 3; i++)
         term.correlation_time.value[i] = sigma[i] == 0 ? 0 : time[i];
     triad->noise.gauss_markov[triad->noise.gauss_markov_count++] = term;
@@ -124,21 +115,19 @@ void imki_first_gauss_markov(const imk_triad *triad, double sigma[3], double tim
     }
 }
 
-imk_status imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *triad,
-                                     double rate, const char *program, double sigma[3],
-                                     double time[3])
+void imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *triad, double rate,
+                               const char *program, double sigma[3], double time[3])
 {
     for (int i = 0; i < 3; i++) {
         if (sigma[i] != 0 && time[i] == 0)
-            return imki_place_error(p, place, IMK_ERROR_RANGE, "0",
-                                    "a positive correlation time [s]");
+            imki_refuse_at(p, place, IMK_ERROR_RANGE, "0", "a positive correlation time [s]");
         if (sigma[i] == 0 || !isinf(time[i]))
             continue;
         if (!(rate > 0)) {
-            imki_place_error(p, place, IMK_ERROR_KEY_MISSING,
-                             "\"inf\" is white noise per sample, and the sample rate is not known",
-                             "add --rate 100Hz (samples per second)");
-            return IMK_ERROR_KEY_MISSING;
+            imki_refuse_at(p, place, IMK_ERROR_KEY_MISSING,
+                           "\"inf\" is white noise per sample, and the sample rate is not known",
+                           "add --rate 100Hz (samples per second)");
+            return;
         }
         double n = triad->noise.white.value[i];
         triad->noise.white.value[i] = sqrt(n * n + sigma[i] * sigma[i] / rate);
@@ -148,7 +137,6 @@ imk_status imki_white_where_infinite(imki_parameters *p, imki_place place, imk_t
                   "taken as white noise",
                   place.field, program);
     }
-    return IMK_OK;
 }
 
 double imki_largest(imki_parameters *p, const char *name, const imk_axes *axes)
@@ -159,4 +147,21 @@ double imki_largest(imki_parameters *p, const char *name, const imk_axes *axes)
         imki_note(p, true, "%s is one number for all axes: the largest of the three is written",
                   name);
     return largest;
+}
+
+void imki_densities_read(imki_parameters *p, int mapping, const char *const keys[IMKI_DENSITIES],
+                         const imki_unit units[IMKI_DENSITIES])
+{
+    for (int i = 0; i < IMKI_DENSITIES; i++) {
+        imk_noise *noise = &p->triad[i / 2]->noise;
+        const bool white = i % 2 == 0;
+        imki_node_accept(p, mapping, keys[i], i / 2, white ? IMKI_WHITE : IMKI_RANDOM_WALK,
+                         units[i], white ? noise->white.value : noise->random_walk.value);
+    }
+}
+
+double imki_density(imki_parameters *p, int index, const char *key)
+{
+    const imk_noise *noise = &p->origin[index / 2]->noise;
+    return imki_largest(p, key, index % 2 == 0 ? &noise->white : &noise->random_walk);
 }

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers of foreign parameter files: is the value possible in the unit the format has, and if not,
  * which unit does it look like? And the text and notes that go out. */
-#include "model/model_schema_internal.h"
 #include "parameter_internal.h"
 
-#include "imukit/decimal.h"
 #include "imukit/names.h"
 #include "imukit/units.h"
 
@@ -17,14 +15,17 @@
 
 /* ---- text ------------------------------------------------------------------------------------ */
 
+imki_decimal imki_shortest(double value)
+{
+    imki_decimal number;
+    imk_decimal_shortest(value == 0 ? 0 : value, number.text);
+    return number;
+}
+
 void imki_text_numbers(imki_text *text, const double *values, int count, const char *separator)
 {
-    for (int i = 0; i < count; i++) {
-        char number[IMK_DECIMAL_SIZE];
-        /* Negative zero is of no use to anyone. */
-        imk_decimal_shortest(values[i] == 0 ? 0 : values[i], number);
-        imki_text_add(text, "%s%s", i > 0 ? separator : "", number);
-    }
+    for (int i = 0; i < count; i++)
+        imki_text_add(text, "%s%s", i > 0 ? separator : "", imki_shortest(values[i]).text);
 }
 
 void imki_text_vector(imki_text *text, const double values[3])
@@ -65,20 +66,51 @@ void imki_note(imki_parameters *p, bool lost, const char *format, ...)
     notes->note[notes->count++] = note;
 }
 
+void imki_refuse(imki_parameters *p, imk_status status, const char *field, const char *found,
+                 const char *expected)
+{
+    if (p->status == IMK_OK)
+        p->status = imk_error_set(p->error, status, field, found, expected);
+}
+
+void imki_choice_add(const imki_parameters *p, imki_choice *choice, const char *name, int chosen)
+{
+    const size_t length = strlen(choice->names);
+    snprintf(choice->names + length, sizeof choice->names - length, "%s%.30s",
+             choice->count++ > 0 ? ", " : "", name);
+    if (!p->settings->sensor || strcmp(p->settings->sensor, name) == 0) {
+        choice->chosen = chosen;
+        choice->found++;
+    }
+}
+
+void imki_choice_end(imki_parameters *p, int found, const char *names, const char *placeholder,
+                     const char *several)
+{
+    const char *wanted = p->settings->sensor;
+    char missing[80], expected[140];
+    if (found == 1)
+        return;
+    snprintf(missing, sizeof missing, "\"sensor\" is missing: %s", several);
+    snprintf(expected, sizeof expected, "add --sensor %s with one of %s", placeholder, names);
+    imki_refuse(p, wanted ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING, "sensor",
+                wanted ? wanted : missing, expected);
+}
+
 /* Room for six digits of a number with sign and exponent. */
 enum { NUMBER_SIZE = 25 };
 
 /* ---- plausible values ------------------------------------------------------------------------ */
 
-imk_status imki_place_error(imki_parameters *p, imki_place place, imk_status status,
-                            const char *found, const char *expected)
+void imki_refuse_at(imki_parameters *p, imki_place place, imk_status status, const char *found,
+                    const char *expected)
 {
-    imk_error_set(p->error, status, place.field, found, expected);
-    if (p->error) {
+    const bool first = p->status == IMK_OK;
+    imki_refuse(p, status, place.field, found, expected);
+    if (first && p->error) {
         p->error->line = place.line;
         p->error->column = place.column;
     }
-    return status;
 }
 
 /* Limits in SI, for what is not zero. They lie far outside what any instrument has (a gyro of
@@ -120,8 +152,8 @@ static const char *unit_it_looks_like(int kind, imki_quantity quantity, double r
     return NULL;
 }
 
-static imk_status refuse_value(imki_parameters *p, imki_place place, int kind,
-                               imki_quantity quantity, double raw, imki_unit unit)
+static void refuse_value(imki_parameters *p, imki_place place, int kind, imki_quantity quantity,
+                         double raw, imki_unit unit)
 {
     char number[NUMBER_SIZE], right[NUMBER_SIZE], found[96], expected[160];
     double scale;
@@ -140,35 +172,39 @@ static imk_status refuse_value(imki_parameters *p, imki_place place, int kind,
         imk_decimal_significant(limits[quantity][kind].maximum / unit.scale, 3, right);
         snprintf(expected, sizeof expected, "a value between %s and %s, or 0", number, right);
     }
-    imki_place_error(p, place, IMK_ERROR_RANGE, found, expected);
-    if (p->error) {
+    const bool first = p->status == IMK_OK;
+    imki_refuse_at(p, place, IMK_ERROR_RANGE, found, expected);
+    if (first && p->error) {
         p->error->value = raw;
         p->error->limit = limits[quantity][kind].maximum / unit.scale;
     }
-    return IMK_ERROR_RANGE;
 }
 
-imk_status imki_accept(imki_parameters *p, imki_place place, int kind, imki_quantity quantity,
-                       const double raw[3], imki_unit unit, double si[3])
+void imki_accept(imki_parameters *p, imki_place place, int kind, imki_quantity quantity,
+                 const double raw[3], imki_unit unit, double si[3])
 {
     for (int i = 0; i < 3; i++) {
         char number[NUMBER_SIZE];
         imk_decimal_significant(raw[i], 6, number);
+        const double value = raw[i] * unit.scale;
+        const bool signless = quantity != IMKI_BIAS && quantity != IMKI_PLAIN;
         /* An infinite time is for the format to judge. */
         if (!(fabs(raw[i]) <= DBL_MAX) && !(quantity == IMKI_TIME && raw[i] > 0))
-            return imki_place_error(p, place, IMK_ERROR_NOT_FINITE, number, "a finite number");
-        bool signless = quantity != IMKI_BIAS && quantity != IMKI_PLAIN;
-        if (signless && raw[i] < 0)
-            return imki_place_error(p, place, IMK_ERROR_RANGE, number,
-                                    "a number that is not negative");
-        double value = raw[i] * unit.scale;
-        if (quantity < IMKI_TIME && raw[i] != 0 &&
-            !(fabs(value) >= limits[quantity][kind].minimum &&
-              fabs(value) <= limits[quantity][kind].maximum))
-            return refuse_value(p, place, kind, quantity, raw[i], unit);
-        si[i] = value;
+            imki_refuse_at(p, place, IMK_ERROR_NOT_FINITE, number, "a finite number");
+        else if (signless && raw[i] < 0)
+            imki_refuse_at(p, place, IMK_ERROR_RANGE, number, "a number that is not negative");
+        else if (quantity < IMKI_TIME && raw[i] != 0 &&
+                 !(fabs(value) >= limits[quantity][kind].minimum &&
+                   fabs(value) <= limits[quantity][kind].maximum))
+            refuse_value(p, place, kind, quantity, raw[i], unit);
+        else
+            si[i] = value;
     }
-    return IMK_OK;
+}
+
+bool imki_any(const double values[3])
+{
+    return values[0] != 0 || values[1] != 0 || values[2] != 0;
 }
 
 bool imki_number(const char *begin, const char *end, double *value)
@@ -188,6 +224,59 @@ bool imki_number(const char *begin, const char *end, double *value)
     return begin < end && imk_decimal_parse(begin, end, value) == end;
 }
 
+/* ---- lines ----------------------------------------------------------------------------------- */
+
+void imki_each_line(imki_parameters *p, imki_line_function *take, void *context)
+{
+    const char *end = p->text + p->size;
+    size_t number = 1;
+    for (const char *line = p->text; line < end && p->status == IMK_OK; number++) {
+        const char *line_end = memchr(line, '\n', (size_t)(end - line));
+        if (!line_end)
+            line_end = end;
+        take(p, context, line, line_end, number);
+        line = line_end < end ? line_end + 1 : end;
+    }
+}
+
+/* The next word of a line. */
+static const char *next_word(const char *at, const char *end, const char *separators,
+                             const char **word_end)
+{
+    while (at < end && *at && strchr(separators, *at))
+        at++;
+    const char *stop = at;
+    while (stop < end && !(*stop && strchr(separators, *stop)))
+        stop++;
+    *word_end = stop;
+    return at;
+}
+
+static void take_assignment(imki_parameters *p, void *context, const char *line, const char *end,
+                            size_t number)
+{
+    const imki_assignments *a = context;
+    char name[32], found[32];
+    const char *stop, *word = next_word(line, end, a->separators, &stop);
+    for (int i = 0; i < a->numbers && stop > word && *word >= '0' && *word <= '9'; i++)
+        word = next_word(stop, end, a->separators, &stop);
+    if (stop == word || *word == '#' || stop - word >= (ptrdiff_t)sizeof name)
+        return;
+    snprintf(name, sizeof name, "%.*s", (int)(stop - word), word);
+    double *target = a->target_of(a->context, name, number);
+    word = next_word(stop, end, a->separators, &stop);
+    if (!target || (imki_number(word, stop, target) && isfinite(*target)))
+        return;
+    snprintf(found, sizeof found, "%.*s", (int)(stop - word > 30 ? 30 : stop - word), word);
+    imki_refuse_at(p, (imki_place){name, number, (size_t)(word - line) + 1}, IMK_ERROR_SYNTAX,
+                   found, "a finite number");
+}
+
+void imki_read_assignments(imki_parameters *p, imki_assignments *assignments)
+{
+    imki_each_line(p, take_assignment, assignments);
+}
+
 /* ---- nodes ----------------------------------------------------------------------------------- */
 
 /* OpenCV's own YAML 1.0 begins with a line that is none to YAML 1.1, and marks its matrices. Both
@@ -203,114 +292,136 @@ static void blank_opencv(char *text, size_t size)
         memset(at, ' ', sizeof tag - 1);
 }
 
-imk_status imki_parameters_document(imki_parameters *p, imk_document **document)
+bool imki_parameters_document(imki_parameters *p)
 {
     char *copy = malloc(p->size + 1);
-    if (!copy)
-        return imk_error_set(p->error, IMK_ERROR_MEMORY, "", "", "");
+    if (!copy) {
+        imki_refuse(p, IMK_ERROR_MEMORY, "", "", "");
+        return false;
+    }
     memcpy(copy, p->text, p->size);
     copy[p->size] = '\0';
     blank_opencv(copy, p->size);
-    imk_status status = imki_document_parse(copy, p->size, document, p->error);
+    p->status = imki_document_parse(copy, p->size, &p->document, p->error);
     free(copy);
-    return status;
+    return p->status == IMK_OK;
 }
 
-imki_place imki_node_place(const imk_document *document, int node)
+imki_place imki_node_place(const imki_parameters *p, int node)
 {
-    const imki_node *n = &document->node[node];
-    const char *field = n->key != IMKI_NONE ? document->node[n->key].text : n->text ? n->text : "";
+    const imki_node *n = &p->document->node[node];
+    const char *field = n->key != IMKI_NONE ? p->document->node[n->key].text
+                        : n->text           ? n->text
+                                            : "";
     return (imki_place){field, n->line, n->column};
 }
 
-const char *imki_node_text(const imk_document *document, int node)
+bool imki_node_is(const imki_parameters *p, int node, imki_node_kind kind)
 {
-    bool is_scalar = node != IMKI_NONE && document->node[node].kind == IMKI_NODE_SCALAR;
-    return is_scalar ? document->node[node].text : "";
+    return node != IMKI_NONE && p->document->node[node].kind == kind;
 }
 
-static imk_status node_number(imki_parameters *p, const imk_document *document, int node,
-                              double *value)
+const char *imki_node_text(const imki_parameters *p, int node)
 {
-    const imki_node *n = &document->node[node];
-    if (n->kind == IMKI_NODE_SCALAR && imki_number(n->text, n->text + n->length, value))
-        return IMK_OK;
-    return imki_document_error(document, node, IMK_ERROR_SYNTAX, imki_node_text(document, node),
-                               "a number without a unit", p->error);
+    return imki_node_is(p, node, IMKI_NODE_SCALAR) ? p->document->node[node].text : "";
 }
 
-imk_status imki_node_numbers(imki_parameters *p, const imk_document *document, int node, int count,
-                             double *values)
+int imki_node_value(const imki_parameters *p, int mapping, const char *key)
 {
-    const imki_node *n = &document->node[node];
-    imk_status status = IMK_OK;
-    if (n->kind == IMKI_NODE_SEQUENCE && n->count == count) {
-        for (int i = 0, child = n->first; i < count && status == IMK_OK; i++) {
-            status = node_number(p, document, child, &values[i]);
-            child = document->node[child].next;
-        }
-        return status;
-    }
-    if (n->kind != IMKI_NODE_SCALAR) {
+    return imki_document_value(p->document, mapping, key);
+}
+
+int imki_key_after(const imki_parameters *p, int key)
+{
+    return p->document->node[p->document->node[key].next].next;
+}
+
+void imki_refuse_node(imki_parameters *p, int node, imk_status status, const char *found,
+                      const char *expected)
+{
+    if (p->status == IMK_OK)
+        p->status = imki_document_error(p->document, node, status, found, expected, p->error);
+}
+
+static void node_number(imki_parameters *p, int node, double *value)
+{
+    const imki_node *n = &p->document->node[node];
+    if (n->kind != IMKI_NODE_SCALAR || !imki_number(n->text, n->text + n->length, value))
+        imki_refuse_node(p, node, IMK_ERROR_SYNTAX, imki_node_text(p, node),
+                         "a number without a unit");
+}
+
+void imki_node_numbers(imki_parameters *p, int node, int count, double *values)
+{
+    const imki_node *n = &p->document->node[node];
+    const bool list = n->kind == IMKI_NODE_SEQUENCE && n->count == count;
+    if (!list && n->kind != IMKI_NODE_SCALAR) {
         char expected[64];
         snprintf(expected, sizeof expected, "a number, or a list of %d: [1, 2, 3]", count);
-        return imki_document_error(document, node, IMK_ERROR_SYNTAX, "", expected, p->error);
+        imki_refuse_node(p, node, IMK_ERROR_SYNTAX, "", expected);
+        return;
     }
-    status = node_number(p, document, node, &values[0]);
-    for (int i = 1; i < count && status == IMK_OK; i++)
-        values[i] = values[0];
-    return status;
+    for (int i = 0, child = list ? n->first : node; i < count && p->status == IMK_OK; i++) {
+        node_number(p, child, &values[i]);
+        child = list ? p->document->node[child].next : node;
+    }
 }
 
-imk_status imki_node_matrix(imki_parameters *p, const imk_document *document, int node,
-                            double matrix[3][3])
+void imki_node_matrix(imki_parameters *p, int node, double matrix[3][3])
 {
-    const imki_node *n = &document->node[node];
-    if (n->kind != IMKI_NODE_SEQUENCE || n->count != 3)
-        return imki_document_error(document, node, IMK_ERROR_SYNTAX, "", "a list of three rows",
-                                   p->error);
-    imk_status status = IMK_OK;
-    for (int i = 0, row = n->first; i < 3 && status == IMK_OK; i++) {
-        if (document->node[row].kind != IMKI_NODE_SEQUENCE || document->node[row].count != 3)
-            return imki_document_error(document, row, IMK_ERROR_SYNTAX, "",
-                                       "a row of three numbers: [1, 0, 0]", p->error);
-        double numbers[3] = {0};
-        status = imki_node_numbers(p, document, row, 3, numbers);
-        for (int j = 0; j < 3 && status == IMK_OK; j++) {
-            matrix[i][j] = numbers[j];
-            if (!(fabs(numbers[j]) <= 1e6))
-                status = imki_document_error(document, row, IMK_ERROR_RANGE, "",
-                                             "numbers of at most a million", p->error);
+    const imki_node *n = &p->document->node[node];
+    if (n->kind != IMKI_NODE_SEQUENCE || n->count != 3) {
+        imki_refuse_node(p, node, IMK_ERROR_SYNTAX, "", "a list of three rows");
+        return;
+    }
+    for (int i = 0, row = n->first; i < 3; i++, row = p->document->node[row].next) {
+        if (!imki_node_is(p, row, IMKI_NODE_SEQUENCE) || p->document->node[row].count != 3) {
+            imki_refuse_node(p, row, IMK_ERROR_SYNTAX, "", "a row of three numbers: [1, 0, 0]");
+            return;
         }
-        row = document->node[row].next;
+        imki_node_numbers(p, row, 3, matrix[i]);
+        for (int j = 0; j < 3; j++)
+            if (!(fabs(matrix[i][j]) <= 1e6))
+                imki_refuse_node(p, row, IMK_ERROR_RANGE, "", "numbers of at most a million");
     }
-    return status;
 }
 
-imk_status imki_node_accept(imki_parameters *p, const imk_document *document, int mapping,
-                            const char *key, int kind, imki_quantity quantity, imki_unit unit,
-                            double si[3])
+void imki_node_accept(imki_parameters *p, int mapping, const char *key, int kind,
+                      imki_quantity quantity, imki_unit unit, double si[3])
 {
-    int node = imki_document_value(document, mapping, key);
-    double raw[3];
+    const int node = imki_node_value(p, mapping, key);
+    double raw[3] = {0};
     if (node == IMKI_NONE)
-        return IMK_OK;
-    imk_status status = imki_node_numbers(p, document, node, 3, raw);
-    return status == IMK_OK
-               ? imki_accept(p, imki_node_place(document, node), kind, quantity, raw, unit, si)
-               : status;
+        return;
+    imki_node_numbers(p, node, 3, raw);
+    imki_accept(p, imki_node_place(p, node), kind, quantity, raw, unit, si);
 }
 
-imk_status imki_foreign_key(imki_parameters *p, const imk_document *document, int key, size_t count,
-                            const char *const *known)
+bool imki_is_one_of(const char *name, size_t count, const char *const *names)
 {
-    const char *name = document->node[key].text;
-    size_t nearest = imk_nearest_name(name, count, known);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(name, names[i]) == 0)
+            return true;
+    return false;
+}
+
+void imki_foreign_key(imki_parameters *p, int key, size_t count, const char *const *known)
+{
+    const char *name = p->document->node[key].text;
+    const size_t nearest = imk_nearest_name(name, count, known);
     if (nearest < count) {
         char expected[96];
         snprintf(expected, sizeof expected, "did you mean \"%.64s\"?", known[nearest]);
-        return imki_document_error(document, key, IMK_ERROR_KEY_UNKNOWN, name, expected, p->error);
+        imki_refuse_node(p, key, IMK_ERROR_KEY_UNKNOWN, name, expected);
+    } else {
+        imki_note(p, true, "the key %.80s (line %zu) is not read", name,
+                  p->document->node[key].line);
     }
-    imki_note(p, true, "the key %.80s (line %zu) is not read", name, document->node[key].line);
-    return IMK_OK;
+}
+
+void imki_foreign_keys(imki_parameters *p, int mapping, size_t count, const char *const *known)
+{
+    for (int key = p->document->node[mapping].first; key != IMKI_NONE; key = imki_key_after(p, key))
+        if (!imki_is_one_of(p->document->node[key].text, count, known))
+            imki_foreign_key(p, key, count, known);
 }

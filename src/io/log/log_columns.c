@@ -3,6 +3,8 @@
  * with the option that states it. */
 #include "log_reader_internal.h"
 
+#include "base/text_internal.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -39,15 +41,10 @@ static const kind kinds[] = {{"time", "time", IMK_QUANTITY_TIME, false, false, "
                              {"temp", "temperature", IMK_QUANTITY_TEMPERATURE, false, false, "K",
                               "--temperature-unit", "add --temperature-unit degC"}};
 
-static char lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
 static bool begins_with(const char *text, const char *prefix)
 {
     for (; *prefix; prefix++, text++)
-        if (lower(*text) != *prefix)
+        if (imki_lower(*text) != *prefix)
             return false;
     return true;
 }
@@ -56,7 +53,7 @@ static int axis_of(const char *text)
 {
     if (text[0] == '\0' || text[1] != '\0')
         return -1;
-    const char c = lower(text[0]);
+    const char c = imki_lower(text[0]);
     if (c >= 'x' && c <= 'z')
         return c - 'x';
     return c >= '0' && c <= '7' ? c - '0' : -1;
@@ -170,7 +167,8 @@ imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *set
         }
         return IMK_OK;
     }
-    char suffix[2] = {k->has_axis ? lower(column->name[strlen(column->name) - 1]) : '\0', '\0'};
+    char suffix[2] = {k->has_axis ? imki_lower(column->name[strlen(column->name) - 1]) : '\0',
+                      '\0'};
     snprintf(column->name, sizeof column->name, "%s%s", k->name, suffix);
     column->quantity = k->quantity;
     column->increment = k->increment;
@@ -335,5 +333,23 @@ imk_status imki_log_layout_make(const imki_log_piece *header, size_t cell_count,
     for (size_t i = 0; i < cell_count; i++)
         if (layout->cell_column[i] >= 0 && layout->cell_column[i] != layout->time_column)
             layout->cell_factor[i] = layout->factor[layout->cell_column[i]];
+    return IMK_OK;
+}
+
+imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const double time[2],
+                               const char *none, const char *due, imk_error *error)
+{
+    const imki_log_layout_read *layout = &reader->layout;
+    if (rows == 0)
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", none, due);
+    if (rows < 2 && layout->has_increments && reader->rate == 0.0)
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "increments in a single row",
+                             "two rows; or add --rate 100Hz (samples per second)");
+    if (layout->time_column >= 0) {
+        const double scale = layout->factor[layout->time_column];
+        if (fabs(time[0]) * scale > 1e6)
+            reader->time_origin = time[0];
+        reader->last_step = (time[1] - time[0]) * scale;
+    }
     return IMK_OK;
 }

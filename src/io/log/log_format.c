@@ -10,7 +10,7 @@
  * doubles are spaced, 10^-k >= ulp(value) / scale (ten times first, so that its product with 10^k
  * is rounded by less than one half), and taken when it reads back to the same value. Only + - * /
  * and conversion to integer are used: the bytes are the same everywhere. */
-#include "log_format_internal.h"
+#include "log_formats_internal.h"
 
 #include "imukit/decimal.h"
 
@@ -206,8 +206,8 @@ static char *format_labelled_row(const imki_row_format *format, tile numbers, si
 
 typedef char *row_function(const imki_row_format *format, tile numbers, size_t row, char *at);
 
-static void format_text(const imki_row_format *format, const double *const *columns, size_t first,
-                        size_t count, imki_log_bytes *bytes)
+void imki_log_format_text(const imki_row_format *format, const double *const *columns, size_t first,
+                          size_t count, imki_log_bytes *bytes)
 {
     const size_t longest = format->column_count * IMK_DECIMAL_SIZE; /* one row, commas included */
     row_function *format_row = format->label                        ? format_labelled_row
@@ -240,8 +240,8 @@ static inline void store(char *at, double number)
 #endif
 }
 
-static void format_matrix(const imki_row_format *format, const double *const *columns, size_t first,
-                          size_t count, imki_log_bytes *bytes)
+void imki_log_format_matrix(const imki_row_format *format, const double *const *columns,
+                            size_t first, size_t count, imki_log_bytes *bytes)
 {
     const size_t row_size = format->column_count * sizeof(double);
     if (!reserve(bytes, count * row_size))
@@ -260,15 +260,12 @@ static void format_matrix(const imki_row_format *format, const double *const *co
     bytes->size = count * row_size;
 }
 
-void imki_log_format(const imki_row_format *format, const double *const *columns, size_t first,
-                     size_t count, imki_log_bytes *bytes)
+void imki_log_names_write(imk_output_file *file, size_t column_count, const imk_log_column *columns,
+                          char separator)
 {
-    /* In a variable of this thread's own: neighbouring blocks share cache lines. */
-    imki_log_bytes own = *bytes;
-    own.size = 0;
-    if (format->binary)
-        format_matrix(format, columns, first, count, &own);
-    else
-        format_text(format, columns, first, count, &own);
-    *bytes = own;
+    for (size_t i = 0; i < column_count; i++) {
+        const char between[2] = {i > 0 ? separator : '\0', '\0'}, *unit = columns[i].unit.text;
+        imk_output_file_print(file, unit[0] ? "%s%s [%s]" : "%s%s%s", between, columns[i].name,
+                              unit);
+    }
 }

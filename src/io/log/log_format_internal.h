@@ -21,7 +21,6 @@ typedef struct imki_column_format {
 
 typedef struct imki_row_format {
     size_t column_count;
-    bool binary;
     imk_log_precision precision;
     imk_log_label_lookup label; /* NULL: the indices are written */
     void *label_context;
@@ -42,8 +41,10 @@ void imki_column_format_set(imki_column_format *column, double scale, double off
  * value, and has few digits; the quotient where there is none with few digits. */
 double imki_log_in_unit(const imki_column_format *column, double value);
 
-/* Replace the bytes by rows first … first + count - 1. */
-void imki_log_format(const imki_row_format *format, const double *const *columns, size_t first,
-                     size_t count, imki_log_bytes *bytes);
+/* Add rows first … first + count - 1 to the bytes: as CSV, or as float64, little-endian. */
+void imki_log_format_text(const imki_row_format *format, const double *const *columns, size_t first,
+                          size_t count, imki_log_bytes *bytes);
+void imki_log_format_matrix(const imki_row_format *format, const double *const *columns,
+                            size_t first, size_t count, imki_log_bytes *bytes);
 
 #endif

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading a log: rows in blocks, plain ones the fast way (log_cells.c), others in their general
- * form (log_row.c); then per block what needs neighbours: times, intervals, increments, findings.
- */
+/* Reading a log: rows in blocks, as its format gives them; then per block what needs neighbours:
+ * times, intervals, increments, findings. */
 #include "log_reader_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { LOOK = 16 }; /* bytes that tell the format */
 
 static const uint32_t settings_cookie = 0x4C4F4732; /* "LOG2" */
 
@@ -30,21 +31,19 @@ static imk_status check_settings(const imk_log_settings *settings, imk_error *er
     return IMK_OK;
 }
 
-static imk_status open_reader(imk_log_reader *reader, imki_input *input, const char *path,
-                              const imk_log_settings *settings, imk_error *error)
+static imk_status open_reader(imk_log_reader *reader, imki_input *input, imk_error *error)
 {
-    imk_status status = imki_log_text_start(&reader->text, input, error);
+    imki_log_text *text = &reader->text;
+    imk_status status = imki_log_text_start(text, input, error);
     if (status == IMK_OK)
-        status = imki_log_text_need(&reader->text, IMKI_NPY_PREFIX, error);
+        status = imki_log_text_need(text, LOOK, error);
     if (status != IMK_OK)
         return status;
-    reader->rate = settings->rate;
-    reader->read_cells = imki_log_cells_choose();
-    const size_t at_hand = (size_t)(reader->text.end - reader->text.next);
-    if (at_hand >= IMKI_NPY_PREFIX && memcmp(reader->text.next, "\x93NUMPY", 6) == 0)
-        status = imki_log_open_matrix(reader, path, settings, error);
-    else
-        status = imki_log_open_text(reader, settings, error);
+    reader->rate = reader->settings.rate;
+    reader->format =
+        imki_log_format_recognise(reader->path, text->next, (size_t)(text->end - text->next));
+    reader->codec = imki_log_codec_of(reader->format);
+    status = reader->codec->open(reader, error);
     if (status != IMK_OK)
         return status;
     reader->last_time = (double)NAN;
@@ -64,7 +63,9 @@ static imk_status make_reader(imki_input *input, const char *path, const imk_log
         imki_input_close(input);
         return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
     }
-    const imk_status status = open_reader(made, input, path, settings, error);
+    made->path = path;
+    made->settings = *settings;
+    const imk_status status = open_reader(made, input, error);
     if (status != IMK_OK) {
         imk_log_close(made);
         return status;
@@ -85,10 +86,6 @@ imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_
                                     : imki_input_open(path, &input, error);
     if (status == IMK_OK)
         status = make_reader(input, path, settings, reader, error);
-    if (status == IMK_OK) {
-        (*reader)->path = path;
-        (*reader)->settings = *settings;
-    }
     return status;
 }
 
@@ -106,7 +103,6 @@ imk_status imk_log_open_memory(const char *text, size_t size, const imk_log_sett
     if (status == IMK_OK) {
         (*reader)->memory = text;
         (*reader)->memory_size = size;
-        (*reader)->settings = *settings;
     }
     return status;
 }
@@ -132,7 +128,10 @@ imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error)
 void imk_log_close(imk_log_reader *reader)
 {
     if (reader) {
+        if (reader->codec && reader->codec->close)
+            reader->codec->close(reader);
         imki_log_text_stop(&reader->text);
+        free(reader->state);
         free(reader->labels);
         free(reader);
     }
@@ -174,69 +173,6 @@ void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint64_t *si
         *done = (uint64_t)(text->next - text->base);
         *size = (uint64_t)(text->end - text->base);
     }
-}
-
-/* One row in its general form, or an idle line. *rows grows by the rows it gave. */
-static imk_status read_row(imk_log_reader *reader, double *const *out, size_t *rows,
-                           imk_error *error)
-{
-    imki_log_layout_read *layout = &reader->layout;
-    imki_log_piece line;
-    bool whole, not_finite = false;
-    double values[IMK_LOG_COLUMNS_MAX];
-    const size_t number = reader->text.line;
-    if (!imki_log_text_take_line(&reader->text, &line.begin, &line.end, &whole) ||
-        imki_log_line_is_idle(line.begin, line.end))
-        return IMK_OK;
-    const imk_status status = imki_log_row_read(layout, line, whole, number, reader->labels,
-                                                &reader->label_count, values, &not_finite, error);
-    if (status != IMK_OK)
-        return status;
-    for (size_t i = 0; i < layout->cell_count; i++)
-        if (layout->cell_column[i] >= 0)
-            out[i][*rows] = values[layout->cell_column[i]];
-    ++*rows;
-    if (not_finite && reader->not_finite++ == 0)
-        reader->first_not_finite = reader->rows + *rows;
-    return IMK_OK;
-}
-
-/* Up to max_rows rows as they stand, times the factors. out: per cell. */
-static imk_status read_rows(imk_log_reader *reader, size_t max_rows, double *const *out,
-                            size_t *rows, imk_error *error)
-{
-    imki_log_text *text = &reader->text;
-    const imki_log_cells cells = {reader->layout.cell_count, reader->layout.separator,
-                                  reader->layout.cell_factor};
-    *rows = 0;
-    while (*rows < max_rows) {
-        imk_status status = imki_log_text_need_line(text, error);
-        if (status != IMK_OK)
-            return status;
-        if (text->next == text->end)
-            return IMK_OK;
-        if (reader->slow_left == 0 && text->next < text->lines_end) {
-            double *place[IMK_LOG_COLUMNS_MAX];
-            for (size_t i = 0; i < cells.cell_count; i++)
-                place[i] = out[i] + *rows;
-            const size_t read = reader->read_cells(&cells, text->base, &text->next, text->lines_end,
-                                                   place, max_rows - *rows);
-            *rows += read;
-            text->line += read;
-            if (read > 0) {
-                reader->slow_run = 0;
-                continue;
-            }
-            /* Where rows are not plain, try less and less often. */
-            reader->slow_run = reader->slow_run < 32 ? 2 * reader->slow_run + 1 : 63;
-            reader->slow_left = reader->slow_run;
-        }
-        status = read_row(reader, out, rows, error);
-        if (status != IMK_OK)
-            return status;
-        reader->slow_left -= reader->slow_left > 0;
-    }
-    return IMK_OK;
 }
 
 /* Intervals that the increments of these rows are divided by. */
@@ -293,9 +229,7 @@ static imk_status read_block(imk_log_reader *reader, size_t max_rows, double *co
         if (column >= 0 && column == layout->time_column)
             time = out[i] = columns[column] ? columns[column] : reader->time;
     }
-    const imk_status status = reader->binary
-                                  ? imki_log_read_matrix(reader, max_rows, out, rows, error)
-                                  : read_rows(reader, max_rows, out, rows, error);
+    const imk_status status = reader->codec->read(reader, max_rows, out, rows, error);
     finish_block(reader, *rows, time, columns);
     return status;
 }

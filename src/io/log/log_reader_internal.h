@@ -5,9 +5,8 @@
 
 #include "imukit/log.h"
 #include "jobs/record/record_times_internal.h"
-#include "log_cells_internal.h"
+#include "log_formats_internal.h"
 #include "log_text_internal.h"
-#include "npy_internal.h"
 
 enum { IMKI_LABELS_MAX = 4096 };
 
@@ -70,16 +69,14 @@ enum { IMKI_LOG_BLOCK = 1024 }; /* rows handled at a time */
 struct imk_log_reader {
     imki_log_text text;
     imki_log_layout_read layout;
-    imki_log_cells_reader *read_cells;
-    bool binary; /* .npy */
-    imki_npy npy;
-    uint64_t npy_rows_left;
+    const imk_log_format *format;
+    const imki_log_codec *codec;
+    void *state;        /* of the format; from malloc() */
     double rate;        /* [Hz]; 0: from the times */
     double time_origin; /* in the unit of the file */
     double last_time;   /* [s] */
     double last_step;   /* [s], the last one above 0, for increments */
     size_t rows, not_finite, first_not_finite;
-    size_t slow_left, slow_run; /* rows to read in their general form before trying the fast way */
     imki_log_label *labels;
     size_t label_count;
     const char *path; /* what it was opened with, for another time; NULL: a text in memory */
@@ -97,17 +94,11 @@ struct imk_log_reader {
 /* Back to the first row: the log is opened again. */
 imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error);
 
-/* Read the header of a CSV text and look at its first rows. The columns and labels are then known.
- */
-imk_status imki_log_open_text(imk_log_reader *reader, const imk_log_settings *settings,
-                              imk_error *error);
-
-/* The same for .npy. @param path  for its file of names; NULL: none */
-imk_status imki_log_open_matrix(imk_log_reader *reader, const char *path,
-                                const imk_log_settings *settings, imk_error *error);
-
-/* Rows of a .npy as they stand in the file, times the factor. out: per cell. */
-imk_status imki_log_read_matrix(imk_log_reader *reader, size_t max_rows, double *const *out,
-                                size_t *rows, imk_error *error);
+/* What the first rows say: the origin of the times and the first step.
+ * @param rows  how many there are, 2 standing for more
+ * @param time  of the first two, as they stand; NaN where not known
+ * @return IMK_ERROR_EMPTY, IMK_ERROR_TOO_SHORT (increments without a step) */
+imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const double time[2],
+                               const char *none, const char *due, imk_error *error);
 
 #endif

@@ -6,10 +6,8 @@
  * and compression run beside the formatting, and the bytes do not depend on the executor. */
 #include "imukit/log.h"
 
-#include "imukit/names.h"
 #include "io/file/output_file_internal.h"
-#include "log_format_internal.h"
-#include "npy_internal.h"
+#include "log_formats_internal.h"
 
 #include <float.h>
 #include <math.h>
@@ -21,9 +19,7 @@ enum {
     BLOCK_CELLS = 4096,     /* about 50 kB of text: in the second-level cache */
     BLOCKS_PER_THREAD = 16, /* so that the threads end a wave together, within some per cent */
     BLOCKS_MAX = 257,       /* in a wave */
-    PARALLEL_CELLS = 2048,  /* fewer are not worth waking a thread, some 10 us */
-    HEADER_CELL_SIZE = 104, /* name, blank, unit in brackets, comma */
-    NAMES_SUFFIX_SIZE = 16
+    PARALLEL_CELLS = 2048   /* fewer are not worth waking a thread, some 10 us */
 };
 
 typedef struct wave {
@@ -32,26 +28,15 @@ typedef struct wave {
 } wave;
 
 struct imk_log_writer {
-    imk_output_file *file;
-    imk_output_file *names; /* the side file of a .npy */
-    imki_row_format format;
-    imk_log_column *column;
-    char *header; /* of a CSV */
-    bool begun;   /* the header is written */
-    uint64_t rows, row_count;
+    imki_log_output log;
+    const imki_log_codec *codec;
+    bool begun; /* what stands before the rows is written */
     wave waves[2];
     int filling; /* the wave that is formatted next; the other one waits to be written */
     imk_status status;
     size_t beyond_column; /* of a value that its unit cannot hold, when status is NOT_FINITE */
     uint64_t beyond_row;
 };
-
-/* FILE.npy, also compressed. */
-static bool is_npy(const char *path)
-{
-    return imk_has_ending(path, ".npy") || imk_has_ending(path, ".npy.gz") ||
-           imk_has_ending(path, ".npy.zst");
-}
 
 /* Names and units become cells of the header, so they must not contain what divides it. */
 static imk_status check_column(const imk_log_column *columns, size_t index, imk_error *error)
@@ -97,58 +82,15 @@ static imk_status set_format(imki_row_format *format, size_t column_count,
     return IMK_OK;
 }
 
-/* `name [unit]` of each column, every one followed by `separator`. @return from malloc() */
-static char *join_names(size_t column_count, const imk_log_column *columns, char separator)
+static imk_status open_files(imk_log_writer *writer, const char *path, imk_error *error)
 {
-    char *text = malloc(column_count * HEADER_CELL_SIZE + 1);
-    char *at = text;
-    for (size_t i = 0; text && i < column_count; i++) {
-        const char *unit = columns[i].unit.text;
-        at += snprintf(at, HEADER_CELL_SIZE, unit[0] ? "%.47s [%.47s]%c" : "%.47s%.0s%c",
-                       columns[i].name, unit, separator);
-    }
-    return text;
-}
-
-/* FILE.npy.columns */
-static imk_status open_names(imk_log_writer *writer, const char *path, size_t column_count,
-                             const imk_log_column *columns, imk_error *error)
-{
-    const size_t size = strlen(path) + NAMES_SUFFIX_SIZE;
-    char *names_path = malloc(size);
-    char *text = join_names(column_count, columns, '\n');
-    imk_status status = IMK_ERROR_MEMORY;
-    if (names_path && text) {
-        snprintf(names_path, size, "%s.columns", path);
-        status = imk_output_file_open(names_path, &writer->names, error);
-        if (status == IMK_OK)
-            imk_output_file_write(writer->names, text, strlen(text));
-    } else {
-        imk_error_set(error, status, path, "", "");
-    }
-    free(names_path);
-    free(text);
-    return status;
-}
-
-static imk_status open_files(imk_log_writer *writer, const char *path, size_t column_count,
-                             const imk_log_column *columns, imk_error *error)
-{
-    imk_status status = imk_output_file_open(path, &writer->file, error);
-    if (status != IMK_OK)
+    if (!writer->codec->format)
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "logs of this kind are only read",
+                             "write a .csv");
+    const imk_status status = imk_output_file_open(path, &writer->log.file, error);
+    if (status != IMK_OK || !writer->codec->create)
         return status;
-    if (writer->format.binary) {
-        if (writer->row_count == 0 && !imki_output_file_can_replace(writer->file))
-            return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path,
-                                 "a .npy of unknown length to a pipe or compressed",
-                                 "write to a plain file, or a .csv");
-        return open_names(writer, path, column_count, columns, error);
-    }
-    writer->header = join_names(column_count, columns, ',');
-    if (!writer->header)
-        return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
-    writer->header[strlen(writer->header) - 1] = '\n';
-    return IMK_OK;
+    return writer->codec->create(&writer->log, path, error);
 }
 
 imk_status imk_log_create(const char *path, size_t column_count, const imk_log_column *columns,
@@ -159,16 +101,12 @@ imk_status imk_log_create(const char *path, size_t column_count, const imk_log_c
     if (!made)
         return imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
     imk_status status =
-        set_format(&made->format, column_count, columns, precision, decimals, error);
+        set_format(&made->log.rows, column_count, columns, precision, decimals, error);
     if (status == IMK_OK) {
-        made->column = malloc(column_count * sizeof *columns);
-        status = made->column ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, path, "", "");
-    }
-    if (status == IMK_OK) {
-        memcpy(made->column, columns, column_count * sizeof *columns);
-        made->format.binary = is_npy(path);
-        made->row_count = row_count;
-        status = open_files(made, path, column_count, columns, error);
+        memcpy(made->log.column, columns, column_count * sizeof *columns);
+        made->log.announced = row_count;
+        made->codec = imki_log_codec_of(imk_log_format_of(path));
+        status = open_files(made, path, error);
     }
     if (status != IMK_OK) {
         imk_log_abandon(made);
@@ -182,42 +120,26 @@ imk_status imk_log_comment(imk_log_writer *writer, const char *text)
 {
     if (writer->begun)
         return IMK_ERROR_ARGUMENT;
-    if (writer->format.binary)
-        return IMK_OK;
-    for (;;) {
-        const size_t length = strcspn(text, "\r\n");
-        imk_output_file_write(writer->file, "# ", 2);
-        imk_output_file_write(writer->file, text, length);
-        const imk_status status = imk_output_file_write(writer->file, "\n", 1);
-        text += length;
-        text += strspn(text, "\r\n");
-        if (*text == '\0')
-            return status;
-    }
+    if (writer->codec->comment)
+        writer->codec->comment(&writer->log, text);
+    return IMK_OK;
 }
 
 void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup, void *context)
 {
     bool any = false;
-    for (size_t i = 0; i < writer->format.column_count; i++)
-        any = any || writer->format.column[i].label;
-    writer->format.label = any ? lookup : NULL;
-    writer->format.label_context = context;
+    for (size_t i = 0; i < writer->log.rows.column_count; i++)
+        any = any || writer->log.rows.column[i].label;
+    writer->log.rows.label = any ? lookup : NULL;
+    writer->log.rows.label_context = context;
 }
 
-/* The header, once. */
+/* What stands before the rows, once. */
 static void begin(imk_log_writer *writer)
 {
-    if (writer->begun)
-        return;
+    if (!writer->begun && writer->codec->begin)
+        writer->codec->begin(&writer->log);
     writer->begun = true;
-    if (writer->format.binary) {
-        char header[IMKI_NPY_HEADER_SIZE];
-        imki_npy_header_write(writer->row_count, writer->format.column_count, header);
-        imk_output_file_write(writer->file, header, sizeof header);
-    } else {
-        imk_output_file_write(writer->file, writer->header, strlen(writer->header));
-    }
 }
 
 static void write_wave(imk_log_writer *writer, wave *done)
@@ -227,7 +149,7 @@ static void write_wave(imk_log_writer *writer, wave *done)
             writer->status = IMK_ERROR_MEMORY;
         if (writer->status == IMK_OK)
             writer->status =
-                imk_output_file_write(writer->file, done->block[i].bytes, done->block[i].size);
+                imk_output_file_write(writer->log.file, done->block[i].bytes, done->block[i].size);
     }
     done->count = 0;
 }
@@ -249,9 +171,12 @@ static void work(void *context, size_t item)
     }
     const size_t begin_row = (item - 1) * j->block_rows;
     const size_t left = j->rows - begin_row;
-    imki_log_format(&writer->format, j->columns, j->first + begin_row,
-                    left < j->block_rows ? left : j->block_rows,
-                    &writer->waves[writer->filling].block[item - 1]);
+    /* In a variable of this thread's own: neighbouring blocks share cache lines. */
+    imki_log_bytes *block = &writer->waves[writer->filling].block[item - 1], own = *block;
+    own.size = 0;
+    writer->codec->format(&writer->log.rows, j->columns, j->first + begin_row,
+                          left < j->block_rows ? left : j->block_rows, &own);
+    *block = own;
 }
 
 static int is_beyond(double value, double most)
@@ -262,10 +187,10 @@ static int is_beyond(double value, double most)
 /* A number that is finite must be so in the unit written, too. */
 static void check_units(imk_log_writer *writer, size_t rows, const double *const *columns)
 {
-    for (size_t c = 0; c < writer->format.column_count && writer->status == IMK_OK; c++) {
-        const double scale = writer->column[c].unit.scale;
+    for (size_t c = 0; c < writer->log.rows.column_count && writer->status == IMK_OK; c++) {
+        const double scale = writer->log.column[c].unit.scale;
         const double most = DBL_MAX * scale * (1.0 - 1e-12); /* rounding left aside */
-        if (scale >= 1.0 || writer->column[c].label)
+        if (scale >= 1.0 || writer->log.column[c].label)
             continue;
         int any = 0; /* without a branch, so that several rows are compared at a time */
         for (size_t row = 0; row < rows; row++)
@@ -274,14 +199,14 @@ static void check_units(imk_log_writer *writer, size_t rows, const double *const
             if (is_beyond(columns[c][row], most)) {
                 writer->status = IMK_ERROR_NOT_FINITE;
                 writer->beyond_column = c;
-                writer->beyond_row = writer->rows + row + 1;
+                writer->beyond_row = writer->log.written + row + 1;
             }
     }
 }
 
 static imk_status refuse_unit(const imk_log_writer *writer, imk_error *error)
 {
-    const imk_log_column *column = &writer->column[writer->beyond_column];
+    const imk_log_column *column = &writer->log.column[writer->beyond_column];
     char field[96], found[128];
     snprintf(field, sizeof field, "%s, row %llu", column->name,
              (unsigned long long)writer->beyond_row);
@@ -293,7 +218,7 @@ static imk_status refuse_unit(const imk_log_writer *writer, imk_error *error)
 imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *const *columns,
                          const imk_executor *executor)
 {
-    const size_t cells = writer->format.column_count;
+    const size_t cells = writer->log.rows.column_count;
     const size_t block_rows = BLOCK_CELLS / cells;
     if (rows <= PARALLEL_CELLS / cells)
         executor = NULL;
@@ -312,26 +237,9 @@ imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *cons
         writer->waves[writer->filling].count = blocks;
         writer->filling = !writer->filling;
         first += j.rows;
-        writer->rows += j.rows;
+        writer->log.written += j.rows;
     }
     return writer->status;
-}
-
-/* The number of rows into the header of a .npy. */
-static imk_status finish_npy(imk_log_writer *writer, imk_error *error)
-{
-    if (writer->rows == writer->row_count)
-        return IMK_OK;
-    if (!imki_output_file_can_replace(writer->file)) {
-        char found[96];
-        snprintf(found, sizeof found, "%llu rows instead of the %llu announced",
-                 (unsigned long long)writer->rows, (unsigned long long)writer->row_count);
-        return imk_error_set(error, IMK_ERROR_CONFLICT, "row_count", found, "");
-    }
-    char header[IMKI_NPY_HEADER_SIZE];
-    imki_npy_header_write(writer->rows, writer->format.column_count, header);
-    imki_output_file_replace(writer->file, 0, header, sizeof header);
-    return IMK_OK;
 }
 
 static void release(imk_log_writer *writer)
@@ -339,8 +247,6 @@ static void release(imk_log_writer *writer)
     for (int i = 0; i < 2; i++)
         for (size_t block = 0; block < BLOCKS_MAX; block++)
             free(writer->waves[i].block[block].bytes);
-    free(writer->header);
-    free(writer->column);
     free(writer);
 }
 
@@ -353,19 +259,19 @@ imk_status imk_log_commit(imk_log_writer *writer, imk_error *error)
         status = imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
     else if (writer->status == IMK_ERROR_NOT_FINITE)
         status = refuse_unit(writer, error);
-    else if (writer->format.binary)
-        status = finish_npy(writer, error);
+    else if (writer->codec->end)
+        status = writer->codec->end(&writer->log, error);
     /* Both files are made ready before the first appears, so that the second does not fail. A
      * failing prepare or commit has freed its file. */
-    if (status == IMK_OK && (status = imki_output_file_prepare(writer->file, error)) != IMK_OK)
-        writer->file = NULL;
-    if (status == IMK_OK && writer->names) {
-        status = imk_output_file_commit(writer->names, error);
-        writer->names = NULL;
+    if (status == IMK_OK && (status = imki_output_file_prepare(writer->log.file, error)) != IMK_OK)
+        writer->log.file = NULL;
+    if (status == IMK_OK && writer->log.companion) {
+        status = imk_output_file_commit(writer->log.companion, error);
+        writer->log.companion = NULL;
     }
     if (status == IMK_OK) {
-        status = imk_output_file_commit(writer->file, error);
-        writer->file = NULL;
+        status = imk_output_file_commit(writer->log.file, error);
+        writer->log.file = NULL;
     }
     imk_log_abandon(writer);
     return status;
@@ -375,7 +281,7 @@ void imk_log_abandon(imk_log_writer *writer)
 {
     if (!writer)
         return;
-    imk_output_file_abandon(writer->file);
-    imk_output_file_abandon(writer->names);
+    imk_output_file_abandon(writer->log.file);
+    imk_output_file_abandon(writer->log.companion);
     release(writer);
 }

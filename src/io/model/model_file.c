@@ -9,7 +9,6 @@
 #include "model_yaml_internal.h"
 
 #include "imukit/names.h"
-#include "imukit/output_file.h"
 #include "imukit/utf8.h"
 
 #include <stdio.h>
@@ -142,15 +141,8 @@ imk_status imk_model_write(const char *path, const imk_model *model, const imk_d
     imk_status status = is_json   ? imk_model_print_json(model, document, &text, &size, error)
                         : is_yaml ? print(model, document, false, !was_json, &text, &size, error)
                                   : imk_model_print(model, document, &text, &size, error);
-    if (status != IMK_OK)
-        return status;
-    imk_output_file *file = NULL;
-    status = imk_output_file_open(path, &file, error);
-    if (status == IMK_OK) {
-        /* A failed write is reported by commit. */
-        (void)imk_output_file_write(file, text, size);
-        status = imk_output_file_commit(file, error);
-    }
+    if (status == IMK_OK)
+        status = imki_text_file_write(path, text, size, error);
     free(text);
     return status;
 }

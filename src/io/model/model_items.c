@@ -24,14 +24,9 @@ enum { HEAD_TEXTS = 3, EVIDENCE_TEXTS = 3, EVIDENCE_ITEMS = EVIDENCE_TEXTS + 2 }
 
 static const char *const kind_names[2] = {"gyro", "accel"};
 
-const imk_triad *imki_triad_of(const imk_model *model, int kind)
-{
-    return kind == IMKI_GYRO ? &model->gyro : &model->accel;
-}
-
 const imk_evidence *imki_evidence_of(const imk_model *model, int kind)
 {
-    return kind == IMKI_GYRO ? &model->gyro_evidence : &model->accel_evidence;
+    return kind == IMK_GYRO ? &model->gyro_evidence : &model->accel_evidence;
 }
 
 /* Item `index` of one sensor: its presence, its fields, its evidence. A field that the kind does
@@ -55,8 +50,8 @@ static void sensor_item(size_t index, int kind, imki_item *item)
         item->is_bound = which == EVIDENCE_TEXTS + 1;
         if (is_text)
             item->offset = evidence_texts[which].offset +
-                           (kind == IMKI_GYRO ? offsetof(imk_model, gyro_evidence)
-                                              : offsetof(imk_model, accel_evidence));
+                           (kind == IMK_GYRO ? offsetof(imk_model, gyro_evidence)
+                                             : offsetof(imk_model, accel_evidence));
         snprintf(item->path, sizeof item->path, "%s.evidence.%s", kind_names[kind],
                  is_text          ? evidence_texts[which].path
                  : item->is_bound ? "upper_bound"
@@ -136,13 +131,13 @@ static bool in_absent_sensor(const imki_item *item, const imk_model *model)
 {
     bool in_sensor =
         strncmp(item->path, kind_names[item->kind], strlen(kind_names[item->kind])) == 0;
-    return in_sensor && !imki_triad_of(model, item->kind)->present;
+    return in_sensor && !imk_model_triad(model, item->kind)->present;
 }
 
 bool imki_item_equal(const imki_item *item, const imk_model *a, const imk_model *b)
 {
-    const imk_triad *a_triad = imki_triad_of(a, item->kind),
-                    *b_triad = imki_triad_of(b, item->kind);
+    const imk_triad *a_triad = imk_model_triad(a, item->kind),
+                    *b_triad = imk_model_triad(b, item->kind);
     const char *a_bytes = (const char *)a, *b_bytes = (const char *)b;
     if (item->path[0] == '\0')
         return true;
@@ -170,7 +165,7 @@ bool imki_item_equal(const imki_item *item, const imk_model *a, const imk_model 
 
 bool imki_item_absent(const imki_item *item, const imk_model *model)
 {
-    const imk_triad *triad = imki_triad_of(model, item->kind);
+    const imk_triad *triad = imk_model_triad(model, item->kind);
     if (item->path[0] == '\0' || in_absent_sensor(item, model))
         return true;
     switch (item->type) {

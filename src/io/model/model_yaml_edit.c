@@ -269,7 +269,7 @@ static bool first_difference(const imk_model *a, const imk_model *b, size_t *ind
 static bool same_axes(const imk_model *a, const imk_model *b)
 {
     for (int kind = 0; kind < 2; kind++) {
-        const imk_triad *x = imki_triad_of(a, kind), *y = imki_triad_of(b, kind);
+        const imk_triad *x = imk_model_triad(a, kind), *y = imk_model_triad(b, kind);
         if (x->present && y->present && x->axis_count != y->axis_count)
             return false;
     }

@@ -5,6 +5,7 @@
  * and B:  B = floor/sqrt(2 ln 2/pi)  [IEEE952]. */
 #include "model_reader_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "base/nearest_name_internal.h"
 
 #include <ctype.h>
@@ -65,7 +66,7 @@ static imk_status read_quantity(imki_reader *r, int node, const char *si, unsign
     const imki_node *n = imki_reader_node(r, node);
     if (says_infinite(n->text)) {
         bool is_time = imki_reader_node(r, n->key != IMKI_NONE ? n->key : node)->text[0] == 'c';
-        const char *walk = r->kind == IMKI_GYRO
+        const char *walk = r->kind == IMK_GYRO
                                ? "a finite time; a bias that never forgets is a rate_random_walk"
                                : "a finite time; a bias that never forgets is an "
                                  "acceleration_random_walk";
@@ -194,7 +195,7 @@ static imk_status read_unit_row(imki_reader *r, int node, bool may_be_zero, doub
     imk_status status = read_quantity(r, node, "1", IMKI_BARE, 3, &q);
     if (status != IMK_OK)
         return status;
-    double square = q.value[0] * q.value[0] + q.value[1] * q.value[1] + q.value[2] * q.value[2];
+    double square = imki_dot3(q.value, q.value);
     bool is_zero = q.count == 3 && q.value[0] == 0 && q.value[1] == 0 && q.value[2] == 0;
     if (q.count != 3 || !((square > 1e-12 && square < 1e12) || (may_be_zero && is_zero)))
         return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,

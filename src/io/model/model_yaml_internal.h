@@ -27,7 +27,7 @@ typedef enum imki_item_type {
 
 typedef struct imki_item {
     imki_item_type type;
-    int kind;                /* IMKI_GYRO or IMKI_ACCEL */
+    int kind;                /* IMK_GYRO or IMK_ACCEL */
     const imki_field *field; /* of a field or timing */
     size_t offset;           /* of a text in imk_model */
     bool is_bound;           /* of intervals */
@@ -43,7 +43,6 @@ bool imki_item_equal(const imki_item *item, const imk_model *a, const imk_model 
 /* True when the model says nothing there. */
 bool imki_item_absent(const imki_item *item, const imk_model *model);
 
-const imk_triad *imki_triad_of(const imk_model *model, int kind);
 const imk_evidence *imki_evidence_of(const imk_model *model, int kind);
 
 /* True when the interval is the bound of an absent term. */

@@ -35,7 +35,7 @@ static imk_status refuse_key(imki_reader *r, int key, const char *path, const ch
     }
     if (other) {
         snprintf(expected, sizeof expected, "only %s has this key",
-                 r->kind == IMKI_GYRO ? "accel" : "gyro");
+                 r->kind == IMK_GYRO ? "accel" : "gyro");
         return imki_reader_fail(r, key, IMK_ERROR_KEY_UNKNOWN, expected);
     }
     char names[NAMES_MAX][32];
@@ -214,7 +214,7 @@ static imk_status read_evidence(imki_reader *r, int mapping, imk_evidence *evide
 static imk_status read_sensor(const imk_document *document, int kind, imk_triad *triad,
                               imk_evidence *evidence, imk_error *error)
 {
-    int node = imki_document_value(document, 0, kind == IMKI_GYRO ? "gyro" : "accel");
+    int node = imki_document_value(document, 0, kind == IMK_GYRO ? "gyro" : "accel");
     triad->present = node != IMKI_NONE;
     if (!triad->present)
         return IMK_OK;
@@ -239,7 +239,7 @@ static imk_status read_sensor(const imk_document *document, int kind, imk_triad 
 static imk_status read_timing(const imk_document *document, imk_timing *timing, imk_error *error)
 {
     imk_triad unused = {.axis_count = 1};
-    imki_reader r = {document, error, &unused, IMKI_GYRO, 0, IMK_DENSITY_UNSTATED};
+    imki_reader r = {document, error, &unused, IMK_GYRO, 0, IMK_DENSITY_UNSTATED};
     int mapping = imki_document_value(document, 0, "timing");
     if (mapping == IMKI_NONE)
         return IMK_OK;
@@ -295,7 +295,7 @@ imk_status imki_document_read_model(const imk_document *document, imk_model *mod
                                     imk_error *error)
 {
     imk_model_default(model);
-    imki_reader r = {document, error, &model->gyro, IMKI_GYRO, 0, IMK_DENSITY_UNSTATED};
+    imki_reader r = {document, error, &model->gyro, IMK_GYRO, 0, IMK_DENSITY_UNSTATED};
     imk_status status = check_top_keys(document, error);
     if (status == IMK_OK)
         status = read_version(document, error);
@@ -309,9 +309,9 @@ imk_status imki_document_read_model(const imk_document *document, imk_model *mod
         status = read_text(&r, imki_document_value(document, 0, "residual_of"), model->residual_of,
                            sizeof model->residual_of);
     if (status == IMK_OK)
-        status = read_sensor(document, IMKI_GYRO, &model->gyro, &model->gyro_evidence, error);
+        status = read_sensor(document, IMK_GYRO, &model->gyro, &model->gyro_evidence, error);
     if (status == IMK_OK)
-        status = read_sensor(document, IMKI_ACCEL, &model->accel, &model->accel_evidence, error);
+        status = read_sensor(document, IMK_ACCEL, &model->accel, &model->accel_evidence, error);
     if (status == IMK_OK)
         status = read_timing(document, &model->timing, error);
     if (status == IMK_OK)

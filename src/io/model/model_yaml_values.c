@@ -100,10 +100,10 @@ static const char *kept_text(const imki_writer *writer, const imki_item *item,
     const imk_document *source = writer->source;
     bool complete;
     if (!source || !imki_item_equal(item, &source->model, model) ||
-        imki_triad_of(&source->model, item->kind)->axis_count !=
-            imki_triad_of(model, item->kind)->axis_count ||
-        imki_triad_of(&source->model, item->kind)->noise.density !=
-            imki_triad_of(model, item->kind)->noise.density)
+        imk_model_triad(&source->model, item->kind)->axis_count !=
+            imk_model_triad(model, item->kind)->axis_count ||
+        imk_model_triad(&source->model, item->kind)->noise.density !=
+            imk_model_triad(model, item->kind)->noise.density)
         return NULL;
     int node = imki_document_find(source, 0, item->path, &complete);
     if (!complete || source->node[node].kind != IMKI_NODE_SCALAR)
@@ -282,7 +282,7 @@ void imki_write_interval(imki_writer *writer, const imk_interval *interval, int 
 static void write_intervals(imki_writer *writer, const imki_item *item, const imk_model *model)
 {
     const imk_evidence *evidence = imki_evidence_of(model, item->kind);
-    const imk_triad *triad = imki_triad_of(model, item->kind);
+    const imk_triad *triad = imk_model_triad(model, item->kind);
     bool is_first = true;
     imki_write_text(writer, "{");
     for (int i = 0; i < evidence->interval_count; i++) {
@@ -299,7 +299,7 @@ static void write_intervals(imki_writer *writer, const imki_item *item, const im
 static void write_field_value(imki_writer *writer, const imki_item *item, const imk_model *model)
 {
     const imki_field *field = item->field;
-    const imk_triad *triad = imki_triad_of(model, item->kind);
+    const imk_triad *triad = imk_model_triad(model, item->kind);
     switch (field->shape) {
     case IMKI_DENSITY:
         imki_write_text_value(writer, triad->noise.density == IMK_DENSITY_ONE_SIDED ? "one-sided"

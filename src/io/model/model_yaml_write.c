@@ -49,7 +49,7 @@ static const char *last_component(const char *path)
 /* Lists of terms and intervals, one a line below their key. */
 static void write_block_list(imki_writer *writer, const imki_item *item, const imk_model *model)
 {
-    const imk_triad *triad = imki_triad_of(model, item->kind);
+    const imk_triad *triad = imk_model_triad(model, item->kind);
     bool is_list = item->type == IMKI_ITEM_FIELD;
     const imk_evidence *evidence = imki_evidence_of(model, item->kind);
     int count = is_list ? imki_list_count(item->field, triad) : evidence->interval_count;

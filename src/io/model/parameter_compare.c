@@ -2,7 +2,6 @@
 /* What a foreign format could not hold: the file just written is read back and compared with the
  * model, field by field, so that nothing is dropped silently. */
 #include "io/foreign/parameter_internal.h"
-#include "model/model_schema_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -69,12 +68,12 @@ static bool close_fields(const imki_field *field, const imk_triad *a, const imk_
 static void bring_together(imki_parameters *p, imk_triad *triad)
 {
     double response[3][3], zero[3][3] = {{0}};
-    imki_place nowhere = {"", 0, 0};
+    imki_parameters made = {.notes = p->notes}; /* that it cannot be made is no failure */
     bool folded = triad->cross_axis.value[0][0] != 0;
     for (int i = 0; i < 9; i++)
         folded = folded || triad->cross_axis.value[i / 3][i % 3] != zero[i / 3][i % 3];
     imki_response_of(triad, response);
-    (void)imki_response_set(p, nowhere, triad, response);
+    imki_response_set(&made, (imki_place){"", 0, 0}, triad, response);
     if (folded)
         imki_note(p, false, "cross_axis and misalignment are written as their sum");
 }
@@ -95,7 +94,7 @@ static bool has_sigmas(const imki_field *field, const imk_triad *triad)
 static int compare_triads(imki_parameters *p, const char *format, int kind, const imk_triad *triad,
                           const imk_triad *back, int *had)
 {
-    static const char *const names[2] = {"gyro", "accel"};
+    const char *name = imki_kind_names[kind];
     int kept = 0;
     bool sigmas = false;
     if (!triad->present)
@@ -109,18 +108,17 @@ static int compare_triads(imki_parameters *p, const char *format, int kind, cons
             continue;
         ++*had;
         if (!back->present || imki_field_absent(field, back)) {
-            imki_note(p, true, "%s.%s is not held by the format %s", names[kind], field->path[kind],
+            imki_note(p, true, "%s.%s is not held by the format %s", name, field->path[kind],
                       format);
             continue;
         }
         kept++;
         if (!close_fields(field, triad, back))
-            imki_note(p, true, "%s.%s is held only in part by the format %s", names[kind],
+            imki_note(p, true, "%s.%s is held only in part by the format %s", name,
                       field->path[kind], format);
     }
     if (sigmas)
-        imki_note(p, true, "%s: uncertainties (±) are not held by the format %s", names[kind],
-                  format);
+        imki_note(p, true, "%s: uncertainties (±) are not held by the format %s", name, format);
     return kept;
 }
 
@@ -138,12 +136,13 @@ static bool holds_matrices(imk_parameter_format format)
            format == IMK_PARAMETERS_OPENVINS;
 }
 
-imk_status imki_parameters_compare(imki_parameters *p, imki_parameter_function *read,
-                                   const char *format)
+void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, const char *format)
 {
     imk_model *models = malloc(2 * sizeof *models);
-    if (!models)
-        return imk_error_set(p->error, IMK_ERROR_MEMORY, "", "", "");
+    if (!models) {
+        imki_refuse(p, IMK_ERROR_MEMORY, "", "", "");
+        return;
+    }
     imk_model *back = &models[0], *source = &models[1];
     imk_model_default(back);
     *source = *p->source;
@@ -153,22 +152,23 @@ imk_status imki_parameters_compare(imki_parameters *p, imki_parameter_function *
                                .error = p->error,
                                .text = p->out.bytes,
                                .size = p->out.size,
-                               .model = back};
-    imk_status status = read(&reading);
+                               .model = back,
+                               .triad = {&back->gyro, &back->accel}};
+    read(&reading);
+    imk_document_free(reading.document);
+    p->status = reading.status;
     int had = 0, kept = 0;
-    if (status == IMK_OK && holds_matrices(p->settings->format)) {
+    if (p->status == IMK_OK && holds_matrices(p->settings->format)) {
         bring_together(p, &source->gyro);
         bring_together(p, &source->accel);
     }
-    if (status == IMK_OK) {
-        kept = compare_triads(p, format, IMKI_GYRO, &source->gyro, &back->gyro, &had);
-        kept += compare_triads(p, format, IMKI_ACCEL, &source->accel, &back->accel, &had);
+    if (p->status == IMK_OK) {
+        kept = compare_triads(p, format, IMK_GYRO, &source->gyro, &back->gyro, &had);
+        kept += compare_triads(p, format, IMK_ACCEL, &source->accel, &back->accel, &had);
         compare_timing(p, format, &source->timing);
     }
-    if (status == IMK_OK && had > 0 && kept == 0)
-        status =
-            imk_error_set(p->error, IMK_ERROR_UNSUPPORTED, "model",
-                          "nothing of the model fits into the format", "choose another with --to");
+    if (had > 0 && kept == 0)
+        imki_refuse(p, IMK_ERROR_UNSUPPORTED, "model", "nothing of the model fits into the format",
+                    "choose another with --to");
     free(models);
-    return status;
 }

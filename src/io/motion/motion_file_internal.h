@@ -3,7 +3,7 @@
 #ifndef IMUKI_MOTION_FILE_INTERNAL_H
 #define IMUKI_MOTION_FILE_INTERNAL_H
 
-#include "io/model/document_internal.h"
+#include "step_sentence_internal.h"
 
 #include "imukit/motion_file.h"
 
@@ -32,8 +32,7 @@ struct imk_motion_file {
 /* Steps as they are read: the state of the body is followed, so that "to 20 m/s" can become a
  * change of speed. */
 typedef struct imki_script_reader {
-    const imk_document *document;
-    imk_error *error;
+    imki_reading reading;
     imk_motion_script script; /* step, step_count are set at the end */
     imk_motion_step *step;    /* from malloc */
     int *step_node;           /* where each stands */
@@ -43,11 +42,10 @@ typedef struct imki_script_reader {
 } imki_script_reader;
 
 /* motion_sentence.c: one step that is a sentence. */
-imk_status imki_step_sentence_read(imki_script_reader *reader, int node);
+void imki_step_sentence_read(imki_script_reader *reader, int node);
 
 /* vibration_lines.c: the entries of `vibration`, added to file->line. */
-imk_status imki_vibration_read(const imk_document *document, int sequence, uint64_t seed,
-                               imk_motion_file *file, imk_error *error);
+void imki_vibration_read(imki_reading *reading, int sequence, uint64_t seed, imk_motion_file *file);
 
 /* motion_script_read.c: the script of a document, vibration left out. The caller frees reader->step
  * and reader->step_node, also after an error. */

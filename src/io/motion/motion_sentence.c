@@ -5,7 +5,6 @@
  * so that the step lasts t + s. A change c that is to last t in all has the rate c/(t - s).
  * "to 20 m/s" is a change from what the steps before have made. */
 #include "motion_file_internal.h"
-#include "step_sentence_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -86,8 +85,10 @@ static const imki_verb verbs[] = {
 
 enum { VERBS = sizeof verbs / sizeof verbs[0] };
 
-static imk_status add_step(imki_script_reader *r, int node, const imk_motion_step *step)
+static void add_step(imki_script_reader *r, int node, const imk_motion_step *step)
 {
+    if (r->reading.status != IMK_OK)
+        return;
     if (r->step_count == r->capacity) {
         const size_t capacity = r->capacity > 0 ? 2 * r->capacity : 64;
         imk_motion_step *steps = realloc(r->step, capacity * sizeof *steps);
@@ -96,92 +97,91 @@ static imk_status add_step(imki_script_reader *r, int node, const imk_motion_ste
         int *nodes = realloc(r->step_node, capacity * sizeof *nodes);
         if (nodes)
             r->step_node = nodes;
-        if (!steps || !nodes)
-            return imk_error_set(r->error, IMK_ERROR_MEMORY, "", "", "");
+        if (!steps || !nodes) {
+            r->reading.status = imk_error_set(r->reading.error, IMK_ERROR_MEMORY, "", "", "");
+            return;
+        }
         r->capacity = capacity;
     }
     r->step[r->step_count] = *step;
     r->step_node[r->step_count++] = node;
-    return IMK_OK;
 }
 
 /* Rate of a step that changes by `amount`, from its part `at` or `in`. */
-static imk_status read_rate(const imki_script_reader *r, const imki_sentence *s, const char *si,
-                            double amount, double *rate)
+static double read_rate(const imki_script_reader *r, const imki_sentence *s, const char *si,
+                        double amount)
 {
     if (imki_sentence_has(s, IMKI_PART_AT))
-        return imki_sentence_positive(s, IMKI_PART_AT, si, rate);
-    double duration = 0.0;
-    const imk_status status = imki_sentence_positive(s, IMKI_PART_IN, "s", &duration);
-    if (status != IMK_OK)
-        return status;
+        return imki_sentence_positive(s, IMKI_PART_AT, si);
+    const double duration = imki_sentence_positive(s, IMKI_PART_IN, "s");
     if (!(duration >= 2.0 * r->script.smoothing))
-        return imki_sentence_refuse(s, IMKI_PART_IN, IMK_ERROR_RANGE,
-                                    "at least twice the smoothing time");
-    *rate = fabs(amount) / (duration - r->script.smoothing);
-    return IMK_OK;
+        imki_sentence_refuse(s, IMKI_PART_IN, IMK_ERROR_RANGE, "at least twice the smoothing time");
+    return fabs(amount) / (duration - r->script.smoothing);
 }
 
 /* A step that changes something to or by an amount at a rate; one that changes nothing takes no
  * time, or rests for the time it should last. */
-static imk_status add_change(imki_script_reader *r, const imki_sentence *s, const char *rate_si,
-                             imk_motion_step step)
+static void add_change(imki_script_reader *r, const imki_sentence *s, const char *rate_si,
+                       imk_motion_step step)
 {
-    imk_status status = read_rate(r, s, rate_si, step.amount, &step.rate);
-    if (status == IMK_OK && step.amount == 0.0 && imki_sentence_has(s, IMKI_PART_IN)) {
-        step = (imk_motion_step){.kind = IMK_STEP_HOLD};
-        status = imki_sentence_numbers(s, IMKI_PART_IN, "s", 1, &step.duration);
-    } else if (step.amount == 0.0) {
-        return status;
-    }
-    return status == IMK_OK ? add_step(r, s->node, &step) : status;
+    step.rate = read_rate(r, s, rate_si, step.amount);
+    if (step.amount == 0.0 && !imki_sentence_has(s, IMKI_PART_IN))
+        return;
+    if (step.amount == 0.0)
+        step = (imk_motion_step){.kind = IMK_STEP_HOLD,
+                                 .duration = imki_sentence_number(s, IMKI_PART_IN, "s")};
+    add_step(r, s->node, &step);
 }
 
 /* "2 m/s^2 for 10 s", "at 100 deg/s for 10 s": rate times time. */
-static imk_status read_product(const imki_sentence *s, imki_part part, const char *si,
-                               imk_motion_step *step)
+static void read_product(const imki_sentence *s, imki_part part, const char *si,
+                         imk_motion_step *step)
 {
-    double time = 0.0, rate = 0.0;
-    imk_status status = imki_sentence_numbers(s, part, si, 1, &rate);
-    if (status == IMK_OK && rate == 0.0)
-        status = imki_sentence_refuse(s, part, IMK_ERROR_RANGE,
-                                      "a rate other than 0; write hold 10 s to go on as it is");
-    if (status == IMK_OK)
-        status = imki_sentence_positive(s, IMKI_PART_FOR, "s", &time);
-    step->amount = rate * time;
+    const double rate = imki_sentence_number(s, part, si);
+    if (rate == 0.0)
+        imki_sentence_refuse(s, part, IMK_ERROR_RANGE,
+                             "a rate other than 0; write hold 10 s to go on as it is");
+    step->amount = rate * imki_sentence_positive(s, IMKI_PART_FOR, "s");
     step->rate = fabs(rate);
-    return status;
 }
 
-static imk_status read_speed(imki_script_reader *r, const imki_sentence *s)
+/* A change by the bare amount, or to the amount behind "to", 0 without one. @return the target */
+static double read_change(const imki_sentence *s, const char *si, double from, double *amount)
+{
+    if (imki_sentence_has(s, IMKI_PART_BARE)) {
+        *amount = imki_sentence_number(s, IMKI_PART_BARE, si);
+        return from + *amount;
+    }
+    const double target =
+        imki_sentence_has(s, IMKI_PART_TO) ? imki_sentence_number(s, IMKI_PART_TO, si) : 0.0;
+    *amount = target - from;
+    return target;
+}
+
+static void read_speed(imki_script_reader *r, const imki_sentence *s)
 {
     const bool brakes = strcmp(s->verb->name, "brake") == 0;
+    const bool lasts = imki_sentence_has(s, IMKI_PART_FOR),
+               by = imki_sentence_has(s, IMKI_PART_BARE);
     imk_motion_step step = {.kind = IMK_STEP_ACCELERATE};
-    imk_status status = IMK_OK;
     double target = 0.0;
-    if (imki_sentence_has(s, IMKI_PART_FOR)) {
-        status = read_product(s, IMKI_PART_BARE, "m/s^2", &step);
-    } else if (imki_sentence_has(s, IMKI_PART_BARE)) {
-        status = imki_sentence_numbers(s, IMKI_PART_BARE, "m/s", 1, &step.amount);
-    } else {
-        if (imki_sentence_has(s, IMKI_PART_TO))
-            status = imki_sentence_numbers(s, IMKI_PART_TO, "m/s", 1, &target);
-        step.amount = target - r->speed;
-    }
-    if (status != IMK_OK)
-        return status;
-    if (brakes && imki_sentence_has(s, IMKI_PART_BARE)) {
+    if (lasts)
+        read_product(s, IMKI_PART_BARE, "m/s^2", &step);
+    else
+        target = read_change(s, "m/s", r->speed, &step.amount);
+    if (brakes && by) {
         if (!(step.amount > 0.0))
-            return imki_sentence_refuse(s, IMKI_PART_BARE, IMK_ERROR_RANGE, "a number above 0");
+            imki_sentence_refuse(s, IMKI_PART_BARE, IMK_ERROR_RANGE, "a number above 0");
         step.amount = -step.amount;
     }
     if (brakes && step.amount > 0.0)
-        return imki_sentence_refuse(s, IMKI_PART_TO, IMK_ERROR_RANGE,
-                                    "a speed below the one the body has here; or write accelerate");
-    r->speed = imki_sentence_has(s, IMKI_PART_BARE) ? r->speed + step.amount : target;
-    if (!imki_sentence_has(s, IMKI_PART_FOR))
-        return add_change(r, s, "m/s^2", step);
-    return add_step(r, s->node, &step);
+        imki_sentence_refuse(s, IMKI_PART_TO, IMK_ERROR_RANGE,
+                             "a speed below the one the body has here; or write accelerate");
+    r->speed = by ? r->speed + step.amount : target;
+    if (lasts)
+        add_step(r, s->node, &step);
+    else
+        add_change(r, s, "m/s^2", step);
 }
 
 /* To a heading by the shorter way, or by the way that is said. A heading that is there already up
@@ -200,114 +200,80 @@ static double turn_towards(double heading, double target, unsigned words)
     return turn;
 }
 
-static imk_status read_turn(imki_script_reader *r, const imki_sentence *s)
+static void read_turn(imki_script_reader *r, const imki_sentence *s)
 {
     const unsigned sides = s->words & (IMKI_WORD_LEFT | IMKI_WORD_RIGHT);
     imk_motion_step step = {.kind = IMK_STEP_TURN, .banked = (s->words & IMKI_WORD_BANKED) != 0};
-    imk_status status;
     if (sides == (IMKI_WORD_LEFT | IMKI_WORD_RIGHT))
-        return imki_sentence_refuse(s, IMKI_PARTS, IMK_ERROR_SYNTAX, s->verb->usage);
+        imki_sentence_refuse(s, IMKI_PARTS, IMK_ERROR_SYNTAX, s->verb->usage);
     if (imki_sentence_has(s, IMKI_PART_TO)) {
-        double target = 0.0;
-        status = imki_sentence_numbers(s, IMKI_PART_TO, "rad", 1, &target);
-        step.amount = turn_towards(r->heading, target, s->words);
+        step.amount =
+            turn_towards(r->heading, imki_sentence_number(s, IMKI_PART_TO, "rad"), s->words);
     } else if (sides == 0) {
-        status = imki_sentence_numbers(s, IMKI_PART_BARE, "rad", 1, &step.amount);
+        step.amount = imki_sentence_number(s, IMKI_PART_BARE, "rad");
     } else {
-        status = imki_sentence_positive(s, IMKI_PART_BARE, "rad", &step.amount);
+        step.amount = imki_sentence_positive(s, IMKI_PART_BARE, "rad");
         step.amount = sides == IMKI_WORD_LEFT ? -step.amount : step.amount;
     }
-    if (status != IMK_OK)
-        return status;
     r->heading += step.amount;
-    return add_change(r, s, "rad/s", step);
+    add_change(r, s, "rad/s", step);
 }
 
-static imk_status read_climb(imki_script_reader *r, const imki_sentence *s)
+static void read_climb(imki_script_reader *r, const imki_sentence *s)
 {
     imk_motion_step step = {.kind = IMK_STEP_CLIMB};
-    imk_status status = IMK_OK;
-    double target = 0.0;
-    if (imki_sentence_has(s, IMKI_PART_BARE)) {
-        status = imki_sentence_numbers(s, IMKI_PART_BARE, "rad", 1, &step.amount);
-        target = r->climb + step.amount;
-    } else {
-        if (imki_sentence_has(s, IMKI_PART_TO))
-            status = imki_sentence_numbers(s, IMKI_PART_TO, "rad", 1, &target);
-        step.amount = target - r->climb;
-    }
-    if (status == IMK_OK && !(fabs(target) < 0.5 * PI))
-        status = imki_sentence_refuse(s, IMKI_PARTS, IMK_ERROR_RANGE,
-                                      "a climb angle between -90 deg and 90 deg");
-    if (status != IMK_OK)
-        return status;
-    r->climb = target;
-    return add_change(r, s, "rad/s", step);
+    r->climb = read_change(s, "rad", r->climb, &step.amount);
+    if (!(fabs(r->climb) < 0.5 * PI))
+        imki_sentence_refuse(s, IMKI_PARTS, IMK_ERROR_RANGE,
+                             "a climb angle between -90 deg and 90 deg");
+    add_change(r, s, "rad/s", step);
 }
 
-static imk_status read_rotation(imki_script_reader *r, const imki_sentence *s)
+static void read_rotation(imki_script_reader *r, const imki_sentence *s)
 {
     imk_motion_step step = {.kind = IMK_STEP_ROTATE, .axis = imki_sentence_axis(s)};
-    imk_status status;
     if (imki_sentence_has(s, IMKI_PART_FOR)) {
-        status = read_product(s, IMKI_PART_AT, "rad/s", &step);
-        return status == IMK_OK ? add_step(r, s->node, &step) : status;
+        read_product(s, IMKI_PART_AT, "rad/s", &step);
+        add_step(r, s->node, &step);
+    } else {
+        step.amount = imki_sentence_number(s, IMKI_PART_BARE, "rad");
+        add_change(r, s, "rad/s", step);
     }
-    status = imki_sentence_numbers(s, IMKI_PART_BARE, "rad", 1, &step.amount);
-    return status == IMK_OK ? add_change(r, s, "rad/s", step) : status;
 }
 
-static imk_status read_oscillation(imki_script_reader *r, const imki_sentence *s)
+static void read_oscillation(imki_script_reader *r, const imki_sentence *s)
 {
     imk_motion_step step = {.kind = (imk_step_kind)s->verb->kind, .axis = imki_sentence_axis(s)};
-    imk_status status = imki_sentence_positive(s, IMKI_PART_BARE, "rad", &step.amount);
-    if (status == IMK_OK)
-        status = imki_sentence_positive(s, IMKI_PART_AT, "Hz", &step.frequency);
-    if (status == IMK_OK)
-        status = imki_sentence_positive(s, IMKI_PART_FOR, "s", &step.duration);
-    return status == IMK_OK ? add_step(r, s->node, &step) : status;
+    step.amount = imki_sentence_positive(s, IMKI_PART_BARE, "rad");
+    step.frequency = imki_sentence_positive(s, IMKI_PART_AT, "Hz");
+    step.duration = imki_sentence_positive(s, IMKI_PART_FOR, "s");
+    add_step(r, s->node, &step);
 }
 
-static imk_status read_pose(imki_script_reader *r, const imki_sentence *s)
+static void read_pose(imki_script_reader *r, const imki_sentence *s)
 {
     imk_motion_step step = {.kind = IMK_STEP_POSE};
-    imk_status status = imki_sentence_numbers(s, IMKI_PART_BARE, "rad", 3, step.angle);
-    if (status == IMK_OK)
-        status = imki_sentence_positive(s, IMKI_PART_IN, "s", &step.duration);
-    return status == IMK_OK ? add_step(r, s->node, &step) : status;
+    imki_sentence_numbers(s, IMKI_PART_BARE, "rad", 3, step.angle);
+    step.duration = imki_sentence_positive(s, IMKI_PART_IN, "s");
+    add_step(r, s->node, &step);
 }
 
-static imk_status read_hold(imki_script_reader *r, const imki_sentence *s)
+static void read_hold(imki_script_reader *r, const imki_sentence *s)
 {
-    imk_motion_step step = {.kind = IMK_STEP_HOLD};
     const imki_part part = imki_sentence_has(s, IMKI_PART_FOR) ? IMKI_PART_FOR : IMKI_PART_BARE;
-    const imk_status status = imki_sentence_positive(s, part, "s", &step.duration);
-    return status == IMK_OK ? add_step(r, s->node, &step) : status;
+    const imk_motion_step step = {.kind = IMK_STEP_HOLD,
+                                  .duration = imki_sentence_positive(s, part, "s")};
+    add_step(r, s->node, &step);
 }
 
-imk_status imki_step_sentence_read(imki_script_reader *r, int node)
+void imki_step_sentence_read(imki_script_reader *r, int node)
 {
+    static void (*const readers[])(imki_script_reader *, const imki_sentence *) = {
+        [IMK_STEP_HOLD] = read_hold,         [IMK_STEP_ACCELERATE] = read_speed,
+        [IMK_STEP_TURN] = read_turn,         [IMK_STEP_CLIMB] = read_climb,
+        [IMK_STEP_ROTATE] = read_rotation,   [IMK_STEP_POSE] = read_pose,
+        [IMK_STEP_SWING] = read_oscillation, [IMK_STEP_CONING] = read_oscillation};
     imki_sentence s;
-    const imk_status status =
-        imki_sentence_read(r->document, node, "a step", VERBS, verbs, &s, r->error);
-    if (status != IMK_OK)
-        return status;
-    switch ((imk_step_kind)s.verb->kind) {
-    case IMK_STEP_ACCELERATE:
-        return read_speed(r, &s);
-    case IMK_STEP_TURN:
-        return read_turn(r, &s);
-    case IMK_STEP_CLIMB:
-        return read_climb(r, &s);
-    case IMK_STEP_ROTATE:
-        return read_rotation(r, &s);
-    case IMK_STEP_POSE:
-        return read_pose(r, &s);
-    case IMK_STEP_SWING:
-    case IMK_STEP_CONING:
-        return read_oscillation(r, &s);
-    case IMK_STEP_HOLD:
-        break;
-    }
-    return read_hold(r, &s);
+    if (imki_sentence_read(&r->reading, node, "a step", VERBS, verbs, &s))
+        readers[s.verb->kind](r, &s);
 }

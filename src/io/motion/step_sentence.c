@@ -7,6 +7,7 @@
 #include "io/model/model_yaml_internal.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { NUMBERS_MAX = 8, VERBS_MAX = 16, TEXT_SIZE = 128 };
@@ -35,20 +36,51 @@ static void copy_text(char text[TEXT_SIZE], const char *begin, const char *end)
     text[length] = '\0';
 }
 
-imk_status imki_sentence_refuse(const imki_sentence *s, imki_part part, imk_status status,
-                                const char *expected)
+void imki_value_refuse(imki_reading *r, int node, imk_status status, const char *found,
+                       const char *expected)
 {
+    if (r->status == IMK_OK)
+        r->status = imki_document_error(r->document, node, status, found, expected, r->error);
+}
+
+void imki_refuse_value(imki_reading *r, int node, imk_status status, const char *expected)
+{
+    const imki_node *n = &r->document->node[node];
+    imki_value_refuse(r, node, status, n->kind == IMKI_NODE_SCALAR ? n->text : "", expected);
+}
+
+void imki_refuse_word(imki_reading *r, int node, const char *name, const char *found, size_t count,
+                      const char *const *names)
+{
+    char expected[sizeof r->error->expected];
+    const size_t nearest = imk_nearest_name(name, count, names);
+    if (nearest < count) {
+        snprintf(expected, sizeof expected, "did you mean \"%s\"?", names[nearest]);
+    } else {
+        size_t length = (size_t)snprintf(expected, sizeof expected, "one of");
+        for (size_t i = 0; i < count && length + strlen(names[i]) + 3 < sizeof expected; i++)
+            length += (size_t)snprintf(expected + length, sizeof expected - length, "%s %s",
+                                       i > 0 ? "," : "", names[i]);
+    }
+    imki_value_refuse(r, node, IMK_ERROR_NAME_UNKNOWN, found, expected);
+}
+
+void imki_sentence_refuse(const imki_sentence *s, imki_part part, imk_status status,
+                          const char *expected)
+{
+    imki_reading *r = s->reading;
     char found[TEXT_SIZE];
-    const imki_node *n = &s->document->node[s->node];
+    const imki_node *n = &r->document->node[s->node];
     const char *begin = n->text, *end = n->text + n->length;
+    if (r->status != IMK_OK)
+        return;
     if (part < IMKI_PARTS && s->part[part].begin) {
         begin = s->part[part].begin;
         end = s->part[part].end;
     }
     copy_text(found, begin, end);
-    imki_document_error(s->document, s->node, status, found, expected, s->error);
-    point_at(s->document, s->node, begin, s->error);
-    return status;
+    imki_value_refuse(r, s->node, status, found, expected);
+    point_at(r->document, s->node, begin, r->error);
 }
 
 /* ---- words ----------------------------------------------------------------------------------- */
@@ -131,45 +163,32 @@ static bool has_form(const imki_sentence *s)
     return false;
 }
 
-static imk_status refuse_verb(const imki_sentence *s, word w, const char *what, size_t count,
-                              const char *const *names)
-{
-    char verb[64], found[128], expected[sizeof s->error->expected];
-    snprintf(verb, sizeof verb, "%.*s", (int)(w.length < 40 ? w.length : 40), w.begin);
-    snprintf(found, sizeof found, "\"%s\" is not %s", verb, what);
-    const size_t nearest = imk_nearest_name(verb, count, names);
-    if (nearest != SIZE_MAX) {
-        snprintf(expected, sizeof expected, "did you mean \"%s\"?", names[nearest]);
-    } else {
-        size_t length = (size_t)snprintf(expected, sizeof expected, "one of");
-        for (size_t i = 0; i < count && length + strlen(names[i]) + 3 < sizeof expected; i++)
-            length += (size_t)snprintf(expected + length, sizeof expected - length, "%s %s",
-                                       i > 0 ? "," : "", names[i]);
-    }
-    return imki_document_error(s->document, s->node, IMK_ERROR_NAME_UNKNOWN, found, expected,
-                               s->error);
-}
-
-imk_status imki_sentence_read(const imk_document *document, int node, const char *what,
-                              size_t count, const imki_verb *verbs, imki_sentence *sentence,
-                              imk_error *error)
+bool imki_sentence_read(imki_reading *reading, int node, const char *what, size_t count,
+                        const imki_verb *verbs, imki_sentence *sentence)
 {
     const char *names[VERBS_MAX];
-    imki_sentence s = {.document = document, .node = node, .error = error};
-    const char *at = document->node[node].text;
+    imki_sentence s = {.reading = reading, .node = node};
+    const char *at = reading->document->node[node].text;
+    char name[64], found[128];
     word verb;
     for (size_t i = 0; i < count; i++)
         names[i] = verbs[i].name;
-    if (!next_word(&at, &verb))
-        return imki_document_error(document, node, IMK_ERROR_SYNTAX, "", verbs[0].usage, error);
+    if (!next_word(&at, &verb)) {
+        imki_value_refuse(reading, node, IMK_ERROR_SYNTAX, "", verbs[0].usage);
+        return false;
+    }
     const int index = find_word(verb, count, names);
-    if (index < 0)
-        return refuse_verb(&s, verb, what, count, names);
+    if (index < 0) {
+        snprintf(name, sizeof name, "%.*s", (int)(verb.length < 40 ? verb.length : 40), verb.begin);
+        snprintf(found, sizeof found, "\"%s\" is not %s", name, what);
+        imki_refuse_word(reading, node, name, found, count, names);
+        return false;
+    }
     s.verb = &verbs[index];
     if (!divide(&s, at) || !has_form(&s))
-        return imki_sentence_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX, s.verb->usage);
+        imki_sentence_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX, s.verb->usage);
     *sentence = s;
-    return IMK_OK;
+    return reading->status == IMK_OK;
 }
 
 bool imki_sentence_has(const imki_sentence *s, imki_part part)
@@ -209,13 +228,18 @@ static imk_status parse_exactly(const char *begin, const char *end, const char *
     return IMK_OK;
 }
 
-static void place_error(const imk_document *document, int node, imk_error *error)
+/* Numbers of a text of a node, whose place an error gets. */
+static void read_exactly(imki_reading *r, int node, const char *begin, const char *end,
+                         const char *si, size_t count, double *values)
 {
-    if (!error)
+    if (r->status != IMK_OK)
         return;
-    imki_document_path(document, node, error->field, sizeof error->field);
-    error->line = document->node[node].line;
-    error->column = document->node[node].column;
+    r->status = parse_exactly(begin, end, si, count, values, r->error);
+    if (r->status == IMK_OK || !r->error)
+        return;
+    imki_document_path(r->document, node, r->error->field, sizeof r->error->field);
+    r->error->line = r->document->node[node].line;
+    r->error->column = r->document->node[node].column;
 }
 
 /* The last word of a part when the part can be read without it, as "fast" in "10 deg/s fast". */
@@ -230,107 +254,133 @@ static bool last_word_is_foreign(const imki_sentence *s, imki_part part, const c
     return at > begin && parse_exactly(begin, at, si, count, unused, NULL) == IMK_OK;
 }
 
-imk_status imki_sentence_numbers(const imki_sentence *s, imki_part part, const char *si,
-                                 size_t count, double *values)
+void imki_sentence_numbers(const imki_sentence *s, imki_part part, const char *si, size_t count,
+                           double *values)
 {
-    const char *last;
-    const imk_status status =
-        parse_exactly(s->part[part].begin, s->part[part].end, si, count, values, s->error);
-    if (status == IMK_OK)
-        return IMK_OK;
+    imki_reading *r = s->reading;
+    const char *begin = s->part[part].begin, *last;
+    if (r->status != IMK_OK)
+        return;
+    read_exactly(r, s->node, begin, s->part[part].end, si, count, values);
+    if (r->status == IMK_OK)
+        return;
     if (last_word_is_foreign(s, part, si, count, &last)) {
         imki_sentence foreign = *s;
         foreign.part[part].begin = last;
-        return imki_sentence_refuse(&foreign, part, IMK_ERROR_SYNTAX, s->verb->usage);
+        r->status = IMK_OK;
+        imki_sentence_refuse(&foreign, part, IMK_ERROR_SYNTAX, s->verb->usage);
+    } else {
+        point_at(r->document, s->node, begin, r->error);
     }
-    place_error(s->document, s->node, s->error);
-    point_at(s->document, s->node, s->part[part].begin, s->error);
-    return status;
 }
 
-imk_status imki_sentence_positive(const imki_sentence *s, imki_part part, const char *si,
-                                  double *value)
+double imki_sentence_number(const imki_sentence *s, imki_part part, const char *si)
 {
-    double number;
-    const imk_status status = imki_sentence_numbers(s, part, si, 1, &number);
-    if (status != IMK_OK)
-        return status;
+    double number = 0.0;
+    imki_sentence_numbers(s, part, si, 1, &number);
+    return number;
+}
+
+double imki_sentence_positive(const imki_sentence *s, imki_part part, const char *si)
+{
+    const double number = imki_sentence_number(s, part, si);
     if (!(number > 0.0))
-        return imki_sentence_refuse(s, part, IMK_ERROR_RANGE, "a number above 0");
-    *value = number;
-    return IMK_OK;
+        imki_sentence_refuse(s, part, IMK_ERROR_RANGE, "a number above 0");
+    return number;
 }
 
 /* ---- values of keys -------------------------------------------------------------------------- */
 
-imk_status imki_value_require(const imk_document *document, int node, imki_node_kind kind,
-                              const char *expected, imk_error *error)
+bool imki_value_require(imki_reading *r, int node, imki_node_kind kind, const char *expected)
 {
-    const imki_node *n = &document->node[node];
-    return n->kind == kind
-               ? IMK_OK
-               : imki_document_error(document, node, IMK_ERROR_SYNTAX,
-                                     n->kind == IMKI_NODE_SCALAR ? n->text : "", expected, error);
+    if (r->document->node[node].kind != kind)
+        imki_refuse_value(r, node, IMK_ERROR_SYNTAX, expected);
+    return r->status == IMK_OK;
 }
 
-imk_status imki_value_numbers(const imk_document *document, int node, const char *si, size_t count,
-                              double *values, imk_error *error)
+void imki_number_at(imki_reading *r, int node, const char *si, double *value)
 {
-    imk_status status = imki_value_require(document, node, IMKI_NODE_SCALAR,
-                                           "a number and its unit, as one text", error);
-    if (status != IMK_OK)
-        return status;
-    const imki_node *n = &document->node[node];
-    status = parse_exactly(n->text, n->text + n->length, si, count, values, error);
-    if (status != IMK_OK)
-        place_error(document, node, error);
-    return status;
+    const imki_node *n = &r->document->node[node];
+    if (imki_value_require(r, node, IMKI_NODE_SCALAR, "a number and its unit, as one text"))
+        read_exactly(r, node, n->text, n->text + n->length, si, 1, value);
 }
 
-imk_status imki_value_name(const imk_document *document, const char *key, char *text, size_t size,
-                           imk_error *error)
+void imki_value_number(imki_reading *r, int mapping, const char *key, const char *si, double *value)
 {
-    const int node = imki_document_value(document, 0, key);
+    const int node = imki_document_value(r->document, mapping, key);
+    if (node != IMKI_NONE)
+        imki_number_at(r, node, si, value);
+}
+
+void imki_value_name(imki_reading *r, const char *key, char *text, size_t size)
+{
+    const int node = imki_document_value(r->document, 0, key);
     text[0] = '\0';
-    if (node == IMKI_NONE)
-        return IMK_OK;
-    const imk_status status = imki_value_require(document, node, IMKI_NODE_SCALAR, "a text", error);
-    if (status != IMK_OK)
-        return status;
-    const imki_node *n = &document->node[node];
+    if (node == IMKI_NONE || !imki_value_require(r, node, IMKI_NODE_SCALAR, "a text"))
+        return;
+    const imki_node *n = &r->document->node[node];
     if (n->length >= size) {
         char expected[48];
         snprintf(expected, sizeof expected, "a text of at most %zu bytes", size - 1);
-        return imki_document_error(document, node, IMK_ERROR_RANGE, n->text, expected, error);
+        imki_value_refuse(r, node, IMK_ERROR_RANGE, n->text, expected);
+    } else {
+        memcpy(text, n->text, n->length + 1);
     }
-    memcpy(text, n->text, n->length + 1);
-    return IMK_OK;
 }
 
-imk_status imki_value_keys(const imk_document *document, int mapping, size_t count,
-                           const char *const *names, imk_error *error)
+void imki_value_keys(imki_reading *r, int mapping, size_t count, const char *const *names)
 {
-    for (int key = document->node[mapping].first; key != IMKI_NONE;
-         key = document->node[document->node[key].next].next) {
-        const word w = {document->node[key].text, document->node[key].length};
+    const imki_node *nodes = r->document->node;
+    for (int key = nodes[mapping].first; key != IMKI_NONE && r->status == IMK_OK;
+         key = nodes[nodes[key].next].next) {
+        const word w = {nodes[key].text, nodes[key].length};
         if (find_word(w, count, names) < 0)
-            return imki_refuse_name(document, key, count, names, error);
+            r->status = imki_refuse_name(r->document, key, count, names, r->error);
     }
-    return IMK_OK;
 }
 
-imk_status imki_value_version(const imk_document *document, const char *key, imk_error *error)
+void imki_value_version(imki_reading *r, const char *key)
 {
-    const int node = imki_document_value(document, 0, key);
-    if (node == IMKI_NONE) {
-        char expected[64];
-        snprintf(expected, sizeof expected, "write %s: 1, the version of the format", key);
-        return imki_document_error(document, 0, IMK_ERROR_KEY_MISSING, "", expected, error);
-    }
-    const imki_node *n = &document->node[node];
-    if (n->kind != IMKI_NODE_SCALAR || strcmp(n->text, "1") != 0)
-        return imki_document_error(document, node, IMK_ERROR_VERSION,
-                                   n->kind == IMKI_NODE_SCALAR ? n->text : "",
-                                   "version 1 of the format", error);
-    return IMK_OK;
+    const int node = imki_document_value(r->document, 0, key);
+    char expected[64];
+    snprintf(expected, sizeof expected, "write %s: 1, the version of the format", key);
+    if (node == IMKI_NONE)
+        imki_value_refuse(r, 0, IMK_ERROR_KEY_MISSING, "", expected);
+    else if (r->document->node[node].kind != IMKI_NODE_SCALAR ||
+             strcmp(r->document->node[node].text, "1") != 0)
+        imki_refuse_value(r, node, IMK_ERROR_VERSION, "version 1 of the format");
+}
+
+bool imki_value_find(imki_reading *r, int mapping, const char *key, const char *expected, int *node)
+{
+    *node = imki_document_value(r->document, mapping, key);
+    if (*node == IMKI_NONE)
+        imki_value_refuse(r, mapping, IMK_ERROR_KEY_MISSING, key, expected);
+    return r->status == IMK_OK;
+}
+
+const char *const imki_yes_no[6] = {"yes", "true", "on", "no", "false", "off"};
+
+void imki_value_choice(imki_reading *r, int node, const char *const words[6], const char *expected,
+                       bool *value)
+{
+    if (!imki_value_require(r, node, IMKI_NODE_SCALAR, expected))
+        return;
+    for (int i = 0; i < 6; i++)
+        if (words[i] && strcmp(words[i], r->document->node[node].text) == 0) {
+            *value = i < 3;
+            return;
+        }
+    imki_refuse_value(r, node, IMK_ERROR_SYNTAX, expected);
+}
+
+size_t imki_value_count(imki_reading *r, int node, size_t least, size_t most, const char *expected)
+{
+    const imki_node *n = &r->document->node[node];
+    char *end = NULL;
+    const bool digits = n->kind == IMKI_NODE_SCALAR && n->text[0] >= '1' && n->text[0] <= '9';
+    const size_t count = digits ? strtoul(n->text, &end, 10) : 0;
+    if (!digits || *end != '\0' || count < least || count > most)
+        imki_refuse_value(r, node, IMK_ERROR_SYNTAX, expected);
+    return count;
 }

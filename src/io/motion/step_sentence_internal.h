@@ -56,10 +56,25 @@ typedef struct imki_verb {
     const char *usage;              /* "write hold 10 s" */
 } imki_verb;
 
-typedef struct imki_sentence {
+/* A document that is read, and the first failure: what comes after it counts for nothing. */
+typedef struct imki_reading {
     const imk_document *document;
+    imk_error *error; /* may be NULL */
+    imk_status status;
+} imki_reading;
+
+/* A failure at a node, unless there was one before. */
+void imki_value_refuse(imki_reading *reading, int node, imk_status status, const char *found,
+                       const char *expected);
+/* The same, found being the node's text. */
+void imki_refuse_value(imki_reading *reading, int node, imk_status status, const char *expected);
+/* "did you mean" the nearest of the names, or all of them. `found` is the name, or more. */
+void imki_refuse_word(imki_reading *reading, int node, const char *name, const char *found,
+                      size_t count, const char *const *names);
+
+typedef struct imki_sentence {
+    imki_reading *reading;
     int node; /* a scalar */
-    imk_error *error;
     const imki_verb *verb;
     struct {
         const char *begin, *end; /* in the node's text */
@@ -67,10 +82,10 @@ typedef struct imki_sentence {
     unsigned parts, words;
 } imki_sentence;
 
-/* Divide the text of a node and find its verb among `count`. `what` is "a step", for messages. */
-imk_status imki_sentence_read(const imk_document *document, int node, const char *what,
-                              size_t count, const imki_verb *verbs, imki_sentence *sentence,
-                              imk_error *error);
+/* Divide the text of a node and find its verb among `count`. `what` is "a step", for messages.
+ * @return false when that fails */
+bool imki_sentence_read(imki_reading *reading, int node, const char *what, size_t count,
+                        const imki_verb *verbs, imki_sentence *sentence);
 
 bool imki_sentence_has(const imki_sentence *sentence, imki_part part);
 
@@ -78,31 +93,39 @@ bool imki_sentence_has(const imki_sentence *sentence, imki_part part);
 int imki_sentence_axis(const imki_sentence *sentence);
 
 /* Exactly `count` numbers of a part in the dimension of an SI unit. */
-imk_status imki_sentence_numbers(const imki_sentence *sentence, imki_part part, const char *si,
-                                 size_t count, double *values);
-/* One that is above 0. */
-imk_status imki_sentence_positive(const imki_sentence *sentence, imki_part part, const char *si,
-                                  double *value);
+void imki_sentence_numbers(const imki_sentence *sentence, imki_part part, const char *si,
+                           size_t count, double *values);
+/* One; one that is above 0. What is returned after a failure is finite. */
+double imki_sentence_number(const imki_sentence *sentence, imki_part part, const char *si);
+double imki_sentence_positive(const imki_sentence *sentence, imki_part part, const char *si);
 
-/* An error at a part, found being its text; IMKI_PARTS: at the whole sentence. */
-imk_status imki_sentence_refuse(const imki_sentence *sentence, imki_part part, imk_status status,
-                                const char *expected);
+/* A failure at a part, found being its text; IMKI_PARTS: at the whole sentence. */
+void imki_sentence_refuse(const imki_sentence *sentence, imki_part part, imk_status status,
+                          const char *expected);
 
-/* Exactly `count` numbers, as the value of a key. */
-imk_status imki_value_numbers(const imk_document *document, int node, const char *si, size_t count,
-                              double *values, imk_error *error);
+/* A number, as the value of a key; the value stays as it is where there is none. */
+void imki_value_number(imki_reading *reading, int mapping, const char *key, const char *si,
+                       double *value);
+void imki_number_at(imki_reading *reading, int node, const char *si, double *value);
 
-/* IMK_ERROR_SYNTAX unless the node is of this kind. */
-imk_status imki_value_require(const imk_document *document, int node, imki_node_kind kind,
-                              const char *expected, imk_error *error);
+/* IMK_ERROR_SYNTAX unless the node is of this kind. @return false after any failure */
+bool imki_value_require(imki_reading *reading, int node, imki_node_kind kind, const char *expected);
 
 /* Text of a key of the root, shorter than `size`; "" when it is not there. */
-imk_status imki_value_name(const imk_document *document, const char *key, char *text, size_t size,
-                           imk_error *error);
+void imki_value_name(imki_reading *reading, const char *key, char *text, size_t size);
 
 /* All keys of a mapping are among these; the version key of the root says 1. */
-imk_status imki_value_keys(const imk_document *document, int mapping, size_t count,
-                           const char *const *names, imk_error *error);
-imk_status imki_value_version(const imk_document *document, const char *key, imk_error *error);
+void imki_value_keys(imki_reading *reading, int mapping, size_t count, const char *const *names);
+void imki_value_version(imki_reading *reading, const char *key);
+/* A key that must be there. @return false after any failure */
+bool imki_value_find(imki_reading *reading, int mapping, const char *key, const char *expected,
+                     int *node);
+/* "yes" and "no" as YAML has them; or other words, of which the first three mean true. */
+extern const char *const imki_yes_no[6];
+void imki_value_choice(imki_reading *reading, int node, const char *const words[6],
+                       const char *expected, bool *value);
+/* Digits only, from `least` to `most`. */
+size_t imki_value_count(imki_reading *reading, int node, size_t least, size_t most,
+                        const char *expected);
 
 #endif

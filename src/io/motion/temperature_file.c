@@ -65,98 +65,75 @@ static imk_status add_point(imk_temperature_file *file, double time, double temp
 /* ---- scripts --------------------------------------------------------------------------------- */
 
 /* A temperature above absolute zero. */
-static imk_status read_temperature(const imki_sentence *s, imki_part part, double *temperature)
+static double read_temperature(const imki_sentence *s, imki_part part)
 {
-    const imk_status status = imki_sentence_numbers(s, part, "K", 1, temperature);
-    if (status == IMK_OK && !(*temperature > 0.0))
-        return imki_sentence_refuse(s, part, IMK_ERROR_RANGE, "a temperature above 0 K");
-    return status;
+    const double temperature = imki_sentence_number(s, part, "K");
+    if (!(temperature > 0.0))
+        imki_sentence_refuse(s, part, IMK_ERROR_RANGE, "a temperature above 0 K");
+    return temperature;
 }
 
-static imk_status read_ramp(imk_temperature_file *file, const imki_sentence *s)
+/* A straight line from the last point to a temperature: so long, or at a rate. */
+static double read_ramp_time(const imki_sentence *s, double change)
 {
-    const size_t last = file->profile.point_count - 1;
-    double temperature = 0.0, measure = 0.0;
-    imk_status status = read_temperature(s, IMKI_PART_TO, &temperature);
-    const bool has_rate = imki_sentence_has(s, IMKI_PART_AT);
-    if (status == IMK_OK)
-        status = imki_sentence_positive(s, has_rate ? IMKI_PART_AT : IMKI_PART_IN,
-                                        has_rate ? "K/s" : "s", &measure);
-    if (status != IMK_OK)
-        return status;
-    const double duration =
-        has_rate ? fabs(temperature - file->temperature[last]) / measure : measure;
-    return duration > 0.0 ? add_point(file, file->time[last] + duration, temperature, s->error)
-                          : IMK_OK;
+    return imki_sentence_has(s, IMKI_PART_AT)
+               ? fabs(change) / imki_sentence_positive(s, IMKI_PART_AT, "K/s")
+               : imki_sentence_positive(s, IMKI_PART_IN, "s");
 }
 
-static imk_status read_step(imk_temperature_file *file, const imk_document *document, int node,
-                            imk_error *error)
+static void read_step(imki_reading *r, int node, imk_temperature_file *file)
 {
     imki_sentence s;
-    double value = 0.0;
-    imk_status status = imki_value_require(document, node, IMKI_NODE_SCALAR,
-                                           "a step such as ramp to 60 degC at 1 degC/min", error);
-    if (status == IMK_OK)
-        status = imki_sentence_read(document, node, "a step", sizeof verbs / sizeof verbs[0], verbs,
-                                    &s, error);
-    if (status != IMK_OK)
-        return status;
-    const bool is_first = file->profile.point_count == 0;
-    if (is_first != (s.verb->kind == START))
-        return imki_sentence_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX,
-                                    is_first
-                                        ? "start with a step such as start 25 degC"
+    if (!imki_value_require(r, node, IMKI_NODE_SCALAR,
+                            "a step such as ramp to 60 degC at 1 degC/min") ||
+        !imki_sentence_read(r, node, "a step", sizeof verbs / sizeof verbs[0], verbs, &s))
+        return;
+    const size_t count = file->profile.point_count;
+    const int kind = s.verb->kind;
+    if ((count == 0) != (kind == START))
+        imki_sentence_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX,
+                             count == 0 ? "start with a step such as start 25 degC"
                                         : "start is the first step only; write step to 25 degC");
-    const size_t last = file->profile.point_count - 1;
-    switch (s.verb->kind) {
-    case START:
-        status = read_temperature(&s, IMKI_PART_BARE, &value);
-        return status == IMK_OK ? add_point(file, 0.0, value, error) : status;
-    case RAMP:
-        return read_ramp(file, &s);
-    case SOAK:
-        status = imki_sentence_positive(
-            &s, imki_sentence_has(&s, IMKI_PART_FOR) ? IMKI_PART_FOR : IMKI_PART_BARE, "s", &value);
-        return status == IMK_OK
-                   ? add_point(file, file->time[last] + value, file->temperature[last], error)
-                   : status;
-    default:
-        status = read_temperature(&s, IMKI_PART_TO, &value);
-        return status == IMK_OK ? add_point(file, file->time[last], value, error) : status;
+    if (r->status != IMK_OK)
+        return;
+    double time = count > 0 ? file->time[count - 1] : 0.0;
+    double temperature = count > 0 ? file->temperature[count - 1] : 0.0;
+    if (kind == SOAK) {
+        const bool words = imki_sentence_has(&s, IMKI_PART_FOR);
+        time += imki_sentence_positive(&s, words ? IMKI_PART_FOR : IMKI_PART_BARE, "s");
+    } else {
+        const double before = temperature;
+        temperature = read_temperature(&s, kind == START ? IMKI_PART_BARE : IMKI_PART_TO);
+        const double duration = kind == RAMP ? read_ramp_time(&s, temperature - before) : 0.0;
+        if (kind == RAMP && !(duration > 0.0))
+            return;
+        time += duration;
     }
+    if (r->status == IMK_OK)
+        r->status = add_point(file, time, temperature, r->error);
 }
 
-static imk_status read_script(const imk_document *document, imk_temperature_file *file,
-                              imk_error *error)
+static void read_script(imki_reading *r, imk_temperature_file *file)
 {
     static const char *const names[] = {"imukit_temperature", "name", "time_constant", "steps"};
-    char name[IMKI_MOTION_NAME_SIZE];
-    imk_status status = imki_value_keys(document, 0, 4, names, error);
-    if (status == IMK_OK)
-        status = imki_value_version(document, "imukit_temperature", error);
-    if (status == IMK_OK)
-        status = imki_value_name(document, "name", name, sizeof name, error);
-    const int constant = imki_document_value(document, 0, "time_constant");
-    if (status == IMK_OK && constant != IMKI_NONE)
-        status =
-            imki_value_numbers(document, constant, "s", 1, &file->profile.time_constant, error);
-    if (status == IMK_OK && !(file->profile.time_constant >= 0.0))
-        status = imki_document_error(document, constant, IMK_ERROR_RANGE,
-                                     document->node[constant].text, "a time of 0 s or more", error);
-    if (status != IMK_OK)
-        return status;
-    const int steps = imki_document_value(document, 0, "steps");
     static const char due[] = "a list of steps: [start 25 degC, soak 30 min, …]";
-    if (steps == IMKI_NONE)
-        return imki_document_error(document, 0, IMK_ERROR_KEY_MISSING, "steps", due, error);
-    status = imki_value_require(document, steps, IMKI_NODE_SEQUENCE, due, error);
-    if (status == IMK_OK && document->node[steps].count == 0)
-        status = imki_document_error(document, steps, IMK_ERROR_SYNTAX, "[]", due, error);
-    for (int i = document->node[steps].first; status == IMK_OK && i != IMKI_NONE;
-         i = document->node[i].next)
-        status = read_step(file, document, i, error);
-    return status;
+    const imki_node *nodes = r->document->node;
+    const int constant = imki_document_value(r->document, 0, "time_constant");
+    char name[IMKI_MOTION_NAME_SIZE];
+    int steps;
+    imki_value_keys(r, 0, 4, names);
+    imki_value_version(r, "imukit_temperature");
+    imki_value_name(r, "name", name, sizeof name);
+    imki_value_number(r, 0, "time_constant", "s", &file->profile.time_constant);
+    if (!(file->profile.time_constant >= 0.0))
+        imki_refuse_value(r, constant, IMK_ERROR_RANGE, "a time of 0 s or more");
+    if (!imki_value_find(r, 0, "steps", due, &steps) ||
+        !imki_value_require(r, steps, IMKI_NODE_SEQUENCE, due))
+        return;
+    if (nodes[steps].count == 0)
+        imki_value_refuse(r, steps, IMK_ERROR_SYNTAX, "[]", due);
+    for (int i = nodes[steps].first; r->status == IMK_OK && i != IMKI_NONE; i = nodes[i].next)
+        read_step(r, i, file);
 }
 
 static imk_status open_script(const char *path, imk_temperature_file *file, imk_error *error)
@@ -168,8 +145,11 @@ static imk_status open_script(const char *path, imk_temperature_file *file, imk_
     if (status == IMK_OK)
         status = imki_document_parse_as("temperature", "imukit_temperature: 1", text, size,
                                         &document, error);
-    if (status == IMK_OK)
-        status = read_script(document, file, error);
+    imki_reading reading = {.document = document, .error = error};
+    if (status == IMK_OK) {
+        read_script(&reading, file);
+        status = reading.status;
+    }
     imk_document_free(document);
     free(text);
     return status;

@@ -130,7 +130,7 @@ imk_status imki_allan_curve_with_gaps(const imk_allan_settings *settings, size_t
     gaps.confidence = settings->confidence;
     const size_t size = imk_allan_gaps_workspace_size(n);
     imki_arena scratch = {.allocator = job->allocator};
-    void *workspace = imki_arena_take(&scratch, size);
+    void *workspace = imki_arena_room(&scratch, size);
     imk_allan_gap_point *point = imki_arena_take(&scratch, (factor_count + 1) * sizeof *point);
     imk_status status = IMK_ERROR_MEMORY;
     *curve = (imk_allan_curve){0};

@@ -3,6 +3,7 @@
  * that were found in the log. */
 #include "calibrate_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "jobs/arena_internal.h"
 
 #include <math.h>
@@ -20,7 +21,7 @@ static bool observe_rests(const imk_calibrate_log *b, const imk_calibrate_record
         return false;
     for (size_t k = 0; k < log->interval_count; k++) {
         const double *mean = log->interval[k].mean[1];
-        const double norm = sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
+        const double norm = imki_norm3(mean);
         imk_observation o = {
             .knowledge = IMK_INPUT_GRAVITY, .fixture = -1, .temperature = (double)NAN};
         if (!(norm > 0))
@@ -55,7 +56,7 @@ static bool find_poses(imk_calibration *c, imki_arena *arena, imk_pose_advice *a
     c->record[0] = &none;
     c->record_count = 1;
     const size_t size = imk_next_pose_workspace_size(c);
-    void *workspace = imki_arena_take(arena, size);
+    void *workspace = imki_arena_room(arena, size);
     return workspace && imk_next_pose(c, pose_sigma, workspace, size, IMK_CALIBRATE_POSES, advice,
                                       &error) == IMK_OK;
 }

@@ -69,7 +69,7 @@ static void round_axes(imk_axes *axes, const char *unit)
 static void round_repeatability(imk_model *model, int sensor)
 {
     static const char *const units[2] = {"deg/h", "mg"};
-    imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
+    imk_triad *triad = imk_model_triad_to_set(model, sensor);
     imk_evidence *evidence = sensor == 0 ? &model->gyro_evidence : &model->accel_evidence;
     round_axes(&triad->bias.repeatability, units[sensor]);
     round_axes(&triad->scale_factor.repeatability, "ppm");
@@ -115,7 +115,7 @@ static void put_interval(imk_evidence *evidence, const imk_interval *interval)
 /* 95 % interval of a term that was estimated on every axis. */
 static void state_interval(const imk_calibrate_log *b, imk_model *model, int sensor, int term)
 {
-    const imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, sensor);
     const imk_model_parameter first = {(uint8_t)sensor, (uint8_t)term, 0, 0};
     const char *unit = imk_parameter_file_unit(first);
     imk_interval interval = {.instance = 0};

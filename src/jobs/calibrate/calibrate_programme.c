@@ -34,7 +34,7 @@ static imk_status make(imk_calibration *c, imk_calibrate_plan *p, imk_error *err
     c->turn = imki_arena_take(&scratch, (room + 1) * sizeof *c->turn);
     c->observation_capacity = c->turn_capacity = room;
     const size_t size = imk_plan_workspace_size(c, &p->settings);
-    void *workspace = imki_arena_take(&scratch, size);
+    void *workspace = imki_arena_room(&scratch, size);
     if (p->step && !scratch.failed)
         status = imk_plan_make(c, &p->settings, workspace, size, p->step, &p->result, error);
     else

@@ -114,8 +114,8 @@ void imk_calibration_of_model(const imk_model *model, const imk_model *first,
                               imk_calibration_result *r)
 {
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_triad *t = sensor == 0 ? &model->gyro : &model->accel;
-        const imk_triad *f = sensor == 0 ? &first->gyro : &first->accel;
+        const imk_triad *t = imk_model_triad(model, sensor);
+        const imk_triad *f = imk_model_triad(first, sensor);
         const imk_evidence *evidence = sensor == 0 ? &model->gyro_evidence : &model->accel_evidence;
         for (int axis = 0; t->present && axis < t->axis_count; axis++) {
             const double nominal = f->sensitivity.value[axis];

@@ -12,7 +12,6 @@
 #include "imukit/samples.h"
 
 #include <math.h>
-#include <string.h>
 
 static const uint32_t settings_cookie = 0x434F4D31; /* "COM1" */
 
@@ -53,14 +52,14 @@ static stream *allocate(const imk_record_source *source, imki_arena *arena)
     if (!s)
         return NULL;
     for (size_t k = 0; k < source->column_count; k++)
-        s->data[k] = imki_arena_take(arena, size);
+        s->data[k] = imki_arena_room(arena, size);
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; i < IMK_AXES_MAX; i++)
-            s->corrected[sensor][i] = imki_arena_take(arena, size);
-    s->flag_column = imki_arena_take(arena, size);
+            s->corrected[sensor][i] = imki_arena_room(arena, size);
+    s->flag_column = imki_arena_room(arena, size);
     s->temperature = imki_arena_take(arena, size);
-    s->workspace = imki_arena_take(arena, imk_compensate_workspace(BLOCK_ROWS) * sizeof(double));
-    s->flags = imki_arena_take(arena, rows);
+    s->workspace = imki_arena_room(arena, imk_compensate_workspace(BLOCK_ROWS) * sizeof(double));
+    s->flags = imki_arena_room(arena, rows);
     s->first_time = s->last_time = (double)NAN;
     return arena->failed ? NULL : s;
 }
@@ -319,16 +318,14 @@ imk_status imk_compensate_log_run(const imk_record_source *source, const imk_mod
                                   const imk_record_sink *sink, const imk_job *job,
                                   imk_compensate_log **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    imk_status status;
     *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_compensate_log_default()");
-    imk_compensate_log *log = imki_resize(&job->allocator, NULL, sizeof *log);
+    job = imki_job_of(job);
+    imk_compensate_log *log = imki_result_new(
+        job, settings->cookie == settings_cookie ? NULL : "imk_compensate_log_default()",
+        sizeof *log, &status, error);
     if (!log)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    memset(log, 0, sizeof *log);
+        return status;
     log->settings = *settings;
     log->model = settings->terms ? *settings->terms : *model;
     log->counts.stretches = 1;
@@ -337,7 +334,7 @@ imk_status imk_compensate_log_run(const imk_record_source *source, const imk_mod
     imk_compensation_model(model, &log->model);
     imki_arena arena = {.allocator = job->allocator};
     stream *s = allocate(source, &arena);
-    imk_status status = IMK_ERROR_MEMORY;
+    status = IMK_ERROR_MEMORY;
     if (s) {
         s->source = source;
         s->sink = sink;

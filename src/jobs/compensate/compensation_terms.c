@@ -105,16 +105,16 @@ static void add_left_in(imk_term_keys *keys, const imk_triad *triad, const imk_t
 imk_term_keys imki_taken_out(const imk_model *model)
 {
     imk_term_keys list = {0};
-    add_taken_out(&list, &model->gyro, IMKI_GYRO);
-    add_taken_out(&list, &model->accel, IMKI_ACCEL);
+    add_taken_out(&list, &model->gyro, IMK_GYRO);
+    add_taken_out(&list, &model->accel, IMK_ACCEL);
     return list;
 }
 
 imk_term_keys imki_left_in(const imk_model *model, const imk_model *whole)
 {
     imk_term_keys list = {0};
-    add_left_in(&list, &model->gyro, &whole->gyro, IMKI_GYRO);
-    add_left_in(&list, &model->accel, &whole->accel, IMKI_ACCEL);
+    add_left_in(&list, &model->gyro, &whole->gyro, IMK_GYRO);
+    add_left_in(&list, &model->accel, &whole->accel, IMK_ACCEL);
     for (size_t i = 0; i < imki_timing_field_count; i++)
         if (*imki_field_values(&imki_timing_fields[i], &whole->timing) != 0)
             add(&list, "timing", imki_timing_fields[i].path[0]);

@@ -37,7 +37,7 @@ static void try_device(void *context, size_t item)
     c->no_bias = !states_bias(&model->gyro) || !states_bias(&model->accel);
     if (imk_drift_validate(model, &s->settings, NULL) == IMK_OK) {
         const size_t size = imk_drift_covariance_size(model, &s->settings);
-        void *memory = imki_arena_take(&scratch, size);
+        void *memory = imki_arena_room(&scratch, size);
         c->no_memory = !memory;
         if (memory && imk_drift_covariance(model, &s->settings, memory, size, NULL, &analysis,
                                            NULL) == IMK_OK) {

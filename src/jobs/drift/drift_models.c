@@ -2,10 +2,11 @@
 /* Covariance of each model, its figures, and the budget of its terms. */
 #include "drift_models_internal.h"
 
+#include "jobs/job_internal.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const uint32_t settings_cookie = 0x44524d31; /* "DRM1" */
 
@@ -108,7 +109,7 @@ static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_a
     if (status != IMK_OK)
         return status;
     const size_t size = imk_drift_covariance_size(one->model, &one->settings);
-    void *memory = imki_arena_take(arena, size);
+    void *memory = imki_arena_room(arena, size);
     one->figures = imki_arena_take(arena, one->settings.time_count * sizeof *one->figures);
     if (!memory || !one->figures)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
@@ -140,16 +141,14 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
                                 const imk_drift_models_settings *settings, const imk_job *job,
                                 imk_drift_models **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    imk_status status;
     *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_drift_models_default()");
-    holder *h = imki_resize(&job->allocator, NULL, sizeof *h);
+    job = imki_job_of(job);
+    holder *h = imki_result_new(
+        job, settings->cookie == settings_cookie ? NULL : "imk_drift_models_default()", sizeof *h,
+        &status, error);
     if (!h)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    memset(h, 0, sizeof *h);
+        return status;
     h->arena.allocator = job->allocator;
     imk_drift_models *r = &h->models;
     *result = r;
@@ -163,7 +162,7 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
         r->name[m] = names[m];
     }
     const bool after = settings->calibrated;
-    imk_status status = IMK_OK;
+    status = IMK_OK;
     if (after && count == 1)
         status = add_case(h, 0, false, "", job->executor, error);
     for (size_t m = 0; m < count && status == IMK_OK; m++)

@@ -122,7 +122,7 @@ static imk_status analyse_way(imk_graded *one, int way, const imk_job *job, imki
     if (status != IMK_OK)
         return status;
     const size_t size = imk_drift_covariance_size(one->model, &settings);
-    void *memory = imki_arena_take(scratch, size);
+    void *memory = imki_arena_room(scratch, size);
     status = memory ? imk_drift_covariance(one->model, &settings, memory, size, job->executor,
                                            &analysis, error)
                     : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
@@ -170,8 +170,7 @@ static imk_status find_position(imk_graded *one, const imk_job *job, imk_error *
 imk_status imk_grade_run(const imk_model *model, const imk_job *job, imk_graded **result,
                          imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     *result = NULL;
     imk_graded *one = imki_resize(&job->allocator, NULL, sizeof *one);
     if (!one)

@@ -62,7 +62,7 @@ static imk_status fit_channel(imk_identify_log *log, size_t channel, const imk_j
     const imk_allan_fit_settings settings = settings_of(&log->settings, r);
     const size_t size = imk_allan_fit_workspace_size(&settings, count, 0);
     imki_arena scratch = {.allocator = job->allocator};
-    void *workspace = imki_arena_take(&scratch, size);
+    void *workspace = imki_arena_room(&scratch, size);
     imk_allan_fit *fit = imki_arena_take(&scratch, sizeof *fit);
     imk_status status = IMK_ERROR_MEMORY;
     if (workspace && fit)

@@ -163,7 +163,7 @@ static imk_status fit_channel(imk_identify_log *log, size_t channel,
     settings.tolerance = s->tolerance;
     settings.gauss_markov_max = s->gauss_markov_max;
     const size_t size = imk_allan_fit_workspace_size(&settings, used->count, 0);
-    void *workspace = imki_arena_take(scratch, size);
+    void *workspace = imki_arena_room(scratch, size);
     imk_allan_fit *fit = imki_arena_take(scratch, sizeof *fit);
     if (!workspace || !fit)
         return IMK_ERROR_MEMORY;
@@ -202,8 +202,7 @@ imk_status imk_identify_curve_run(const imk_record_source *source,
                                   const imk_identify_curve_settings *settings, const imk_job *job,
                                   imk_identify_log **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     *result = NULL;
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,

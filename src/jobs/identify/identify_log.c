@@ -104,19 +104,17 @@ imk_status imk_identify_log_run(const imk_record_source *source,
                                 const imk_identify_log_settings *settings, const imk_job *job,
                                 imk_identify_log **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    imk_status status;
     *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_identify_log_default()");
-    imk_identify_log *made = imki_resize(&job->allocator, NULL, sizeof *made);
+    job = imki_job_of(job);
+    imk_identify_log *made = imki_result_new(
+        job, settings->cookie == settings_cookie ? NULL : "imk_identify_log_default()",
+        sizeof *made, &status, error);
     if (!made)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    memset(made, 0, sizeof *made);
+        return status;
     made->settings = *settings;
     *result = made;
-    const imk_status status = identify(made, source, job, error);
+    status = identify(made, source, job, error);
     made->record.log.allocator = job->allocator;
     made->duration = made->record.dt * (double)made->record.rows;
     return status;

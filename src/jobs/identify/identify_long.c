@@ -57,7 +57,7 @@ static bool make_block(long_record *s, row_block *block)
 {
     const imk_even_record *record = &s->log->record;
     const size_t columns = record->count + (s->time_column >= 0 ? 1 : 0);
-    double *place = imki_arena_take(&s->arena, columns * ROWS * sizeof *place);
+    double *place = imki_arena_room(&s->arena, columns * ROWS * sizeof *place);
     if (!place)
         return false;
     for (size_t c = 0; c < record->count; c++, place += ROWS)
@@ -189,7 +189,7 @@ static bool begin_records(long_record *s)
 {
     const size_t expected = (size_t)expected_rows(s), bytes = imk_identify_record_size(expected);
     for (size_t c = 0; c < s->log->record.count; c++) {
-        void *memory = imki_arena_take(&s->arena, bytes);
+        void *memory = imki_arena_room(&s->arena, bytes);
         if (!memory ||
             imk_identify_record_begin(expected, memory, bytes, &s->record[c], NULL) != IMK_OK)
             return false;

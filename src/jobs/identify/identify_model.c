@@ -2,6 +2,7 @@
 /* From the identified terms to a model, and back to a record: the twin. */
 #include "identify_log_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/allan/allan_curve_internal.h"
 #include "jobs/arena_internal.h"
 
@@ -71,12 +72,9 @@ imk_status imk_model_take_noise(imk_model *model, const imk_model *noise, imk_er
 {
     const bool gyros_differ = axes_differ(&model->gyro, &noise->gyro);
     if (gyros_differ || axes_differ(&model->accel, &noise->accel)) {
-        imk_error_set(error, IMK_ERROR_CONFLICT, gyros_differ ? "gyro" : "accel", NULL, NULL);
-        if (error) {
-            error->value = gyros_differ ? model->gyro.axis_count : model->accel.axis_count;
-            error->limit = gyros_differ ? noise->gyro.axis_count : noise->accel.axis_count;
-        }
-        return IMK_ERROR_CONFLICT;
+        return imki_refuse(error, IMK_ERROR_CONFLICT, gyros_differ ? "gyro" : "accel",
+                           gyros_differ ? model->gyro.axis_count : model->accel.axis_count,
+                           gyros_differ ? noise->gyro.axis_count : noise->accel.axis_count, NULL);
     }
     if (noise->gyro.present) {
         take_triad(&model->gyro, &noise->gyro);
@@ -119,8 +117,8 @@ imk_status imk_identify_log_twin(const imk_identify_log *log, const imk_model *n
     const size_t n = log->record.rows, channels = log->record.count;
     const size_t size = imk_simulator_size(noise, &simulation);
     imki_arena scratch = {.allocator = job->allocator};
-    void *memory = imki_arena_take(&scratch, size > 256 ? size : 256); /* 64-byte aligned */
-    double *data = imki_arena_take(&scratch, (n + 1) * channels * sizeof *data);
+    void *memory = imki_arena_room(&scratch, size > 256 ? size : 256); /* 64-byte aligned */
+    double *data = imki_arena_room(&scratch, (n + 1) * channels * sizeof *data);
     double *columns[IMK_LOG_COLUMNS_MAX];
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, "twin", NULL, NULL);
     imk_simulator *simulator;

@@ -18,7 +18,7 @@ static imk_status join_channel(imk_identify_several *s, size_t channel, imki_are
                                imk_error *error)
 {
     const size_t size = imk_identify_joint_workspace_size();
-    void *workspace = imki_arena_take(scratch, size);
+    void *workspace = imki_arena_room(scratch, size);
     imk_identification *single = imki_arena_take(scratch, s->count * sizeof *single);
     if (!workspace || !single)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);

@@ -238,7 +238,7 @@ imk_status imk_record_plan_run(const imk_model *model, const imk_record_plan_set
     planning about = {.model = model, .settings = imk_bounds_default()};
     about.settings.dt = 1 / settings->rate;
     about.settings.significance = settings->significance;
-    about.workspace = imki_arena_take(&scratch, imk_bounds_workspace_size());
+    about.workspace = imki_arena_room(&scratch, imk_bounds_workspace_size());
     about.plan = *result = imki_resize(&scratch.allocator, NULL, sizeof *about.plan);
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (about.plan) {

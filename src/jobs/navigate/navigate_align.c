@@ -195,7 +195,7 @@ static imk_status self_align(imk_navigate_log *n, imki_arena *scratch, imk_error
     settings.duration = dt * (double)n->first;
     settings.model = n->settings.model;
     const size_t size = imk_alignment_size(&settings);
-    void *memory = imki_arena_take(scratch, size);
+    void *memory = imki_arena_room(scratch, size);
     if (!memory)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     imk_status status = imk_alignment_start(memory, size, &settings, &alignment, error);

@@ -184,8 +184,7 @@ imk_status imk_navigate_log_run(const imk_record_source *source,
                                 const imk_navigate_log_settings *settings, const imk_job *job,
                                 imk_navigate_log **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     *result = NULL;
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,

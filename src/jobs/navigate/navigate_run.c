@@ -334,7 +334,7 @@ imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_ar
     if (status != IMK_OK)
         return status;
     const size_t size = imk_zero_velocity_size(&settings);
-    void *memory = imki_arena_take(scratch, size);
+    void *memory = imki_arena_room(scratch, size);
     status = memory ? imk_zero_velocity_start(memory, size, &settings, &n->start, &filter, error)
                     : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (status == IMK_OK)

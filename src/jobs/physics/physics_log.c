@@ -96,7 +96,7 @@ static imk_status begin_sheet(imk_physics_log *log, sheet *s, uint64_t rows, imk
         return IMK_OK;
     for (size_t c = 0; c < s->columns; c++) {
         decimals[c] = -1;
-        s->data[c] = imki_arena_take(arena, BLOCK_ROWS * sizeof *s->data[c]);
+        s->data[c] = imki_arena_room(arena, BLOCK_ROWS * sizeof *s->data[c]);
     }
     if (arena->failed)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
@@ -235,7 +235,8 @@ static imk_status pass(work *w, const imk_job *job, imki_arena *arena, imk_error
     void *state = imki_arena_take(arena, size > 256 ? size : 256); /* a cache line begins there */
     if (!state)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    imk_status status = instrument->init(w->log->settings.design, &settings, state, error);
+    imk_status status =
+        imk_instrument_init(instrument, w->log->settings.design, &settings, state, error);
     for (uint64_t k = 0; k < samples && status == IMK_OK; k++) {
         status = take_sample(w, state, k, error);
         if (status == IMK_OK)
@@ -287,7 +288,7 @@ static imk_physics_log *create(const imk_physics_log_settings *settings,
     for (size_t i = 0; i < outputs; i++)
         log->curve[i] = log->time + (1 + i) * size;
     log->input = log->time + (1 + outputs) * size;
-    settings->instrument->reduce(settings->design, &log->model);
+    imk_instrument_reduce(settings->instrument, settings->design, &log->model);
     return log;
 }
 
@@ -295,8 +296,7 @@ imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                const imk_record_sink *outputs, const imk_record_sink *signals,
                                const imk_job *job, imk_physics_log **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     *result = NULL;
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,

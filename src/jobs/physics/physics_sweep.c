@@ -30,7 +30,7 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
         status =
             imk_laboratory_run(&settings, workspace, size, job->executor, &made->result, error);
     if (status == IMK_OK) {
-        s->instrument->reduce(s->design, reduced);
+        imk_instrument_reduce(s->instrument, s->design, reduced);
         made->allocator = job->allocator;
         made->count = imk_laboratory_figures(reduced, s->instrument->sensor, made->computed);
         (void)imk_laboratory_figures(&made->result.model, s->instrument->sensor, made->found);

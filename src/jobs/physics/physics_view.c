@@ -140,9 +140,9 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
                           ((size_t)(view->curve_count + 1) * v->points + 1) * sizeof *v->data);
     imk_physics_settings physics = settings->physics;
     physics.rate = view->rate;
-    imk_status status = state && v->data
-                            ? instrument->init(settings->design, &physics, state, error)
-                            : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    imk_status status =
+        state && v->data ? imk_instrument_init(instrument, settings->design, &physics, state, error)
+                         : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (status == IMK_OK) {
         record(settings, v, stride, state);
         label_view(view->x < 0 ? scale_time(view, v->points, v->data)

@@ -128,7 +128,7 @@ static imk_status place_all(double rate, const double *time, imk_even_record *re
 {
     imki_grid grid;
     imki_arena scratch = {.allocator = record->log.allocator};
-    size_t *place = imki_arena_take(&scratch, record->log.rows * sizeof *place);
+    size_t *place = imki_arena_room(&scratch, record->log.rows * sizeof *place);
     imk_status status = place ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (place)
         place_rows(record, time, &grid, place);

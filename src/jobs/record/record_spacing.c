@@ -169,7 +169,7 @@ static imk_status bridge(double rate, imk_even_record *record, imk_findings *fin
     const size_t rows = record->log.rows;
     size_t good = 0, first = 0, last = 0;
     imki_arena scratch = {.allocator = record->log.allocator};
-    size_t *place = imki_arena_take(&scratch, rows * sizeof *place);
+    size_t *place = imki_arena_room(&scratch, rows * sizeof *place);
     if (!place)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     const size_t count = place_rows(record, place);

@@ -179,8 +179,7 @@ imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_s
                                 const imk_record_sink *sink, const char *stage, const imk_job *job,
                                 imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
                              "imk_simulate_log_default()");
@@ -189,8 +188,8 @@ imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_s
                    .layout = make_layout(model, settings),
                    .drops = model->timing.drops.value > 0};
     const size_t size = imk_simulator_size(model, &settings->simulation);
-    void *memory = imki_arena_take(&arena, size > 256 ? size : 256); /* a cache line begins there */
-    double *block = imki_arena_take(&arena, r.layout.count * BLOCK_ROWS * sizeof *block);
+    void *memory = imki_arena_room(&arena, size > 256 ? size : 256); /* a cache line begins there */
+    double *block = imki_arena_room(&arena, r.layout.count * BLOCK_ROWS * sizeof *block);
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     for (size_t c = 0; block && c < r.layout.count; c++)
         r.column[c] = block + c * BLOCK_ROWS;

@@ -182,13 +182,12 @@ static imk_status choose_trajectory(truth *t, imk_trajectory_piece *piece, imk_t
 imk_status imk_simulate_truth_run(const imk_model *model, const imk_simulate_log_settings *settings,
                                   const imk_record_sink *sink, const imk_job *job, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    job = imki_job_of(job);
     imki_arena arena = {.allocator = job->allocator};
     imk_trajectory_piece rest_piece;
     imk_trajectory rest;
     const size_t size = imk_simulator_size(model, &settings->simulation);
-    void *memory = imki_arena_take(&arena, size > 256 ? size : 256); /* a cache line begins there */
+    void *memory = imki_arena_room(&arena, size > 256 ? size : 256); /* a cache line begins there */
     truth *t = imki_arena_take(&arena, sizeof *t);
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (memory && t) {

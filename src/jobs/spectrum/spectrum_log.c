@@ -6,7 +6,6 @@
 #include "jobs/job_internal.h"
 
 #include <math.h>
-#include <string.h>
 
 static const uint32_t settings_cookie = 0x53504531; /* "SPE1" */
 
@@ -218,19 +217,17 @@ imk_status imk_spectrum_log_run(const imk_record_source *source,
                                 const imk_spectrum_log_settings *settings, const imk_job *job,
                                 imk_spectrum_log **result, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    imk_status status;
     *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_spectrum_log_default()");
-    imk_spectrum_log *made = imki_resize(&job->allocator, NULL, sizeof *made);
+    job = imki_job_of(job);
+    imk_spectrum_log *made = imki_result_new(
+        job, settings->cookie == settings_cookie ? NULL : "imk_spectrum_log_default()",
+        sizeof *made, &status, error);
     if (!made)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    memset(made, 0, sizeof *made);
+        return status;
     made->settings = *settings;
     *result = made;
-    imk_status status =
+    status =
         imk_even_record_load(source, settings->gaps, job, &made->record, &made->findings, error);
     made->record.log.allocator = job->allocator;
     return status == IMK_OK ? compute(made, job, error) : status;

@@ -3,6 +3,8 @@
  * alignment_inertial.c. */
 #include "alignment_internal.h"
 
+#include "base/refuse_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -19,10 +21,7 @@ imk_alignment_settings imk_alignment_default(void)
 static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
 {
     const imk_status status = isfinite(value) ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
-    imk_error_set(error, status, field, "", expected);
-    if (error != NULL)
-        error->value = value;
-    return status;
+    return imki_refuse(error, status, field, value, 0.0, expected);
 }
 
 static imk_status check(const imk_alignment_settings *s, imk_error *error)

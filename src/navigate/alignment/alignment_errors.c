@@ -20,14 +20,13 @@
  * that are known are not errors here: they are taken out before, by imk_correct(). */
 #include "alignment_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/elementary.h"
-#include "imukit/noise.h"
+#include "noise/noise_terms_internal.h"
 
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
-/* (ln 4)/pi, and the fastest stage against the others: noise.h, imk_flicker_start(). */
-static const double flicker_stage = 0.44127124674189006, fastest_stage = 1.208;
 
 static double square(double x)
 {
@@ -81,32 +80,45 @@ static void add_first_order(axis_errors *errors, double variance, double correla
     errors->change += variance * change_variance(correlation_time, duration) / duration;
 }
 
-static void add_flicker(axis_errors *errors, double instability, double duration, double dt)
+static void add_process(axis_errors *errors, const imki_process *p, double duration)
 {
-    double correlation_time = dt;
-    const double variance = flicker_stage * square(instability);
-    for (int j = 0; j < IMK_FLICKER_STAGES && variance > 0.0; j++) {
-        add_first_order(errors, j == 0 ? fastest_stage * variance : variance, correlation_time,
-                        duration);
-        correlation_time *= 4.0;
+    const double variance = p->share * square(p->size);
+    const double x = pi * p->frequency * duration, w = 2.0 * pi * p->frequency;
+    switch (p->kind) {
+    case IMKI_PROCESS_WHITE:
+        errors->white += variance;
+        break;
+    case IMKI_PROCESS_WALK:
+        errors->walk += variance;
+        break;
+    case IMKI_PROCESS_FIRST_ORDER:
+        add_first_order(errors, variance, p->time, duration);
+        break;
+    case IMKI_PROCESS_SINE:
+        if (x > 0.0)
+            errors->mean += 0.5 * square(p->size * imk_sin(x) / x);
+        break;
+    case IMKI_PROCESS_RESONANCE:
+        if (w > 0.0 && p->q > 0.0)
+            errors->white += 2.0 * variance / (p->q * w);
+        break;
     }
 }
 
-static void add_lists(axis_errors *errors, const imk_noise *noise, int axis, double duration)
+static void add_terms(axis_errors *errors, const imk_triad *triad, int axis, double duration,
+                      double dt)
 {
-    for (int i = 0; i < noise->gauss_markov_count; i++)
-        add_first_order(errors, square(noise->gauss_markov[i].sigma.value[axis]),
-                        noise->gauss_markov[i].correlation_time.value[axis], duration);
-    for (int i = 0; i < noise->sinusoid_count; i++) {
-        const double x = pi * noise->sinusoid[i].frequency.value[axis] * duration;
-        if (x > 0.0)
-            errors->mean += 0.5 * square(noise->sinusoid[i].amplitude.value[axis] * imk_sin(x) / x);
-    }
-    for (int i = 0; i < noise->resonance_count; i++) {
-        const double w = 2.0 * pi * noise->resonance[i].frequency.value[axis];
-        const double q = noise->resonance[i].q.value[axis];
-        if (w > 0.0 && q > 0.0)
-            errors->white += 2.0 * square(noise->resonance[i].sigma.value[axis]) / (q * w);
+    imki_process process[IMKI_PROCESSES_MAX];
+    imki_term_place place = {triad, axis, 0};
+    for (int t = 0; t < IMKI_NOISE_TERMS; t++) {
+        const imki_noise_term *term = imki_noise_terms[t];
+        const int instances = imki_term_count(term, &triad->noise);
+        for (place.instance = 0; place.instance < instances; place.instance++) {
+            const size_t count =
+                term->strength(place) != 0.0 ? term->processes(place, dt, process) : 0;
+            for (size_t i = 0; i < count; i++)
+                add_process(errors, &process[i], duration);
+        }
     }
 }
 
@@ -114,7 +126,7 @@ static double reading_variance(const imk_triad *triad, int axis, imk_vector3 inp
                                const imk_vector3 *force)
 {
     const double *e = triad->direction[axis];
-    const double along = e[0] * input.v[0] + e[1] * input.v[1] + e[2] * input.v[2];
+    const double along = imki_dot3(e, input.v);
     double sum = square(along) * (square(triad->scale_factor.fixed.sigma[axis]) +
                                   square(triad->scale_factor.repeatability.value[axis]));
     for (int j = 0; j < 3; j++) {
@@ -128,16 +140,12 @@ static double reading_variance(const imk_triad *triad, int axis, imk_vector3 inp
 
 static axis_errors errors_of_axis(const imk_triad *triad, int axis, double duration, double dt)
 {
-    const imk_noise *noise = &triad->noise;
     /* Rounding of each sample, when noise is larger than the step. */
-    const double rounding = square(triad->resolution.value[axis]) / 12.0 * dt;
-    axis_errors errors = {.white = square(noise->white.value[axis]) + rounding,
+    axis_errors errors = {.white = square(triad->resolution.value[axis]) / 12.0 * dt,
                           .mean = square(triad->bias.fixed.sigma[axis]) +
                                   square(triad->bias.repeatability.value[axis]),
-                          .walk = square(noise->random_walk.value[axis]),
-                          .quantum = square(noise->quantization.value[axis])};
-    add_flicker(&errors, noise->bias_instability.value[axis], duration, dt);
-    add_lists(&errors, noise, axis, duration);
+                          .quantum = square(triad->noise.quantization.value[axis])};
+    add_terms(&errors, triad, axis, duration, dt);
     return errors;
 }
 

@@ -82,7 +82,7 @@ static imk_vector3 walked(const candidate *c, imk_vector3 force, double time)
     const imk_vector3 left =
         imki_difference(f->difference[1], imk_matrix3_apply(c->fit.change, f->reference[1]));
     const imk_vector3 there = imk_matrix3_apply(imk_matrix3_transpose(c->fit.rotation), force);
-    return imki_scaled(attitude_share(&f->noise, time) / imki_dot(force, force),
+    return imki_scaled(attitude_share(&f->noise, time) / imki_dot3(force.v, force.v),
                        imki_cross(there, left));
 }
 
@@ -99,8 +99,9 @@ static void fine_covariance(const imk_alignment *a, const candidate *c, imk_vect
     imk_matrix3 map;
     const imki_velocity_noise *noise = &c->whitener->noise;
     const imk_vector3 s = c->whitener->reference[1];
-    const double per_square = 1.0 / imki_dot(force, force), share = attitude_share(noise, a->time);
-    const double seen = share * per_square, fs = imki_dot(force, s);
+    const double per_square = 1.0 / imki_dot3(force.v, force.v),
+                 share = attitude_share(noise, a->time);
+    const double seen = share * per_square, fs = imki_dot3(force.v, s.v);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             map.m[i][j] = (i == j ? 1.0 - fs * seen : 0.0) + s.v[i] * force.v[j] * seen;
@@ -153,7 +154,7 @@ typedef struct solution {
 static imk_quaternion solve_with(const imk_alignment *a, const candidate *c, const solution *s,
                                  imk_matrix3 *covariance)
 {
-    const double per_square = 1.0 / imki_dot(s->force, s->force);
+    const double per_square = 1.0 / imki_dot3(s->force.v, s->force.v);
     const double about =
         c->variance * per_square * per_square * attitude_walk(&c->whitener->noise, a->time);
     imk_quaternion body = a->velocities.body;

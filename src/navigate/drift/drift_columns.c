@@ -3,6 +3,7 @@
  * sensitivities of distort.h; and what it makes of a self-alignment. */
 #include "drift_covariance_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/distort.h"
 #include "model/model_schema_internal.h"
 
@@ -11,11 +12,6 @@
 
 /* ---- columns ----------------------------------------------------------------------------------
  */
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* alpha x r + w x (w x r) along the axis, for r of length 1 along body axis `part`. */
 static double lever_effect(const imk_motion_state *state, int axis, int part)
@@ -46,8 +42,8 @@ static double factor(const imki_drift_column *column, const imki_drift_node *nod
     case IMKI_COLUMN_POWER:
         return imki_power_at(&imki_input_powers[part], u);
     case IMKI_COLUMN_CROSS:
-        return (part < 2 ? u : dot(column->pendulous, f)) *
-               dot(part == 0 ? column->pendulous : column->output, f);
+        return (part < 2 ? u : imki_dot3(column->pendulous, f)) *
+               imki_dot3(part == 0 ? column->pendulous : column->output, f);
     case IMKI_COLUMN_LEVER:
         return lever_effect(state, column->axis, part);
     default:
@@ -58,7 +54,7 @@ static double factor(const imki_drift_column *column, const imki_drift_node *nod
 static void put(imk_matrix3 c, const double body[3], double g[3])
 {
     for (int i = 0; i < 3; i++)
-        g[i] = dot(c.m[i], body);
+        g[i] = imki_dot3(c.m[i], body);
 }
 
 /* In body axes what a column carries, and in which part of x. */

@@ -6,9 +6,9 @@
  * own results: nothing depends on who does what when. */
 #include "drift_covariance_internal.h"
 
-#include <string.h>
+#include "base/workspace_internal.h"
 
-enum { ALIGNMENT = 64 };
+#include <string.h>
 
 /* ---- memory ------------------------------------------------------------------------------------
  */
@@ -41,44 +41,35 @@ typedef struct layout {
     imki_drift_driver *driver;
     imki_driver_step (*over)[IMKI_DRIFT_SLOTS];
     double (*coefficient)[IMKI_DRIFT_COLUMNS][IMKI_DRIFT_MOMENTS][9]; /* [step] */
-    size_t size;
+    imki_arena memory;
 } layout;
 
-/* The next `size` bytes; without memory they are only counted. */
-static void *take(layout *l, unsigned char *memory, size_t size)
+static layout lay_out(const imk_model *model, const imk_drift_settings *settings, void *memory)
 {
-    void *at = memory ? memory + l->size : NULL;
-    l->size += (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-    return at;
-}
-
-static layout lay_out(const imk_model *model, const imk_drift_settings *settings,
-                      unsigned char *memory)
-{
-    layout l = {.size = 0};
+    layout l = {.memory = {memory, 0}};
     imki_drift_plan count = {.source_count = 0};
     imki_drift_sources(&count, model, settings, (imk_geodetic){0.0, 0.0, 0.0});
     const size_t sources = count.source_count, times = settings->time_count;
     const size_t drivers = imki_drift_drivers_max(model);
-    l.analysis = take(&l, memory, sizeof *l.analysis);
-    l.source = take(&l, memory, sources * sizeof *l.source);
-    l.contribution = take(&l, memory, sources * times * sizeof *l.contribution);
-    l.total = take(&l, memory, times * sizeof *l.total);
-    l.time = take(&l, memory, times * sizeof *l.time);
-    l.work = take(&l, memory, sizeof *l.work);
-    l.part = take(&l, memory, sources * sizeof *l.part);
+    l.analysis = imki_take(&l.memory, sizeof *l.analysis);
+    l.source = imki_take(&l.memory, sources * sizeof *l.source);
+    l.contribution = imki_take(&l.memory, sources * times * sizeof *l.contribution);
+    l.total = imki_take(&l.memory, times * sizeof *l.total);
+    l.time = imki_take(&l.memory, times * sizeof *l.time);
+    l.work = imki_take(&l.memory, sizeof *l.work);
+    l.part = imki_take(&l.memory, sources * sizeof *l.part);
     /* One more, so that the array is there also for a model without errors. */
-    l.element = take(&l, memory, (count.element_count + 1) * sizeof *l.element);
-    l.column = take(&l, memory, IMKI_DRIFT_COLUMNS * sizeof *l.column);
-    l.driver = take(&l, memory, drivers * sizeof *l.driver);
-    l.over = take(&l, memory, drivers * sizeof *l.over);
-    l.coefficient = take(&l, memory, IMKI_DRIFT_BLOCK * sizeof *l.coefficient);
+    l.element = imki_take(&l.memory, (count.element_count + 1) * sizeof *l.element);
+    l.column = imki_take(&l.memory, IMKI_DRIFT_COLUMNS * sizeof *l.column);
+    l.driver = imki_take(&l.memory, drivers * sizeof *l.driver);
+    l.over = imki_take(&l.memory, drivers * sizeof *l.over);
+    l.coefficient = imki_take(&l.memory, IMKI_DRIFT_BLOCK * sizeof *l.coefficient);
     return l;
 }
 
 size_t imk_drift_covariance_size(const imk_model *model, const imk_drift_settings *settings)
 {
-    return lay_out(model, settings, NULL).size;
+    return lay_out(model, settings, NULL).memory.used;
 }
 
 /* ---- work items --------------------------------------------------------------------------------
@@ -254,10 +245,10 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
     const imk_status status = imk_drift_validate(model, settings, error);
     if (status != IMK_OK)
         return status;
-    if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
+    if (!memory || (uintptr_t)memory % 64 != 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
     const layout l = lay_out(model, settings, memory);
-    if (size < l.size)
+    if (size < l.memory.used)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_drift_covariance_size() bytes");
     memset(l.analysis, 0, sizeof *l.analysis);

@@ -6,6 +6,7 @@
  * median-unbiased [HYNDMAN1996, definition 8], with the interval between two order statistics whose
  * ranks the binomial distribution gives, free of any assumption. A root mean square r of n values
  * has the interval r exp(-+ z s/(2 r^2)), s^2 = (mean of x^4 - r^4)/n, z of 95 %. */
+#include "base/sort_internal.h"
 #include "drift_radius_internal.h"
 #include "imukit/distributions.h"
 #include "imukit/drift.h"
@@ -77,33 +78,6 @@ static const double *run_of(const runs *r, size_t run)
         if (!isfinite(e[i]))
             return NULL;
     return e;
-}
-
-static void sift_down(double *x, size_t root, size_t count)
-{
-    const double value = x[root];
-    for (size_t child = 2 * root + 1; child < count; child = 2 * root + 1) {
-        if (child + 1 < count && x[child + 1] > x[child])
-            child++;
-        if (!(x[child] > value))
-            break;
-        x[root] = x[child];
-        root = child;
-    }
-    x[root] = value;
-}
-
-/* Heapsort [WILLIAMS1964], which needs neither memory nor the C library. */
-static void sort(double *x, size_t count)
-{
-    for (size_t root = count / 2; root-- > 0;)
-        sift_down(x, root, count);
-    for (size_t last = count; last-- > 1;) {
-        const double largest = x[0];
-        x[0] = x[last];
-        x[last] = largest;
-        sift_down(x, 0, last);
-    }
 }
 
 /* Of `count` >= 1 numbers in order; positions beyond the ends are the ends. */
@@ -208,7 +182,7 @@ imk_drift_figures imk_drift_figures_of_runs(size_t count, size_t stride, const d
             workspace[r.used++] = sqrt(e[NORTH] * e[NORTH] + e[EAST] * e[EAST]);
     }
     if (r.used > 0) {
-        sort(workspace, r.used);
+        imki_sort(workspace, r.used);
         f.cep = radius_of(workspace, r.used, 0.5, &least.cep, &most.cep);
         f.r95 = radius_of(workspace, r.used, 0.95, &least.r95, &most.r95);
         f.drms = rms_of(&r, NORTH, EAST, &least.drms, &most.drms);

@@ -13,109 +13,20 @@
 
 #include "imukit/distort.h"
 #include "imukit/elementary.h"
-#include "imukit/noise.h"
+#include "noise/noise_terms_internal.h"
 
 #include <math.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
-#define FASTEST 1.20785 /* variance of the fastest stage, of the others': src/noise/flicker.c */
 
 static const char *const kinds[2] = {"gyro", "accel"};
-
-/* A term that one driver of unit size stands for on every axis. */
-static void add_simple_noise(imki_drift_plan *plan, const double *value, int sensor,
-                             const char *name, const char *text, const imki_drift_driver *driver)
-{
-    if (!imki_drift_has_any(value, 3))
-        return;
-    imki_drift_add_source(plan, kinds[sensor], name, "", text);
-    for (int axis = 0; axis < 3; axis++) {
-        const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_ONE, sensor, axis, 0);
-        if (value[axis] != 0.0)
-            imki_drift_add_noise(plan, IMKI_ELEMENT_NOISE, &column, driver,
-                                 value[axis] * value[axis]);
-    }
-}
 
 /* x coth x, x = dt/2T; e^(-2x) is below rounding beyond 20. */
 static double sampled_share(double time, double dt)
 {
     const double x = 0.5 * dt / time, less = imk_expm1(-2.0 * x);
     return less == 0.0 ? 1.0 : x * (2.0 + less) / -less;
-}
-
-/* Stages 0 and 1 change at every sample. The others hold their values, and are interpolated by it:
- * only half a per cent is between them and their processes. */
-static void add_flicker(imki_drift_plan *plan, const double *value, int sensor, double dt)
-{
-    if (!imki_drift_has_any(value, 3))
-        return;
-    imki_drift_add_source(plan, kinds[sensor], "noise.bias_instability", "",
-                          sensor == IMK_GYRO ? "gyro bias instability"
-                                             : "accelerometer bias instability");
-    for (int axis = 0; axis < 3; axis++) {
-        const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_ONE, sensor, axis, 0);
-        double time = dt;
-        for (int stage = 0; stage < IMK_FLICKER_STAGES && value[axis] != 0.0;
-             stage++, time *= 4.0) {
-            const imki_drift_driver driver = imki_driver_gauss_markov(time);
-            const double share = imk_flicker_allan_variance(1.0, time) *
-                                 (stage == 0 ? FASTEST : 1.0) *
-                                 (stage < 2 ? sampled_share(time, dt) : 1.0);
-            imki_drift_add_noise(plan, IMKI_ELEMENT_NOISE, &column, &driver,
-                                 share * value[axis] * value[axis]);
-        }
-    }
-}
-
-static const char *const instance[IMK_TERMS_MAX] = {"[0]", "[1]", "[2]", "[3]",
-                                                    "[4]", "[5]", "[6]", "[7]"};
-
-static void add_gauss_markov(imki_drift_plan *plan, const imk_noise *noise, int sensor, double dt)
-{
-    for (int i = 0; i < noise->gauss_markov_count; i++) {
-        const struct imk_gauss_markov_term *term = &noise->gauss_markov[i];
-        if (!imki_drift_has_any(term->sigma.value, 3))
-            continue;
-        imki_drift_add_source(plan, kinds[sensor], "noise.gauss_markov", instance[i],
-                              sensor == IMK_GYRO ? "gyro Gauss-Markov process"
-                                                 : "accelerometer Gauss-Markov process");
-        for (int axis = 0; axis < 3; axis++) {
-            const double sigma = term->sigma.value[axis], time = term->correlation_time.value[axis];
-            const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_ONE, sensor, axis, 0);
-            if (sigma == 0.0)
-                continue;
-            const imki_drift_driver driver = imki_driver_gauss_markov(time);
-            imki_drift_add_noise(plan, IMKI_ELEMENT_NOISE, &column, &driver,
-                                 sampled_share(time, dt) * sigma * sigma);
-        }
-    }
-}
-
-/* The phase is random: two independent amplitudes, of sine and cosine. Above half the sample rate
- * the frequency is folded. */
-static void add_sinusoids(imki_drift_plan *plan, const imk_noise *noise, int sensor, double dt)
-{
-    for (int i = 0; i < noise->sinusoid_count; i++) {
-        const struct imk_sinusoid_term *term = &noise->sinusoid[i];
-        if (!imki_drift_has_any(term->amplitude.value, 3))
-            continue;
-        imki_drift_add_source(plan, kinds[sensor], "noise.sinusoid", instance[i],
-                              sensor == IMK_GYRO ? "gyro sinusoid" : "accelerometer sinusoid");
-        for (int axis = 0; axis < 3; axis++) {
-            const double amplitude = term->amplitude.value[axis];
-            const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_ONE, sensor, axis, 0);
-            if (amplitude == 0.0)
-                continue;
-            const double cycles = term->frequency.value[axis] * dt;
-            const double x = PI * fabs(cycles - floor(cycles + 0.5));
-            const imki_drift_driver driver = imki_driver_oscillator(2.0 * x / dt);
-            const double size = amplitude * sqrt(0.5) * (x > 0.0 ? x / imk_sin(x) : 1.0);
-            imki_drift_add_constant(plan, IMKI_ELEMENT_SIZE, &column, &driver, size, 0.0);
-            imki_drift_add_constant(plan, IMKI_ELEMENT_SIZE, &column, &driver, 0.0, size);
-        }
-    }
 }
 
 /* Density at low frequencies of the samples of a resonance. Its design ends at a million cycles a
@@ -126,28 +37,70 @@ static double folded_density(imk_resonance resonance, double dt)
     return isfinite(density) ? density : resonance.sigma * resonance.sigma * dt;
 }
 
+/* The phase is random: two independent amplitudes, of sine and cosine. Above half the sample rate
+ * the frequency is folded. */
+static void add_sine(imki_drift_plan *plan, const imki_process *p, const imki_drift_column *column,
+                     double dt)
+{
+    const double cycles = p->frequency * dt;
+    const double x = PI * fabs(cycles - floor(cycles + 0.5));
+    const imki_drift_driver driver = imki_driver_oscillator(2.0 * x / dt);
+    const double size = p->size * sqrt(0.5) * (x > 0.0 ? x / imk_sin(x) : 1.0);
+    imki_drift_add_constant(plan, IMKI_ELEMENT_SIZE, column, &driver, size, 0.0);
+    imki_drift_add_constant(plan, IMKI_ELEMENT_SIZE, column, &driver, 0.0, size);
+}
+
 /* Up to a quarter of the sample rate the process itself; above it, where samples fold it, white
  * noise. */
-static void add_resonances(imki_drift_plan *plan, const imk_noise *noise, int sensor, double dt)
+static void add_resonance(imki_drift_plan *plan, const imki_process *p,
+                          const imki_drift_column *column, double dt)
 {
-    for (int i = 0; i < noise->resonance_count; i++) {
-        const struct imk_resonance_term *term = &noise->resonance[i];
-        if (!imki_drift_has_any(term->sigma.value, 3))
-            continue;
-        imki_drift_add_source(plan, kinds[sensor], "noise.resonance", instance[i],
-                              sensor == IMK_GYRO ? "gyro resonance" : "accelerometer resonance");
-        for (int axis = 0; axis < 3; axis++) {
-            const imk_resonance r = {term->sigma.value[axis], term->frequency.value[axis],
-                                     term->q.value[axis]};
-            const imki_drift_column column = imki_drift_column_of(IMKI_COLUMN_ONE, sensor, axis, 0);
-            if (r.sigma == 0.0)
-                continue;
-            const bool folded = r.frequency * dt > 0.25;
-            const imki_drift_driver driver =
-                folded ? imki_driver_white() : imki_driver_resonance(2.0 * PI * r.frequency, r.q);
-            imki_drift_add_noise(plan, IMKI_ELEMENT_NOISE, &column, &driver,
-                                 folded ? folded_density(r, dt) : r.sigma * r.sigma);
-        }
+    const bool folded = p->frequency * dt > 0.25;
+    const imki_drift_driver driver =
+        folded ? imki_driver_white() : imki_driver_resonance(2.0 * PI * p->frequency, p->q);
+    const imk_resonance resonance = {p->size, p->frequency, p->q};
+    imki_drift_add_noise(plan, IMKI_ELEMENT_NOISE, column, &driver,
+                         folded ? folded_density(resonance, dt) : p->size * p->size);
+}
+
+static void add_process(imki_drift_plan *plan, const imki_process *p,
+                        const imki_drift_column *column, double dt)
+{
+    if (p->kind == IMKI_PROCESS_SINE) {
+        add_sine(plan, p, column, dt);
+    } else if (p->kind == IMKI_PROCESS_RESONANCE) {
+        add_resonance(plan, p, column, dt);
+    } else {
+        const bool first_order = p->kind == IMKI_PROCESS_FIRST_ORDER;
+        const double share = p->share * (first_order && !p->held ? sampled_share(p->time, dt) : 1);
+        const imki_drift_driver driver = first_order ? imki_driver_gauss_markov(p->time)
+                                         : p->kind == IMKI_PROCESS_WALK ? imki_driver_walk()
+                                                                        : imki_driver_white();
+        imki_drift_add_noise(plan, IMKI_ELEMENT_NOISE, column, &driver, share * p->size * p->size);
+    }
+}
+
+/* An element of a term's list on the three axes. */
+static void add_element(imki_drift_plan *plan, const imki_noise_term *term, const imk_triad *triad,
+                        int sensor, int instance, double dt)
+{
+    static const char *const suffix[IMK_TERMS_MAX] = {"[0]", "[1]", "[2]", "[3]",
+                                                      "[4]", "[5]", "[6]", "[7]"};
+    imki_process process[IMKI_PROCESSES_MAX];
+    imki_term_place place = {triad, 0, instance};
+    double strength[3];
+    for (place.axis = 0; place.axis < 3; place.axis++)
+        strength[place.axis] = term->strength(place);
+    if (!imki_drift_has_any(strength, 3))
+        return;
+    imki_drift_add_source(plan, kinds[sensor], term->path[sensor],
+                          term->count ? suffix[instance] : "", term->text[sensor]);
+    for (place.axis = 0; place.axis < 3; place.axis++) {
+        const imki_drift_column column =
+            imki_drift_column_of(IMKI_COLUMN_ONE, sensor, place.axis, 0);
+        const size_t count = strength[place.axis] != 0.0 ? term->processes(place, dt, process) : 0;
+        for (size_t i = 0; i < count; i++)
+            add_process(plan, &process[i], &column, dt);
     }
 }
 
@@ -266,22 +219,12 @@ static void omit_terms(imki_drift_plan *plan, const imk_triad *triad, int sensor
 void imki_drift_noise_sources(imki_drift_plan *plan, const imk_triad *triad, int sensor,
                               const imk_drift_settings *settings)
 {
-    static const char *const white[2] = {"noise.angle_random_walk", "noise.velocity_random_walk"};
-    static const char *const white_text[2] = {"gyro angle random walk",
-                                              "accelerometer velocity random walk"};
-    static const char *const walk[2] = {"noise.rate_random_walk", "noise.acceleration_random_walk"};
-    static const char *const walk_text[2] = {"gyro rate random walk",
-                                             "accelerometer acceleration random walk"};
     const double dt = 1.0 / settings->rate;
-    const imki_drift_driver white_driver = imki_driver_white(), walk_driver = imki_driver_walk();
-    add_simple_noise(plan, triad->noise.white.value, sensor, white[sensor], white_text[sensor],
-                     &white_driver);
-    add_flicker(plan, triad->noise.bias_instability.value, sensor, dt);
-    add_simple_noise(plan, triad->noise.random_walk.value, sensor, walk[sensor], walk_text[sensor],
-                     &walk_driver);
-    add_gauss_markov(plan, &triad->noise, sensor, dt);
-    add_sinusoids(plan, &triad->noise, sensor, dt);
-    add_resonances(plan, &triad->noise, sensor, dt);
+    for (int t = 0; t < IMKI_NOISE_TERMS; t++) {
+        const int count = imki_term_count(imki_noise_terms[t], &triad->noise);
+        for (int instance = 0; instance < count; instance++)
+            add_element(plan, imki_noise_terms[t], triad, sensor, instance, dt);
+    }
     add_quantization(plan, triad, sensor, dt);
     add_rounding(plan, triad, sensor, dt);
     if (settings->motion)

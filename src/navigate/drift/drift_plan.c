@@ -2,6 +2,7 @@
 /* The list of sources, elements, columns and drivers, as it grows. */
 #include "drift_covariance_internal.h"
 
+#include "base/text_internal.h"
 #include "imukit/distort.h"
 
 #include <string.h>
@@ -36,13 +37,6 @@ static int driver_number(imki_drift_plan *plan, const imki_drift_driver *driver)
     return (int)plan->driver_count++;
 }
 
-static void append(char *name, size_t size, const char *text)
-{
-    const size_t length = strlen(name), more = strlen(text);
-    if (length + more < size)
-        memcpy(name + length, text, more + 1);
-}
-
 void imki_drift_add_source(imki_drift_plan *plan, const char *first, const char *second,
                            const char *third, const char *text)
 {
@@ -51,10 +45,10 @@ void imki_drift_add_source(imki_drift_plan *plan, const char *first, const char 
         return;
     imk_drift_source *source = &plan->source[i];
     memset(source, 0, sizeof *source);
-    append(source->name, sizeof source->name, first);
-    append(source->name, sizeof source->name, ".");
-    append(source->name, sizeof source->name, second);
-    append(source->name, sizeof source->name, third);
+    imki_append_text(source->name, sizeof source->name, first);
+    imki_append_text(source->name, sizeof source->name, ".");
+    imki_append_text(source->name, sizeof source->name, second);
+    imki_append_text(source->name, sizeof source->name, third);
     source->text = text;
     memset(&plan->part[i], 0, sizeof plan->part[i]);
     plan->part[i].first = plan->element_count;

@@ -11,6 +11,7 @@
  * Counts are divided by the sensitivity. A row that is lost repeats the one before it. */
 #include "drift_runs_internal.h"
 
+#include "base/workspace_internal.h"
 #include "drift_settings_internal.h"
 #include "imukit/noise.h"
 #include "navigate/alignment/alignment_internal.h"
@@ -23,8 +24,7 @@
 enum {
     LANES = IMK_DRIFT_LANES,
     CHANNELS = 6,
-    ROWS = IMK_NOISE_BLOCK, /* of a block */
-    ALIGNMENT = 64
+    ROWS = IMK_NOISE_BLOCK /* of a block */
 };
 
 #define TURN_OF_ROW 1e-6 /* of a row: what rounding of t rate is given */
@@ -64,11 +64,6 @@ typedef struct crew {
 
 /* ---- memory ---- */
 
-static size_t aligned(size_t size)
-{
-    return (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-}
-
 static imk_simulation simulation_of(const imk_drift_settings *settings,
                                     const imk_trajectory *trajectory)
 {
@@ -92,7 +87,7 @@ static size_t simulator_size(const imk_model *model, const imk_drift_settings *s
     if (settings->compensated &&
         (model->gyro.bias.warm_up_time.value > 0.0 || model->accel.bias.warm_up_time.value > 0.0))
         simulation.temperature = &any;
-    return aligned(imk_simulator_size(model, &simulation));
+    return imki_aligned(imk_simulator_size(model, &simulation));
 }
 
 static size_t piece_count(const imk_drift_settings *settings)
@@ -105,17 +100,10 @@ static size_t piece_count(const imk_drift_settings *settings)
 size_t imk_drift_runs_size(const imk_model *model, const imk_drift_settings *settings)
 {
     const size_t run_size =
-        aligned(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
-    return aligned(sizeof(crew)) + aligned(sizeof(imk_model)) +
-           aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
-           aligned(3 * ROWS * sizeof(double)) + LANES * run_size;
-}
-
-static void *take(unsigned char **memory, size_t size)
-{
-    void *taken = *memory;
-    *memory += aligned(size);
-    return taken;
+        imki_aligned(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
+    return imki_aligned(sizeof(crew)) + imki_aligned(sizeof(imk_model)) +
+           imki_aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
+           imki_aligned(3 * ROWS * sizeof(double)) + LANES * run_size;
 }
 
 /* ---- start ---- */
@@ -144,10 +132,10 @@ static void add_standstill(crew *c, imk_trajectory_piece *piece)
     c->trajectory = &c->padded;
 }
 
-static imk_status start_motion(crew *c, unsigned char **memory, imk_error *error)
+static imk_status start_motion(crew *c, imki_arena *memory, imk_error *error)
 {
     const size_t pieces = piece_count(c->settings);
-    imk_trajectory_piece *piece = take(memory, pieces * sizeof *piece);
+    imk_trajectory_piece *piece = imki_take(memory, pieces * sizeof *piece);
     const imk_status status = imki_drift_motion(c->settings, &c->motion, error);
     c->moves = c->settings->motion != NULL;
     c->trajectory = &c->motion.trajectory;
@@ -157,12 +145,12 @@ static imk_status start_motion(crew *c, unsigned char **memory, imk_error *error
     return status;
 }
 
-static imk_status start_run(crew *c, run *r, unsigned char **memory, imk_error *error)
+static imk_status start_run(crew *c, run *r, imki_arena *memory, imk_error *error)
 {
     const imk_drift_settings *s = c->settings;
     const imk_model *model = c->model;
     const bool given = s->alignment == IMK_ALIGNED_GIVEN;
-    double *columns = take(memory, CHANNELS * ROWS * sizeof(double));
+    double *columns = imki_take(memory, CHANNELS * ROWS * sizeof(double));
     for (size_t i = 0; i < CHANNELS; i++)
         r->column[i] = columns + i * ROWS;
     if (s->compensated) {
@@ -177,8 +165,8 @@ static imk_status start_run(crew *c, run *r, unsigned char **memory, imk_error *
     const size_t size = simulator_size(c->model, s);
     /* The motion is that of the settings, which are valid, or has been checked by the first run. */
     const bool checked = r != c->run || c->trajectory == &c->motion.trajectory;
-    imk_status status = imki_simulator_start(take(memory, size), size, model, &simulation, checked,
-                                             &r->simulator, error);
+    imk_status status = imki_simulator_start(imki_take(memory, size), size, model, &simulation,
+                                             checked, &r->simulator, error);
     if (status != IMK_OK)
         return status;
     const double begin = imk_simulator_true_time(r->simulator, (int64_t)c->alignment_rows);
@@ -188,11 +176,11 @@ static imk_status start_run(crew *c, run *r, unsigned char **memory, imk_error *
     return IMK_OK;
 }
 
-static imk_status start(crew *c, uint32_t first, unsigned char *memory, imk_error *error)
+static imk_status start(crew *c, uint32_t first, imki_arena *memory, imk_error *error)
 {
     const imk_drift_settings *s = c->settings;
-    c->drawn = take(&memory, sizeof *c->drawn);
-    c->height = take(&memory, 3 * ROWS * sizeof(double));
+    c->drawn = imki_take(memory, sizeof *c->drawn);
+    c->height = imki_take(memory, 3 * ROWS * sizeof(double));
     c->climb = c->height + ROWS;
     c->time = c->climb + ROWS;
     c->kernel = c->random.kernel;
@@ -203,10 +191,10 @@ static imk_status start(crew *c, uint32_t first, unsigned char *memory, imk_erro
         c->alignment_rows += c->alignment_rows == 0;
     }
     c->last_row = c->alignment_rows + row_of(s->time[s->time_count - 1], s->rate);
-    imk_status status = start_motion(c, &memory, error);
+    imk_status status = start_motion(c, memory, error);
     for (size_t i = 0; i < c->count && status == IMK_OK; i++) {
         c->run[i].number = first + (uint32_t)i;
-        status = start_run(c, &c->run[i], &memory, error);
+        status = start_run(c, &c->run[i], memory, error);
         c->clocks_differ = c->clocks_differ || c->run[i].interval != c->run[0].interval;
     }
     /* Only true heights depend on the clock. */
@@ -414,19 +402,19 @@ imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *sett
     if (!(count >= 1 && count <= LANES) || count - 1 > UINT32_MAX - first)
         return imk_error_set(error, IMK_ERROR_RANGE, "count", "",
                              "1 to 8 runs with numbers below 2^32");
-    if (!memory || (uintptr_t)memory % ALIGNMENT != 0)
+    if (!memory || (uintptr_t)memory % 64 != 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
     if (size < imk_drift_runs_size(model, settings))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_drift_runs_size() bytes");
-    unsigned char *rest = memory;
-    crew *c = take(&rest, sizeof *c);
+    imki_arena rest = {memory, 0};
+    crew *c = imki_take(&rest, sizeof *c);
     memset(c, 0, sizeof *c);
     c->model = model;
     c->settings = settings;
     c->random = imk_random_seeded(seed);
     c->count = count;
-    status = start(c, first, rest, error);
+    status = start(c, first, &rest, error);
     if (status == IMK_OK)
         compute(c, errors);
     return status;

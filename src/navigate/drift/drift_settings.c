@@ -2,6 +2,7 @@
 /* What is navigated and when to look: defaults and checks, for the covariance and for the runs. */
 #include "drift_settings_internal.h"
 
+#include "base/refuse_internal.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -24,10 +25,7 @@ imk_drift_settings imk_drift_default(void)
 static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
 {
     const imk_status status = isfinite(value) ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
-    imk_error_set(error, status, field, "", expected);
-    if (error)
-        error->value = value;
-    return status;
+    return imki_refuse(error, status, field, value, 0.0, expected);
 }
 
 static imk_status check_triad(const imk_triad *triad, const char *kind, imk_error *error)

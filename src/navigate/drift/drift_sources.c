@@ -6,8 +6,8 @@
 
 #include "imukit/distort.h"
 #include "imukit/elementary.h"
-#include "imukit/noise.h"
 #include "model/model_schema_internal.h"
+#include "noise/noise_terms_internal.h"
 
 #include <string.h>
 
@@ -219,9 +219,9 @@ size_t imki_drift_drivers_max(const imk_model *model)
 {
     const imk_noise *noise[2] = {&model->gyro.noise, &model->accel.noise};
     size_t count = IMK_FLICKER_STAGES + 6; /* white, constant, walk, ramp, two warm-ups */
-    for (int i = 0; i < 2; i++)
-        count += 3 * (size_t)(noise[i]->gauss_markov_count + noise[i]->sinusoid_count +
-                              noise[i]->resonance_count);
+    for (int t = 0; t < IMKI_NOISE_TERMS; t++)
+        for (int i = 0; i < 2 && imki_noise_terms[t]->count; i++)
+            count += 3 * (size_t)imki_term_count(imki_noise_terms[t], noise[i]);
     return count;
 }
 

@@ -186,7 +186,7 @@ static inline void slave_height(imk_strapdown *s)
     const double z = s->state.position.v[2], pp = x * x + y * y;
     const slope vertical = vertical_at(pp, z);
     const imk_vector3 up = {{vertical.k * x, vertical.k * y, vertical.s}};
-    const double climb = s->climb - imki_dot(up, s->state.velocity);
+    const double climb = s->climb - imki_dot3(up.v, s->state.velocity.v);
     s->state.velocity = imki_sum(s->state.velocity, imki_scaled(climb, up));
     const double rise = s->height - height_along(vertical, pp, z);
     advance(&s->state.position, &s->position_low, imki_scaled(rise, up));

@@ -5,6 +5,7 @@
 #ifndef IMUKIT_NAVIGATE_STRAPDOWN_INTERNAL_H
 #define IMUKIT_NAVIGATE_STRAPDOWN_INTERNAL_H
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/earth.h"
 #include "imukit/elementary.h"
 #include "imukit/navigate.h"
@@ -30,11 +31,6 @@ static inline imk_vector3 imki_cross(imk_vector3 a, imk_vector3 b)
                           a.v[0] * b.v[1] - a.v[1] * b.v[0]}};
 }
 
-static inline double imki_dot(imk_vector3 a, imk_vector3 b)
-{
-    return a.v[0] * b.v[0] + a.v[1] * b.v[1] + a.v[2] * b.v[2];
-}
-
 /* A turn at constant rate by the rotation vector p of length x, with [p] the matrix of p x:
  *
  *     quaternion        (1 - cosine_to_one, half_sine p)
@@ -55,7 +51,7 @@ typedef struct imki_turn {
 static inline imki_turn imki_turn_from(imk_vector3 p)
 {
     imki_turn turn;
-    const double x2 = imki_dot(p, p), y = 0.25 * x2;
+    const double x2 = imki_dot3(p.v, p.v), y = 0.25 * x2;
     turn.square = x2;
     if (x2 < 0.25) {
         /* 1/(2n)!, 1/(2n + 1)!, 1/(2n + 3)!, 1/(2n + 4)! with alternating signs */

@@ -3,6 +3,8 @@
  */
 #include "zero_velocity_internal.h"
 
+#include "base/refuse_internal.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -32,10 +34,7 @@ size_t imk_zero_velocity_size(const imk_zero_velocity_settings *settings)
 static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
 {
     const imk_status status = fabs(value) <= 1.7e308 ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
-    imk_error_set(error, status, field, "", expected);
-    if (error)
-        error->value = value;
-    return status;
+    return imki_refuse(error, status, field, value, 0.0, expected);
 }
 
 /* Finite and not negative, and not too large to be squared. */

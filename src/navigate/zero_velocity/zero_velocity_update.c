@@ -14,39 +14,24 @@
 
 #include "imukit/distributions.h"
 #include "imukit/earth.h"
+#include "imukit/linear_algebra.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { ERRORS = IMK_NAVIGATION_ERRORS };
 
-/* Inverse of a positive definite matrix of one to three rows, by Cholesky's factor.
- * @return false when it is not */
+/* Inverse of a positive definite matrix of one to three rows; false when it is not. */
 static bool invert(size_t rows, double s[3][3], double inverse[3][3])
 {
-    double l[3][3] = {{0}}, li[3][3] = {{0}};
-    for (size_t i = 0; i < rows; i++)
-        for (size_t j = 0; j <= i; j++) {
-            double sum = s[i][j];
-            for (size_t k = 0; k < j; k++)
-                sum -= l[i][k] * l[j][k];
-            if (i == j && !(sum > 0.0))
-                return false;
-            l[i][j] = i == j ? sqrt(sum) : sum / l[j][j];
-        }
-    for (size_t j = 0; j < rows; j++)
-        for (size_t i = j; i < rows; i++) {
-            double sum = i == j ? 1.0 : 0.0;
-            for (size_t k = j; k < i; k++)
-                sum -= l[i][k] * li[k][j];
-            li[i][j] = sum / l[i][i];
-        }
-    for (size_t i = 0; i < rows; i++)
-        for (size_t j = 0; j < rows; j++) {
-            inverse[i][j] = 0.0;
-            for (size_t k = i > j ? i : j; k < rows; k++)
-                inverse[i][j] += li[k][i] * li[k][j];
-        }
+    double factor[9], all[9];
+    for (size_t k = 0; k < rows * rows; k++)
+        factor[k] = s[k / rows][k % rows];
+    if (imk_cholesky_factor(rows, factor) != IMK_OK)
+        return false;
+    imk_cholesky_inverse(rows, factor, all);
+    for (size_t k = 0; k < rows * rows; k++)
+        inverse[k / rows][k % rows] = all[k];
     return true;
 }
 

@@ -5,6 +5,7 @@
 
 #include "fibre_optic_internal.h"
 #include "imukit/elementary.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -12,7 +13,6 @@ enum { COOKIE = 0x494D4B31 };
 
 /* The numbers as a design file has them, so that they are printed as they stand here. */
 #define DECIBEL 0.23025850929940458 /* ln(10)/10, as an exponent of power */
-#define DEGREE (IMKI_PI / 180.0)
 #define PARTS_PER_MILLION 1e-6
 #define MICRO 1e-6
 #define NANO 1e-9
@@ -36,7 +36,7 @@ imk_fibre_optic imk_fibre_optic_default(void)
         .linewidth = 19.35 * NANO,
         .optics_loss = 13 * DECIBEL, /* with the coil 14 dB */
         .visibility = 0.98,
-        .modulation_depth = 120 * DEGREE, /* 120 deg: less noise than 90 deg when the source's
+        .modulation_depth = 120 * IMKI_DEGREE, /* 120 deg: less noise than 90 deg when the source's
                                           intensity noise dominates [LEFEVRE2014] */
         .ramp_bits = 12,
         .responsivity = 0.9,
@@ -45,7 +45,7 @@ imk_fibre_optic imk_fibre_optic_default(void)
                                           switched on at a high rate */
         .converter_bits = 15,
         .loop_gain = 0.1,
-        .range = 80 * DEGREE, /* a fringe is 83.2 deg/s */
+        .range = 80 * IMKI_DEGREE, /* a fringe is 83.2 deg/s */
         .output_bits = 10,
         .phase_temperature = 0.005 * MICRO,
         .phase_repeatability = 0.21 * MICRO, /* 0.01 deg/h */
@@ -55,23 +55,9 @@ imk_fibre_optic imk_fibre_optic_default(void)
 
 /* ---- the design table ------------------------------------------------------------------------ */
 
-#define AT(field) offsetof(imk_fibre_optic, field)
-#define NUMBER(path, field, unit, minimum, maximum, help)                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(field), unit, minimum, maximum, false, NULL, help              \
-    }
-#define ABOVE(path, field, unit, minimum, maximum, help)                                           \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(field), unit, minimum, maximum, true, NULL, help               \
-    }
-#define COUNT(path, field, maximum, help)                                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_COUNT, AT(field), "1", 0, maximum, false, NULL, help                      \
-    }
-
+#define DESIGN imk_fibre_optic
 static const imk_design_field fields[] = {
-    {"loop.mode", IMK_DESIGN_CHOICE, AT(loop), "1", 0, 1, false, "closed|open",
-     "how the phase is read"},
+    CHOICE("loop.mode", loop, "closed|open", "how the phase is read"),
     ABOVE("loop.gain", loop_gain, "1", 0, 2,
           "share of the phase error that each step of the loop takes away"),
     NUMBER("loop.crosstalk", crosstalk, "urad", 0, 1,
@@ -105,15 +91,15 @@ static const imk_design_field fields[] = {
     NUMBER("modulator.gain_error", gain_error, "ppm", -0.1, 0.1, "error of the ramp's phase"),
     NUMBER("modulator.reset_error", reset_error, "ppm", -0.1, 0.1,
            "departure of the ramp's reset from 2 pi"),
-    COUNT("modulator.bits", ramp_bits, 30, "of the ramp's converter, to 2 pi; 0: continuous"),
+    COUNT("modulator.bits", ramp_bits, 0, 30, "of the ramp's converter, to 2 pi; 0: continuous"),
     ABOVE("detector.responsivity", responsivity, "A/W", 0, 10, "current per power"),
     ABOVE("detector.load", load_resistance, "ohm", 0, 1e12, "resistor that the current flows into"),
     NUMBER("detector.converter_range", converter_range, "uW", 0, 10,
            "departure from the operating point that saturates the amplifier; 0: none"),
-    COUNT("detector.converter_bits", converter_bits, 30, "to both sides of it; 0: continuous"),
+    COUNT("detector.converter_bits", converter_bits, 0, 30, "to both sides of it; 0: continuous"),
     NUMBER("detector.demodulation_error", demodulation_error, "%", -0.9, 10,
            "departure of the demodulator's gain"),
-    COUNT("output.bits", output_bits, 30, "counts of the angle to a fringe; 0: not rounded"),
+    COUNT("output.bits", output_bits, 0, 30, "counts of the angle to a fringe; 0: not rounded"),
     NUMBER("phase.fixed", phase_fixed, "urad", -1, 1, "nonreciprocal phase"),
     NUMBER("phase.temperature", phase_temperature, "urad/K", -1e-2, 1e-2,
            "change of that phase with temperature"),
@@ -125,31 +111,25 @@ static const imk_design_field fields[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static imk_status refuse(imk_error *error, const char *field, double value, double limit,
-                         const char *expected)
-{
-    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
-}
-
 static imk_status check_optics(const imk_fibre_optic *design, imk_error *error)
 {
     const double turn = IMKI_PI * design->coil_diameter;
     if (!(design->coil_length >= turn))
-        return refuse(error, "coil.length", design->coil_length, turn,
-                      "a length of at least one turn, pi times the diameter");
+        return imki_conflict(error, "coil.length", design->coil_length, turn,
+                             "a length of at least one turn, pi times the diameter");
     if (!(design->linewidth < design->wavelength))
-        return refuse(error, "source.linewidth", design->linewidth, design->wavelength,
-                      "a linewidth below the wavelength");
+        return imki_conflict(error, "source.linewidth", design->linewidth, design->wavelength,
+                             "a linewidth below the wavelength");
     const imki_fibre_optic_point point = imki_fibre_optic_operate(design);
     if (!(point.half_power > 0.0))
-        return refuse(error, "optics.loss", design->optics_loss, 0.0,
-                      "losses that leave some light on the detector");
+        return imki_conflict(error, "optics.loss", design->optics_loss, 0.0,
+                             "losses that leave some light on the detector");
     if (!(point.depth < 3.1))
-        return refuse(error, "modulator.depth_error", design->depth_error, 3.1,
-                      "a depth that stays below 3.1 rad");
+        return imki_conflict(error, "modulator.depth_error", design->depth_error, 3.1,
+                             "a depth that stays below 3.1 rad");
     if (design->converter_bits > 0 && !(design->converter_range > 0.0))
-        return refuse(error, "detector.converter_range", design->converter_range, 0.0,
-                      "a range above 0 for a converter that has bits");
+        return imki_conflict(error, "detector.converter_range", design->converter_range, 0.0,
+                             "a range above 0 for a converter that has bits");
     return IMK_OK;
 }
 
@@ -162,21 +142,23 @@ static imk_status check_converter(const imk_fibre_optic *design, imk_error *erro
     const double sigma = sqrt(imki_fibre_optic_demodulated_noise(design, &point) /
                               (2.0 * transits * imk_fibre_optic_transit_time(design)));
     if (point.count > 2.0 * sigma)
-        return refuse(error, "detector.converter_bits", point.count, 2.0 * sigma,
-                      "so many bits that a step is below two standard deviations of the noise, "
-                      "which is its dither");
+        return imki_conflict(
+            error, "detector.converter_bits", point.count, 2.0 * sigma,
+            "so many bits that a step is below two standard deviations of the noise, "
+            "which is its dither");
     return IMK_OK;
 }
 
 static imk_status check_open_range(const imk_fibre_optic *design, double phase, imk_error *error)
 {
     if (!(phase <= 0.5 * IMKI_PI * (1.0 + 1e-9)))
-        return refuse(error, "loop.range", phase, 0.5 * IMKI_PI,
-                      "a range up to a phase of pi/2, where the open loop's reading turns back");
+        return imki_conflict(
+            error, "loop.range", phase, 0.5 * IMKI_PI,
+            "a range up to a phase of pi/2, where the open loop's reading turns back");
     const double harmonic = imki_fibre_optic_operate(design).slope * imk_sin(phase);
     if (design->converter_range > 0.0 && !(design->converter_range >= harmonic))
-        return refuse(error, "detector.converter_range", design->converter_range, harmonic,
-                      "a range that holds the harmonic at the end of loop.range");
+        return imki_conflict(error, "detector.converter_range", design->converter_range, harmonic,
+                             "a range that holds the harmonic at the end of loop.range");
     return IMK_OK;
 }
 
@@ -187,32 +169,29 @@ static imk_status check_loop(const imk_fibre_optic *design, imk_error *error)
     if (open)
         return check_open_range(design, phase, error);
     if (!(phase < 2.0 * IMKI_PI))
-        return refuse(error, "loop.range", phase, 2.0 * IMKI_PI,
-                      "a range below one fringe, 2 pi per transit of the ramp");
+        return imki_conflict(error, "loop.range", phase, 2.0 * IMKI_PI,
+                             "a range below one fringe, 2 pi per transit of the ramp");
     const double gain = imk_fibre_optic_effective_gain(design);
     if (!(gain < 2.0))
-        return refuse(error, "loop.gain", gain, 2.0,
-                      "an effective gain below 2: beyond it the loop's error grows");
+        return imki_conflict(error, "loop.gain", gain, 2.0,
+                             "an effective gain below 2: beyond it the loop's error grows");
     /* The noise of a pair of transits, through the loop: variance times g/(2 - g). At 0.3 rad a
      * slip of a fringe, pi away, is a 10 sigma event. */
     const double noise = imk_fibre_optic_phase_noise(design);
     const double deviation =
         noise * sqrt(gain / (2.0 - gain) / (4.0 * imk_fibre_optic_transit_time(design)));
     if (!(deviation < 0.3))
-        return refuse(error, "source.power", deviation, 0.3,
-                      "so much light that the loop's phase noise stays below 0.3 rad: it would "
-                      "slip fringes");
+        return imki_conflict(
+            error, "source.power", deviation, 0.3,
+            "so much light that the loop's phase noise stays below 0.3 rad: it would "
+            "slip fringes");
     return IMK_OK;
 }
 
-imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_fibre_optic_default()");
-    imk_status status = imk_design_check(&imk_fibre_optic_instrument, design, error);
-    if (status == IMK_OK)
-        status = check_optics(design, error);
+    const imk_fibre_optic *design = given;
+    imk_status status = check_optics(design, error);
     if (status == IMK_OK)
         status = check_converter(design, error);
     if (status == IMK_OK)
@@ -221,33 +200,6 @@ imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_error *er
 }
 
 /* ---- the instrument -------------------------------------------------------------------------- */
-
-static void set_default(void *design)
-{
-    *(imk_fibre_optic *)design = imk_fibre_optic_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_fibre_optic_validate(design, error);
-}
-
-void imk_fibre_optic_reduce(const imk_fibre_optic *design, imk_model *model)
-{
-    imki_fibre_optic_reduce(design, imki_reduction_begin(model, &imk_fibre_optic_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_fibre_optic_validate(design, error);
-    return status == IMK_OK ? imki_fibre_optic_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_fibre_optic_reduce(design, model);
-}
 
 static const imk_signal outputs[] = {
     {"angular_rate", "rad/s", "deg/s", "measured rate about the coil's axis"},
@@ -276,7 +228,7 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_POWER},
      .duration = 600e-6,
      .rate = 1e6,
-     .input = 25.0 * IMKI_PI / 180.0,
+     .input = 25.0 * IMKI_DEGREE,
      .points = true},
     {.title = "The ramp and its resets",
      .caption = "The phase of the digital ramp: its slope cancels the rotation, and it falls back "
@@ -287,7 +239,7 @@ static const imk_view views[] = {
      .duration = 400e-6,
      .rate = 1e6,
      .settle = 2e-3,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "The loop locks",
      .caption =
          "From switching on: the rate of the coil and the rate that the feedback stands for.",
@@ -296,7 +248,7 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_FEEDBACK, IMKI_FIBRE_OPTIC_INPUT},
      .duration = 1e-3,
      .rate = 400e3,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "What the detector sees",
      .caption = "Power on the detector, transit by transit: square waves while the loop is not "
                 "locked, noise "
@@ -306,8 +258,10 @@ static const imk_view views[] = {
      .y = {IMKI_FIBRE_OPTIC_POWER},
      .duration = 400e-6,
      .rate = 1e6,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
 };
+
+IMKI_DESIGN_FUNCTIONS(fibre_optic);
 
 const imk_instrument imk_fibre_optic_instrument = {
     .name = "fibre_optic",
@@ -316,12 +270,13 @@ const imk_instrument imk_fibre_optic_instrument = {
     .source = "coil, loss, noise, bias and scale factor of Moeller, Burns, Frigo, J. Lightwave "
               "Technol. 7 (1989) 262, doi:10.1109/50.17765; closed loop and electronics chosen",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_fibre_optic),
     .state_size = sizeof(imki_fibre_optic_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_fibre_optic_init,
     .step = imki_fibre_optic_step,
     .observe = imki_fibre_optic_observe,
     .reduce = reduce,

@@ -77,7 +77,7 @@ imki_fibre_optic_point imki_fibre_optic_operate(const imk_fibre_optic *design)
     point.depth = design->modulation_depth * (1.0 + design->depth_error);
     point.slope = slope_at(design, point.half_power, point.depth);
     point.centre = point.half_power * (1.0 + design->visibility * imk_cos(point.depth));
-    point.noise[0] = 4.0 * IMKI_BOLTZMANN * IMKI_FIBRE_OPTIC_REFERENCE /
+    point.noise[0] = 4.0 * IMKI_BOLTZMANN * IMKI_DESIGN_TEMPERATURE /
                      (design->load_resistance * responsivity * responsivity);
     point.noise[1] = 2.0 * IMKI_ELEMENTARY_CHARGE / responsivity;
     point.noise[2] = imk_fibre_optic_intensity_noise(design);
@@ -191,7 +191,7 @@ static void linear(imk_temperature_polynomial *polynomial, double coefficient)
 {
     polynomial->order = coefficient == 0.0 ? 0 : 1;
     polynomial->coefficient[0].value[0] = coefficient;
-    polynomial->reference = IMKI_FIBRE_OPTIC_REFERENCE;
+    polynomial->reference = IMKI_DESIGN_TEMPERATURE;
     polynomial->minimum = -40.0 + 273.15;
     polynomial->maximum = 358.15;
 }
@@ -202,7 +202,7 @@ void imki_fibre_optic_reduce(const imk_fibre_optic *design, imk_triad *triad)
     const double scale = imk_fibre_optic_scale(design);
     /* reading per rate of phase: what phases that are not Sagnac's are multiplied by */
     const double reading = open ? imk_fibre_optic_harmonic_gain(design) : 1.0 + design->reset_error;
-    const double ratio = imki_fibre_optic_scale_ratio(design, 0.0, IMKI_FIBRE_OPTIC_REFERENCE);
+    const double ratio = imki_fibre_optic_scale_ratio(design, 0.0, IMKI_DESIGN_TEMPERATURE);
     const double per_phase = reading / scale;
 
     triad->bias.fixed.value[0] = design->phase_fixed * per_phase;

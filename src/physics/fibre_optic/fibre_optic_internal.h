@@ -7,8 +7,6 @@
 #include "imukit/fibre_optic.h"
 #include "physics/physics_internal.h"
 
-#define IMKI_FIBRE_OPTIC_REFERENCE 293.15 /* [K] */
-
 /* Instants of a period of the sine modulation at which the detector is read. A sum over them picks
  * the harmonic 1 of the power, and 15, 17, …: J15(3.1) is 3e-10. */
 enum { IMKI_FIBRE_OPTIC_INSTANTS = 16 };
@@ -34,7 +32,7 @@ double imki_fibre_optic_demodulated_noise(const imk_fibre_optic *design,
 static inline double imki_fibre_optic_scale_ratio(const imk_fibre_optic *design,
                                                   double wavelength_run, double temperature)
 {
-    const double warmer = temperature - IMKI_FIBRE_OPTIC_REFERENCE;
+    const double warmer = temperature - IMKI_DESIGN_TEMPERATURE;
     return (1.0 + design->coil_expansion * warmer) /
            (1.0 + design->wavelength_error + wavelength_run +
             design->wavelength_temperature * warmer);

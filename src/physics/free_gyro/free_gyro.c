@@ -3,13 +3,12 @@
  * and free_gyro_slow.c; closed forms: free_gyro_reduce.c. */
 #include "free_gyro_internal.h"
 
+#include "base/algebra/vector_internal.h"
+#include "physics/design_rows_internal.h"
+
 #include <math.h>
 
 enum { COOKIE = 0x46524759 };
-
-#define DEGREE (IMKI_PI / 180.0)
-/* Where the temperature coefficients are zero [K]. */
-#define REFERENCE_TEMPERATURE 293.15
 
 imk_free_gyro imk_free_gyro_default(void)
 {
@@ -25,37 +24,28 @@ imk_free_gyro imk_free_gyro_default(void)
         .compliance = {1e-8, 1e-8, 1.6e-8},
         .viscous_friction = 2e-6,
         .coulomb_friction = 2e-6,
-        .friction_rate = 0.5 * DEGREE,
-        .stop = 85.0 * DEGREE,
+        .friction_rate = 0.5 * IMKI_DEGREE,
+        .stop = 85.0 * IMKI_DEGREE,
         .torque_temperature = 5e-8,
         .torque_repeatability = 5e-6,
         .torque_instability = 5e-7,
         .torque_noise = 3e-7,
-        .pickoff_resolution = 20.0 * DEGREE / 3600.0,
-        .pickoff_noise = 5.0 * DEGREE / 3600.0,
-        .start_nutation = 15.0 * DEGREE / 3600.0,
+        .pickoff_resolution = 20.0 * IMKI_DEGREE / 3600.0,
+        .pickoff_noise = 5.0 * IMKI_DEGREE / 3600.0,
+        .start_nutation = 15.0 * IMKI_DEGREE / 3600.0,
     };
 }
 
-static void set_default(void *design)
-{
-    *(imk_free_gyro *)design = imk_free_gyro_default();
-}
+#define INERTIA(path, member, help) NUMBER(path, member, "kg*m^2", 0.0, 10.0, help)
 
-#define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, member), unit, minimum, maximum, open,    \
-            NULL, help                                                                             \
-    }
-#define INERTIA(path, member, help) NUMBER(path, member, "kg*m^2", 0.0, 10.0, false, help)
-
+#define DESIGN imk_free_gyro
 static const imk_design_field fields[] = {
-    NUMBER("spin.rate", spin_rate, "rpm", 1.0, 1e6, false, "nominal speed of the wheel"),
-    NUMBER("spin.error", spin_error, "1", -0.9, 9.0, false, "relative error of that speed"),
-    {"rotor.polar_inertia", IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, rotor_polar), "kg*m^2",
-     1e-12, 10.0, false, NULL, "inertia of the wheel about its axis"},
-    {"rotor.transverse_inertia", IMK_DESIGN_NUMBER, offsetof(imk_free_gyro, rotor_transverse),
-     "kg*m^2", 1e-12, 10.0, false, NULL, "inertia of the wheel across its axis"},
+    NUMBER("spin.rate", spin_rate, "rpm", 1.0, 1e6, "nominal speed of the wheel"),
+    NUMBER("spin.error", spin_error, "1", -0.9, 9.0, "relative error of that speed"),
+    NUMBER("rotor.polar_inertia", rotor_polar, "kg*m^2", 1e-12, 10.0,
+           "inertia of the wheel about its axis"),
+    NUMBER("rotor.transverse_inertia", rotor_transverse, "kg*m^2", 1e-12, 10.0,
+           "inertia of the wheel across its axis"),
     INERTIA("inner_gimbal.inertia_x", inner_inertia[0], "inertia of the inner gimbal about its x"),
     INERTIA("inner_gimbal.inertia_y", inner_inertia[1], "the same about y, its bearing axis"),
     INERTIA("inner_gimbal.inertia_z", inner_inertia[2], "the same about z, the spin axis"),
@@ -64,44 +54,43 @@ static const imk_design_field fields[] = {
     INERTIA("outer_gimbal.inertia_y", outer_inertia[1],
             "the same about y, the inner gimbal's bearing axis"),
     INERTIA("outer_gimbal.inertia_z", outer_inertia[2], "the same about z"),
-    NUMBER("suspended.mass", mass, "kg", 0.0, 1e4, false, "mass of wheel and inner gimbal"),
-    NUMBER("unbalance.x", unbalance[0], "um", -1.0, 1.0, false,
+    NUMBER("suspended.mass", mass, "kg", 0.0, 1e4, "mass of wheel and inner gimbal"),
+    NUMBER("unbalance.x", unbalance[0], "um", -1.0, 1.0,
            "centre of that mass along the inner gimbal's x"),
-    NUMBER("unbalance.y", unbalance[1], "um", -1.0, 1.0, false, "the same along y"),
-    NUMBER("unbalance.z", unbalance[2], "um", -1.0, 1.0, false, "the same along the spin axis"),
-    NUMBER("compliance.x", compliance[0], "nm/N", 0.0, 1e-4, false,
+    NUMBER("unbalance.y", unbalance[1], "um", -1.0, 1.0, "the same along y"),
+    NUMBER("unbalance.z", unbalance[2], "um", -1.0, 1.0, "the same along the spin axis"),
+    NUMBER("compliance.x", compliance[0], "nm/N", 0.0, 1e-4,
            "yielding of the suspension along the inner gimbal's x"),
-    NUMBER("compliance.y", compliance[1], "nm/N", 0.0, 1e-4, false, "the same along y"),
-    NUMBER("compliance.z", compliance[2], "nm/N", 0.0, 1e-4, false, "the same along the spin axis"),
-    NUMBER("friction.viscous", viscous_friction, "N*m*s/rad", 0.0, 1.0, false,
+    NUMBER("compliance.y", compliance[1], "nm/N", 0.0, 1e-4, "the same along y"),
+    NUMBER("compliance.z", compliance[2], "nm/N", 0.0, 1e-4, "the same along the spin axis"),
+    NUMBER("friction.viscous", viscous_friction, "N*m*s/rad", 0.0, 1.0,
            "viscous friction of each gimbal's bearings"),
-    NUMBER("friction.coulomb", coulomb_friction, "N*m", 0.0, 1e-2, false,
+    NUMBER("friction.coulomb", coulomb_friction, "N*m", 0.0, 1e-2,
            "dry friction of each gimbal's bearings"),
-    NUMBER("friction.rate", friction_rate, "deg/s", 1e-9, 1e6, false,
+    NUMBER("friction.rate", friction_rate, "deg/s", 1e-9, 1e6,
            "relative rate over which the dry friction turns over"),
-    NUMBER("gimbal.stop", stop, "deg", 0.0, 89.0 * DEGREE, true,
-           "travel of the inner gimbal either way, at most 89 deg"),
-    NUMBER("torque.inner", torque_inner, "N*m", -1e-2, 1e-2, false,
+    ABOVE("gimbal.stop", stop, "deg", 0.0, 89.0 * IMKI_DEGREE,
+          "travel of the inner gimbal either way, at most 89 deg"),
+    NUMBER("torque.inner", torque_inner, "N*m", -1e-2, 1e-2,
            "constant error torque about the inner axis"),
-    NUMBER("torque.outer", torque_outer, "N*m", -1e-2, 1e-2, false,
-           "the same about the outer axis"),
-    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1e-4, 1e-4, false,
+    NUMBER("torque.outer", torque_outer, "N*m", -1e-2, 1e-2, "the same about the outer axis"),
+    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1e-4, 1e-4,
            "change of both with temperature, from 20 degC"),
-    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1e-2, false,
+    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1e-2,
            "1 sigma per run of the error torque about each axis"),
-    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1e-2, false,
+    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1e-2,
            "flicker (bias instability B) of those torques"),
-    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1e-2, false,
+    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1e-2,
            "white part of those torques, two-sided density"),
-    NUMBER("pickoff.resolution", pickoff_resolution, "arcsec", 0.0, 1.0, false,
+    NUMBER("pickoff.resolution", pickoff_resolution, "arcsec", 0.0, 1.0,
            "step of the readings, 0 for none"),
-    NUMBER("pickoff.noise", pickoff_noise, "arcsec", 0.0, 1.0, false, "1 sigma of a reading"),
-    NUMBER("pickoff.scale_error", pickoff_scale_error, "ppm", -0.5, 0.5, false,
+    NUMBER("pickoff.noise", pickoff_noise, "arcsec", 0.0, 1.0, "1 sigma of a reading"),
+    NUMBER("pickoff.scale_error", pickoff_scale_error, "ppm", -0.5, 0.5,
            "relative error of the readings"),
-    NUMBER("start.outer", start_outer, "deg", -1e3, 1e3, false, "outer angle at the start"),
-    NUMBER("start.inner", start_inner, "deg", -89.0 * DEGREE, 89.0 * DEGREE, false,
+    NUMBER("start.outer", start_outer, "deg", -1e3, 1e3, "outer angle at the start"),
+    NUMBER("start.inner", start_inner, "deg", -89.0 * IMKI_DEGREE, 89.0 * IMKI_DEGREE,
            "inner angle at the start"),
-    NUMBER("start.nutation", start_nutation, "arcsec", 0.0, 89.0 * DEGREE, false,
+    NUMBER("start.nutation", start_nutation, "arcsec", 0.0, 89.0 * IMKI_DEGREE,
            "amplitude of the nutation at the start, of the inner angle"),
 };
 
@@ -132,7 +121,7 @@ static const imk_view views[] = {
      .y = {INNER},
      .duration = 0.04,
      .rate = 10000.0,
-     .input = 0.5 * DEGREE},
+     .input = 0.5 * IMKI_DEGREE},
     {.title = "The gimbals stay behind",
      .caption = "Angles of both gimbals at rest: the drift by friction, unbalance and error "
                 "torques, which takes minutes to show",
@@ -153,12 +142,6 @@ static const imk_view views[] = {
 
 /* ---- validation ------------------------------------------------------------------------------ */
 
-static imk_status refuse(imk_error *error, const char *field, double value, double limit,
-                         const char *expected)
-{
-    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
-}
-
 /* No inertia of a body exceeds the sum of the other two. */
 static imk_status check_inertia(const double inertia[3], const char *const names[3],
                                 imk_error *error)
@@ -166,8 +149,8 @@ static imk_status check_inertia(const double inertia[3], const char *const names
     for (int i = 0; i < 3; i++) {
         const double others = inertia[(i + 1) % 3] + inertia[(i + 2) % 3];
         if (!(inertia[i] <= others * (1.0 + 1e-12)))
-            return refuse(error, names[i], inertia[i], others,
-                          "at most the sum of the inertias about the other two axes");
+            return imki_conflict(error, names[i], inertia[i], others,
+                                 "at most the sum of the inertias about the other two axes");
     }
     return IMK_OK;
 }
@@ -181,45 +164,38 @@ static imk_status check_bodies(const imk_free_gyro *design, imk_error *error)
     const double thinnest = 2.0 * design->rotor_transverse * (1.0 + 1e-12);
     const imk_status status = check_inertia(design->inner_inertia, inner, error);
     if (!(design->rotor_polar <= thinnest))
-        return refuse(error, "rotor.polar_inertia", design->rotor_polar, thinnest,
-                      "at most twice the transverse inertia, which a thin disc has");
+        return imki_conflict(error, "rotor.polar_inertia", design->rotor_polar, thinnest,
+                             "at most twice the transverse inertia, which a thin disc has");
     return status == IMK_OK ? check_inertia(design->outer_inertia, outer, error) : status;
 }
 
-imk_status imk_free_gyro_validate(const imk_free_gyro *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_free_gyro_default()");
-    imk_status status = imk_design_check(&imk_free_gyro_instrument, design, error);
-    if (status == IMK_OK)
-        status = check_bodies(design, error);
+    const imk_free_gyro *design = given;
+    imk_status status = check_bodies(design, error);
     if (status != IMK_OK)
         return status;
     const double swing = fabs(design->start_inner) + design->start_nutation;
     if (!(swing < design->stop))
-        return refuse(error, "start.inner", swing, design->stop,
-                      "inner angle and nutation within gimbal.stop");
+        return imki_conflict(error, "start.inner", swing, design->stop,
+                             "inner angle and nutation within gimbal.stop");
     /* cos x >= 1 - 2 x/pi in a quarter turn: no function is needed for a bound */
     const double momentum = imk_free_gyro_momentum(design) * (1.0 - 2.0 / IMKI_PI * design->stop);
     const imki_free_gyro_parts parts = imki_free_gyro_parts_of(design);
     if (!(parts.slope <= 0.5 * momentum))
-        return refuse(error, "friction.coulomb", parts.slope, 0.5 * momentum,
-                      "friction per relative rate (viscous, and coulomb over friction.rate) below "
-                      "half the momentum of the wheel at the stop");
+        return imki_conflict(
+            error, "friction.coulomb", parts.slope, 0.5 * momentum,
+            "friction per relative rate (viscous, and coulomb over friction.rate) below "
+            "half the momentum of the wheel at the stop");
     /* weight of 10 m/s^2: the steady precession is real while 4 (A - C) M < H^2 */
     const double *m = parts.moment;
-    const double weight = 10.0 * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    const double weight = 10.0 * imki_norm3(m);
     const double most = parts.h * parts.h / (4.0 * (parts.j_least + fabs(parts.a_c) + parts.b));
     if (!(weight < most))
-        return refuse(error, "unbalance.z", weight, most,
-                      "a weight times its arm that the wheel can carry: below H^2/4(A + Ao + B)");
+        return imki_conflict(
+            error, "unbalance.z", weight, most,
+            "a weight times its arm that the wheel can carry: below H^2/4(A + Ao + B)");
     return IMK_OK;
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_free_gyro_validate(design, error);
 }
 
 /* ---- start ----------------------------------------------------------------------------------- */
@@ -256,23 +232,18 @@ static double step_length(const void *design, const imk_physics_settings *settin
     return sample < longest ? sample : longest;
 }
 
-static double quantised(double x, double step)
-{
-    return step > 0.0 ? step * floor(x / step + 0.5) : x;
-}
-
 static void read_angles(imki_free_gyro_state *state, double reading[2])
 {
     const double angle[2] = {state->gimbals.outer, state->gimbals.inner};
     for (int k = 0; k < 2; k++) {
         const double noise =
             state->reading_noise > 0.0 ? state->reading_noise * imki_draw(&state->pickoff[k]) : 0.0;
-        reading[k] = quantised(angle[k] * state->scale + noise, state->resolution);
+        reading[k] = imki_quantised(angle[k] * state->scale + noise, state->resolution);
     }
 }
 
-static imk_status start_random(const imk_free_gyro *design, const imk_physics_settings *settings,
-                               imki_free_gyro_state *state)
+static void start_random(const imk_free_gyro *design, const imk_physics_settings *settings,
+                         imki_free_gyro_state *state)
 {
     imki_draws_start(&state->white[0], settings, IMKI_FREE_GYRO_TORQUE_OUTER);
     imki_draws_start(&state->white[1], settings, IMKI_FREE_GYRO_TORQUE_INNER);
@@ -280,12 +251,10 @@ static imk_status start_random(const imk_free_gyro *design, const imk_physics_se
     imki_draws_start(&state->pickoff[1], settings, IMKI_FREE_GYRO_PICKOFF_INNER);
     state->torque_sigma = settings->noise ? design->torque_noise / sqrt(state->step) : 0.0;
     state->reading_noise = settings->noise ? design->pickoff_noise : 0.0;
-    imk_status status = imki_wander_start(&state->error[0], settings, IMKI_FREE_GYRO_ERROR_OUTER,
-                                          design->torque_repeatability, design->torque_instability);
-    if (status == IMK_OK)
-        status = imki_wander_start(&state->error[1], settings, IMKI_FREE_GYRO_ERROR_INNER,
-                                   design->torque_repeatability, design->torque_instability);
-    return status;
+    imki_wander_start(&state->error[0], settings, IMKI_FREE_GYRO_ERROR_OUTER,
+                      design->torque_repeatability, design->torque_instability);
+    imki_wander_start(&state->error[1], settings, IMKI_FREE_GYRO_ERROR_INNER,
+                      design->torque_repeatability, design->torque_instability);
 }
 
 static imk_status init(const void *given, const imk_physics_settings *settings, void *memory,
@@ -295,17 +264,13 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
     imki_free_gyro_state *state = memory;
     size_t steps = 0;
     double step = 0.0;
-    imk_status status = imk_free_gyro_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
-    if (status == IMK_OK)
-        status = imki_divide_sample(settings, step_within(design, settings->level, false),
-                                    step_within(design, settings->level, true),
-                                    settings->level == IMK_LEVEL_FULL
-                                        ? "at least 6 steps to a cycle of the nutation, and 5 to "
-                                          "its decay by friction"
-                                        : "at most 0.1 s: the case turns between",
-                                    &steps, &step, error);
+    imk_status status = imki_divide_sample(
+        settings, step_within(design, settings->level, false),
+        step_within(design, settings->level, true),
+        settings->level == IMK_LEVEL_FULL ? "at least 6 steps to a cycle of the nutation, and 5 to "
+                                            "its decay by friction"
+                                          : "at most 0.1 s: the case turns between",
+        &steps, &step, error);
     if (status != IMK_OK)
         return status;
     *state = (imki_free_gyro_state){
@@ -323,10 +288,7 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
         .resolution = design->pickoff_resolution,
     };
     imki_free_gyro_trigonometry(&state->gimbals);
-    status = start_random(design, settings, state);
-    if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", design->torque_instability,
-                                  0.0, NULL);
+    start_random(design, settings, state);
     read_angles(state, state->reading);
     return IMK_OK;
 }
@@ -337,7 +299,7 @@ static void step(void *memory, const imk_exposure *exposure, double *out)
 {
     imki_free_gyro_state *state = memory;
     const double thermal =
-        state->torque_temperature * (exposure->temperature - REFERENCE_TEMPERATURE);
+        state->torque_temperature * (exposure->temperature - IMKI_DESIGN_TEMPERATURE);
     imki_free_gyro_drive drive;
     double reading[2];
     for (int k = 0; k < 3; k++) {
@@ -386,15 +348,7 @@ static void observe(const void *memory, double *values)
     values[STOP] = state->on_stop ? 1.0 : 0.0;
 }
 
-void imk_free_gyro_reduce(const imk_free_gyro *design, imk_model *model)
-{
-    imki_free_gyro_reduce(design, imki_reduction_begin(model, &imk_free_gyro_instrument));
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_free_gyro_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(free_gyro);
 
 const imk_instrument imk_free_gyro_instrument = {
     .name = "free_gyro",
@@ -403,11 +357,12 @@ const imk_instrument imk_free_gyro_instrument = {
     .source = "wheel speed and travel of an electric attitude gyro (training notes, "
               "flyingpilots.com p=264); inertias, friction and torques chosen: free_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_free_gyro),
     .state_size = sizeof(imki_free_gyro_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
+    .check = check,
     .init = init,
     .step = step,
     .observe = observe,

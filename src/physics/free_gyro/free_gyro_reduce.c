@@ -10,7 +10,6 @@
 
 #include <math.h>
 
-#define REFERENCE_TEMPERATURE 293.15
 /* Range of the polynomial: that of aircraft equipment, -40 ... 85 degC [K]. */
 #define LOWEST_TEMPERATURE 233.15
 #define HIGHEST_TEMPERATURE 358.15
@@ -110,7 +109,7 @@ void imki_free_gyro_reduce(const imk_free_gyro *design, imk_triad *gyro)
     if (design->torque_temperature != 0.0) {
         gyro->bias.temperature.order = 1;
         gyro->bias.temperature.coefficient[0].value[0] = per_h * design->torque_temperature;
-        gyro->bias.temperature.reference = REFERENCE_TEMPERATURE;
+        gyro->bias.temperature.reference = IMKI_DESIGN_TEMPERATURE;
         gyro->bias.temperature.minimum = LOWEST_TEMPERATURE;
         gyro->bias.temperature.maximum = HIGHEST_TEMPERATURE;
     }

@@ -8,6 +8,7 @@
  * step's torque, the exact turn of the case, the other half: the error is of second order in the
  * step times the product of drift and case rate. At the stop the outer gimbal follows the spin axis
  * and the inner one stays: the tumbling there is in the full dynamics only. */
+#include "base/algebra/vector_internal.h"
 #include "free_gyro_internal.h"
 #include "imukit/elementary.h"
 
@@ -39,15 +40,14 @@ static void precession(const imki_free_gyro_state *state, const imki_free_gyro_d
  * gimbals follow; the outer angle by the way round that is shorter. */
 static void turn_case(imki_gimbals *g, const double turned[3])
 {
-    const double angle =
-        sqrt(turned[0] * turned[0] + turned[1] * turned[1] + turned[2] * turned[2]);
+    const double angle = imki_norm3(turned);
     double axis[3] = {g->si, -g->so * g->ci, g->co * g->ci}, n[3];
     if (!(angle > 0.0))
         return;
     for (int k = 0; k < 3; k++)
         n[k] = turned[k] / angle;
     const double sine = imk_sin(angle), half = imk_sin(0.5 * angle);
-    const double along = n[0] * axis[0] + n[1] * axis[1] + n[2] * axis[2];
+    const double along = imki_dot3(n, axis);
     double next[3];
     for (int k = 0; k < 3; k++) {
         const int l = (k + 1) % 3, m = (k + 2) % 3;

@@ -2,6 +2,7 @@
 /* The laboratory: checks, and the order of the experiments. */
 #include "laboratory_internal.h"
 
+#include "base/refuse_internal.h"
 #include "base/workspace_internal.h"
 
 #include <math.h>
@@ -40,40 +41,38 @@ size_t imk_laboratory_workspace_size(const imk_laboratory *laboratory)
     return size;
 }
 
-static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
-{
-    imk_error_set(error, IMK_ERROR_RANGE, field, "", expected);
-    if (error) {
-        error->index = -1;
-        error->value = value;
-    }
-    return IMK_ERROR_RANGE;
-}
-
 static imk_status check(const imk_laboratory *l, void *state, imk_error *error)
 {
     if (l->cookie != COOKIE || !l->instrument || !l->design)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "laboratory", NULL,
                              "settings made by imk_laboratory_default(), with an instrument");
     if (!(l->full_scale >= 0.0 && l->full_scale <= 1e9))
-        return refuse(error, "full_scale", l->full_scale, "a full scale above 0");
+        return imki_refuse(error, IMK_ERROR_RANGE, "full_scale", l->full_scale, 0.0,
+                           "a full scale above 0");
     if (l->points != 0 &&
         !(l->points >= 7 && l->points <= IMK_LABORATORY_POINTS_MAX && l->points % 2 == 1))
-        return refuse(error, "points", l->points, "an odd number from 7 to 101");
+        return imki_refuse(error, IMK_ERROR_RANGE, "points", l->points, 0.0,
+                           "an odd number from 7 to 101");
     if (!(l->settle >= 0.0 && l->settle <= 1e6))
-        return refuse(error, "settle", l->settle, "a time from 0 to 1e6 s");
+        return imki_refuse(error, IMK_ERROR_RANGE, "settle", l->settle, 0.0,
+                           "a time from 0 to 1e6 s");
     if (!(l->dwell > 0.0 && l->dwell <= 1e6))
-        return refuse(error, "dwell", l->dwell, "a time above 0, up to 1e6 s");
+        return imki_refuse(error, IMK_ERROR_RANGE, "dwell", l->dwell, 0.0,
+                           "a time above 0, up to 1e6 s");
     if (l->frequencies < 0 || l->frequencies > IMK_LABORATORY_FREQUENCIES_MAX)
-        return refuse(error, "frequencies", l->frequencies, "0 to 48 frequencies");
+        return imki_refuse(error, IMK_ERROR_RANGE, "frequencies", l->frequencies, 0.0,
+                           "0 to 48 frequencies");
     if (!(l->lowest >= 0.0 && l->highest >= 0.0 && l->highest <= 1e9 &&
           (l->highest <= 0.0 || l->lowest < l->highest)))
-        return refuse(error, "highest", l->highest, "a highest frequency above the lowest");
+        return imki_refuse(error, IMK_ERROR_RANGE, "highest", l->highest, 0.0,
+                           "a highest frequency above the lowest");
     if (!(l->record >= 0.0 && l->record * l->physics.rate <= 1e10))
-        return refuse(error, "record", l->record, "at most 1e10 samples");
+        return imki_refuse(error, IMK_ERROR_RANGE, "record", l->record, 0.0,
+                           "at most 1e10 samples");
     if (l->record > 0.0 && record_samples(l) < 256)
-        return refuse(error, "record", l->record, "a record of at least 256 samples");
-    return l->instrument->init(l->design, &l->physics, state, error);
+        return imki_refuse(error, IMK_ERROR_RANGE, "record", l->record, 0.0,
+                           "a record of at least 256 samples");
+    return imk_instrument_init(l->instrument, l->design, &l->physics, state, error);
 }
 
 static double full_scale_of(const imk_laboratory *laboratory, double range)
@@ -94,7 +93,8 @@ static void static_record(const imk_laboratory *laboratory, char *state, double 
     imk_identify_settings settings = imk_identify_default();
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX];
     settings.dt = 1.0 / laboratory->physics.rate;
-    if (instrument->init(laboratory->design, &laboratory->physics, state, NULL) != IMK_OK)
+    if (imk_instrument_init(instrument, laboratory->design, &laboratory->physics, state, NULL) !=
+        IMK_OK)
         return;
     for (size_t i = imki_samples_in(laboratory->settle, laboratory->physics.rate); i > 0; i--)
         instrument->step(state, &laboratory->surroundings, outputs);
@@ -107,7 +107,7 @@ static void static_record(const imk_laboratory *laboratory, char *state, double 
                              imk_identify_workspace_size(count), NULL) == IMK_OK;
     if (!result->has_noise)
         return;
-    imk_triad *triad = imki_triad_of(laboratory, result);
+    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     const imk_axes bandwidth = triad->bandwidth; /* the shaker's, not that of the noise */
     imk_identification_store(&result->noise, &result->model, instrument->sensor == IMK_ACCEL, 0);
     if (bandwidth.value[0] > 0.0)
@@ -131,8 +131,8 @@ static stated_axes begin_model(const imk_laboratory *laboratory, imk_laboratory_
 {
     const imk_instrument *instrument = laboratory->instrument;
     imk_model *model = &result->model;
-    instrument->reduce(laboratory->design, model);
-    imk_triad *triad = imki_triad_of(laboratory, result);
+    imk_instrument_reduce(instrument, laboratory->design, model);
+    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     stated_axes stated = {.range = triad->range, .bandwidth = triad->bandwidth.value[0]};
     memcpy(stated.direction, triad->direction, sizeof stated.direction);
     memcpy(stated.pendulous_axis, triad->nonlinearity.pendulous_axis, sizeof stated.pendulous_axis);

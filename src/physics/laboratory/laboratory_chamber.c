@@ -2,6 +2,7 @@
 /* Tumble test and thermal chamber. */
 #include "laboratory_internal.h"
 
+#include "base/algebra/vector_internal.h"
 #include "imukit/units.h"
 
 #include <math.h>
@@ -64,11 +65,6 @@ static void axes_of(const double stated[3], double p[3], double o[3])
     o[2] = -p[1];
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void accel_tumble(const double *y, double noise, const double stated[3], imk_triad *triad)
 {
     enum { TERMS = 8 };
@@ -77,7 +73,7 @@ static void accel_tumble(const double *y, double noise, const double stated[3], 
     axes_of(stated, p, o);
     for (int i = 0; i < POSES; i++) {
         pose(i, f);
-        const double u = f[0] / g, v = dot(f, p) / g, w = dot(f, o) / g;
+        const double u = f[0] / g, v = imki_dot3(f, p) / g, w = imki_dot3(f, o) / g;
         const double row[TERMS] = {1.0, u, v, w, u * u, u * v, u * w, v * w};
         for (int k = 0; k < TERMS; k++)
             a[i * TERMS + k] = row[k];
@@ -99,7 +95,7 @@ void imki_tumble(const imk_laboratory *laboratory, const double pendulous[3], ch
 {
     imki_trial trials[POSES];
     double y[POSES], noise = 0.0;
-    imk_triad *triad = imki_triad_of(laboratory, result);
+    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     for (int i = 0; i < POSES; i++) {
         trials[i] = imki_trial_of(laboratory, 0.0);
         pose(i, trials[i].exposure.specific_force);
@@ -149,7 +145,7 @@ void imki_chamber(const imk_laboratory *laboratory, char *states, const imk_exec
                   imk_laboratory_result *result)
 {
     imki_trial trials[TRIALS];
-    imk_triad *triad = imki_triad_of(laboratory, result);
+    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     const double half = 0.5 * result->full_scale, middle = laboratory->surroundings.temperature;
     double bias[TEMPERATURES], scale[TEMPERATURES], noise = 0.0;
     for (int i = 0; i < 3 * TEMPERATURES; i++) {

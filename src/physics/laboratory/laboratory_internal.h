@@ -62,10 +62,4 @@ void imki_chamber(const imk_laboratory *laboratory, char *states, const imk_exec
 void imki_shaker(const imk_laboratory *laboratory, double bandwidth, char *states,
                  const imk_executor *executor, imk_laboratory_result *result);
 
-static inline imk_triad *imki_triad_of(const imk_laboratory *laboratory,
-                                       imk_laboratory_result *result)
-{
-    return laboratory->instrument->sensor == 0 ? &result->model.gyro : &result->model.accel;
-}
-
 #endif

@@ -21,7 +21,7 @@ void imki_shaker(const imk_laboratory *laboratory, double bandwidth, char *state
                  const imk_executor *executor, imk_laboratory_result *result)
 {
     imki_trial trials[IMK_LABORATORY_FREQUENCIES_MAX];
-    imk_triad *triad = imki_triad_of(laboratory, result);
+    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     const int count = laboratory->frequencies;
     const double rate = laboratory->physics.rate;
     const double lowest = laboratory->lowest > 0.0 ? laboratory->lowest

@@ -106,7 +106,7 @@ void imki_rate_table(const imk_laboratory *laboratory, char *states, const imk_e
     for (int i = 0; i < count; i++)
         result->point[i] = trials[i].reading;
     result->line_deviation = deviation_from_line(count, result->point) / result->full_scale;
-    fit_table(imki_triad_of(laboratory, result), result);
+    fit_table(imk_model_triad_to_set(&result->model, laboratory->instrument->sensor), result);
 }
 
 /* Plus and minus a quarter of full scale about y and about z: half of the difference. */
@@ -114,7 +114,7 @@ void imki_cross_rates(const imk_laboratory *laboratory, char *states, const imk_
                       imk_laboratory_result *result)
 {
     imki_trial trials[4];
-    imk_triad *triad = imki_triad_of(laboratory, result);
+    imk_triad *triad = imk_model_triad_to_set(&result->model, laboratory->instrument->sensor);
     const double rate = 0.25 * result->full_scale;
     for (int i = 0; i < 4; i++) {
         trials[i] = imki_trial_of(laboratory, 0.0);
@@ -171,5 +171,6 @@ void imki_threshold(const imk_laboratory *laboratory, char *states, const imk_ex
     result->threshold = bad > 0.0 ? good : 0.0;
     result->threshold_from = good;
     if (bad > 0.0)
-        store(&imki_triad_of(laboratory, result)->dead_band, sqrt(good * bad), good - bad);
+        store(&imk_model_triad_to_set(&result->model, laboratory->instrument->sensor)->dead_band,
+              sqrt(good * bad), good - bad);
 }

@@ -139,7 +139,8 @@ static void measure(void *context, size_t item)
     }
     trial->sine = (imk_laboratory_response){trial->frequency, (double)NAN, (double)NAN};
     trial->reading = (imk_laboratory_point){trial->input, (double)NAN, (double)NAN};
-    if (laboratory->instrument->init(laboratory->design, &physics, state, NULL) != IMK_OK)
+    if (imk_instrument_init(laboratory->instrument, laboratory->design, &physics, state, NULL) !=
+        IMK_OK)
         return;
     if (trial->frequency > 0.0)
         measure_sine(laboratory, per_cycle, trial, state);

@@ -4,6 +4,7 @@
 
 #include "imukit/units.h"
 #include "mems_accelerometer_internal.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -64,29 +65,9 @@ imk_mems_accelerometer imk_mems_accelerometer_sigma_delta(void)
     return design;
 }
 
-static void set_default(void *design)
-{
-    *(imk_mems_accelerometer *)design = imk_mems_accelerometer_default();
-}
-
 /* ---- table ----------------------------------------------------------------------------------- */
 
-#define NUMBER(path, member, unit, minimum, maximum, help)                                         \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_mems_accelerometer, member), unit, minimum, maximum, \
-            false, NULL, help                                                                      \
-    }
-#define ABOVE(path, member, unit, minimum, maximum, help)                                          \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_mems_accelerometer, member), unit, minimum, maximum, \
-            true, NULL, help                                                                       \
-    }
-#define CHOICE(path, member, choices, help)                                                        \
-    {                                                                                              \
-        path, IMK_DESIGN_CHOICE, offsetof(imk_mems_accelerometer, member), "1", 0, 0, false,       \
-            choices, help                                                                          \
-    }
-
+#define DESIGN imk_mems_accelerometer
 static const imk_design_field fields[] = {
     CHOICE("loop", loop, "open|analog|sigma_delta", "what holds the mass"),
     ABOVE("temperature", temperature, "degC", 100.0, 600.0, "temperature of calibration"),
@@ -95,8 +76,7 @@ static const imk_design_field fields[] = {
           "frequency of the mass on its springs alone"),
     NUMBER("proof_mass.quality", quality, "1", 1e-2, 1e8,
            "quality factor in the middle of the gap"),
-    {"proof_mass.squeeze_film", IMK_DESIGN_SWITCH, offsetof(imk_mems_accelerometer, squeeze_film),
-     "1", 0, 0, false, NULL, "damping grows with the displacement"},
+    SWITCH("proof_mass.squeeze_film", squeeze_film, "damping grows with the displacement"),
     NUMBER("spring.quadratic", spring_quadratic, "1/m", -1e6, 1e6,
            "relative stiffening, even: q of k x (1 + q x + r x^2)"),
     NUMBER("spring.cubic", spring_cubic, "1/m^2", -1e12, 1e12,
@@ -198,21 +178,19 @@ static imk_status check_rest(const imk_mems_accelerometer *d, imk_error *error)
 {
     const double end = d->stop * d->gap, pull_in = imk_mems_accelerometer_pull_in(d);
     if (!(fabs(d->offset) < end))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "electrodes.offset", d->offset, end,
-                                  "springs that rest between the stops");
+        return imki_conflict(error, "electrodes.offset", d->offset, end,
+                             "springs that rest between the stops");
     imk_mems_accelerometer open = *d;
     open.loop = IMK_MEMS_OPEN;
     if (!imki_mems_operating_point(&open).exists)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "electrodes.voltage", d->voltage,
-                                  pull_in,
-                                  "a voltage below pull-in, with the equilibrium off the stops");
+        return imki_conflict(error, "electrodes.voltage", d->voltage, pull_in,
+                             "a voltage below pull-in, with the equilibrium off the stops");
     if (d->loop != IMK_MEMS_OPEN && d->plates == IMK_MEMS_SINGLE)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "electrodes.plates", (double)d->plates,
-                                  (double)IMK_MEMS_DOUBLE,
-                                  "plates on both sides: one plate can only pull");
+        return imki_conflict(error, "electrodes.plates", (double)d->plates, (double)IMK_MEMS_DOUBLE,
+                             "plates on both sides: one plate can only pull");
     if (d->loop != IMK_MEMS_OPEN && !(fabs(d->pickoff_offset) < end))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "pickoff.offset", d->pickoff_offset,
-                                  end, "a null between the stops");
+        return imki_conflict(error, "pickoff.offset", d->pickoff_offset, end,
+                             "a null between the stops");
     return IMK_OK;
 }
 
@@ -220,15 +198,15 @@ static imk_status check_force(const imk_mems_accelerometer *d, imk_error *error)
 {
     const double limit = imk_mems_accelerometer_limit(d);
     if (!(limit > 0.0) || d->range > limit)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "output.range", d->range, limit,
-                                  d->loop == IMK_MEMS_OPEN
-                                      ? "a range within the travel of the mass"
-                                      : "a range that the force of the loop can balance");
+        return imki_conflict(error, "output.range", d->range, limit,
+                             d->loop == IMK_MEMS_OPEN
+                                 ? "a range within the travel of the mass"
+                                 : "a range that the force of the loop can balance");
     const double bias = fabs(d->bias) + 6.0 * d->bias_repeatability;
     if (!(bias < limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "bias.fixed", bias, limit,
-                                  "a bias, and six times its repeatability, within what the mass "
-                                  "or the loop can bear");
+        return imki_conflict(error, "bias.fixed", bias, limit,
+                             "a bias, and six times its repeatability, within what the mass "
+                             "or the loop can bear");
     return IMK_OK;
 }
 
@@ -242,20 +220,19 @@ static imk_status check_analog(const imk_mems_accelerometer *d, imk_error *error
     const double u = force / imk_mems_accelerometer_limit(d) * d->feedback_voltage;
     const double at_full_scale = stiffness - imki_mems_attraction(d, u * u, u * u, 0.0).first;
     if (!p.exists)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "pickoff.offset", d->pickoff_offset,
-                                  d->offset, "a null at which the plates can hold the mass");
+        return imki_conflict(error, "pickoff.offset", d->pickoff_offset, d->offset,
+                             "a null at which the plates can hold the mass");
     if (!(gains.proportional > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "analog.bandwidth", d->bandwidth,
-                                  sqrt(stiffness) / (2.0 * IMKI_PI),
-                                  "a loop stiffer than the softened springs");
+        return imki_conflict(error, "analog.bandwidth", d->bandwidth,
+                             sqrt(stiffness) / (2.0 * IMKI_PI),
+                             "a loop stiffer than the softened springs");
     if (!imki_mems_loop_stable(d, stiffness) || !imki_mems_loop_stable(d, p.a1))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "analog.bandwidth", d->bandwidth,
-                                  d->amplifier,
-                                  "a stable loop: lower bandwidth or reset, a faster amplifier");
+        return imki_conflict(error, "analog.bandwidth", d->bandwidth, d->amplifier,
+                             "a stable loop: lower bandwidth or reset, a faster amplifier");
     if (!imki_mems_loop_stable(d, at_full_scale))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "analog.bandwidth", d->bandwidth, u,
-                                  "a loop that is stable at full scale too, where the control "
-                                  "voltage softens the springs");
+        return imki_conflict(error, "analog.bandwidth", d->bandwidth, u,
+                             "a loop that is stable at full scale too, where the control "
+                             "voltage softens the springs");
     return IMK_OK;
 }
 
@@ -263,35 +240,30 @@ static imk_status check_sigma_delta(const imk_mems_accelerometer *d, imk_error *
 {
     const imki_mems_point p = imki_mems_operating_point(d);
     if (!(fabs(p.rest) < p.unit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "feedback.voltage",
-                                  d->feedback_voltage, 0.0,
-                                  "a force of either sign at the null of the loop");
+        return imki_conflict(error, "feedback.voltage", d->feedback_voltage, 0.0,
+                             "a force of either sign at the null of the loop");
     const imk_mems_limit_cycle cycle = imk_mems_accelerometer_limit_cycle(d);
     if (cycle.half_period == 0 || cycle.half_period > CYCLE_HALF_MAX)
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "sigma_delta.lead", d->lead, 0.0,
-                                  "more lead: the loop has no limit cycle of 16 clocks or less, "
-                                  "it swings ever further");
+        return imki_conflict(error, "sigma_delta.lead", d->lead, 0.0,
+                             "more lead: the loop has no limit cycle of 16 clocks or less, "
+                             "it swings ever further");
     if (!(cycle.amplitude < 0.5 * d->stop * d->gap))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "sigma_delta.clock", d->clock, 0.0,
-                                  "a clock whose limit cycle stays within half the stops");
+        return imki_conflict(error, "sigma_delta.clock", d->clock, 0.0,
+                             "a clock whose limit cycle stays within half the stops");
     const imk_mems_quantizer quantizer = imk_mems_accelerometer_quantizer(d);
     if (!isfinite(quantizer.velocity) || !(quantizer.deviation < 0.5 * d->stop * d->gap))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT,
-                                  d->integral > 0.0 ? "sigma_delta.integral" : "sigma_delta.clock",
-                                  d->integral > 0.0 ? d->integral : d->clock, quantizer.deviation,
-                                  "a faster clock, a smaller integral term or less noise: the "
-                                  "compensated position swings as far as half the stops");
+        return imki_refuse(error, IMK_ERROR_CONFLICT,
+                           d->integral > 0.0 ? "sigma_delta.integral" : "sigma_delta.clock",
+                           d->integral > 0.0 ? d->integral : d->clock, quantizer.deviation,
+                           "a faster clock, a smaller integral term or less noise: the "
+                           "compensated position swings as far as half the stops");
     return IMK_OK;
 }
 
-imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (d->cookie != DESIGN_COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_mems_accelerometer_default()");
-    imk_status status = imk_design_check(&imk_mems_accelerometer_instrument, d, error);
-    if (status == IMK_OK)
-        status = check_rest(d, error);
+    const imk_mems_accelerometer *d = given;
+    imk_status status = check_rest(d, error);
     if (status == IMK_OK)
         status = check_force(d, error);
     if (status == IMK_OK && d->loop == IMK_MEMS_ANALOG)
@@ -303,28 +275,7 @@ imk_status imk_mems_accelerometer_validate(const imk_mems_accelerometer *d, imk_
 
 /* ---- the instrument -------------------------------------------------------------------------- */
 
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_mems_accelerometer_validate(design, error);
-}
-
-void imk_mems_accelerometer_reduce(const imk_mems_accelerometer *design, imk_model *model)
-{
-    imki_mems_accelerometer_reduce(design,
-                                   imki_reduction_begin(model, &imk_mems_accelerometer_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_mems_accelerometer_validate(design, error);
-    return status == IMK_OK ? imki_mems_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_mems_accelerometer_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(mems_accelerometer);
 
 const imk_instrument imk_mems_accelerometer_instrument = {
     .name = "mems_accelerometer",
@@ -332,12 +283,13 @@ const imk_instrument imk_mems_accelerometer_instrument = {
     .technology = "MEMS",
     .source = "Safran Colibrys MS1000 datasheet, MS1005 (2016); mass, plates and voltages chosen",
     .sensor = IMK_ACCEL,
+    .cookie = DESIGN_COOKIE,
     .design_size = sizeof(imk_mems_accelerometer),
     .state_size = sizeof(imki_mems_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_mems_init,
     .step = imki_mems_step,
     .observe = imki_mems_observe,
     .reduce = reduce,

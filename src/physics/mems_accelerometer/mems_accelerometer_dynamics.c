@@ -77,11 +77,6 @@ static void discretise(mems_state *m, double h, bool noise)
 
 /* ---- what is not linear ---------------------------------------------------------------------- */
 
-static double clipped(double x, double limit)
-{
-    return x > limit ? limit : x < -limit ? -limit : x;
-}
-
 /* The analog loop: voltage on the mass for the acceleration that the controller asks for. Beyond
  * its limit the output sees the limit too, and the integral part stands still. */
 static double control_voltage(mems_state *m, double *asked, double duration)
@@ -90,7 +85,7 @@ static double control_voltage(mems_state *m, double *asked, double duration)
     for (int j = IMKI_AMPLIFIER; j < N; j++)
         *asked += m->control[j] * m->s[j];
     const double wanted = m->point.control + *asked / m->point.b1;
-    const double given = clipped(wanted, m->design.feedback_voltage);
+    const double given = imki_clamped(wanted, m->design.feedback_voltage);
     if (given != wanted) {
         const double excess = m->point.b1 * (given - m->point.control) - *asked;
         m->s[m->output_into] += m->output_gain * excess * duration;
@@ -228,11 +223,11 @@ static double run_slow(mems_state *m, double force)
     const double shown = clocked ? 1.0 : 1.0 + e->scale;
     const double scale =
         1.0 + e->scale_temperature / shown * m->temperature + (clocked ? e->scale : 0.0);
-    force = clipped(force + more, m->limit); /* the series mean nothing beyond */
+    force = imki_clamped(force + more, m->limit); /* the series mean nothing beyond */
     const double seen = force * (scale + force * (e->k2 + force * e->k3) / shown);
     m->s[IMKI_INTEGRAL] = 0.0;
     advance(m, clocked ? 0.0 : -seen, clocked ? seen + e->bias : 0.0);
-    return clipped(m->s[IMKI_INTEGRAL] / m->sample, m->limit);
+    return imki_clamped(m->s[IMKI_INTEGRAL] / m->sample, m->limit);
 }
 
 void imki_mems_step(void *state, const imk_exposure *exposure, double *outputs)
@@ -246,9 +241,8 @@ void imki_mems_step(void *state, const imk_exposure *exposure, double *outputs)
     double reading = m->slow ? run_slow(m, force) : run_full(m, force);
     reading *= 1.0 + m->gain.constant;
     if (d->range > 0.0)
-        reading = clipped(reading, d->range);
-    if (d->resolution > 0.0)
-        reading = d->resolution * floor(reading / d->resolution + 0.5);
+        reading = imki_clamped(reading, d->range);
+    reading = imki_quantised(reading, d->resolution);
     outputs[0] = reading;
 }
 
@@ -290,12 +284,12 @@ static imk_status divide(mems_state *m, const imk_physics_settings *settings, im
         return IMK_OK;
     if (d->loop == IMK_MEMS_SIGMA_DELTA) {
         if (settings->rate > d->clock * (1.0 + 1e-9))
-            return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->clock,
-                                      "a sample rate not above the clock of the loop");
+            return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->clock,
+                               "a sample rate not above the clock of the loop");
         const double clocks = ceil(d->clock / settings->rate * (1.0 - 1e-9));
         if (!(clocks < 1e12))
-            return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate,
-                                      d->clock * 1e-12, "fewer than 1e12 clocks to a sample");
+            return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->clock * 1e-12,
+                               "fewer than 1e12 clocks to a sample");
         m->clocks = clocks > 1.0 ? (size_t)clocks : 1;
         unit.rate = d->clock = settings->rate * (double)m->clocks;
     }
@@ -327,14 +321,10 @@ imk_status imki_mems_init(const void *design, const imk_physics_settings *settin
                           imk_error *error)
 {
     mems_state *m = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(m, 0, sizeof *m);
     m->design = *(const imk_mems_accelerometer *)design;
     m->slow = settings->level == IMK_LEVEL_SLOW;
     m->sample = 1.0 / settings->rate;
-    status = divide(m, settings, error);
+    imk_status status = divide(m, settings, error);
     if (status != IMK_OK)
         return status;
     m->point = imki_mems_operating_point(&m->design);
@@ -345,9 +335,7 @@ imk_status imki_mems_init(const void *design, const imk_physics_settings *settin
     imki_draws_start(&m->pickoff, settings, DRAW_PICKOFF);
     imki_draws_start(&m->film, settings, DRAW_FILM);
     const imk_mems_accelerometer *d = &m->design;
-    status = imki_wander_start(&m->bias, settings, WANDER_BIAS, d->bias_repeatability,
-                               d->bias_instability);
-    if (status == IMK_OK)
-        status = imki_wander_start(&m->gain, settings, WANDER_GAIN, d->gain_repeatability, 0.0);
-    return status;
+    imki_wander_start(&m->bias, settings, WANDER_BIAS, d->bias_repeatability, d->bias_instability);
+    imki_wander_start(&m->gain, settings, WANDER_GAIN, d->gain_repeatability, 0.0);
+    return IMK_OK;
 }

@@ -3,6 +3,7 @@
 #include "pendulous_servo_internal.h"
 
 #include "imukit/units.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -41,119 +42,76 @@ imk_pendulous_servo imk_pendulous_servo_default(void)
                                  .temperature = 293.15};
 }
 
-#define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_pendulous_servo, member), unit, minimum, maximum,    \
-            open, NULL, help                                                                       \
-    }
-
+#define DESIGN imk_pendulous_servo
 static const imk_design_field fields[] = {
-    NUMBER("pendulum.pendulosity", pendulosity, "kg m", 1e-12, 1.0, false,
+    NUMBER("pendulum.pendulosity", pendulosity, "kg m", 1e-12, 1.0,
            "mass times its distance from the hinge"),
-    NUMBER("pendulum.inertia", inertia, "kg m^2", 0.0, 1.0, true,
-           "moment of inertia about the hinge"),
-    NUMBER("pendulum.damping", damping, "N m s", 0.0, 1.0, false, "torque per angular rate"),
-    NUMBER("pendulum.stop", stop, "rad", 0.0, 0.5, true, "largest angle"),
-    NUMBER("pendulum.misalignment_y", misalignment_y, "mrad", -0.1, 0.1, false,
+    ABOVE("pendulum.inertia", inertia, "kg m^2", 0.0, 1.0, "moment of inertia about the hinge"),
+    NUMBER("pendulum.damping", damping, "N m s", 0.0, 1.0, "torque per angular rate"),
+    ABOVE("pendulum.stop", stop, "rad", 0.0, 0.5, "largest angle"),
+    NUMBER("pendulum.misalignment_y", misalignment_y, "mrad", -0.1, 0.1,
            "input axis towards the output axis y"),
-    NUMBER("pendulum.misalignment_z", misalignment_z, "mrad", -0.1, 0.1, false,
+    NUMBER("pendulum.misalignment_z", misalignment_z, "mrad", -0.1, 0.1,
            "input axis towards the pendulous axis z"),
-    NUMBER("hinge.stiffness", hinge_stiffness, "N m/rad", 0.0, 1e3, false, "torque per angle"),
-    NUMBER("hinge.torque", hinge_torque, "N m", -1.0, 1.0, false, "constant error torque"),
-    NUMBER("hinge.torque_temperature", hinge_torque_temperature, "N m/K", -1.0, 1.0, false,
+    NUMBER("hinge.stiffness", hinge_stiffness, "N m/rad", 0.0, 1e3, "torque per angle"),
+    NUMBER("hinge.torque", hinge_torque, "N m", -1.0, 1.0, "constant error torque"),
+    NUMBER("hinge.torque_temperature", hinge_torque_temperature, "N m/K", -1.0, 1.0,
            "its change with temperature"),
-    NUMBER("hinge.torque_repeatability", hinge_torque_repeatability, "N m", 0.0, 1.0, false,
+    NUMBER("hinge.torque_repeatability", hinge_torque_repeatability, "N m", 0.0, 1.0,
            "1 sigma from run to run"),
-    NUMBER("hinge.torque_instability", hinge_torque_instability, "N m", 0.0, 1.0, false,
+    NUMBER("hinge.torque_instability", hinge_torque_instability, "N m", 0.0, 1.0,
            "flicker B within a run"),
-    NUMBER("controller.proportional", proportional, "N m/rad", 0.0, 1e6, true,
-           "torque per angle of the pickoff"),
-    NUMBER("controller.integral", integral, "N m/(rad s)", 0.0, 1e12, false,
+    ABOVE("controller.proportional", proportional, "N m/rad", 0.0, 1e6,
+          "torque per angle of the pickoff"),
+    NUMBER("controller.integral", integral, "N m/(rad s)", 0.0, 1e12,
            "torque per integral of that angle"),
-    NUMBER("controller.pickoff_noise", pickoff_noise, "rad/sqrt(Hz)", 0.0, 1.0, false,
+    NUMBER("controller.pickoff_noise", pickoff_noise, "rad/sqrt(Hz)", 0.0, 1.0,
            "two-sided density of the pickoff's noise"),
-    NUMBER("torquer.constant", torquer_constant, "N m/A", 0.0, 1e3, true,
-           "nominal torque per current"),
-    NUMBER("torquer.error", torquer_error, "ppm", -0.5, 0.5, false,
-           "relative error of the constant"),
-    NUMBER("torquer.temperature", torquer_temperature, "ppm/K", -0.01, 0.01, false,
+    ABOVE("torquer.constant", torquer_constant, "N m/A", 0.0, 1e3, "nominal torque per current"),
+    NUMBER("torquer.error", torquer_error, "ppm", -0.5, 0.5, "relative error of the constant"),
+    NUMBER("torquer.temperature", torquer_temperature, "ppm/K", -0.01, 0.01,
            "relative change with temperature"),
-    NUMBER("torquer.repeatability", torquer_repeatability, "ppm", 0.0, 0.5, false,
+    NUMBER("torquer.repeatability", torquer_repeatability, "ppm", 0.0, 0.5,
            "1 sigma from run to run, relative"),
-    NUMBER("torquer.quadratic", torquer_quadratic, "1/A", -10.0, 10.0, false,
+    NUMBER("torquer.quadratic", torquer_quadratic, "1/A", -10.0, 10.0,
            "relative change with current"),
-    NUMBER("torquer.largest_current", largest_current, "mA", 0.0, 1e3, true, "limit of the driver"),
-    NUMBER("readout.noise", readout_noise, "A/sqrt(Hz)", 0.0, 1.0, false,
+    ABOVE("torquer.largest_current", largest_current, "mA", 0.0, 1e3, "limit of the driver"),
+    NUMBER("readout.noise", readout_noise, "A/sqrt(Hz)", 0.0, 1.0,
            "two-sided density of the current's noise"),
-    NUMBER("readout.step", readout_step, "A", 0.0, 1.0, false, "resolution of the sampled current"),
-    NUMBER("temperature", temperature, "degC", 1.0, 1000.0, false,
+    NUMBER("readout.step", readout_step, "A", 0.0, 1.0, "resolution of the sampled current"),
+    NUMBER("temperature", temperature, "degC", 1.0, 1000.0,
            "temperature of the gas, and where errors are stated"),
 };
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static imk_status validate(const void *design, imk_error *error)
+static imk_status check(const void *design, imk_error *error)
 {
     const design_type *d = design;
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "pendulous_servo", NULL,
-                             "a design made by imk_pendulous_servo_default()");
-    const imk_status status = imk_design_check(&imk_pendulous_servo_instrument, d, error);
-    if (status != IMK_OK)
-        return status;
     const double weakest = 1.0 + d->torquer_error - 6.0 * d->torquer_repeatability;
     if (!(weakest > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "torquer.repeatability",
-                                  d->torquer_repeatability, (1.0 + d->torquer_error) / 6.0,
-                                  "so little that the torquer pulls in every run: less than a "
-                                  "sixth of its constant");
+        return imki_conflict(error, "torquer.repeatability", d->torquer_repeatability,
+                             (1.0 + d->torquer_error) / 6.0,
+                             "so little that the torquer pulls in every run: less than a "
+                             "sixth of its constant");
     const double bend = fabs(d->torquer_quadratic) * d->largest_current;
     if (!(bend < 0.25))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "torquer.quadratic", bend, 0.25,
-                                  "less than a quarter over the largest current: the torque grows "
-                                  "with it");
+        return imki_conflict(error, "torquer.quadratic", bend, 0.25,
+                             "less than a quarter over the largest current: the torque grows "
+                             "with it");
     const double largest = d->torquer_constant * (1.0 + d->torquer_error) * d->largest_current;
     const double error_torque = fabs(d->hinge_torque) + 6.0 * d->hinge_torque_repeatability;
     if (!(error_torque < largest))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "hinge.torque", error_torque, largest,
-                                  "a hinge torque (and six times its repeatability) below the "
-                                  "largest torque of the torquer");
+        return imki_conflict(error, "hinge.torque", error_torque, largest,
+                             "a hinge torque (and six times its repeatability) below the "
+                             "largest torque of the torquer");
     /* Routh: J s^3 + b s^2 + K s + K_i has its roots on the left when b K > J K_i. */
     const double limit = d->damping * imki_servo_stiffness(d) / d->inertia;
     if (d->integral > 0.0 && !(d->integral < limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "controller.integral", d->integral,
-                                  limit,
-                                  "less than damping x stiffness / inertia: the loop would not be "
-                                  "stable");
+        return imki_conflict(error, "controller.integral", d->integral, limit,
+                             "less than damping x stiffness / inertia: the loop would not be "
+                             "stable");
     return IMK_OK;
-}
-
-imk_status imk_pendulous_servo_validate(const imk_pendulous_servo *design, imk_error *error)
-{
-    return validate(design, error);
-}
-
-static void set_default(void *design)
-{
-    *(design_type *)design = imk_pendulous_servo_default();
-}
-
-void imk_pendulous_servo_reduce(const imk_pendulous_servo *design, imk_model *model)
-{
-    imki_pendulous_servo_reduce(design,
-                                imki_reduction_begin(model, &imk_pendulous_servo_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_pendulous_servo_validate(design, error);
-    return status == IMK_OK ? imki_servo_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_pendulous_servo_reduce(design, model);
 }
 
 static const imk_signal outputs[] = {
@@ -186,18 +144,21 @@ static const imk_view views[] = {
      .input = IMK_STANDARD_GRAVITY},
 };
 
+IMKI_DESIGN_FUNCTIONS(pendulous_servo);
+
 const imk_instrument imk_pendulous_servo_instrument = {
     .name = "pendulous_servo",
     .title = "pendulous servo accelerometer",
     .technology = "servo",
     .source = "datasheet Honeywell QA-3000; pendulum and loop chosen",
     .sensor = IMK_ACCEL,
+    .cookie = COOKIE,
     .design_size = sizeof(design_type),
     .state_size = sizeof(imki_servo),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_servo_init,
     .step = imki_servo_step,
     .observe = imki_servo_observe,
     .reduce = reduce,

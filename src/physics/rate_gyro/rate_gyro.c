@@ -3,6 +3,8 @@
  * rate_gyro_formulas.c; dynamics: rate_gyro_dynamics.c. */
 #include "rate_gyro_internal.h"
 
+#include "physics/design_rows_internal.h"
+
 enum { COOKIE = 0x52415447 };
 
 imk_rate_gyro imk_rate_gyro_default(void)
@@ -25,56 +27,47 @@ imk_rate_gyro imk_rate_gyro_default(void)
     };
 }
 
+#define DESIGN imk_rate_gyro
 static const imk_design_field fields[] = {
-    {"wheel.momentum", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, momentum), "kg*m^2/s", 0.0, 1e3,
-     true, NULL, "angular momentum of the wheel"},
-    {"wheel.momentum_error", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, momentum_error), "ppm",
-     -0.5, 0.5, false, NULL, "relative error of the wheel's speed"},
-    {"gimbal.output_inertia", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, output_inertia), "kg*m^2",
-     0.0, 10.0, true, NULL, "inertia of gimbal and wheel about the output axis"},
-    {"gimbal.input_inertia", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, input_inertia), "kg*m^2",
-     0.0, 10.0, true, NULL, "inertia of gimbal and wheel about the input axis"},
-    {"gimbal.spin_inertia", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, spin_inertia), "kg*m^2", 0.0,
-     10.0, true, NULL, "inertia of gimbal and wheel about the spin axis"},
-    {"spring.stiffness", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, stiffness), "N*m/rad", 0.0, 1e6,
-     true, NULL, "stiffness of the torsion bar"},
-    {"spring.error", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, stiffness_error), "ppm", -0.5, 0.5,
-     false, NULL, "relative error of the stiffness"},
-    {"spring.temperature", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, stiffness_temperature),
-     "ppm/K", -2e-3, 2e-3, false, NULL, "relative change of the stiffness with temperature"},
-    {"gimbal.damping", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, damping), "N*m*s/rad", 0.0, 1e4,
-     false, NULL, "viscous damping of the gimbal"},
-    {"gimbal.friction", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, friction), "N*m", 0.0, 1.0,
-     false, NULL, "Coulomb friction of the gimbal's bearings"},
-    {"gimbal.stop", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, stop), "deg", 0.0, 0.5, true, NULL,
-     "largest angle of the gimbal"},
-    IMKI_BALANCE_FIELDS(imk_rate_gyro),
-    IMKI_TORQUE_FIELDS(imk_rate_gyro),
-    {"pickoff.noise", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, pickoff_noise), "urad/sqrt(Hz)",
-     0.0, 1.0, false, NULL, "white noise of the angle pickoff, two-sided"},
-    {"pickoff.resolution", IMK_DESIGN_NUMBER, offsetof(imk_rate_gyro, pickoff_resolution), "urad",
-     0.0, 0.1, false, NULL, "step of the angle pickoff; 0: none"},
+    ABOVE("wheel.momentum", momentum, "kg*m^2/s", 0.0, 1e3, "angular momentum of the wheel"),
+    NUMBER("wheel.momentum_error", momentum_error, "ppm", -0.5, 0.5,
+           "relative error of the wheel's speed"),
+    ABOVE("gimbal.output_inertia", output_inertia, "kg*m^2", 0.0, 10.0,
+          "inertia of gimbal and wheel about the output axis"),
+    ABOVE("gimbal.input_inertia", input_inertia, "kg*m^2", 0.0, 10.0,
+          "inertia of gimbal and wheel about the input axis"),
+    ABOVE("gimbal.spin_inertia", spin_inertia, "kg*m^2", 0.0, 10.0,
+          "inertia of gimbal and wheel about the spin axis"),
+    ABOVE("spring.stiffness", stiffness, "N*m/rad", 0.0, 1e6, "stiffness of the torsion bar"),
+    NUMBER("spring.error", stiffness_error, "ppm", -0.5, 0.5, "relative error of the stiffness"),
+    NUMBER("spring.temperature", stiffness_temperature, "ppm/K", -2e-3, 2e-3,
+           "relative change of the stiffness with temperature"),
+    NUMBER("gimbal.damping", damping, "N*m*s/rad", 0.0, 1e4, "viscous damping of the gimbal"),
+    NUMBER("gimbal.friction", friction, "N*m", 0.0, 1.0,
+           "Coulomb friction of the gimbal's bearings"),
+    ABOVE("gimbal.stop", stop, "deg", 0.0, 0.5, "largest angle of the gimbal"),
+    IMKI_BALANCE_FIELDS,
+    IMKI_TORQUE_FIELDS,
+    NUMBER("pickoff.noise", pickoff_noise, "urad/sqrt(Hz)", 0.0, 1.0,
+           "white noise of the angle pickoff, two-sided"),
+    NUMBER("pickoff.resolution", pickoff_resolution, "urad", 0.0, 0.1,
+           "step of the angle pickoff; 0: none"),
 };
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-imk_status imk_rate_gyro_validate(const imk_rate_gyro *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "rate_gyro", NULL,
-                             "a design made by imk_rate_gyro_default()");
-    const imk_status status = imk_design_check(&imk_rate_gyro_instrument, d, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_rate_gyro *d = given;
     if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "gimbal.output_inertia",
-                                  d->output_inertia, d->input_inertia + d->spin_inertia,
-                                  "moments of inertia none of which exceeds the sum of the others");
+        return imki_conflict(error, "gimbal.output_inertia", d->output_inertia,
+                             d->input_inertia + d->spin_inertia,
+                             "moments of inertia none of which exceeds the sum of the others");
     const double range = d->stop / imk_rate_gyro_sensitivity(d);
     const double softening = (d->spin_inertia - d->input_inertia) * range * range;
     if (!(softening < imki_rate_gyro_stiffness(d)))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "spring.stiffness", d->stiffness,
-                                  softening, "a spring that holds against the anisoinertia");
+        return imki_conflict(error, "spring.stiffness", d->stiffness, softening,
+                             "a spring that holds against the anisoinertia");
     return IMK_OK;
 }
 
@@ -99,7 +92,7 @@ static const imk_view views[] = {
      .y = {0},
      .duration = 0.2,
      .rate = 2000.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "Phase portrait of the gimbal",
      .caption = "Rate against angle: a spiral into the balance, an ellipse without a damper.",
      .x = 0,
@@ -107,35 +100,10 @@ static const imk_view views[] = {
      .y = {1},
      .duration = 0.2,
      .rate = 4000.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
 };
 
-static void set_default(void *design)
-{
-    *(imk_rate_gyro *)design = imk_rate_gyro_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_rate_gyro_validate(design, error);
-}
-
-void imk_rate_gyro_reduce(const imk_rate_gyro *design, imk_model *model)
-{
-    imki_rate_gyro_reduce(design, imki_reduction_begin(model, &imk_rate_gyro_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_rate_gyro_validate(design, error);
-    return status == IMK_OK ? imki_rate_gyro_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_rate_gyro_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(rate_gyro);
 
 const imk_instrument imk_rate_gyro_instrument = {
     .name = "rate_gyro",
@@ -143,12 +111,13 @@ const imk_instrument imk_rate_gyro_instrument = {
     .technology = "",
     .source = "figures chosen, of the size of miniature torsion-bar rate gyros; see rate_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_rate_gyro),
     .state_size = sizeof(imki_rate_gyro_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_rate_gyro_init,
     .step = imki_rate_gyro_step,
     .observe = imki_rate_gyro_observe,
     .reduce = reduce,

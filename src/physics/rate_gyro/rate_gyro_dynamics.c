@@ -59,13 +59,9 @@ imk_status imki_rate_gyro_init(const void *design, const imk_physics_settings *s
 {
     const imk_rate_gyro *d = design;
     imki_rate_gyro_state *s = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(s, 0, sizeof *s);
     const bool slow = settings->level == IMK_LEVEL_SLOW;
     const double sample = 1.0 / settings->rate;
-    status =
+    imk_status status =
         imki_divide_sample(settings, slow ? sample : cycle(d) / steps_per_cycle,
                            slow ? (double)INFINITY : cycle(d) / fewest_steps,
                            "at least 8 steps to a cycle of the gimbal", &s->count, &s->step, error);
@@ -86,11 +82,8 @@ imk_status imki_rate_gyro_init(const void *design, const imk_physics_settings *s
     start_linear_part(s, d);
     imki_draws_start(&s->torque_draws, settings, TORQUE_NOISE);
     imki_draws_start(&s->pickoff_draws, settings, PICKOFF_NOISE);
-    status = imki_wander_start(&s->wander, settings, TORQUE_WANDER, d->torque.repeatability,
-                               d->torque.instability);
-    if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
-                                  NULL);
+    imki_wander_start(&s->wander, settings, TORQUE_WANDER, d->torque.repeatability,
+                      d->torque.instability);
     return IMK_OK;
 }
 
@@ -197,8 +190,7 @@ void imki_rate_gyro_step(void *state, const imk_exposure *exposure, double *outp
         angle = s->x[2] * s->rate;
     }
     angle += s->noise * imki_draw(&s->pickoff_draws);
-    if (s->resolution > 0.0)
-        angle = s->resolution * floor(angle / s->resolution + 0.5);
+    angle = imki_quantised(angle, s->resolution);
     outputs[0] = s->reading * angle;
 }
 

@@ -3,9 +3,9 @@
  * rate_integrating_gyro_formulas.c; dynamics: rate_integrating_gyro_dynamics.c. */
 #include "rate_integrating_gyro_internal.h"
 
-enum { COOKIE = 0x52494721 };
+#include "physics/design_rows_internal.h"
 
-typedef imk_rate_integrating_gyro design_of; /* short, for the table */
+enum { COOKIE = 0x52494721 };
 
 imk_rate_integrating_gyro imk_rate_integrating_gyro_default(void)
 {
@@ -32,69 +32,58 @@ imk_rate_integrating_gyro imk_rate_integrating_gyro_default(void)
     };
 }
 
+#define DESIGN imk_rate_integrating_gyro
 static const imk_design_field fields[] = {
-    {"wheel.momentum", IMK_DESIGN_NUMBER, offsetof(design_of, momentum), "kg*m^2/s", 1e-8, 1e3,
-     false, NULL, "angular momentum of the wheel"},
-    {"wheel.momentum_error", IMK_DESIGN_NUMBER, offsetof(design_of, momentum_error), "ppm", -0.5,
-     0.5, false, NULL, "relative error of the wheel's speed"},
-    {"float.output_inertia", IMK_DESIGN_NUMBER, offsetof(design_of, output_inertia), "kg*m^2", 0.0,
-     10.0, true, NULL, "inertia of the float about the output axis"},
-    {"float.input_inertia", IMK_DESIGN_NUMBER, offsetof(design_of, input_inertia), "kg*m^2", 0.0,
-     10.0, true, NULL, "inertia of the float about the input axis"},
-    {"float.spin_inertia", IMK_DESIGN_NUMBER, offsetof(design_of, spin_inertia), "kg*m^2", 0.0,
-     10.0, true, NULL, "inertia of the float about the spin axis"},
-    {"float.damping", IMK_DESIGN_NUMBER, offsetof(design_of, damping), "N*m*s/rad", 0.0, 1e4, true,
-     NULL, "viscous damping by the liquid"},
-    {"float.stiffness", IMK_DESIGN_NUMBER, offsetof(design_of, stiffness), "N*m/rad", 0.0, 1e3,
-     false, NULL, "spring of the flex leads"},
-    {"float.stop", IMK_DESIGN_NUMBER, offsetof(design_of, stop), "deg", 0.0, 0.5, true, NULL,
-     "largest angle of the float"},
-    IMKI_BALANCE_FIELDS(design_of),
-    IMKI_TORQUE_FIELDS(design_of),
-    {"pickoff.noise", IMK_DESIGN_NUMBER, offsetof(design_of, pickoff_noise), "nrad/sqrt(Hz)", 0.0,
-     1.0, false, NULL, "white noise of the angle pickoff, two-sided"},
-    {"pickoff.resolution", IMK_DESIGN_NUMBER, offsetof(design_of, pickoff_resolution), "urad", 0.0,
-     0.1, false, NULL, "step of the angle pickoff, read in the open loop; 0: none"},
-    {"rebalance", IMK_DESIGN_CHOICE, offsetof(design_of, rebalance), "1", 0.0, 3.0, false,
-     "open|analog|ternary|binary", "how the torquer brings the float back"},
-    {"torquer.limit", IMK_DESIGN_NUMBER, offsetof(design_of, torquer_limit), "N*m", 0.0, 100.0,
-     true, NULL, "largest torque, and that of the pulses"},
-    {"torquer.error", IMK_DESIGN_NUMBER, offsetof(design_of, torquer_error), "ppm", -0.5, 0.5,
-     false, NULL, "relative error of the torque per current"},
-    {"torquer.temperature", IMK_DESIGN_NUMBER, offsetof(design_of, torquer_temperature), "ppm/K",
-     -2e-3, 2e-3, false, NULL, "relative change of the torque per current with temperature"},
-    {"pulse.frequency", IMK_DESIGN_NUMBER, offsetof(design_of, pulse_frequency), "Hz", 0.0, 1e7,
-     true, NULL, "torque pulses per second"},
-    {"pulse.lead", IMK_DESIGN_NUMBER, offsetof(design_of, pulse_lead), "ms", 0.0, 10.0, false, NULL,
-     "lead of the pulse logic against the lag of the float"},
-    {"loop.frequency", IMK_DESIGN_NUMBER, offsetof(design_of, loop_frequency), "Hz", 0.0, 1e5, true,
-     NULL, "natural frequency of the analog loop"},
-    {"loop.damping", IMK_DESIGN_NUMBER, offsetof(design_of, loop_damping), "1", 0.0, 50.0, true,
-     NULL, "damping ratio of the analog loop"},
+    NUMBER("wheel.momentum", momentum, "kg*m^2/s", 1e-8, 1e3, "angular momentum of the wheel"),
+    NUMBER("wheel.momentum_error", momentum_error, "ppm", -0.5, 0.5,
+           "relative error of the wheel's speed"),
+    ABOVE("float.output_inertia", output_inertia, "kg*m^2", 0.0, 10.0,
+          "inertia of the float about the output axis"),
+    ABOVE("float.input_inertia", input_inertia, "kg*m^2", 0.0, 10.0,
+          "inertia of the float about the input axis"),
+    ABOVE("float.spin_inertia", spin_inertia, "kg*m^2", 0.0, 10.0,
+          "inertia of the float about the spin axis"),
+    ABOVE("float.damping", damping, "N*m*s/rad", 0.0, 1e4, "viscous damping by the liquid"),
+    NUMBER("float.stiffness", stiffness, "N*m/rad", 0.0, 1e3, "spring of the flex leads"),
+    ABOVE("float.stop", stop, "deg", 0.0, 0.5, "largest angle of the float"),
+    IMKI_BALANCE_FIELDS,
+    IMKI_TORQUE_FIELDS,
+    NUMBER("pickoff.noise", pickoff_noise, "nrad/sqrt(Hz)", 0.0, 1.0,
+           "white noise of the angle pickoff, two-sided"),
+    NUMBER("pickoff.resolution", pickoff_resolution, "urad", 0.0, 0.1,
+           "step of the angle pickoff, read in the open loop; 0: none"),
+    CHOICE("rebalance", rebalance, "open|analog|ternary|binary",
+           "how the torquer brings the float back"),
+    ABOVE("torquer.limit", torquer_limit, "N*m", 0.0, 100.0,
+          "largest torque, and that of the pulses"),
+    NUMBER("torquer.error", torquer_error, "ppm", -0.5, 0.5,
+           "relative error of the torque per current"),
+    NUMBER("torquer.temperature", torquer_temperature, "ppm/K", -2e-3, 2e-3,
+           "relative change of the torque per current with temperature"),
+    ABOVE("pulse.frequency", pulse_frequency, "Hz", 0.0, 1e7, "torque pulses per second"),
+    NUMBER("pulse.lead", pulse_lead, "ms", 0.0, 10.0,
+           "lead of the pulse logic against the lag of the float"),
+    ABOVE("loop.frequency", loop_frequency, "Hz", 0.0, 1e5, "natural frequency of the analog loop"),
+    ABOVE("loop.damping", loop_damping, "1", 0.0, 50.0, "damping ratio of the analog loop"),
 };
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-imk_status imk_rate_integrating_gyro_validate(const imk_rate_integrating_gyro *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
+    const imk_rate_integrating_gyro *d = given;
     double k1, k2;
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "rate_integrating_gyro", NULL,
-                             "a design made by imk_rate_integrating_gyro_default()");
-    const imk_status status = imk_design_check(&imk_rate_integrating_gyro_instrument, d, error);
-    if (status != IMK_OK)
-        return status;
     if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "float.output_inertia",
-                                  d->output_inertia, d->input_inertia + d->spin_inertia,
-                                  "moments of inertia none of which exceeds the sum of the others");
+        return imki_conflict(error, "float.output_inertia", d->output_inertia,
+                             d->input_inertia + d->spin_inertia,
+                             "moments of inertia none of which exceeds the sum of the others");
     imk_rate_integrating_gyro_loop(d, &k1, &k2);
     /* Routh: C (K1 + k) > I K2, with the gain of the torquer in both */
     if (d->rebalance == IMK_REBALANCE_ANALOG &&
         !(d->damping * (k1 + d->stiffness / (1.0 + d->torquer_error)) > d->output_inertia * k2)) {
         const double highest = d->loop_frequency * d->damping * k1 / (d->output_inertia * k2);
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "loop.frequency", d->loop_frequency,
-                                  highest, "a loop slow enough for the lag I/C of the float");
+        return imki_conflict(error, "loop.frequency", d->loop_frequency, highest,
+                             "a loop slow enough for the lag I/C of the float");
     }
     return IMK_OK;
 }
@@ -133,34 +122,7 @@ static const imk_view views[] = {
      .input = 10.0 * IMKI_PI / 180.0},
 };
 
-static void set_default(void *design)
-{
-    *(imk_rate_integrating_gyro *)design = imk_rate_integrating_gyro_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_rate_integrating_gyro_validate(design, error);
-}
-
-void imk_rate_integrating_gyro_reduce(const imk_rate_integrating_gyro *design, imk_model *model)
-{
-    imki_rate_integrating_gyro_reduce(
-        design, imki_reduction_begin(model, &imk_rate_integrating_gyro_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_rate_integrating_gyro_validate(design, error);
-    return status == IMK_OK ? imki_rate_integrating_gyro_init(design, settings, state, error)
-                            : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_rate_integrating_gyro_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(rate_integrating_gyro);
 
 const imk_instrument imk_rate_integrating_gyro_instrument = {
     .name = "rate_integrating_gyro",
@@ -170,12 +132,13 @@ const imk_instrument imk_rate_integrating_gyro_instrument = {
         "drift of the floated gyros in R. A. Harris, Navigation 21 (1974); dimensions chosen, see "
         "rate_integrating_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_rate_integrating_gyro),
     .state_size = sizeof(imki_rate_integrating_gyro_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_rate_integrating_gyro_init,
     .step = imki_rate_integrating_gyro_step,
     .observe = imki_rate_integrating_gyro_observe,
     .reduce = reduce,

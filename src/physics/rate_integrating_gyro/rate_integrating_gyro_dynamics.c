@@ -78,8 +78,8 @@ static imk_status divide(gyro *s, const imk_rate_integrating_gyro *d,
     const double pulses = d->pulse_frequency / settings->rate;
     const double whole = floor(pulses + 0.5);
     if (!(whole >= 1.0 && fabs(pulses - whole) <= 1e-9 * whole))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate,
-                                  d->pulse_frequency, "whole pulses of the torquer to a sample");
+        return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->pulse_frequency,
+                           "whole pulses of the torquer to a sample");
     const double parts = ceil((double)s->count / whole * (1.0 - 1e-9));
     s->steps_per_pulse = (size_t)parts;
     s->count = s->steps_per_pulse * (size_t)whole;
@@ -154,21 +154,14 @@ imk_status imki_rate_integrating_gyro_init(const void *design, const imk_physics
 {
     const imk_rate_integrating_gyro *d = design;
     gyro *s = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(s, 0, sizeof *s);
-    status = divide(s, d, settings, error);
+    imk_status status = divide(s, d, settings, error);
     if (status != IMK_OK)
         return status;
     start_constants(s, d, settings);
     imki_draws_start(&s->torque_draws, settings, TORQUE_NOISE);
     imki_draws_start(&s->pickoff_draws, settings, PICKOFF_NOISE);
-    status = imki_wander_start(&s->wander, settings, TORQUE_WANDER, d->torque.repeatability,
-                               d->torque.instability);
-    if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
-                                  NULL);
+    imki_wander_start(&s->wander, settings, TORQUE_WANDER, d->torque.repeatability,
+                      d->torque.instability);
     return IMK_OK;
 }
 
@@ -256,9 +249,7 @@ static double run_pulsed(gyro *s, const imk_exposure *exposure)
 static double read_angle(gyro *s)
 {
     const double th = s->x[0] + s->pickoff_sigma * imki_draw(&s->pickoff_draws);
-    return s->pickoff_resolution > 0.0
-               ? s->pickoff_resolution * floor(th / s->pickoff_resolution + 0.5)
-               : th;
+    return imki_quantised(th, s->pickoff_resolution);
 }
 
 static double change_of_angle(gyro *s)

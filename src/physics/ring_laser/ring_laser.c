@@ -3,12 +3,13 @@
  * ring_laser_dynamics.c. */
 #include "ring_laser_internal.h"
 
+#include "physics/design_rows_internal.h"
+
 #include <math.h>
 #include <string.h>
 
 enum { COOKIE = 0x524C4731 };
 
-#define DEGREE (IMKI_PI / 180.0)
 #define DEGREE_PER_HOUR (IMKI_PI / 180.0 / 3600.0)
 
 imk_ring_laser imk_ring_laser_default(void)
@@ -18,72 +19,59 @@ imk_ring_laser imk_ring_laser_default(void)
         .cookie = COOKIE,
         .cavity = {.perimeter = 0.16, .wavelength = 632.8e-9, .loss = 300e-6, .power = 10e-3},
         .lock_in = {.rate = 152.5 * DEGREE_PER_HOUR},
-        .dither = {.frequency = 517.0, .rate = 150.0 * DEGREE, .randomness = 0.02},
+        .dither = {.frequency = 517.0, .rate = 150.0 * IMKI_DEGREE, .randomness = 0.02},
         .null_shift = {.repeatability = 0.003 * DEGREE_PER_HOUR,
                        .instability = 0.0035 / floor_per_b * DEGREE_PER_HOUR},
         .scale_factor = {.repeatability = 5.0 * 1e-6},
         .path_length = {.expansion = 2e-8, .stroke = 2e-6},
-        .readout = {.decoding = IMK_RING_LASER_QUARTERS, .range = 900.0 * DEGREE},
+        .readout = {.decoding = IMK_RING_LASER_QUARTERS, .range = 900.0 * IMKI_DEGREE},
         .temperature = {.reference = 293.15, .minimum = -54.0 + 273.15, .maximum = 344.15}};
 }
 
 /* ---- tables ---------------------------------------------------------------------------------- */
 
-#define FIELD(name, member, text, low, high, excluded, line)                                       \
-    {                                                                                              \
-        .path = name, .kind = IMK_DESIGN_NUMBER, .offset = offsetof(imk_ring_laser, member),       \
-        .unit = text, .minimum = low, .maximum = high, .open = excluded, .help = line              \
-    }
-#define CHOICE(name, member, words, line)                                                          \
-    {                                                                                              \
-        .path = name, .kind = IMK_DESIGN_CHOICE, .offset = offsetof(imk_ring_laser, member),       \
-        .choices = words, .help = line                                                             \
-    }
-
 /* The limits keep what is computed finite; rates up to 1e4 deg/s, cavities from chips to rooms. */
+#define DESIGN imk_ring_laser
 static const imk_design_field fields[] = {
     CHOICE("cavity.shape", cavity.shape, "triangle|square", "path of the beams"),
-    FIELD("cavity.perimeter", cavity.perimeter, "m", 1e-3, 1e3, false, "length of the path"),
-    FIELD("cavity.wavelength", cavity.wavelength, "nm", 1e-7, 1e-5, false, "of the light"),
-    FIELD("cavity.loss", cavity.loss, "ppm", 0.0, 0.5, true,
+    NUMBER("cavity.perimeter", cavity.perimeter, "m", 1e-3, 1e3, "length of the path"),
+    NUMBER("cavity.wavelength", cavity.wavelength, "nm", 1e-7, 1e-5, "of the light"),
+    ABOVE("cavity.loss", cavity.loss, "ppm", 0.0, 0.5,
           "part of a beam's energy lost in a round trip"),
-    FIELD("cavity.power", cavity.power, "mW", 0.0, 1e6, true, "circulating in each beam"),
-    FIELD("lock_in.rate", lock_in.rate, "deg/h", 0.0, 175.0, false,
-          "without dither, rates below read 0"),
-    FIELD("lock_in.phase", lock_in.phase, "deg", -10.0, 10.0, false,
-          "phase of the backscattered light"),
-    FIELD("dither.frequency", dither.frequency, "Hz", 1.0, 1e5, false, "of the oscillation"),
-    FIELD("dither.rate", dither.rate, "deg/s", 0.0, 175.0, false, "peak rate; 0: no dither"),
-    FIELD("dither.randomness", dither.randomness, "%", 0.0, 0.1, false,
-          "1 sigma of the amplitude from half cycle to half cycle"),
-    FIELD("null_shift.fixed", null_shift.fixed, "deg/h", -1.0, 1.0, false, "bias of the beat"),
-    FIELD("null_shift.repeatability", null_shift.repeatability, "deg/h", 0.0, 1.0, false,
-          "1 sigma from run to run"),
-    FIELD("null_shift.instability", null_shift.instability, "deg/h", 0.0, 1.0, false,
-          "flicker B within a run"),
-    FIELD("null_shift.temperature", null_shift.temperature, "deg/h/K", -0.01, 0.01, false,
-          "change per kelvin"),
-    FIELD("scale_factor.error", scale_factor.error, "ppm", -0.1, 0.1, false,
-          "of the geometry against its nominal value"),
-    FIELD("scale_factor.repeatability", scale_factor.repeatability, "ppm", 0.0, 0.1, false,
-          "1 sigma from run to run"),
-    FIELD("path_length.expansion", path_length.expansion, "ppm/K", -1e-4, 1e-4, false,
-          "relative change of the perimeter with temperature"),
-    FIELD("path_length.stroke", path_length.stroke, "um", 0.0, 1e-2, false,
-          "change of the perimeter that its control can make, end to end"),
-    FIELD("alignment.y", alignment.y, "mrad", -0.1, 0.1, false, "response to rates about y"),
-    FIELD("alignment.z", alignment.z, "mrad", -0.1, 0.1, false, "response to rates about z"),
+    ABOVE("cavity.power", cavity.power, "mW", 0.0, 1e6, "circulating in each beam"),
+    NUMBER("lock_in.rate", lock_in.rate, "deg/h", 0.0, 175.0, "without dither, rates below read 0"),
+    NUMBER("lock_in.phase", lock_in.phase, "deg", -10.0, 10.0, "phase of the backscattered light"),
+    NUMBER("dither.frequency", dither.frequency, "Hz", 1.0, 1e5, "of the oscillation"),
+    NUMBER("dither.rate", dither.rate, "deg/s", 0.0, 175.0, "peak rate; 0: no dither"),
+    NUMBER("dither.randomness", dither.randomness, "%", 0.0, 0.1,
+           "1 sigma of the amplitude from half cycle to half cycle"),
+    NUMBER("null_shift.fixed", null_shift.fixed, "deg/h", -1.0, 1.0, "bias of the beat"),
+    NUMBER("null_shift.repeatability", null_shift.repeatability, "deg/h", 0.0, 1.0,
+           "1 sigma from run to run"),
+    NUMBER("null_shift.instability", null_shift.instability, "deg/h", 0.0, 1.0,
+           "flicker B within a run"),
+    NUMBER("null_shift.temperature", null_shift.temperature, "deg/h/K", -0.01, 0.01,
+           "change per kelvin"),
+    NUMBER("scale_factor.error", scale_factor.error, "ppm", -0.1, 0.1,
+           "of the geometry against its nominal value"),
+    NUMBER("scale_factor.repeatability", scale_factor.repeatability, "ppm", 0.0, 0.1,
+           "1 sigma from run to run"),
+    NUMBER("path_length.expansion", path_length.expansion, "ppm/K", -1e-4, 1e-4,
+           "relative change of the perimeter with temperature"),
+    NUMBER("path_length.stroke", path_length.stroke, "um", 0.0, 1e-2,
+           "change of the perimeter that its control can make, end to end"),
+    NUMBER("alignment.y", alignment.y, "mrad", -0.1, 0.1, "response to rates about y"),
+    NUMBER("alignment.z", alignment.z, "mrad", -0.1, 0.1, "response to rates about z"),
     CHOICE("readout.decoding", readout.decoding, "fringes|halves|quarters", "what makes one count"),
     CHOICE("readout.stripping", readout.stripping, "pickoff|periods",
            "how the dither is taken out of the reading"),
-    FIELD("readout.pickoff_error", readout.pickoff_error, "%", -1.0, 1.0, false,
-          "gain of the dither pickoff less 1"),
-    FIELD("readout.range", readout.range, "deg/s", 0.0, 1e4, true,
-          "larger rates are put out as this"),
-    FIELD("temperature.reference", temperature.reference, "degC", 1.0, 1000.0, false,
-          "where null shift and path length are set"),
-    FIELD("temperature.minimum", temperature.minimum, "degC", 1.0, 1000.0, false, "of operation"),
-    FIELD("temperature.maximum", temperature.maximum, "degC", 1.0, 1000.0, false, "of operation"),
+    NUMBER("readout.pickoff_error", readout.pickoff_error, "%", -1.0, 1.0,
+           "gain of the dither pickoff less 1"),
+    ABOVE("readout.range", readout.range, "deg/s", 0.0, 1e4, "larger rates are put out as this"),
+    NUMBER("temperature.reference", temperature.reference, "degC", 1.0, 1000.0,
+           "where null shift and path length are set"),
+    NUMBER("temperature.minimum", temperature.minimum, "degC", 1.0, 1000.0, "of operation"),
+    NUMBER("temperature.maximum", temperature.maximum, "degC", 1.0, 1000.0, "of operation"),
 };
 
 static const imk_signal outputs[] = {
@@ -143,30 +131,24 @@ static const imk_view views[] = {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-imk_status imk_ring_laser_validate(const imk_ring_laser *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_ring_laser_default()");
-    const imk_status status = imk_design_check(&imk_ring_laser_instrument, design, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_ring_laser *design = given;
     if (design->dither.rate > 0.0 && !(design->dither.rate > design->lock_in.rate))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "dither.rate", design->dither.rate,
-                                  design->lock_in.rate,
-                                  "a peak rate above lock_in.rate, or 0 for no dither");
+        return imki_conflict(error, "dither.rate", design->dither.rate, design->lock_in.rate,
+                             "a peak rate above lock_in.rate, or 0 for no dither");
     if (!(design->path_length.stroke >= design->cavity.wavelength))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "path_length.stroke",
-                                  design->path_length.stroke, design->cavity.wavelength,
-                                  "at least the wavelength, or there is no next mode to go to");
+        return imki_conflict(error, "path_length.stroke", design->path_length.stroke,
+                             design->cavity.wavelength,
+                             "at least the wavelength, or there is no next mode to go to");
     if (!(design->temperature.minimum < design->temperature.reference))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.minimum",
-                                  design->temperature.minimum, design->temperature.reference,
-                                  "a temperature below temperature.reference");
+        return imki_conflict(error, "temperature.minimum", design->temperature.minimum,
+                             design->temperature.reference,
+                             "a temperature below temperature.reference");
     if (!(design->temperature.reference < design->temperature.maximum))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.maximum",
-                                  design->temperature.maximum, design->temperature.reference,
-                                  "a temperature above temperature.reference");
+        return imki_conflict(error, "temperature.maximum", design->temperature.maximum,
+                             design->temperature.reference,
+                             "a temperature above temperature.reference");
     return IMK_OK;
 }
 
@@ -207,34 +189,31 @@ static imk_status check_slow(const imk_ring_laser *design, const imk_physics_set
     const double least = 20.0, largest = 0.5; /* [rad] */
     const double phase = dither_phase(design), half_cycle = 0.5 / design->dither.frequency;
     if (!(design->dither.rate > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level,
-                                  0.0, "the full level: without dither there are no kicks");
+        return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level, 0.0,
+                           "the full level: without dither there are no kicks");
     if (!(phase >= least))
-        return imki_design_refuse(error, IMK_ERROR_UNSUPPORTED, "level", phase, least,
-                                  "the full level, or a dither of 20 rad of phase or more");
+        return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", phase, least,
+                           "the full level, or a dither of 20 rad of phase or more");
     const double kick = design->lock_in.rate / design->dither.rate * sqrt(2.0 * IMKI_PI * phase);
     if (!(kick <= largest))
-        return imki_design_refuse(error, IMK_ERROR_UNSUPPORTED, "level", kick, largest,
-                                  "the full level, or kicks of 0.5 rad or less: more dither");
+        return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", kick, largest,
+                           "the full level, or kicks of 0.5 rad or less: more dither");
     if (settings->step > half_cycle)
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "step", settings->step, half_cycle,
-                                  "at most half a cycle of the dither, which is a step of the map");
+        return imki_refuse(error, IMK_ERROR_RANGE, "step", settings->step, half_cycle,
+                           "at most half a cycle of the dither, which is a step of the map");
     return IMK_OK;
 }
 
 /* ---- start ----------------------------------------------------------------------------------- */
 
 /* Random numbers and what they begin with. */
-static imk_status start_random(imki_ring_laser *gyro, const imk_physics_settings *settings)
+static void start_random(imki_ring_laser *gyro, const imk_physics_settings *settings)
 {
     const imk_ring_laser *design = &gyro->design;
     imki_draws_start(&gyro->quantum_draws, settings, IMKI_RING_LASER_QUANTUM);
     imki_draws_start(&gyro->dither_draws, settings, IMKI_RING_LASER_DITHER);
-    const imk_status status =
-        imki_wander_start(&gyro->null_wander, settings, IMKI_RING_LASER_NULL,
-                          design->null_shift.repeatability, design->null_shift.instability);
-    if (status != IMK_OK)
-        return status;
+    imki_wander_start(&gyro->null_wander, settings, IMKI_RING_LASER_NULL,
+                      design->null_shift.repeatability, design->null_shift.instability);
     gyro->fringes =
         imk_ring_laser_fringes_per_radian(design) *
         (1.0 + design->scale_factor.error +
@@ -242,7 +221,6 @@ static imk_status start_random(imki_ring_laser *gyro, const imk_physics_settings
     /* a normal of ten fringes is a uniform phase to one in 1e85 */
     imki_fringes_add(&gyro->beat, imki_run_constant(settings, IMKI_RING_LASER_START, 10.0));
     gyro->beat.whole = 0;
-    return IMK_OK;
 }
 
 /* 2^64 times the fractional part of x >= 0. */
@@ -287,15 +265,12 @@ static void start_kicks(imki_ring_laser *gyro)
         0.25 * ratio * ratio / phase * (imk_ln(4.0 * phase) + euler) / (2.0 * IMKI_PI);
 }
 
-static imk_status start(const imk_ring_laser *design, const imk_physics_settings *settings,
-                        imki_ring_laser *gyro, imk_error *error)
+static imk_status init(const void *given, const imk_physics_settings *settings, void *state,
+                       imk_error *error)
 {
-    imk_status status = imk_ring_laser_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(gyro, 0, sizeof *gyro);
+    const imk_ring_laser *design = given;
+    imki_ring_laser *gyro = state;
+    imk_status status;
     gyro->design = *design;
     gyro->level = settings->level;
     gyro->dt = 1.0 / settings->rate;
@@ -311,10 +286,9 @@ static imk_status start(const imk_ring_laser *design, const imk_physics_settings
                                     "steps that follow the turns of the dither and lock-in",
                                     &gyro->steps, &gyro->step, error);
     }
-    if (status == IMK_OK)
-        status = start_random(gyro, settings);
     if (status != IMK_OK)
         return status;
+    start_random(gyro, settings);
     gyro->kappa = 2.0 * IMKI_PI * gyro->fringes * design->lock_in.rate;
     gyro->scatter = design->lock_in.phase / (2.0 * IMKI_PI);
     gyro->noise = settings->noise ? gyro->fringes * imk_ring_laser_quantum_noise(design) : 0.0;
@@ -329,12 +303,6 @@ static imk_status start(const imk_ring_laser *design, const imk_physics_settings
     gyro->counts = imki_ring_laser_count(gyro, gyro->beat);
     gyro->latched[0] = gyro->latched[1] = gyro->stripped = gyro->counts;
     return IMK_OK;
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    return start(design, settings, state, error);
 }
 
 /* ---- a sample -------------------------------------------------------------------------------- */
@@ -441,26 +409,7 @@ static void observe(const void *state, double *values)
     values[MODE] = gyro->mode;
 }
 
-static void set_default(void *design)
-{
-    const imk_ring_laser chosen = imk_ring_laser_default();
-    memcpy(design, &chosen, sizeof chosen);
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_ring_laser_validate(design, error);
-}
-
-void imk_ring_laser_reduce(const imk_ring_laser *design, imk_model *model)
-{
-    imki_ring_laser_reduce(design, imki_reduction_begin(model, &imk_ring_laser_instrument));
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_ring_laser_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(ring_laser);
 
 const imk_instrument imk_ring_laser_instrument = {
     .name = "ring_laser",
@@ -470,11 +419,12 @@ const imk_instrument imk_ring_laser_instrument = {
         "Honeywell GG1320AN data sheet: bias stability 0.0035 deg/h, angle random walk 0.0035 "
         "deg/sqrt(h), scale factor 5 ppm; the rest chosen (ring_laser.h)",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_ring_laser),
     .state_size = sizeof(imki_ring_laser),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
+    .check = check,
     .init = init,
     .step = step,
     .observe = observe,

@@ -4,29 +4,13 @@
  * electronics of shell_gyro_loops.c, averaged dynamics shell_gyro_slow.c, error model
  * shell_gyro_reduce.c. */
 #include "imukit/elementary.h"
+#include "physics/design_rows_internal.h"
 #include "shell_gyro_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-#define AT(member) offsetof(imk_shell_gyro, member)
-#define NUMBER(path, member, unit, low, high, help)                                                \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(member), unit, low, high, false, NULL, help                    \
-    }
-#define ABOVE(path, member, unit, low, high, help)                                                 \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, AT(member), unit, low, high, true, NULL, help                     \
-    }
-#define COUNT(path, member, low, high, help)                                                       \
-    {                                                                                              \
-        path, IMK_DESIGN_COUNT, AT(member), "1", low, high, false, NULL, help                      \
-    }
-#define CHOICE(path, member, choices, help)                                                        \
-    {                                                                                              \
-        path, IMK_DESIGN_CHOICE, AT(member), "1", 0.0, 0.0, false, choices, help                   \
-    }
-
+#define DESIGN imk_shell_gyro
 static const imk_design_field fields[] = {
     CHOICE("mode", mode, "force_to_rebalance|whole_angle|free",
            "what is done with the pattern: held, read as it turns, or left alone"),
@@ -127,12 +111,6 @@ imk_shell_gyro imk_shell_gyro_default(void)
         .package = {.misalignment_y = 0.01, .misalignment_z = -0.008}};
 }
 
-static imk_status refuse(imk_error *error, const char *field, double value, double limit,
-                         const char *expected)
-{
-    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
-}
-
 static imk_status check_loops(const imk_shell_gyro *design, imk_error *error)
 {
     const double update = imki_shell_update(design);
@@ -141,89 +119,68 @@ static imk_status check_loops(const imk_shell_gyro *design, imk_error *error)
     const double fastest = 0.1 / update;
     const double limit = imki_shell_command_limit(design);
     const imki_shell_balance steady =
-        imki_shell_balance_at(design, IMKI_SHELL_REFERENCE, 0.0, design->pattern.angle);
+        imki_shell_balance_at(design, IMKI_DESIGN_TEMPERATURE, 0.0, design->pattern.angle);
     if (design->mode == IMK_SHELL_FREE)
         return IMK_OK;
     if (!(update * decay <= 0.25))
-        return refuse(error, "control.cycles", design->control.cycles,
-                      0.25 / (decay * update) * design->control.cycles,
-                      "at least four updates of the loops in the decay time");
+        return imki_conflict(error, "control.cycles", design->control.cycles,
+                             0.25 / (decay * update) * design->control.cycles,
+                             "at least four updates of the loops in the decay time");
     if (!(design->control.support_bandwidth <= fastest))
-        return refuse(error, "control.support_bandwidth", design->control.support_bandwidth,
-                      fastest, "at most a tenth of the update rate: faster loops are not stable");
+        return imki_conflict(error, "control.support_bandwidth", design->control.support_bandwidth,
+                             fastest,
+                             "at most a tenth of the update rate: faster loops are not stable");
     if (design->mode == IMK_SHELL_REBALANCE && !(design->control.rebalance_bandwidth <= fastest))
-        return refuse(error, "control.rebalance_bandwidth", design->control.rebalance_bandwidth,
-                      fastest, "at most a tenth of the update rate: faster loops are not stable");
+        return imki_conflict(error, "control.rebalance_bandwidth",
+                             design->control.rebalance_bandwidth, fastest,
+                             "at most a tenth of the update rate: faster loops are not stable");
     if (!(fabs(steady.rebalance) < limit))
-        return refuse(error, "forcer.limit", design->forcer.limit,
-                      design->forcer.limit * fabs(steady.rebalance) / limit,
-                      "a force above the one that holds the pattern at rest");
+        return imki_conflict(error, "forcer.limit", design->forcer.limit,
+                             design->forcer.limit * fabs(steady.rebalance) / limit,
+                             "a force above the one that holds the pattern at rest");
     return IMK_OK;
 }
 
 static double smallest_pattern(const imk_shell_gyro *design)
 {
     const double omega = 2.0 * IMKI_PI * design->resonator.frequency;
-    const double thermal = IMKI_BOLTZMANN * IMKI_SHELL_REFERENCE / design->resonator.mass;
+    const double thermal = IMKI_BOLTZMANN * IMKI_DESIGN_TEMPERATURE / design->resonator.mass;
     const double measured = imki_shell_angle_noise(design) * design->pattern.amplitude;
     return 10.0 * (sqrt(thermal) / omega + measured);
 }
 
-imk_status imk_shell_gyro_validate(const imk_shell_gyro *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != IMKI_SHELL_COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_shell_gyro_default()");
-    const imk_status status = imk_design_check(&imk_shell_gyro_instrument, design, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_shell_gyro *design = given;
     const double damping = 2.0 / imk_shell_gyro_decay_time(design);
     if (design->resonator.shape == IMK_SHELL_HEMISPHERE && design->resonator.mode_number != 2)
-        return refuse(error, "resonator.mode_number", design->resonator.mode_number, 2.0,
-                      "2 for a hemisphere; of another shape state the angular gain");
+        return imki_conflict(error, "resonator.mode_number", design->resonator.mode_number, 2.0,
+                             "2 for a hemisphere; of another shape state the angular gain");
     const double drawn =
         6.0 * (design->anisotropy.damping_repeatability + design->anisotropy.damping_instability);
     if (!(drawn < damping))
-        return refuse(error, "anisotropy.damping_repeatability", drawn, damping,
-                      "with the instability less than a sixth of 2/tau: damping is positive in "
-                      "every run");
+        return imki_conflict(
+            error, "anisotropy.damping_repeatability", drawn, damping,
+            "with the instability less than a sixth of 2/tau: damping is positive in "
+            "every run");
     if (!(design->anisotropy.damping_difference < damping))
-        return refuse(error, "anisotropy.damping_difference", design->anisotropy.damping_difference,
-                      damping,
-                      "less than 2/tau = 2 pi f/Q: damping is positive in every direction");
+        return imki_conflict(error, "anisotropy.damping_difference",
+                             design->anisotropy.damping_difference, damping,
+                             "less than 2/tau = 2 pi f/Q: damping is positive in every direction");
     if (!(design->anisotropy.frequency_split <= 0.01 * design->resonator.frequency))
-        return refuse(error, "anisotropy.frequency_split", design->anisotropy.frequency_split,
-                      0.01 * design->resonator.frequency,
-                      "at most a hundredth of the frequency: else these are two resonators");
+        return imki_conflict(error, "anisotropy.frequency_split",
+                             design->anisotropy.frequency_split, 0.01 * design->resonator.frequency,
+                             "at most a hundredth of the frequency: else these are two resonators");
     const double hidden = design->mode == IMK_SHELL_FREE ? 0.0 : smallest_pattern(design);
     if (!(design->pattern.amplitude >= hidden))
-        return refuse(error, "pattern.amplitude", design->pattern.amplitude, hidden,
-                      "at least ten times the thermal motion and the pickoff's noise: else the "
-                      "loops see no pattern");
+        return imki_conflict(
+            error, "pattern.amplitude", design->pattern.amplitude, hidden,
+            "at least ten times the thermal motion and the pickoff's noise: else the "
+            "loops see no pattern");
     return check_loops(design, error);
 }
 
 /* ---- interface ------------------------------------------------------------------------------- */
-
-static void set_default(void *design)
-{
-    *(imk_shell_gyro *)design = imk_shell_gyro_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_shell_gyro_validate(design, error);
-}
-
-void imk_shell_gyro_reduce(const imk_shell_gyro *design, imk_model *model)
-{
-    imki_shell_gyro_reduce(design, imki_reduction_begin(model, &imk_shell_gyro_instrument));
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_shell_gyro_reduce(design, model);
-}
 
 static const imk_signal outputs[] = {
     {"rate", "rad/s", "deg/s", "measured rate"},
@@ -278,7 +235,7 @@ static const imk_view views[] = {
      .y = {MODAL_ANGLE},
      .duration = 2.0,
      .rate = 100.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "Forces of the loops",
      .caption = "What keeps the amplitude, holds the pattern and cancels the "
                 "quadrature: the second of them is the reading of a force-to-rebalance gyro.",
@@ -287,7 +244,7 @@ static const imk_view views[] = {
      .y = {DRIVE_FORCE, REBALANCE_FORCE, QUADRATURE_FORCE},
      .duration = 0.5,
      .rate = 1000.0,
-     .input = 50.0 * IMKI_PI / 180.0},
+     .input = 50.0 * IMKI_DEGREE},
     {.title = "Quadrature",
      .caption = "The short axis of the ellipse, which the quadrature loop keeps near zero.",
      .x = -1,
@@ -297,6 +254,8 @@ static const imk_view views[] = {
      .rate = 1000.0},
 };
 
+IMKI_DESIGN_FUNCTIONS(shell_gyro);
+
 const imk_instrument imk_shell_gyro_instrument = {
     .name = "shell_gyro",
     .title = "vibrating shell gyro",
@@ -304,11 +263,12 @@ const imk_instrument imk_shell_gyro_instrument = {
     .source = "Silicon Sensing CRG20 data sheet DCR620000255 (ring, closed loop, 55 Hz, cross axis "
               "2 %); resonator and noise chosen, see shell_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = IMKI_SHELL_COOKIE,
     .design_size = sizeof(imk_shell_gyro),
     .state_size = sizeof(imki_shell_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
+    .check = check,
     .init = imki_shell_init,
     .step = imki_shell_step,
     .observe = imki_shell_observe,
@@ -337,11 +297,11 @@ static imk_status check_level(const imk_shell_gyro *design, const imk_physics_se
     if (settings->level == IMK_LEVEL_FULL)
         return IMK_OK;
     if (design->mode == IMK_SHELL_FREE)
-        return imki_design_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level,
-                                  0.0, "full: a free pattern has no slow form");
+        return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level, 0.0,
+                           "full: a free pattern has no slow form");
     if (design->mode == IMK_SHELL_WHOLE_ANGLE && !(settings->rate <= fastest))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, fastest,
-                                  "at most one sample for an update of the loops");
+        return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, fastest,
+                           "at most one sample for an update of the loops");
     return IMK_OK;
 }
 
@@ -352,16 +312,11 @@ imk_status imki_shell_init(const void *design_pointer, const imk_physics_setting
     imki_shell_state *state = state_pointer;
     size_t count;
     double step;
-    imk_status status = imk_shell_gyro_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
-    if (status == IMK_OK)
-        status = check_level(design, settings, error);
+    imk_status status = check_level(design, settings, error);
     if (status == IMK_OK)
         status = divide(design, settings, &count, &step, error);
     if (status != IMK_OK)
         return status;
-    memset(state, 0, sizeof *state);
     state->design = *design;
     state->level = settings->level;
     state->sample = 1.0 / settings->rate;
@@ -376,13 +331,10 @@ imk_status imki_shell_init(const void *design_pointer, const imk_physics_setting
     state->omega = 2.0 * IMKI_PI * design->resonator.frequency;
     imki_draws_start(&state->thermal, settings, IMKI_SHELL_THERMAL);
     imki_draws_start(&state->pickoff, settings, IMKI_SHELL_PICKOFF);
-    for (int i = 0; i < 2 && status == IMK_OK; i++)
-        status = imki_wander_start(
-            &state->wander[i], settings, (uint8_t)(IMKI_SHELL_DAMPING_COSINE + i),
-            design->anisotropy.damping_repeatability, design->anisotropy.damping_instability);
-    if (status != IMK_OK)
-        return imki_design_refuse(error, status, "anisotropy.damping_instability",
-                                  design->anisotropy.damping_instability, 0.0, NULL);
+    for (int i = 0; i < 2; i++)
+        imki_wander_start(&state->wander[i], settings, (uint8_t)(IMKI_SHELL_DAMPING_COSINE + i),
+                          design->anisotropy.damping_repeatability,
+                          design->anisotropy.damping_instability);
     state->cycle.step = step;
     state->slow.count = count;
     if (settings->level == IMK_LEVEL_FULL)

@@ -95,7 +95,7 @@ double imk_shell_gyro_drive_force(const imk_shell_gyro *design)
 
 imki_shell_resonator imki_shell_resonator_at(const imk_shell_gyro *design, double temperature)
 {
-    const double warmer = temperature - IMKI_SHELL_REFERENCE;
+    const double warmer = temperature - IMKI_DESIGN_TEMPERATURE;
     /* lines in the temperature, not followed to where damping or stiffness would vanish */
     const double damping = fmax(1.0 + design->resonator.damping_temperature * warmer, 0.1);
     const double tuning = fmax(1.0 + design->resonator.frequency_temperature * warmer, 0.1);

@@ -63,7 +63,7 @@ void imki_shell_matrices(imki_shell_state *state, double rate, double accelerati
     cycle->rate = rate;
     cycle->acceleration = acceleration;
     cycle->temperature = temperature;
-    cycle->noise_scale = sqrt(temperature / IMKI_SHELL_REFERENCE * r.decay *
+    cycle->noise_scale = sqrt(temperature / IMKI_DESIGN_TEMPERATURE * r.decay *
                               imk_shell_gyro_decay_time(&state->design));
     state->forcer_axes = imki_shell_forcer(&state->design, r.forcer_gain);
 }
@@ -75,10 +75,10 @@ static void thermal_root(imki_shell_state *state)
 {
     imki_shell_cycle *cycle = &state->cycle;
     const imk_shell_gyro *design = &state->design;
-    const imki_shell_resonator r = imki_shell_resonator_at(design, IMKI_SHELL_REFERENCE);
+    const imki_shell_resonator r = imki_shell_resonator_at(design, IMKI_DESIGN_TEMPERATURE);
     const double w0 = state->omega;
     const double unit =
-        2.0 * IMKI_BOLTZMANN * IMKI_SHELL_REFERENCE / (design->resonator.mass * w0 * w0);
+        2.0 * IMKI_BOLTZMANN * IMKI_DESIGN_TEMPERATURE / (design->resonator.mass * w0 * w0);
     double a[16], b[8], w[16] = {0.0}, q[16], back[16], half[16];
     equations(state, &r, 0.0, 0.0, a, b);
     w[5] = unit * (2.0 * r.decay + r.damping_cosine);
@@ -142,8 +142,8 @@ void imki_shell_cycle_start(imki_shell_state *state)
     cycle->pickoff_noise =
         state->design.pickoff.noise * sqrt(2.0 / (cycle->step * (double)cycle->block));
     thermal_root(state);
-    imki_shell_matrices(state, 0.0, 0.0, IMKI_SHELL_REFERENCE);
-    loops_start(state, IMKI_SHELL_REFERENCE);
+    imki_shell_matrices(state, 0.0, 0.0, IMKI_DESIGN_TEMPERATURE);
+    loops_start(state, IMKI_DESIGN_TEMPERATURE);
     imki_shell_update_loops(state); /* the forces of the first block */
     cycle->fresh = true;
 }
@@ -216,7 +216,7 @@ static void follow_exposure(imki_shell_state *state, const imk_exposure *exposur
     if (rate != state->cycle.rate || acceleration != state->cycle.acceleration ||
         exposure->temperature != state->cycle.temperature)
         imki_shell_matrices(state, rate, acceleration, exposure->temperature);
-    if (state->cycle.fresh && exposure->temperature != IMKI_SHELL_REFERENCE) {
+    if (state->cycle.fresh && exposure->temperature != IMKI_DESIGN_TEMPERATURE) {
         loops_start(state, exposure->temperature); /* settled at the temperature it starts in */
         imki_shell_update_loops(state);
     }

@@ -7,9 +7,6 @@
 #include "imukit/shell_gyro.h"
 #include "physics/physics_internal.h"
 
-/* Reference temperature of a design [K]. */
-#define IMKI_SHELL_REFERENCE 293.15
-
 enum { IMKI_SHELL_COOKIE = 0x53484C31, IMKI_SHELL_POINTS = 16 };
 
 /* Sources of randomness; fixed for ever. */
@@ -70,11 +67,6 @@ double imki_shell_assumed_gain(const imk_shell_gyro *design);
 double imki_shell_command_limit(const imk_shell_gyro *design);
 /* Standard deviation of a measured modal angle [rad]. */
 double imki_shell_angle_noise(const imk_shell_gyro *design);
-/* x, or the nearer limit. */
-static inline double imki_shell_clamp(double x, double limit)
-{
-    return x > limit ? limit : x < -limit ? -limit : x;
-}
 /* Input rate of the instrument. */
 static inline double imki_shell_input(const imk_shell_gyro *design, const double vector[3])
 {

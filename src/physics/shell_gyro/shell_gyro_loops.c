@@ -68,8 +68,8 @@ static double command(double *integral, double gain, double error, double decay,
                       double limit)
 {
     *integral += gain * error * decay * update;
-    *integral = imki_shell_clamp(*integral, limit);
-    return imki_shell_clamp(*integral + gain * error, limit);
+    *integral = imki_clamped(*integral, limit);
+    return imki_clamped(*integral + gain * error, limit);
 }
 
 /* What electronics do when a pattern turns away faster than it can be held: the phase detector and
@@ -99,8 +99,8 @@ static void close_loops(imki_shell_state *state, imki_shell_pair c, imki_shell_p
     const double size = c.x * c.x + c.y * c.y + s.x * s.x + s.y * s.y;
     loops->phase_error = clamped_phase_error(c, s);
     loops->frequency += loops->gain_phase_integral * update * loops->phase_error;
-    loops->frequency = state->omega + imki_shell_clamp(loops->frequency - state->omega,
-                                                       pulling_range * state->omega);
+    loops->frequency =
+        state->omega + imki_clamped(loops->frequency - state->omega, pulling_range * state->omega);
     loops->reference = loops->frequency + loops->gain_phase * loops->phase_error;
     loops->command[0] = command(&loops->drive, loops->gain_support, (amplitude - c.x) / amplitude,
                                 decay, update, (double)INFINITY);

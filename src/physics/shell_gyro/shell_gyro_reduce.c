@@ -36,7 +36,7 @@ static void temperature_polynomial(imk_temperature_polynomial *polynomial, const
 {
     const double first = (at[2] - at[0]) / (2.0 * span);
     const double second = (at[2] - 2.0 * at[1] + at[0]) / (2.0 * span * span);
-    polynomial->reference = IMKI_SHELL_REFERENCE;
+    polynomial->reference = IMKI_DESIGN_TEMPERATURE;
     polynomial->minimum = -40.0 + 273.15;
     polynomial->maximum = 378.15; /* 105 degC */
     polynomial->coefficient[0].value[0] = first;
@@ -51,7 +51,7 @@ static void add_temperature(const imk_shell_gyro *design, imk_triad *triad)
     const double span = 50.0;
     double bias[3], slope[3];
     for (int i = 0; i < 3; i++) {
-        const double temperature = IMKI_SHELL_REFERENCE + span * (i - 1);
+        const double temperature = IMKI_DESIGN_TEMPERATURE + span * (i - 1);
         bias[i] = reading(design, temperature, 0.0);
         slope[i] = reading(design, temperature, 1.0) - bias[i];
     }
@@ -71,7 +71,7 @@ static void add_noise(const imk_shell_gyro *design, imk_triad *triad, double gai
     const bool felt = held || design->forcer.drive == IMK_SHELL_DIRECTIONAL;
     const double decay = 1.0 / imk_shell_gyro_decay_time(design);
     const double k = imk_shell_gyro_modal_gain(design);
-    const double thermal = imk_shell_gyro_thermal_random_walk(design, IMKI_SHELL_REFERENCE);
+    const double thermal = imk_shell_gyro_thermal_random_walk(design, IMKI_DESIGN_TEMPERATURE);
     const double cosine = imk_cos(2.0 * (design->pattern.angle - design->anisotropy.damping_angle));
     const double across = 1.0 - 0.5 * design->anisotropy.damping_difference / decay * cosine;
     const double pickoff = sqrt(2.0) * design->pickoff.noise / (design->pattern.amplitude * k);

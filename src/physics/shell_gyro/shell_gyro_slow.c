@@ -52,7 +52,7 @@ static void follow_temperature(imki_shell_state *state, double temperature)
     double at[8];
     slow->temperature = temperature;
     slow->thermal =
-        sqrt(temperature / IMKI_SHELL_REFERENCE * r.decay * imk_shell_gyro_decay_time(design));
+        sqrt(temperature / IMKI_DESIGN_TEMPERATURE * r.decay * imk_shell_gyro_decay_time(design));
     if (design->mode == IMK_SHELL_REBALANCE) {
         const double angle = design->pattern.angle;
         const double still = imki_shell_balance_at(design, temperature, 0.0, angle).rebalance;
@@ -104,13 +104,13 @@ void imki_shell_slow_start(imki_shell_state *state)
     imki_shell_slow *slow = &state->slow;
     const imk_shell_gyro *design = &state->design;
     const double h = state->sample / (double)slow->count;
-    const double thermal = imk_shell_gyro_thermal_random_walk(design, IMKI_SHELL_REFERENCE);
+    const double thermal = imk_shell_gyro_thermal_random_walk(design, IMKI_DESIGN_TEMPERATURE);
     const double pickoff =
         sqrt(2.0) * design->pickoff.noise / (design->pattern.amplitude * state->gain);
-    follow_temperature(state, IMKI_SHELL_REFERENCE);
+    follow_temperature(state, IMKI_DESIGN_TEMPERATURE);
     slow->reading = slow->bias;
     slow->angle =
-        imki_shell_balance_at(design, IMKI_SHELL_REFERENCE, 0.0, design->pattern.angle).actual;
+        imki_shell_balance_at(design, IMKI_DESIGN_TEMPERATURE, 0.0, design->pattern.angle).actual;
     slow->last = design->pattern.angle;
     set_double_angle(slow);
     if (design->mode == IMK_SHELL_REBALANCE) {
@@ -215,7 +215,7 @@ void imki_shell_slow_step(imki_shell_state *state, const imk_exposure *exposure,
         double integral = 0.0;
         for (size_t i = 0; i < slow->count; i++)
             integral += rebalance_step(state, rate, state->sample / (double)slow->count);
-        outputs[0] = imki_shell_clamp(integral / state->sample, limit);
+        outputs[0] = imki_clamped(integral / state->sample, limit);
         outputs[1] = design->pattern.angle / design->resonator.mode_number;
         return;
     }

@@ -15,9 +15,6 @@
 #include "imukit/spinning_mass.h"
 #include "physics/physics_internal.h"
 
-/* The temperature at which designs are stated [K]. */
-#define IMKI_DESIGN_TEMPERATURE 293.15
-
 /* Parts of a design that load the gimbal. */
 typedef struct imki_gimbal {
     double momentum;           /* the true H [N m s] */
@@ -66,83 +63,27 @@ void imki_reduce_scale_temperature(double relative, imk_triad *triad);
 void imki_reduce_response(double (*power)(const void *design, double w), const void *design,
                           double scale, imk_triad *triad);
 
-/* Rows of the tables of design fields, for members `balance` and `torque`. */
-#define IMKI_BALANCE_FIELDS(type)                                                                  \
-    {"balance.mass", IMK_DESIGN_NUMBER, offsetof(type, balance.mass), "kg", 0.0, 100.0, true,      \
-     NULL,           "suspended mass"},                                                            \
-        {"balance.offset_input",                                                                   \
-         IMK_DESIGN_NUMBER,                                                                        \
-         offsetof(type, balance.offset_input),                                                     \
-         "nm",                                                                                     \
-         -1e-3,                                                                                    \
-         1e-3,                                                                                     \
-         false,                                                                                    \
-         NULL,                                                                                     \
-         "centre of mass from the output axis, along the input axis"},                             \
-        {"balance.offset_spin",                                                                    \
-         IMK_DESIGN_NUMBER,                                                                        \
-         offsetof(type, balance.offset_spin),                                                      \
-         "nm",                                                                                     \
-         -1e-3,                                                                                    \
-         1e-3,                                                                                     \
-         false,                                                                                    \
-         NULL,                                                                                     \
-         "centre of mass from the output axis, along the spin axis"},                              \
-        {"balance.compliance_input",                                                               \
-         IMK_DESIGN_NUMBER,                                                                        \
-         offsetof(type, balance.compliance_input),                                                 \
-         "nm/N",                                                                                   \
-         0.0,                                                                                      \
-         1e-3,                                                                                     \
-         false,                                                                                    \
-         NULL,                                                                                     \
-         "shift of the mass per force along the input axis"},                                      \
-    {                                                                                              \
-        "balance.compliance_spin", IMK_DESIGN_NUMBER, offsetof(type, balance.compliance_spin),     \
-            "nm/N", 0.0, 1e-3, false, NULL, "shift of the mass per force along the spin axis"      \
-    }
+/* Rows of the table of fields of a DESIGN with members `balance` and `torque`. */
+#define IMKI_BALANCE_FIELDS                                                                        \
+    ABOVE("balance.mass", balance.mass, "kg", 0.0, 100.0, "suspended mass"),                       \
+        NUMBER("balance.offset_input", balance.offset_input, "nm", -1e-3, 1e-3,                    \
+               "centre of mass from the output axis, along the input axis"),                       \
+        NUMBER("balance.offset_spin", balance.offset_spin, "nm", -1e-3, 1e-3,                      \
+               "centre of mass from the output axis, along the spin axis"),                        \
+        NUMBER("balance.compliance_input", balance.compliance_input, "nm/N", 0.0, 1e-3,            \
+               "shift of the mass per force along the input axis"),                                \
+        NUMBER("balance.compliance_spin", balance.compliance_spin, "nm/N", 0.0, 1e-3,              \
+               "shift of the mass per force along the spin axis")
 
-#define IMKI_TORQUE_FIELDS(type)                                                                   \
-    {                                                                                              \
-        "torque.fixed",                                                                            \
-        IMK_DESIGN_NUMBER,                                                                         \
-        offsetof(type, torque.fixed),                                                              \
-        "N*m",                                                                                     \
-        -1.0,                                                                                      \
-        1.0,                                                                                       \
-        false,                                                                                     \
-        NULL,                                                                                      \
-        "constant error torque"},                                                                  \
-        {"torque.temperature",                                                                     \
-         IMK_DESIGN_NUMBER,                                                                        \
-         offsetof(type, torque.temperature),                                                       \
-         "N*m/K",                                                                                  \
-         -1.0,                                                                                     \
-         1.0,                                                                                      \
-         false,                                                                                    \
-         NULL,                                                                                     \
-         "change of the error torque with temperature"},                                           \
-        {"torque.repeatability",                                                                   \
-         IMK_DESIGN_NUMBER,                                                                        \
-         offsetof(type, torque.repeatability),                                                     \
-         "N*m",                                                                                    \
-         0.0,                                                                                      \
-         1.0,                                                                                      \
-         false,                                                                                    \
-         NULL,                                                                                     \
-         "1 sigma of the error torque from run to run"},                                           \
-        {"torque.instability",                                                                     \
-         IMK_DESIGN_NUMBER,                                                                        \
-         offsetof(type, torque.instability),                                                       \
-         "N*m",                                                                                    \
-         0.0,                                                                                      \
-         1.0,                                                                                      \
-         false,                                                                                    \
-         NULL,                                                                                     \
-         "flicker of the error torque, B"},                                                        \
-    {                                                                                              \
-        "torque.noise", IMK_DESIGN_NUMBER, offsetof(type, torque.noise), "N*m/sqrt(Hz)", 0.0, 1.0, \
-            false, NULL, "white error torque besides the thermal one, two-sided"                   \
-    }
+#define IMKI_TORQUE_FIELDS                                                                         \
+    NUMBER("torque.fixed", torque.fixed, "N*m", -1.0, 1.0, "constant error torque"),               \
+        NUMBER("torque.temperature", torque.temperature, "N*m/K", -1.0, 1.0,                       \
+               "change of the error torque with temperature"),                                     \
+        NUMBER("torque.repeatability", torque.repeatability, "N*m", 0.0, 1.0,                      \
+               "1 sigma of the error torque from run to run"),                                     \
+        NUMBER("torque.instability", torque.instability, "N*m", 0.0, 1.0,                          \
+               "flicker of the error torque, B"),                                                  \
+        NUMBER("torque.noise", torque.noise, "N*m/sqrt(Hz)", 0.0, 1.0,                             \
+               "white error torque besides the thermal one, two-sided")
 
 #endif

@@ -10,17 +10,17 @@
  * A step is half of the torque's turn, the turn of the case, the other half. s and the direction n
  * across it, from which the phase of the cone counts, are kept in case axes; every turn is a
  * rotation of both, so nothing but rounding changes |s| = 1. */
+#include "base/algebra/vector_internal.h"
 #include "imukit/elementary.h"
+#include "physics/design_rows_internal.h"
 #include "suspended_rotor_internal.h"
 
 #include <math.h>
 
 enum { COOKIE = 0x53524F54 };
 
-#define DEGREE (IMKI_PI / 180.0)
-#define ARCSECOND (DEGREE / 3600.0)
+#define ARCSECOND (IMKI_DEGREE / 3600.0)
 #define STANDARD_GRAVITY 9.80665
-#define REFERENCE_TEMPERATURE 293.15
 
 typedef struct suspended_rotor_state {
     double axis[3], across[3]; /* s, n */
@@ -62,59 +62,46 @@ imk_suspended_rotor imk_suspended_rotor_default(void)
     };
 }
 
-static void set_default(void *design)
-{
-    *(imk_suspended_rotor *)design = imk_suspended_rotor_default();
-}
-
-#define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_suspended_rotor, member), unit, minimum, maximum,    \
-            open, NULL, help                                                                       \
-    }
-
+#define DESIGN imk_suspended_rotor
 static const imk_design_field fields[] = {
-    NUMBER("spin.rate", spin_rate, "rpm", 0.0, 1e6, true, "speed of the ball"),
-    NUMBER("ball.diameter", diameter, "mm", 0.0, 1.0, true, "diameter of the ball"),
-    NUMBER("ball.hollow", hollow, "mm", 0.0, 1.0, false, "diameter of its hollow, 0 for solid"),
-    NUMBER("ball.density", density, "kg/m^3", 0.0, 1e5, true, "density of its metal"),
-    NUMBER("ball.inertia_difference", inertia_difference, "1", 0.0, 1.0, true,
-           "polar less transverse inertia over transverse, above 0"),
-    NUMBER("ball.unbalance", unbalance, "nm", -1e-3, 1e-3, false,
+    ABOVE("spin.rate", spin_rate, "rpm", 0.0, 1e6, "speed of the ball"),
+    ABOVE("ball.diameter", diameter, "mm", 0.0, 1.0, "diameter of the ball"),
+    NUMBER("ball.hollow", hollow, "mm", 0.0, 1.0, "diameter of its hollow, 0 for solid"),
+    ABOVE("ball.density", density, "kg/m^3", 0.0, 1e5, "density of its metal"),
+    ABOVE("ball.inertia_difference", inertia_difference, "1", 0.0, 1.0,
+          "polar less transverse inertia over transverse, above 0"),
+    NUMBER("ball.unbalance", unbalance, "nm", -1e-3, 1e-3,
            "centre of mass from the centre, along the spin"),
-    NUMBER("ball.oblateness", oblateness, "nm", -1e-3, 1e-3, false,
+    NUMBER("ball.oblateness", oblateness, "nm", -1e-3, 1e-3,
            "height of the second harmonic of the spinning shape"),
-    NUMBER("ball.pear", pear, "nm", -1e-3, 1e-3, false, "height of the third harmonic"),
-    NUMBER("suspension.limit", limit, "g", 0.0, 1e6, true,
-           "specific force the suspension carries along each axis"),
-    NUMBER("suspension.preload_error_x", preload_error[0], "1", -0.9, 9.0, false,
+    NUMBER("ball.pear", pear, "nm", -1e-3, 1e-3, "height of the third harmonic"),
+    ABOVE("suspension.limit", limit, "g", 0.0, 1e6,
+          "specific force the suspension carries along each axis"),
+    NUMBER("suspension.preload_error_x", preload_error[0], "1", -0.9, 9.0,
            "relative error of the preload of the electrodes along x"),
-    NUMBER("suspension.preload_error_y", preload_error[1], "1", -0.9, 9.0, false,
-           "the same along y"),
-    NUMBER("suspension.preload_error_z", preload_error[2], "1", -0.9, 9.0, false,
-           "the same along z"),
-    NUMBER("torque.x", torque[0], "N*m", -1.0, 1.0, false, "constant error torque about case x"),
-    NUMBER("torque.y", torque[1], "N*m", -1.0, 1.0, false, "the same about y"),
-    NUMBER("torque.z", torque[2], "N*m", -1.0, 1.0, false, "the same about z"),
-    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1.0, 1.0, false,
+    NUMBER("suspension.preload_error_y", preload_error[1], "1", -0.9, 9.0, "the same along y"),
+    NUMBER("suspension.preload_error_z", preload_error[2], "1", -0.9, 9.0, "the same along z"),
+    NUMBER("torque.x", torque[0], "N*m", -1.0, 1.0, "constant error torque about case x"),
+    NUMBER("torque.y", torque[1], "N*m", -1.0, 1.0, "the same about y"),
+    NUMBER("torque.z", torque[2], "N*m", -1.0, 1.0, "the same about z"),
+    NUMBER("torque.temperature", torque_temperature, "N*m/K", -1.0, 1.0,
            "change of each component with temperature, from 20 degC"),
-    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1.0, false,
+    NUMBER("torque.repeatability", torque_repeatability, "N*m", 0.0, 1.0,
            "1 sigma per run of each component of the error torque"),
-    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1.0, false,
+    NUMBER("torque.instability", torque_instability, "N*m", 0.0, 1.0,
            "flicker (bias instability B) of each component"),
-    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1.0, false,
+    NUMBER("torque.noise", torque_noise, "N*m/sqrt(Hz)", 0.0, 1.0,
            "white part of each component, two-sided density"),
-    NUMBER("readout.resolution", readout_resolution, "arcsec", 0.0, 0.1, false,
+    NUMBER("readout.resolution", readout_resolution, "arcsec", 0.0, 0.1,
            "step of the direction cosines, 0 for none"),
-    NUMBER("readout.noise", readout_noise, "arcsec", 0.0, 0.1, false,
-           "1 sigma of each direction cosine"),
-    NUMBER("start.tilt", start_tilt, "deg", 0.0, IMKI_PI, false,
+    NUMBER("readout.noise", readout_noise, "arcsec", 0.0, 0.1, "1 sigma of each direction cosine"),
+    NUMBER("start.tilt", start_tilt, "deg", 0.0, IMKI_PI,
            "angle of the spin axis from case z at the start"),
-    NUMBER("start.azimuth", start_azimuth, "deg", -2.0 * IMKI_PI, 2.0 * IMKI_PI, false,
+    NUMBER("start.azimuth", start_azimuth, "deg", -2.0 * IMKI_PI, 2.0 * IMKI_PI,
            "direction of that tilt, from x towards y"),
-    NUMBER("wobble.start", start_wobble, "arcsec", 0.0, 0.5, false,
+    NUMBER("wobble.start", start_wobble, "arcsec", 0.0, 0.5,
            "angle of the axis of figure from the angular momentum at the start"),
-    NUMBER("wobble.time", wobble_time, "s", 0.0, 1e9, true, "time in which it falls by e"),
+    ABOVE("wobble.time", wobble_time, "s", 0.0, 1e9, "time in which it falls by e"),
 };
 
 static const imk_signal outputs[] = {
@@ -143,7 +130,7 @@ static const imk_view views[] = {
      .y = {AXIS_Y, AXIS_Z, AXIS_X},
      .duration = 36.0,
      .rate = 20.0,
-     .input = 10.0 * DEGREE},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "Drift by the shape of the ball",
      .caption = "Preloads that are not equal turn an oblate ball: not where its axis is along or "
                 "across their field, most in between",
@@ -152,7 +139,7 @@ static const imk_view views[] = {
      .y = {DRIFT},
      .duration = 36.0,
      .rate = 20.0,
-     .input = 10.0 * DEGREE},
+     .input = 10.0 * IMKI_DEGREE},
 };
 
 /* ---- validation and start -------------------------------------------------------------------- */
@@ -160,14 +147,9 @@ static const imk_view views[] = {
 /* Heights of the shape's harmonics beyond this part of the radius are not first-order any more. */
 #define LARGEST_HEIGHT 1e-3
 
-imk_status imk_suspended_rotor_validate(const imk_suspended_rotor *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "design", NULL,
-                             "a design made by imk_suspended_rotor_default()");
-    const imk_status status = imk_design_check(&imk_suspended_rotor_instrument, design, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_suspended_rotor *design = given;
     const double most = LARGEST_HEIGHT * 0.5 * design->diameter;
     const struct {
         const char *field;
@@ -176,18 +158,13 @@ imk_status imk_suspended_rotor_validate(const imk_suspended_rotor *design, imk_e
                    {"ball.oblateness", design->oblateness},
                    {"ball.pear", design->pear}};
     if (!(design->hollow < design->diameter))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "ball.hollow", design->hollow,
-                                  design->diameter, "a hollow smaller than ball.diameter");
+        return imki_conflict(error, "ball.hollow", design->hollow, design->diameter,
+                             "a hollow smaller than ball.diameter");
     for (int i = 0; i < 3; i++)
         if (!(fabs(heights[i].value) <= most))
-            return imki_design_refuse(error, IMK_ERROR_CONFLICT, heights[i].field, heights[i].value,
-                                      most, "at most a thousandth of the ball's radius");
+            return imki_conflict(error, heights[i].field, heights[i].value, most,
+                                 "at most a thousandth of the ball's radius");
     return IMK_OK;
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_suspended_rotor_validate(design, error);
 }
 
 /* The error of a step goes with the square of the turn of the case within it, times the drift. */
@@ -199,11 +176,6 @@ static double step_length(const void *design, const imk_physics_settings *settin
     const double sample = 1.0 / settings->rate;
     (void)design;
     return sample < LONGEST_STEP ? sample : LONGEST_STEP;
-}
-
-static double quantised(double x, double step)
-{
-    return step > 0.0 ? step * floor(x / step + 0.5) : x;
 }
 
 /* The readout sees the axis of figure. */
@@ -218,7 +190,7 @@ static void read_axis(suspended_rotor_state *state, double reading[3])
         const double figure = cosine * s[k] + first * n[k] + second * (s[l] * n[m] - s[m] * n[l]);
         const double noise =
             state->reading_noise > 0.0 ? state->reading_noise * imki_draw(&state->readout[k]) : 0.0;
-        reading[k] = quantised(figure + noise, state->resolution);
+        reading[k] = imki_quantised(figure + noise, state->resolution);
     }
 }
 
@@ -233,21 +205,17 @@ static void choose_across(const double s[3], double n[3])
         n[i] = ((i == k ? 1.0 : 0.0) - s[k] * s[i]) / length;
 }
 
-static imk_status start_random(const imk_suspended_rotor *design,
-                               const imk_physics_settings *settings, suspended_rotor_state *state)
+static void start_random(const imk_suspended_rotor *design, const imk_physics_settings *settings,
+                         suspended_rotor_state *state)
 {
-    imk_status status = IMK_OK;
     for (int k = 0; k < 3; k++) {
         imki_draws_start(&state->white[k], settings, (uint8_t)(IMKI_SUSPENDED_ROTOR_TORQUE + k));
         imki_draws_start(&state->readout[k], settings, (uint8_t)(IMKI_SUSPENDED_ROTOR_READING + k));
-        if (status == IMK_OK)
-            status = imki_wander_start(&state->error[k], settings,
-                                       (uint8_t)(IMKI_SUSPENDED_ROTOR_TORQUE + k),
-                                       design->torque_repeatability, design->torque_instability);
+        imki_wander_start(&state->error[k], settings, (uint8_t)(IMKI_SUSPENDED_ROTOR_TORQUE + k),
+                          design->torque_repeatability, design->torque_instability);
     }
     state->torque_sigma = settings->noise ? design->torque_noise / sqrt(state->step) : 0.0;
     state->reading_noise = settings->noise ? design->readout_noise : 0.0;
-    return status;
 }
 
 static imk_status init(const void *given, const imk_physics_settings *settings, void *memory,
@@ -257,12 +225,9 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
     suspended_rotor_state *state = memory;
     size_t steps = 0;
     double step = 0.0;
-    imk_status status = imk_suspended_rotor_validate(design, error);
-    if (status == IMK_OK)
-        status = imki_settings_check(settings, error);
-    if (status == IMK_OK)
-        status = imki_divide_sample(settings, LONGEST_STEP, STEP_LIMIT,
-                                    "at most 0.1 s: the case turns between", &steps, &step, error);
+    imk_status status =
+        imki_divide_sample(settings, LONGEST_STEP, STEP_LIMIT,
+                           "at most 0.1 s: the case turns between", &steps, &step, error);
     if (status != IMK_OK)
         return status;
     const bool full = settings->level == IMK_LEVEL_FULL;
@@ -282,10 +247,7 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
         state->torque[k] = design->torque[k];
     imki_suspended_start(design, state->axis);
     choose_across(state->axis, state->across);
-    status = start_random(design, settings, state);
-    if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", design->torque_instability,
-                                  0.0, NULL);
+    start_random(design, settings, state);
     read_axis(state, state->reading);
     return IMK_OK;
 }
@@ -295,7 +257,7 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
 /* v turned by the rotation vector angle n (Rodrigues), given sin and 1 - cos of the angle. */
 static void turn(double v[3], const double n[3], double sine, double versed)
 {
-    const double along = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
+    const double along = imki_dot3(n, v);
     double next[3];
     for (int k = 0; k < 3; k++) {
         const int l = (k + 1) % 3, m = (k + 2) % 3;
@@ -307,8 +269,7 @@ static void turn(double v[3], const double n[3], double sine, double versed)
 
 static void turn_both(suspended_rotor_state *state, const double rotation[3])
 {
-    const double angle =
-        sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2]);
+    const double angle = imki_norm3(rotation);
     double n[3];
     if (!(angle > 0.0))
         return;
@@ -329,7 +290,7 @@ static void turn_by_torque(suspended_rotor_state *state, const double force[3],
     const double weak[3] = {x, 1.5 * x * x - 0.5, x * (2.5 * x * x - 1.5)};
     double g[3], rotation[3];
     imki_suspended_gradient(&state->ball, weak, s, force, g);
-    const double along = s[0] * g[0] + s[1] * g[1] + s[2] * g[2];
+    const double along = imki_dot3(s, g);
     for (int k = 0; k < 3; k++) {
         const int l = (k + 1) % 3, m = (k + 2) % 3;
         rotation[k] =
@@ -342,7 +303,7 @@ static void turn_by_torque(suspended_rotor_state *state, const double force[3],
 static void straighten(suspended_rotor_state *state)
 {
     double *s = state->axis, *n = state->across;
-    const double length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    const double length = imki_norm3(s);
     double along = 0.0, square = 0.0;
     for (int k = 0; k < 3; k++) {
         s[k] /= length;
@@ -405,7 +366,7 @@ static void rate_of(const double before[3], const double now[3], double dt, doub
         square += rate[k] * rate[k];
     }
     const double sine = sqrt(square);
-    const double cosine = before[0] * now[0] + before[1] * now[1] + before[2] * now[2];
+    const double cosine = imki_dot3(before, now);
     const double factor = sine > 0.0 ? -imk_atan2(sine, cosine) / (sine * dt) : 0.0;
     for (int k = 0; k < 3; k++)
         rate[k] *= factor;
@@ -421,7 +382,7 @@ static void step(void *memory, const imk_exposure *exposure, double *out)
 {
     suspended_rotor_state *state = memory;
     const double thermal =
-        state->torque_temperature * (exposure->temperature - REFERENCE_TEMPERATURE);
+        state->torque_temperature * (exposure->temperature - IMKI_DESIGN_TEMPERATURE);
     double torque[3], reading[3], rate[3];
     for (int k = 0; k < 3; k++)
         torque[k] = state->torque[k] + thermal + imki_wander_next(&state->error[k]);
@@ -451,16 +412,7 @@ static void observe(const void *memory, double *values)
     values[FALLEN] = state->fallen ? 1.0 : 0.0;
 }
 
-void imk_suspended_rotor_reduce(const imk_suspended_rotor *design, imk_model *model)
-{
-    imki_suspended_rotor_reduce(design,
-                                imki_reduction_begin(model, &imk_suspended_rotor_instrument));
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_suspended_rotor_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(suspended_rotor);
 
 const imk_instrument imk_suspended_rotor_instrument = {
     .name = "suspended_rotor",
@@ -469,11 +421,12 @@ const imk_instrument imk_suspended_rotor_instrument = {
     .source = "Autonetics MICRON (N57A): solid beryllium ball of 10 mm at 2500 rev/s [Lawrence "
               "1998]; shape, torques and readout chosen: suspended_rotor.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_suspended_rotor),
     .state_size = sizeof(suspended_rotor_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
+    .check = check,
     .init = init,
     .step = step,
     .observe = observe,

@@ -13,7 +13,6 @@
 
 #include <math.h>
 
-#define REFERENCE_TEMPERATURE 293.15
 /* Range of the polynomial: that of a heated instrument's surroundings, -20 ... 70 degC [K]. */
 #define LOWEST_TEMPERATURE 253.15
 #define HIGHEST_TEMPERATURE 343.15
@@ -122,7 +121,7 @@ static void reduce_drift(const imk_suspended_rotor *design, const imki_suspended
     gyro->bias.temperature.order = 1;
     gyro->bias.temperature.coefficient[0].value[0] =
         ball->per_h * design->torque_temperature * (s[2] - s[1]);
-    gyro->bias.temperature.reference = REFERENCE_TEMPERATURE;
+    gyro->bias.temperature.reference = IMKI_DESIGN_TEMPERATURE;
     gyro->bias.temperature.minimum = LOWEST_TEMPERATURE;
     gyro->bias.temperature.maximum = HIGHEST_TEMPERATURE;
 }

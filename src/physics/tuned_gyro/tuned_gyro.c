@@ -3,6 +3,8 @@
  * rotor and its loop: tuned_gyro_rotor.c; the instrument's steps: tuned_gyro_dynamics.c. */
 #include "tuned_gyro_internal.h"
 
+#include "physics/design_rows_internal.h"
+
 #include <math.h>
 
 enum { COOKIE = 0x44544721 };
@@ -45,103 +47,85 @@ imk_tuned_gyro imk_tuned_gyro_default(void)
     return d;
 }
 
-#define AT(member) offsetof(imk_tuned_gyro, member)
-
+#define DESIGN imk_tuned_gyro
 static const imk_design_field fields[] = {
-    {"wheel.spin_frequency", IMK_DESIGN_NUMBER, AT(spin_frequency), "Hz", 0.1, 1e4, false, NULL,
-     "turns of the shaft per second"},
-    {"wheel.speed_error", IMK_DESIGN_NUMBER, AT(speed_error), "ppm", -0.5, 0.5, false, NULL,
-     "relative error of the speed"},
-    {"rotor.axial_inertia", IMK_DESIGN_NUMBER, AT(axial_inertia), "kg*m^2", 1e-12, 10.0, false,
-     NULL, "inertia of the rotor about its axis"},
-    {"rotor.transverse_inertia", IMK_DESIGN_NUMBER, AT(transverse_inertia), "kg*m^2", 0.0, 10.0,
-     true, NULL, "inertia of the rotor across its axis"},
-    {"gimbal.inertia_x", IMK_DESIGN_NUMBER, AT(gimbal_inertia_x), "kg*m^2", 0.0, 10.0, true, NULL,
-     "inertia of the gimbal about the flexures of the shaft"},
-    {"gimbal.inertia_y", IMK_DESIGN_NUMBER, AT(gimbal_inertia_y), "kg*m^2", 0.0, 10.0, true, NULL,
-     "inertia of the gimbal about the flexures of the rotor"},
-    {"gimbal.inertia_z", IMK_DESIGN_NUMBER, AT(gimbal_inertia_z), "kg*m^2", 0.0, 10.0, true, NULL,
-     "inertia of the gimbal about the shaft"},
-    {"hinge.stiffness_x", IMK_DESIGN_NUMBER, AT(stiffness_x), "N*m/rad", 0.0, 1e4, true, NULL,
-     "stiffness between shaft and gimbal"},
-    {"hinge.stiffness_y", IMK_DESIGN_NUMBER, AT(stiffness_y), "N*m/rad", 0.0, 1e4, true, NULL,
-     "stiffness between gimbal and rotor"},
-    {"hinge.damping", IMK_DESIGN_NUMBER, AT(hinge_damping), "N*m*s/rad", 0.0, 1.0, false, NULL,
-     "damping of either pair of flexures"},
-    {"rotor.mass", IMK_DESIGN_NUMBER, AT(mass), "kg", 0.0, 100.0, true, NULL, "mass of the rotor"},
-    {"rotor.axial_offset", IMK_DESIGN_NUMBER, AT(axial_offset), "nm", -1e-3, 1e-3, false, NULL,
-     "centre of mass from the joint, along the shaft"},
-    {"rotor.quadrature_offset", IMK_DESIGN_NUMBER, AT(quadrature_offset), "nm", -1e-3, 1e-3, false,
-     NULL, "effective offset of the torque that is along the force"},
-    {"rotor.axial_compliance", IMK_DESIGN_NUMBER, AT(axial_compliance), "nm/N", 0.0, 1e-3, false,
-     NULL, "shift of the rotor per force along the shaft"},
-    {"rotor.radial_compliance", IMK_DESIGN_NUMBER, AT(radial_compliance), "nm/N", 0.0, 1e-3, false,
-     NULL, "shift of the rotor per force across the shaft"},
-    IMKI_TORQUE_FIELDS(imk_tuned_gyro),
-    {"pickoff.noise", IMK_DESIGN_NUMBER, AT(pickoff_noise), "nrad/sqrt(Hz)", 0.0, 1.0, false, NULL,
-     "white noise of the tilt pickoffs, two-sided"},
-    {"pickoff.offset_x", IMK_DESIGN_NUMBER, AT(pickoff_offset_x), "urad", -0.1, 0.1, false, NULL,
-     "reading without tilt about x"},
-    {"pickoff.offset_y", IMK_DESIGN_NUMBER, AT(pickoff_offset_y), "urad", -0.1, 0.1, false, NULL,
-     "reading without tilt about y"},
-    {"pickoff.range", IMK_DESIGN_NUMBER, AT(pickoff_range), "mrad", 0.0, 0.5, true, NULL,
-     "largest tilt that is read"},
-    {"torquer.limit", IMK_DESIGN_NUMBER, AT(torquer_limit), "N*m", 0.0, 100.0, true, NULL,
-     "largest torque of the torquers"},
-    {"torquer.error", IMK_DESIGN_NUMBER, AT(torquer_error), "ppm", -0.5, 0.5, false, NULL,
-     "relative error of the torque per current"},
-    {"torquer.temperature", IMK_DESIGN_NUMBER, AT(torquer_temperature), "ppm/K", -2e-3, 2e-3, false,
-     NULL, "relative change of the torque per current with temperature"},
-    {"loop.captured", IMK_DESIGN_SWITCH, AT(captured), "1", 0.0, 1.0, false, NULL,
-     "the loop keeps the rotor in line with the shaft"},
-    {"loop.frequency", IMK_DESIGN_NUMBER, AT(loop_frequency), "Hz", 0.0, 1e4, true, NULL,
-     "natural frequency of the loop"},
-    {"loop.damping", IMK_DESIGN_NUMBER, AT(loop_damping), "1", 0.0, 50.0, true, NULL,
-     "damping ratio of the loop"},
-    {"loop.filter", IMK_DESIGN_NUMBER, AT(loop_filter), "Hz", 0.0, 1e5, true, NULL,
-     "corner of the filter of the pickoffs"},
+    NUMBER("wheel.spin_frequency", spin_frequency, "Hz", 0.1, 1e4, "turns of the shaft per second"),
+    NUMBER("wheel.speed_error", speed_error, "ppm", -0.5, 0.5, "relative error of the speed"),
+    NUMBER("rotor.axial_inertia", axial_inertia, "kg*m^2", 1e-12, 10.0,
+           "inertia of the rotor about its axis"),
+    ABOVE("rotor.transverse_inertia", transverse_inertia, "kg*m^2", 0.0, 10.0,
+          "inertia of the rotor across its axis"),
+    ABOVE("gimbal.inertia_x", gimbal_inertia_x, "kg*m^2", 0.0, 10.0,
+          "inertia of the gimbal about the flexures of the shaft"),
+    ABOVE("gimbal.inertia_y", gimbal_inertia_y, "kg*m^2", 0.0, 10.0,
+          "inertia of the gimbal about the flexures of the rotor"),
+    ABOVE("gimbal.inertia_z", gimbal_inertia_z, "kg*m^2", 0.0, 10.0,
+          "inertia of the gimbal about the shaft"),
+    ABOVE("hinge.stiffness_x", stiffness_x, "N*m/rad", 0.0, 1e4,
+          "stiffness between shaft and gimbal"),
+    ABOVE("hinge.stiffness_y", stiffness_y, "N*m/rad", 0.0, 1e4,
+          "stiffness between gimbal and rotor"),
+    NUMBER("hinge.damping", hinge_damping, "N*m*s/rad", 0.0, 1.0,
+           "damping of either pair of flexures"),
+    ABOVE("rotor.mass", mass, "kg", 0.0, 100.0, "mass of the rotor"),
+    NUMBER("rotor.axial_offset", axial_offset, "nm", -1e-3, 1e-3,
+           "centre of mass from the joint, along the shaft"),
+    NUMBER("rotor.quadrature_offset", quadrature_offset, "nm", -1e-3, 1e-3,
+           "effective offset of the torque that is along the force"),
+    NUMBER("rotor.axial_compliance", axial_compliance, "nm/N", 0.0, 1e-3,
+           "shift of the rotor per force along the shaft"),
+    NUMBER("rotor.radial_compliance", radial_compliance, "nm/N", 0.0, 1e-3,
+           "shift of the rotor per force across the shaft"),
+    IMKI_TORQUE_FIELDS,
+    NUMBER("pickoff.noise", pickoff_noise, "nrad/sqrt(Hz)", 0.0, 1.0,
+           "white noise of the tilt pickoffs, two-sided"),
+    NUMBER("pickoff.offset_x", pickoff_offset_x, "urad", -0.1, 0.1, "reading without tilt about x"),
+    NUMBER("pickoff.offset_y", pickoff_offset_y, "urad", -0.1, 0.1, "reading without tilt about y"),
+    ABOVE("pickoff.range", pickoff_range, "mrad", 0.0, 0.5, "largest tilt that is read"),
+    ABOVE("torquer.limit", torquer_limit, "N*m", 0.0, 100.0, "largest torque of the torquers"),
+    NUMBER("torquer.error", torquer_error, "ppm", -0.5, 0.5,
+           "relative error of the torque per current"),
+    NUMBER("torquer.temperature", torquer_temperature, "ppm/K", -2e-3, 2e-3,
+           "relative change of the torque per current with temperature"),
+    SWITCH("loop.captured", captured, "the loop keeps the rotor in line with the shaft"),
+    ABOVE("loop.frequency", loop_frequency, "Hz", 0.0, 1e4, "natural frequency of the loop"),
+    ABOVE("loop.damping", loop_damping, "1", 0.0, 50.0, "damping ratio of the loop"),
+    ABOVE("loop.filter", loop_filter, "Hz", 0.0, 1e5, "corner of the filter of the pickoffs"),
 };
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static imk_status refuse(imk_error *error, const char *field, double value, double limit,
-                         const char *expected)
+static imk_status check(const void *given, imk_error *error)
 {
-    return imki_design_refuse(error, IMK_ERROR_CONFLICT, field, value, limit, expected);
-}
-
-imk_status imk_tuned_gyro_validate(const imk_tuned_gyro *d, imk_error *error)
-{
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "tuned_gyro", NULL,
-                             "a design made by imk_tuned_gyro_default()");
-    const imk_status status = imk_design_check(&imk_tuned_gyro_instrument, d, error);
-    if (status != IMK_OK)
-        return status;
+    const imk_tuned_gyro *d = given;
     if (!(d->axial_inertia <= 2.0 * d->transverse_inertia))
-        return refuse(error, "rotor.axial_inertia", d->axial_inertia, 2.0 * d->transverse_inertia,
-                      "at most twice the transverse inertia, as of every body");
+        return imki_conflict(error, "rotor.axial_inertia", d->axial_inertia,
+                             2.0 * d->transverse_inertia,
+                             "at most twice the transverse inertia, as of every body");
     if (!(d->axial_inertia > d->transverse_inertia))
-        return refuse(error, "rotor.axial_inertia", d->axial_inertia, d->transverse_inertia,
-                      "a flat rotor: a long one does not turn steadily about its axis");
+        return imki_conflict(error, "rotor.axial_inertia", d->axial_inertia, d->transverse_inertia,
+                             "a flat rotor: a long one does not turn steadily about its axis");
     if (!imki_inertias_possible(d->gimbal_inertia_x, d->gimbal_inertia_y, d->gimbal_inertia_z))
-        return refuse(error, "gimbal.inertia_z", d->gimbal_inertia_z,
-                      d->gimbal_inertia_x + d->gimbal_inertia_y,
-                      "moments of inertia none of which exceeds the sum of the others");
+        return imki_conflict(error, "gimbal.inertia_z", d->gimbal_inertia_z,
+                             d->gimbal_inertia_x + d->gimbal_inertia_y,
+                             "moments of inertia none of which exceeds the sum of the others");
     if (!(imki_tuned_gyro_gimbal_sum(d) > 0.0))
-        return refuse(error, "gimbal.inertia_z", d->gimbal_inertia_z,
-                      d->gimbal_inertia_x + d->gimbal_inertia_y,
-                      "a gimbal that nods against the springs: inertia_z below the sum of the "
-                      "others, or no speed tunes it");
+        return imki_conflict(
+            error, "gimbal.inertia_z", d->gimbal_inertia_z,
+            d->gimbal_inertia_x + d->gimbal_inertia_y,
+            "a gimbal that nods against the springs: inertia_z below the sum of the "
+            "others, or no speed tunes it");
     if (!(2.0 * (2.0 * d->transverse_inertia - d->axial_inertia) > imki_tuned_gyro_gimbal_sum(d)))
-        return refuse(error, "rotor.transverse_inertia", d->transverse_inertia,
-                      0.5 * d->axial_inertia + 0.25 * imki_tuned_gyro_gimbal_sum(d),
-                      "a nutation well below twice the speed of the shaft, where the gimbal drives "
-                      "it");
+        return imki_conflict(
+            error, "rotor.transverse_inertia", d->transverse_inertia,
+            0.5 * d->axial_inertia + 0.25 * imki_tuned_gyro_gimbal_sum(d),
+            "a nutation well below twice the speed of the shaft, where the gimbal drives "
+            "it");
     if (d->captured && !imki_capture_loop_stable(d, imki_tuned_gyro_longest_step(d)))
-        return refuse(error, "loop.frequency", d->loop_frequency, d->loop_filter,
-                      "a loop that drives neither itself nor the nutation: lower it, and put its "
-                      "filter between it and the nutation");
+        return imki_conflict(
+            error, "loop.frequency", d->loop_frequency, d->loop_filter,
+            "a loop that drives neither itself nor the nutation: lower it, and put its "
+            "filter between it and the nutation");
     return IMK_OK;
 }
 
@@ -167,7 +151,7 @@ static const imk_view views[] = {
      .y = {0, 1},
      .duration = 0.1,
      .rate = 6400.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "Path of the rotor",
      .caption = "Tilt about y against tilt about x: nutation on the way back.",
      .x = 0,
@@ -175,7 +159,7 @@ static const imk_view views[] = {
      .y = {1},
      .duration = 0.1,
      .rate = 12800.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
     {.title = "What the flexures see",
      .caption = "Angles of the two pairs of flexures, in axes that turn with the shaft.",
      .x = -1,
@@ -183,35 +167,10 @@ static const imk_view views[] = {
      .y = {2, 3},
      .duration = 0.05,
      .rate = 12800.0,
-     .input = 10.0 * IMKI_PI / 180.0},
+     .input = 10.0 * IMKI_DEGREE},
 };
 
-static void set_default(void *design)
-{
-    *(imk_tuned_gyro *)design = imk_tuned_gyro_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_tuned_gyro_validate(design, error);
-}
-
-void imk_tuned_gyro_reduce(const imk_tuned_gyro *design, imk_model *model)
-{
-    imki_tuned_gyro_reduce(design, imki_reduction_begin(model, &imk_tuned_gyro_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_tuned_gyro_validate(design, error);
-    return status == IMK_OK ? imki_tuned_gyro_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_tuned_gyro_reduce(design, model);
-}
+IMKI_DESIGN_FUNCTIONS(tuned_gyro);
 
 const imk_instrument imk_tuned_gyro_instrument = {
     .name = "tuned_gyro",
@@ -219,12 +178,13 @@ const imk_instrument imk_tuned_gyro_instrument = {
     .technology = "",
     .source = "figures chosen, of the size of small strapdown tuned gyros; see tuned_gyro.h",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_tuned_gyro),
     .state_size = sizeof(imki_tuned_gyro_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_tuned_gyro_init,
     .step = imki_tuned_gyro_step,
     .observe = imki_tuned_gyro_observe,
     .reduce = reduce,

@@ -70,8 +70,8 @@ static imk_status divide(gyro *s, const imk_tuned_gyro *d, const imk_physics_set
         settings, longest, slow ? (double)INFINITY : 2.0 * imki_tuned_gyro_longest_step(d),
         "at least 8 steps to a turn of the shaft", &s->count, &s->step, error);
     if (status == IMK_OK && !slow && d->captured && !imki_capture_loop_stable(d, s->step))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "step", s->step, longest,
-                                  "a shorter step: the loop works once a step");
+        return imki_refuse(error, IMK_ERROR_RANGE, "step", s->step, longest,
+                           "a shorter step: the loop works once a step");
     return status;
 }
 
@@ -80,23 +80,16 @@ imk_status imki_tuned_gyro_init(const void *design, const imk_physics_settings *
 {
     const imk_tuned_gyro *d = design;
     gyro *s = state;
-    imk_status status = imki_settings_check(settings, error);
-    if (status != IMK_OK)
-        return status;
-    memset(s, 0, sizeof *s);
-    status = divide(s, d, settings, error);
+    imk_status status = divide(s, d, settings, error);
     if (status != IMK_OK)
         return status;
     start_constants(s, d, settings);
-    for (int axis = 0; axis < 2 && status == IMK_OK; axis++) {
+    for (int axis = 0; axis < 2; axis++) {
         imki_draws_start(&s->torque_draws[axis], settings, (uint8_t)(TORQUE_NOISE + axis));
         imki_draws_start(&s->pickoff_draws[axis], settings, (uint8_t)(PICKOFF_NOISE + axis));
-        status = imki_wander_start(&s->wander[axis], settings, (uint8_t)(TORQUE_WANDER + axis),
-                                   d->torque.repeatability, d->torque.instability);
+        imki_wander_start(&s->wander[axis], settings, (uint8_t)(TORQUE_WANDER + axis),
+                          d->torque.repeatability, d->torque.instability);
     }
-    if (status != IMK_OK)
-        return imki_design_refuse(error, status, "torque.instability", d->torque.instability, 0.0,
-                                  NULL);
     return IMK_OK;
 }
 
@@ -115,11 +108,6 @@ static void read_torques(gyro *s, const imk_exposure *e, double torque[2])
                 s->anisoelastic * f[1] * f[2];
 }
 
-static double clip(double value, double limit)
-{
-    return value > limit ? limit : value < -limit ? -limit : value;
-}
-
 /* ---- full dynamics --------------------------------------------------------------------------- */
 
 static void find_tilt(gyro *s)
@@ -134,7 +122,7 @@ static double command(gyro *s, int axis)
 {
     const imki_capture_loop *loop = &s->loop;
     double *f = s->filtered[axis];
-    const double seen = clip(s->tilt[axis] + s->offset[axis], s->pickoff_range) +
+    const double seen = imki_clamped(s->tilt[axis] + s->offset[axis], s->pickoff_range) +
                         s->pickoff_noise * imki_draw(&s->pickoff_draws[axis]);
     const double f0 = loop->filter[0][0] * f[0] + loop->filter[0][1] * f[1] + loop->input[0] * seen;
     f[1] = loop->filter[1][0] * f[0] + loop->filter[1][1] * f[1] + loop->input[1] * seen;
@@ -143,7 +131,7 @@ static double command(gyro *s, int axis)
     const double wanted = -(loop->proportional * f0 + loop->integral * integral);
     if (fabs(wanted) <= s->limit)
         s->integral[axis] = integral;
-    return clip(wanted, s->limit);
+    return imki_clamped(wanted, s->limit);
 }
 
 /* Components of a vector of the case along axes 1 and 2 of the shaft. */
@@ -220,7 +208,7 @@ static void run_free(gyro *s, const imk_exposure *e, const double error[2], doub
     for (size_t i = 0; i < s->count; i++)
         advance(s, e, error, 0.0);
     for (int axis = 0; axis < 2; axis++) {
-        const double seen = clip(s->tilt[axis] + s->offset[axis], s->pickoff_range) +
+        const double seen = imki_clamped(s->tilt[axis] + s->offset[axis], s->pickoff_range) +
                             s->pickoff_noise * imki_draw(&s->pickoff_draws[axis]);
         outputs[axis] = (s->last_tilt[axis] - seen) * s->rate;
         s->last_tilt[axis] = seen;
@@ -244,8 +232,9 @@ static void run_slow(gyro *s, const imk_exposure *e, const double error[2], doub
     for (int axis = 0; axis < 2; axis++) {
         rate[axis] += s->torque_noise * imki_draw(&s->torque_draws[axis]) / h;
         if (!s->captured)
-            s->tilt[axis] = clip(s->tilt[axis] - rate[axis] / s->rate, 2.0 * s->pickoff_range);
-        s->command[axis] = clip(rate[axis] * h / gain, s->limit);
+            s->tilt[axis] =
+                imki_clamped(s->tilt[axis] - rate[axis] / s->rate, 2.0 * s->pickoff_range);
+        s->command[axis] = imki_clamped(rate[axis] * h / gain, s->limit);
         outputs[axis] = s->captured ? s->command[axis] : rate[axis];
     }
 }

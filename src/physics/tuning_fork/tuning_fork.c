@@ -3,12 +3,12 @@
  * possible. */
 #include "tuning_fork_internal.h"
 
+#include "physics/design_rows_internal.h"
+
 #include <float.h>
 #include <math.h>
 
 enum { COOKIE = 0x494D4B28 };
-
-#define DEGREE (IMKI_PI / 180.0)
 
 imk_tuning_fork imk_tuning_fork_default(void)
 {
@@ -31,8 +31,8 @@ imk_tuning_fork imk_tuning_fork_default(void)
                   .bandwidth = 100.0,
                   /* with the Brownian motion 0.05 deg/s/sqrt(Hz), one-sided */
                   .pickoff_noise = 0.4617 * 1e-12},
-        .quadrature = 20.0 * DEGREE,
-        .damping_coupling = 0.5 * DEGREE,
+        .quadrature = 20.0 * IMKI_DEGREE,
+        .damping_coupling = 0.5 * IMKI_DEGREE,
         /* of 20 deg/s: 100 deg/h from run to run, and a floor of 50 deg/h = 0.664 B */
         .phase = {.error = 5e-3, .repeatability = 1.39e-3, .instability = 1.046e-3},
         /* 0.2 deg/s/g */
@@ -41,32 +41,12 @@ imk_tuning_fork imk_tuning_fork_default(void)
                         .q = -1.5e-3,
                         .amplitude = 100.0 * 1e-6,
                         .phase = 30e-6},
-        .output = {.bandwidth = 40.0, .range = 150.0 * DEGREE}};
-}
-
-static void set_default(void *design)
-{
-    *(imk_tuning_fork *)design = imk_tuning_fork_default();
+        .output = {.bandwidth = 40.0, .range = 150.0 * IMKI_DEGREE}};
 }
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
-#define NUMBER(path, member, unit, low, high, help)                                                \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_tuning_fork, member), unit, low, high, false, NULL,  \
-            help                                                                                   \
-    }
-#define ABOVE(path, member, unit, low, high, help)                                                 \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_tuning_fork, member), unit, low, high, true, NULL,   \
-            help                                                                                   \
-    }
-#define CHOICE(path, member, choices, help)                                                        \
-    {                                                                                              \
-        path, IMK_DESIGN_CHOICE, offsetof(imk_tuning_fork, member), "1", 0.0, 0.0, false, choices, \
-            help                                                                                   \
-    }
-
+#define DESIGN imk_tuning_fork
 static const imk_design_field fields[] = {
     CHOICE("arrangement", arrangement, "in-plane|out-of-plane",
            "whether the sense motion stays in the plane of the chip"),
@@ -147,30 +127,27 @@ static imk_status check_temperature(const imk_tuning_fork *design, double temper
         4.0 * IMKI_PI * design->angular_gain * design->drive.frequency * fabs(design->quadrature);
     const double passive = sqrt(fabs(p.drive_damping * p.sense_damping));
     if (!(p.sense > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "sense.split", design->sense.split,
-                                  -design->drive.frequency,
-                                  "a split that leaves the sense mode a frequency above 0");
+        return imki_conflict(error, "sense.split", design->sense.split, -design->drive.frequency,
+                             "a split that leaves the sense mode a frequency above 0");
     if (!(p.drive_damping > 0.0 && p.sense_damping > 0.0 && q > 0.5))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.q", design->temperature.q,
-                                  0.0, "quality factors above 1/2 from -40 to 125 degC");
+        return imki_conflict(error, "temperature.q", design->temperature.q, 0.0,
+                             "quality factors above 1/2 from -40 to 125 degC");
     if (!(p.amplitude > 0.0))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "temperature.amplitude",
-                                  design->temperature.amplitude, 0.0,
-                                  "an amplitude above 0 from -40 to 125 degC");
+        return imki_conflict(error, "temperature.amplitude", design->temperature.amplitude, 0.0,
+                             "an amplitude above 0 from -40 to 125 degC");
     /* 5 %: what is left for control */
     if (!(force * 1.05 <= design->drive.force_limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "drive.force_limit",
-                                  design->drive.force_limit, force * 1.05,
-                                  "5 % more than m wd^2 x0/Qd, which holds the amplitude");
+        return imki_conflict(error, "drive.force_limit", design->drive.force_limit, force * 1.05,
+                             "5 % more than m wd^2 x0/Qd, which holds the amplitude");
     if (!(coupling <= passive))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "damping_coupling",
-                                  design->damping_coupling, passive / (2.0 * design->angular_gain),
-                                  "a coupling that does not feed a motion: at most sqrt(wd ws/(Qd "
-                                  "Qs))/2k");
+        return imki_conflict(error, "damping_coupling", design->damping_coupling,
+                             passive / (2.0 * design->angular_gain),
+                             "a coupling that does not feed a motion: at most sqrt(wd ws/(Qd "
+                             "Qs))/2k");
     if (!(stiffness < p.drive * p.sense))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "quadrature", design->quadrature,
-                                  p.sense / (2.0 * design->angular_gain),
-                                  "a coupling that leaves the springs stable: below ws/2k");
+        return imki_conflict(error, "quadrature", design->quadrature,
+                             p.sense / (2.0 * design->angular_gain),
+                             "a coupling that leaves the springs stable: below ws/2k");
     return IMK_OK;
 }
 
@@ -181,64 +158,37 @@ static imk_status check_loops(const imk_tuning_fork *design, imk_error *error)
     static const char late[] = "at most a twentieth of the drive frequency: the loop acts once a "
                                "cycle and would be unstable";
     if (!(design->drive.loop_bandwidth <= limit))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "drive.loop_bandwidth",
-                                  design->drive.loop_bandwidth, limit, late);
+        return imki_refuse(error, IMK_ERROR_RANGE, "drive.loop_bandwidth",
+                           design->drive.loop_bandwidth, limit, late);
     if (design->sense.loop == IMK_TUNING_FORK_CLOSED && !(design->sense.bandwidth <= limit))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "sense.bandwidth",
-                                  design->sense.bandwidth, limit, late);
+        return imki_refuse(error, IMK_ERROR_RANGE, "sense.bandwidth", design->sense.bandwidth,
+                           limit, late);
     /* From one action to the next the sense mode turns by the split against the carrier. By
      * experiment at high Q (4000 designs drawn at random): all within this limit are stable, the
      * first that are not were at 1.45 times it. */
     if (design->sense.loop == IMK_TUNING_FORK_CLOSED &&
         !(fabs(design->sense.split) + design->sense.bandwidth <= 2.0 * limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "sense.split", design->sense.split,
-                                  2.0 * limit - design->sense.bandwidth,
-                                  "a closed loop whose split and bandwidth are together at most a "
-                                  "tenth of the drive frequency: it would be unstable");
+        return imki_conflict(error, "sense.split", design->sense.split,
+                             2.0 * limit - design->sense.bandwidth,
+                             "a closed loop whose split and bandwidth are together at most a "
+                             "tenth of the drive frequency: it would be unstable");
     if (!(design->output.bandwidth <= widest))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "output.bandwidth",
-                                  design->output.bandwidth, widest,
-                                  "at most an eighth of the drive frequency");
+        return imki_refuse(error, IMK_ERROR_RANGE, "output.bandwidth", design->output.bandwidth,
+                           widest, "at most an eighth of the drive frequency");
     if (design->output.damping > 0.0 && !(design->output.damping >= 0.05))
-        return imki_design_refuse(error, IMK_ERROR_RANGE, "output.damping", design->output.damping,
-                                  0.05, "0, or at least 0.05");
+        return imki_refuse(error, IMK_ERROR_RANGE, "output.damping", design->output.damping, 0.05,
+                           "0, or at least 0.05");
     return IMK_OK;
 }
 
-imk_status imk_tuning_fork_validate(const imk_tuning_fork *design, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (design->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "tuning_fork", NULL,
-                             "a design made by imk_tuning_fork_default()");
-    imk_status status = imk_design_check(&imk_tuning_fork_instrument, design, error);
-    if (status == IMK_OK)
-        status = check_loops(design, error);
-    const double temperatures[] = {IMKI_FORK_REFERENCE, IMKI_FORK_COLDEST, IMKI_FORK_HOTTEST};
+    const imk_tuning_fork *design = given;
+    imk_status status = check_loops(design, error);
+    const double temperatures[] = {IMKI_DESIGN_TEMPERATURE, IMKI_FORK_COLDEST, IMKI_FORK_HOTTEST};
     for (int i = 0; status == IMK_OK && i < 3; i++)
         status = check_temperature(design, temperatures[i], error);
     return status;
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_tuning_fork_validate(design, error);
-}
-
-void imk_tuning_fork_reduce(const imk_tuning_fork *design, imk_model *model)
-{
-    imki_tuning_fork_reduce(design, imki_reduction_begin(model, &imk_tuning_fork_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_tuning_fork_validate(design, error);
-    return status == IMK_OK ? imki_fork_init(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_tuning_fork_reduce(design, model);
 }
 
 /* ---- description ----------------------------------------------------------------------------- */
@@ -288,7 +238,7 @@ static const imk_view views[] = {
      .duration = 286e-6,
      .rate = 560e3,
      .settle = 0.05,
-     .input = 100.0 * IMKI_PI / 180.0},
+     .input = 100.0 * IMKI_DEGREE},
     {.title = "Start of the drive",
      .caption = "From rest: the amplitude control is a loop of first order, of 100 Hz.",
      .x = -1,
@@ -310,8 +260,10 @@ static const imk_view views[] = {
      .y = {RATE, QUADRATURE},
      .duration = 60e-3,
      .rate = 3.5e3,
-     .input = 50.0 * IMKI_PI / 180.0},
+     .input = 50.0 * IMKI_DEGREE},
 };
+
+IMKI_DESIGN_FUNCTIONS(tuning_fork);
 
 const imk_instrument imk_tuning_fork_instrument = {
     .name = "tuning_fork",
@@ -321,12 +273,13 @@ const imk_instrument imk_tuning_fork_instrument = {
         "ADXRS150 data sheet; J. A. Geen et al., IEEE J. Solid-State Circuits 37 (2002) 1860; "
         "mass, Q, split, quadrature and temperature coefficients chosen",
     .sensor = IMK_GYRO,
+    .cookie = COOKIE,
     .design_size = sizeof(imk_tuning_fork),
     .state_size = sizeof(imki_fork_state),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_fork_init,
     .step = imki_fork_step,
     .observe = imki_fork_observe,
     .reduce = reduce,

@@ -41,7 +41,7 @@ static void filter_design(const imk_tuning_fork *design, double frame_time,
 void imki_fork_electronics_design(const imk_tuning_fork *design, double frame_time,
                                   imki_fork_electronics *e)
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     const double bandwidth = 2.0 * IMKI_PI * design->drive.loop_bandwidth;
     const double g = 0.5 * point.drive_damping;
     memset(e, 0, sizeof *e);
@@ -319,10 +319,10 @@ static imk_status divide(const imk_tuning_fork *design, const imk_physics_settin
         return status;
     if (*step < shortest * (1.0 - 1e-9))
         return settings->step > 0.0 && settings->step < shortest
-                   ? imki_design_refuse(error, IMK_ERROR_RANGE, "step", settings->step, shortest,
-                                        "at most 128 steps to a cycle of the drive")
-                   : imki_design_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate,
-                                        1.0 / shortest, "at most 128 samples to a cycle");
+                   ? imki_refuse(error, IMK_ERROR_RANGE, "step", settings->step, shortest,
+                                 "at most 128 steps to a cycle of the drive")
+                   : imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, 1.0 / shortest,
+                                 "at most 128 samples to a cycle");
     const double frames = rint(*step * (double)*count / cycle);
     if (frames >= 4.0) {
         const double wanted = settings->step > 0.0 ? settings->step : longest;
@@ -335,17 +335,15 @@ static imk_status divide(const imk_tuning_fork *design, const imk_physics_settin
     return IMK_OK;
 }
 
-static imk_status start(imki_fork_state *state, const imk_physics_settings *settings)
+static void start(imki_fork_state *state, const imk_physics_settings *settings)
 {
     const imk_tuning_fork *design = &state->design;
     imki_draws_start(&state->draws, settings,
                      state->full ? IMKI_FORK_SOURCE_FRAME : IMKI_FORK_SOURCE_ENVELOPE);
-    imk_status status = imki_wander_start(&state->phase, settings, IMKI_FORK_SOURCE_PHASE,
-                                          design->phase.repeatability, design->phase.instability);
-    if (status == IMK_OK)
-        status = imki_wander_start(&state->amplitude, settings, IMKI_FORK_SOURCE_AMPLITUDE,
-                                   design->drive.amplitude_repeatability, 0.0);
-    return status;
+    imki_wander_start(&state->phase, settings, IMKI_FORK_SOURCE_PHASE, design->phase.repeatability,
+                      design->phase.instability);
+    imki_wander_start(&state->amplitude, settings, IMKI_FORK_SOURCE_AMPLITUDE,
+                      design->drive.amplitude_repeatability, 0.0);
 }
 
 imk_status imki_fork_init(const void *place, const imk_physics_settings *settings, void *memory,
@@ -356,12 +354,11 @@ imk_status imki_fork_init(const void *place, const imk_physics_settings *setting
     size_t count = 0;
     double step = 0.0;
     int steps = 0;
-    imk_status status = imki_settings_check(settings, error);
-    if (status == IMK_OK && settings->level == IMK_LEVEL_FULL)
+    imk_status status = IMK_OK;
+    if (settings->level == IMK_LEVEL_FULL)
         status = divide(design, settings, &count, &step, &steps, error);
     if (status != IMK_OK)
         return status;
-    memset(state, 0, sizeof *state);
     state->design = *design;
     state->full = settings->level == IMK_LEVEL_FULL;
     state->noise = settings->noise;
@@ -373,7 +370,8 @@ imk_status imki_fork_init(const void *place, const imk_physics_settings *setting
     state->reference_turn.re = 1.0;
     imki_fork_electronics_design(design, state->full ? step * (double)steps : state->sample,
                                  &state->electronics);
-    return start(state, settings);
+    start(state, settings);
+    return IMK_OK;
 }
 
 double imki_fork_step_length(const void *place, const imk_physics_settings *settings)

@@ -76,7 +76,7 @@ static void equations(const imk_tuning_fork *design, double temperature, double 
                       double b[N * INPUTS], double noise[N * NOISES])
 {
     const imki_fork_point point = imki_fork_at(design, temperature);
-    const imki_fork_point nominal = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point nominal = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     const imki_phasor decay = imki_fork_decay(&point), zero = imki_fork_decay(&nominal);
     const double xi = imki_fork_force_ratio(design, &point);
     const imki_phasor rho = imki_fork_motion_ratio(design, &point);

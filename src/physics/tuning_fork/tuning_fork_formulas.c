@@ -12,7 +12,7 @@ imki_fork_point imki_fork_at(const imk_tuning_fork *design, double temperature)
     const double limited = temperature < IMKI_FORK_COLDEST   ? IMKI_FORK_COLDEST
                            : temperature > IMKI_FORK_HOTTEST ? IMKI_FORK_HOTTEST
                                                              : temperature;
-    const double change = limited - IMKI_FORK_REFERENCE;
+    const double change = limited - IMKI_DESIGN_TEMPERATURE;
     const double frequency = 1.0 + design->temperature.frequency * change;
     const double q = 1.0 + design->temperature.q * change;
     const double drive = design->drive.frequency, split = design->sense.split;
@@ -57,7 +57,7 @@ double imki_fork_force_ratio(const imk_tuning_fork *design, const imki_fork_poin
 
 imki_phasor imki_fork_motion_ratio(const imk_tuning_fork *design, const imki_fork_point *point)
 {
-    const imki_fork_point nominal = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point nominal = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     const imki_phasor ratio = imki_phasor_product(
         imki_fork_compliance(point), imki_phasor_inverse(imki_fork_compliance(&nominal)));
     const double force = imki_fork_force_ratio(design, point);
@@ -111,13 +111,13 @@ static double magnitude(imki_phasor a)
 
 double imk_tuning_fork_response(const imk_tuning_fork *design)
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     return imki_fork_coriolis(design) * magnitude(imki_fork_compliance(&point));
 }
 
 double imk_tuning_fork_brownian_noise(const imk_tuning_fork *design, double temperature)
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     return 2.0 * sqrt(IMKI_BOLTZMANN * temperature * point.sense_damping / design->mass) /
            imki_fork_coriolis(design);
 }
@@ -129,7 +129,7 @@ double imk_tuning_fork_pickoff_noise(const imk_tuning_fork *design)
 
 double imk_tuning_fork_gain(const imk_tuning_fork *design, double frequency)
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     const imki_phasor p = imki_fork_decay(&point);
     const double square = p.re * p.re + p.im * p.im, w = 2.0 * IMKI_PI * frequency;
     return magnitude((imki_phasor){square, p.re * w}) /
@@ -139,7 +139,7 @@ double imk_tuning_fork_gain(const imk_tuning_fork *design, double frequency)
 /* |G|^2 = 2 or 1/2 are quadratic equations in w^2; the first that has a root on the way up. */
 double imk_tuning_fork_bandwidth(const imk_tuning_fork *design)
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     const imki_phasor p = imki_fork_decay(&point);
     const double square = p.re * p.re + p.im * p.im, damping = p.re * p.re;
     double first = (double)INFINITY;
@@ -161,7 +161,7 @@ double imk_tuning_fork_bandwidth(const imk_tuning_fork *design)
 
 double imk_tuning_fork_cubic(const imk_tuning_fork *design)
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     const imki_phasor p = imki_fork_decay(&point);
     const double pull = design->angular_gain * p.im / (p.re * p.re + p.im * p.im);
     return -pull * pull;
@@ -169,7 +169,7 @@ double imk_tuning_fork_cubic(const imk_tuning_fork *design)
 
 double imk_tuning_fork_drive_force(const imk_tuning_fork *design)
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     return design->mass * point.drive * point.drive_damping * point.amplitude;
 }
 

@@ -7,8 +7,7 @@
 #include "imukit/tuning_fork.h"
 #include "physics/physics_internal.h"
 
-/* Temperatures [K]: of the design's values, and the ends of the straight lines. */
-#define IMKI_FORK_REFERENCE 293.15
+/* Ends of the straight lines by temperature [K]. */
 #define IMKI_FORK_COLDEST (-40.0 + 273.15)
 #define IMKI_FORK_HOTTEST 398.15
 

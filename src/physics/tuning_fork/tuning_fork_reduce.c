@@ -35,15 +35,15 @@ static double slope_at(const imk_tuning_fork *design, double temperature)
 static void temperature_terms(const imk_tuning_fork *design, imk_triad *gyro)
 {
     /* away from 0, where the quotient of polynomial() is */
-    const double low = IMKI_FORK_COLDEST - IMKI_FORK_REFERENCE,
-                 high = IMKI_FORK_HOTTEST - IMKI_FORK_REFERENCE;
+    const double low = IMKI_FORK_COLDEST - IMKI_DESIGN_TEMPERATURE,
+                 high = IMKI_FORK_HOTTEST - IMKI_DESIGN_TEMPERATURE;
     const double t[ORDER] = {low, 0.5 * low, 0.25 * high, 0.6 * high, high};
-    const double scale = slope_at(design, IMKI_FORK_REFERENCE);
+    const double scale = slope_at(design, IMKI_DESIGN_TEMPERATURE);
     double bias_change[ORDER], scale_change[ORDER], bias[ORDER], slope[ORDER];
     for (int i = 0; i < ORDER; i++) {
-        const double temperature = IMKI_FORK_REFERENCE + t[i];
+        const double temperature = IMKI_DESIGN_TEMPERATURE + t[i];
         bias_change[i] = imk_tuning_fork_reading(design, 0.0, 0.0, temperature) -
-                         imk_tuning_fork_reading(design, 0.0, 0.0, IMKI_FORK_REFERENCE);
+                         imk_tuning_fork_reading(design, 0.0, 0.0, IMKI_DESIGN_TEMPERATURE);
         scale_change[i] = slope_at(design, temperature) - scale;
     }
     polynomial(t, bias_change, bias);
@@ -52,7 +52,7 @@ static void temperature_terms(const imk_tuning_fork *design, imk_triad *gyro)
                                                   &gyro->scale_factor.temperature};
     for (int k = 0; k < 2; k++) {
         target[k]->order = ORDER;
-        target[k]->reference = IMKI_FORK_REFERENCE;
+        target[k]->reference = IMKI_DESIGN_TEMPERATURE;
         target[k]->minimum = IMKI_FORK_COLDEST;
         target[k]->maximum = IMKI_FORK_HOTTEST;
         for (int i = 0; i < ORDER; i++)
@@ -97,7 +97,7 @@ static double cut_off(const imk_tuning_fork *design)
  * rings at its split; else of first order. */
 static void bandwidth(const imk_tuning_fork *design, imk_triad *gyro)
 {
-    const imki_fork_point point = imki_fork_at(design, IMKI_FORK_REFERENCE);
+    const imki_fork_point point = imki_fork_at(design, IMKI_DESIGN_TEMPERATURE);
     const imki_phasor p = imki_fork_decay(&point);
     const double size = sqrt(p.re * p.re + p.im * p.im), damping = p.re / size;
     const double narrowest = 0.05; /* of the model's filter, noise.h */
@@ -110,23 +110,24 @@ static void bandwidth(const imk_tuning_fork *design, imk_triad *gyro)
 
 void imki_tuning_fork_reduce(const imk_tuning_fork *design, imk_triad *gyro)
 {
-    const double slope = slope_at(design, IMKI_FORK_REFERENCE), turn = 1e-6;
+    const double slope = slope_at(design, IMKI_DESIGN_TEMPERATURE), turn = 1e-6;
     const int leak = design->arrangement == IMK_TUNING_FORK_IN_PLANE ? 1 : 2;
     imk_tuning_fork turned = *design;
     turned.phase.error += turn;
-    const double by_phase = (imk_tuning_fork_reading(&turned, 0.0, 0.0, IMKI_FORK_REFERENCE) -
-                             imk_tuning_fork_reading(design, 0.0, 0.0, IMKI_FORK_REFERENCE)) /
+    const double by_phase = (imk_tuning_fork_reading(&turned, 0.0, 0.0, IMKI_DESIGN_TEMPERATURE) -
+                             imk_tuning_fork_reading(design, 0.0, 0.0, IMKI_DESIGN_TEMPERATURE)) /
                             turn;
-    const double brownian = imk_tuning_fork_brownian_noise(design, IMKI_FORK_REFERENCE);
+    const double brownian = imk_tuning_fork_brownian_noise(design, IMKI_DESIGN_TEMPERATURE);
     const double pickoff = imk_tuning_fork_pickoff_noise(design);
     const double reference = by_phase * design->drive.pickoff_noise / design->drive.amplitude;
-    gyro->bias.fixed.value[0] = imk_tuning_fork_reading(design, 0.0, 0.0, IMKI_FORK_REFERENCE);
+    gyro->bias.fixed.value[0] = imk_tuning_fork_reading(design, 0.0, 0.0, IMKI_DESIGN_TEMPERATURE);
     gyro->bias.repeatability.value[0] = fabs(by_phase) * design->phase.repeatability;
     gyro->scale_factor.fixed.value[0] = slope - 1.0;
     gyro->scale_factor.repeatability.value[0] = design->drive.amplitude_repeatability;
     temperature_terms(design, gyro);
     gyro->g_sensitivity.value[0][leak] =
-        imk_tuning_fork_reading(design, 0.0, 1.0, IMKI_FORK_REFERENCE) - gyro->bias.fixed.value[0];
+        imk_tuning_fork_reading(design, 0.0, 1.0, IMKI_DESIGN_TEMPERATURE) -
+        gyro->bias.fixed.value[0];
     if (design->sense.loop == IMK_TUNING_FORK_OPEN)
         gyro->nonlinearity.k3.value[0] = imk_tuning_fork_cubic(design);
     gyro->noise.white.value[0] =

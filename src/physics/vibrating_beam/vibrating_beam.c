@@ -4,6 +4,7 @@
 #include "vibrating_beam_internal.h"
 
 #include "imukit/units.h"
+#include "physics/design_rows_internal.h"
 
 #include <math.h>
 
@@ -42,45 +43,38 @@ imk_vibrating_beam imk_vibrating_beam_default(void)
     return d;
 }
 
-#define NUMBER(path, member, unit, minimum, maximum, open, help)                                   \
-    {                                                                                              \
-        path, IMK_DESIGN_NUMBER, offsetof(imk_vibrating_beam, member), unit, minimum, maximum,     \
-            open, NULL, help                                                                       \
-    }
-
+#define DESIGN imk_vibrating_beam
 static const imk_design_field fields[] = {
-    {"arrangement", IMK_DESIGN_CHOICE, offsetof(imk_vibrating_beam, arrangement), "1", 0.0, 0.0,
-     false, "pair|single", "one beam, or two of which one is pushed and one pulled"},
-    {"readout", IMK_DESIGN_CHOICE, offsetof(imk_vibrating_beam, readout), "1", 0.0, 0.0, false,
-     "squares|frequencies", "difference of squares, which is linear, or of frequencies"},
-    NUMBER("beam.length", length, "mm", 1e-6, 1.0, false, "between the clamps"),
-    NUMBER("beam.width", width, "um", 1e-8, 0.1, false, "across the bending"),
-    NUMBER("beam.thickness", thickness, "um", 1e-8, 0.1, false, "along the bending"),
-    NUMBER("beam.modulus", modulus, "GPa", 1e6, 2e12, false, "Young's modulus"),
-    NUMBER("beam.density", density, "kg/m^3", 1.0, 3e4, false, "of the material"),
-    NUMBER("beam.quality", quality, "1", 0.5, 1e9, true,
-           "quality factor: an oscillator has Q above 1/2"),
-    NUMBER("beam.amplitude", amplitude, "um", 0.0, 1e-3, true, "of its middle, peak"),
-    NUMBER("beam.frequency_mismatch", frequency_mismatch, "ppm", -0.2, 0.2, false,
+    CHOICE("arrangement", arrangement, "pair|single",
+           "one beam, or two of which one is pushed and one pulled"),
+    CHOICE("readout", readout, "squares|frequencies",
+           "difference of squares, which is linear, or of frequencies"),
+    NUMBER("beam.length", length, "mm", 1e-6, 1.0, "between the clamps"),
+    NUMBER("beam.width", width, "um", 1e-8, 0.1, "across the bending"),
+    NUMBER("beam.thickness", thickness, "um", 1e-8, 0.1, "along the bending"),
+    NUMBER("beam.modulus", modulus, "GPa", 1e6, 2e12, "Young's modulus"),
+    NUMBER("beam.density", density, "kg/m^3", 1.0, 3e4, "of the material"),
+    ABOVE("beam.quality", quality, "1", 0.5, 1e9, "quality factor: an oscillator has Q above 1/2"),
+    ABOVE("beam.amplitude", amplitude, "um", 0.0, 1e-3, "of its middle, peak"),
+    NUMBER("beam.frequency_mismatch", frequency_mismatch, "ppm", -0.2, 0.2,
            "second beam against the first, relative"),
-    NUMBER("beam.frequency_temperature", frequency_temperature, "ppm/K", -0.01, 0.01, false,
+    NUMBER("beam.frequency_temperature", frequency_temperature, "ppm/K", -0.01, 0.01,
            "relative change of the squared frequency"),
-    NUMBER("beam.temperature_mismatch", temperature_mismatch, "ppm/K", -0.01, 0.01, false,
+    NUMBER("beam.temperature_mismatch", temperature_mismatch, "ppm/K", -0.01, 0.01,
            "second beam less the first"),
-    NUMBER("proof_mass.mass", proof_mass, "kg", 1e-12, 1.0, false, "mass that a beam carries"),
-    NUMBER("proof_mass.error", proof_mass_error, "ppm", -0.5, 0.5, false, "relative error of it"),
-    NUMBER("proof_mass.frequency", suspension_frequency, "Hz", 1e-3, 1e6, false,
+    NUMBER("proof_mass.mass", proof_mass, "kg", 1e-12, 1.0, "mass that a beam carries"),
+    NUMBER("proof_mass.error", proof_mass_error, "ppm", -0.5, 0.5, "relative error of it"),
+    NUMBER("proof_mass.frequency", suspension_frequency, "Hz", 1e-3, 1e6,
            "of proof mass, flexure and beams"),
-    NUMBER("proof_mass.damping", suspension_damping, "1", 0.0, 10.0, true, "ratio to critical"),
-    NUMBER("proof_mass.range", range, "g", 0.0, 1e6, true, "stops of the proof mass"),
-    NUMBER("mount.force", mount_force, "N", -100.0, 100.0, false,
-           "stress that pulls the first beam"),
-    NUMBER("mount.force_repeatability", mount_force_repeatability, "N", 0.0, 100.0, false,
+    ABOVE("proof_mass.damping", suspension_damping, "1", 0.0, 10.0, "ratio to critical"),
+    ABOVE("proof_mass.range", range, "g", 0.0, 1e6, "stops of the proof mass"),
+    NUMBER("mount.force", mount_force, "N", -100.0, 100.0, "stress that pulls the first beam"),
+    NUMBER("mount.force_repeatability", mount_force_repeatability, "N", 0.0, 100.0,
            "1 sigma from run to run"),
-    NUMBER("mount.force_instability", mount_force_instability, "N", 0.0, 100.0, false,
+    NUMBER("mount.force_instability", mount_force_instability, "N", 0.0, 100.0,
            "flicker B within a run"),
-    NUMBER("clock", clock, "MHz", 0.0, 1e12, false, "times the cycles; 0: without rounding"),
-    NUMBER("temperature", temperature, "degC", 1.0, 1000.0, false, "where errors are stated"),
+    NUMBER("clock", clock, "MHz", 0.0, 1e12, "times the cycles; 0: without rounding"),
+    NUMBER("temperature", temperature, "degC", 1.0, 1000.0, "where errors are stated"),
 };
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -92,28 +86,23 @@ static imk_status check_beam(const design_type *d, imk_error *error)
     const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
     const double highest = 1.4 * (f1 > f2 ? f1 : f2); /* at the limit of the load */
     if (!(d->thickness <= 0.2 * d->length))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "beam.thickness", d->thickness,
-                                  0.2 * d->length,
-                                  "at most a fifth of the length: a beam is slender");
+        return imki_conflict(error, "beam.thickness", d->thickness, 0.2 * d->length,
+                             "at most a fifth of the length: a beam is slender");
     if (d->clock > 0.0 && !(d->clock >= 4.0 * highest))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "clock", d->clock, 4.0 * highest,
-                                  "0, or at least four ticks to a cycle of the beams");
+        return imki_conflict(error, "clock", d->clock, 4.0 * highest,
+                             "0, or at least four ticks to a cycle of the beams");
     const double thermal = sqrt(IMKI_BOLTZMANN * d->temperature / imki_beam_mass(d)) /
                            (2.0 * IMKI_PI * (f1 < f2 ? f1 : f2));
     if (!(d->amplitude >= 10.0 * thermal))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "beam.amplitude", d->amplitude,
-                                  10.0 * thermal, "at least ten times the thermal motion");
+        return imki_conflict(error, "beam.amplitude", d->amplitude, 10.0 * thermal,
+                             "at least ten times the thermal motion");
     return IMK_OK;
 }
 
-imk_status imk_vibrating_beam_validate(const imk_vibrating_beam *d, imk_error *error)
+static imk_status check(const void *given, imk_error *error)
 {
-    if (d->cookie != COOKIE)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "vibrating_beam", NULL,
-                             "a design made by imk_vibrating_beam_default()");
-    imk_status status = imk_design_check(&imk_vibrating_beam_instrument, d, error);
-    if (status == IMK_OK)
-        status = check_beam(d, error);
+    const imk_vibrating_beam *d = given;
+    imk_status status = check_beam(d, error);
     if (status != IMK_OK)
         return status;
     const double f1 = imk_vibrating_beam_frequency(d, 0), f2 = imk_vibrating_beam_frequency(d, 1);
@@ -123,39 +112,12 @@ imk_status imk_vibrating_beam_validate(const imk_vibrating_beam *d, imk_error *e
                         6.0 * (d->mount_force_repeatability + d->mount_force_instability);
     const double limit = 0.9 * least * least / imk_vibrating_beam_stiffening(d);
     if (!(load < limit))
-        return imki_design_refuse(error, IMK_ERROR_CONFLICT, "proof_mass.range", load, limit,
-                                  "a smaller force: a beam would come near buckling (forces in N)");
+        return imki_conflict(error, "proof_mass.range", load, limit,
+                             "a smaller force: a beam would come near buckling (forces in N)");
     return IMK_OK;
 }
 
 /* ---- the instrument -------------------------------------------------------------------------- */
-
-static void set_default(void *design)
-{
-    *(design_type *)design = imk_vibrating_beam_default();
-}
-
-static imk_status validate(const void *design, imk_error *error)
-{
-    return imk_vibrating_beam_validate(design, error);
-}
-
-void imk_vibrating_beam_reduce(const imk_vibrating_beam *design, imk_model *model)
-{
-    imki_vibrating_beam_reduce(design, imki_reduction_begin(model, &imk_vibrating_beam_instrument));
-}
-
-static imk_status init(const void *design, const imk_physics_settings *settings, void *state,
-                       imk_error *error)
-{
-    const imk_status status = imk_vibrating_beam_validate(design, error);
-    return status == IMK_OK ? imki_beams_start(design, settings, state, error) : status;
-}
-
-static void reduce(const void *design, imk_model *model)
-{
-    imk_vibrating_beam_reduce(design, model);
-}
 
 static void step(void *state, const imk_exposure *exposure, double *outputs)
 {
@@ -218,18 +180,21 @@ static const imk_view views[] = {
      .input = 10.0 * IMK_STANDARD_GRAVITY},
 };
 
+IMKI_DESIGN_FUNCTIONS(vibrating_beam);
+
 const imk_instrument imk_vibrating_beam_instrument = {
     .name = "vibrating_beam",
     .title = "vibrating beam accelerometer",
     .technology = "vibrating beam",
     .source = "40 kHz, 80 Hz/g, 70 g of the RBA-500 family; the mechanics chosen to give them",
     .sensor = IMK_ACCEL,
+    .cookie = COOKIE,
     .design_size = sizeof(design_type),
     .state_size = sizeof(imki_beams),
     IMKI_TABLES,
     .set_default = set_default,
-    .validate = validate,
-    .init = init,
+    .check = check,
+    .init = imki_beams_start,
     .step = step,
     .observe = imki_beams_observe,
     .reduce = reduce,

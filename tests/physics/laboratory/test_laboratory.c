@@ -13,6 +13,7 @@
 #define G 9.80665
 
 typedef struct errors {
+    uint32_t cookie; /* 0 */
     double bias, scale, k2, koq, k3, asymmetry, dead_band, bandwidth, white;
     double bias_temperature, scale_temperature, temperature_rate;
     double linear[3], quadratic[6]; /* in f */
@@ -30,7 +31,7 @@ static void set_default(void *design)
     memset(design, 0, sizeof(errors));
 }
 
-static imk_status validate(const void *design, imk_error *error)
+static imk_status check(const void *design, imk_error *error)
 {
     const errors *e = design;
     return e->white >= 0.0 ? IMK_OK
@@ -41,7 +42,6 @@ static imk_status start(const void *design, const imk_physics_settings *settings
                         imk_error *error)
 {
     unit *u = state;
-    memset(u, 0, sizeof *u);
     u->e = *(const errors *)design;
     u->smoothing = u->e.bandwidth > 0.0
                        ? -imk_expm1(-6.283185307179586 * u->e.bandwidth / settings->rate)
@@ -49,7 +49,8 @@ static imk_status start(const void *design, const imk_physics_settings *settings
     u->deviation = settings->noise ? u->e.white * sqrt(settings->rate) : 0.0;
     u->random = imk_random_seeded(settings->seed);
     u->stream = imk_stream(settings->run, 999, settings->occasion, 0);
-    return validate(design, error);
+    (void)error;
+    return IMK_OK;
 }
 
 /* Stimulus x: the rate of a gyro, the force of an accelerometer. */
@@ -79,44 +80,39 @@ static void accel_step(void *state, const imk_exposure *exposure, double *output
     outputs[0] = reading(state, exposure, exposure->specific_force[0]);
 }
 
-static void reduce_as(const void *design, int sensor, imk_model *model)
+static void gyro_reduce(const void *design, imk_triad *triad)
 {
-    const errors *e = design;
-    imk_model_default(model);
-    (sensor == IMK_GYRO ? &model->accel : &model->gyro)->present = false;
-    imk_triad *triad = sensor == IMK_GYRO ? &model->gyro : &model->accel;
-    triad->axis_count = 1;
-    triad->bandwidth.value[0] = e->bandwidth;
-    triad->range.value[0] = sensor == IMK_GYRO ? 5.0 : 50.0;
+    triad->bandwidth.value[0] = ((const errors *)design)->bandwidth;
+    triad->range.value[0] = 5.0;
 }
 
-static void gyro_reduce(const void *design, imk_model *model)
+static void accel_reduce(const void *design, imk_triad *triad)
 {
-    reduce_as(design, IMK_GYRO, model);
-}
-
-static void accel_reduce(const void *design, imk_model *model)
-{
-    reduce_as(design, IMK_ACCEL, model);
+    triad->bandwidth.value[0] = ((const errors *)design)->bandwidth;
+    triad->range.value[0] = 50.0;
 }
 
 static const imk_instrument gyro = {.name = "gyro",
+                                    .title = "gyro",
+                                    .source = "",
                                     .sensor = IMK_GYRO,
                                     .design_size = sizeof(errors),
                                     .state_size = sizeof(unit),
                                     .output_count = 1,
                                     .set_default = set_default,
-                                    .validate = validate,
+                                    .check = check,
                                     .init = start,
                                     .step = gyro_step,
                                     .reduce = gyro_reduce};
 static const imk_instrument accel = {.name = "accel",
+                                     .title = "accel",
+                                     .source = "",
                                      .sensor = IMK_ACCEL,
                                      .design_size = sizeof(errors),
                                      .state_size = sizeof(unit),
                                      .output_count = 1,
                                      .set_default = set_default,
-                                     .validate = validate,
+                                     .check = check,
                                      .init = start,
                                      .step = accel_step,
                                      .reduce = accel_reduce};

@@ -198,8 +198,7 @@ static size_t undetermined(const message *to, const imk_calibrate_log *b, const 
     char poses[160] = "";
     if (imk_model_parameter_parse(error->field, &parameter) != IMK_OK)
         return 0;
-    const imk_triad *triad =
-        parameter.sensor == 0 ? &b->calibration->model.gyro : &b->calibration->model.accel;
+    const imk_triad *triad = imk_model_triad(&b->calibration->model, parameter.sensor);
     if (triad->axis_count > 3 && !b->settings.model_given)
         return say(to,
                    "the log has %d %s axes, and where they point is not known: add "

@@ -4,6 +4,8 @@
  * empty line follows each; nothing is shown where there is nothing to say. */
 #include "calibrate_show_internal.h"
 
+#include "base/algebra/vector_internal.h"
+
 #include <math.h>
 
 static const double degree = 0.017453292519943295;
@@ -110,7 +112,7 @@ void imki_parameter_table(const imk_calibrate_log *b, int sensor, imk_result *re
     if (!any)
         return;
     const imk_model *model = &b->result->model;
-    const imk_triad *triad = sensor == 0 ? &model->gyro : &model->accel;
+    const imk_triad *triad = imk_model_triad(model, sensor);
     const int axes = triad->present ? triad->axis_count : 0;
     imk_table *table = begin_axes(imki_sensor_titles[sensor], axes, result);
     for (int term = 0; term < IMK_MODEL_TERMS; term++)
@@ -182,7 +184,7 @@ void imki_pose_table(const imk_calibrate_log *b, imk_result *result)
         const imk_observation *o = &b->calibration->observation[k];
         const imk_test_record *record = b->calibration->record[o->record];
         const double *up = o->knowledge == IMK_INPUT_GRAVITY ? o->vertical : o->force;
-        const double norm = sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
+        const double norm = imki_norm3(up);
         imk_table_row(table, "%.30s\t%.2f\t%.2f", several ? record->name : "",
                       imk_test_record_time(record, o->begin),
                       (double)(o->end - o->begin) * record->dt);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The head of a CSV log: is it a text, which separator, a header or not, what the first rows show.
- */
+/* Logs as CSV text: is it a text, which separator, a header or not, what the first rows show; rows,
+ * plain ones the fast way (log_cells.c), others in their general form (log_row.c). */
 #include "io/file/text_file_internal.h"
+#include "log_cells_internal.h"
 #include "log_reader_internal.h"
 
 #include <math.h>
@@ -11,15 +12,23 @@
 
 enum { LOOK = 4096 }; /* bytes looked at to tell a text */
 
+typedef struct csv {
+    imki_log_cells_reader *read_cells;
+    size_t slow_left, slow_run; /* rows to read in their general form before trying the fast way */
+} csv;
+
 /* Texts of other systems, which other programs convert. @param size  above 0 */
 static imk_status check_encoding(const char *begin, size_t size, imk_error *error)
 {
     if (size >= 2 && (memcmp(begin, "\xFF\xFE", 2) == 0 || memcmp(begin, "\xFE\xFF", 2) == 0))
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "the text is UTF-16",
                              "convert it: iconv -f UTF-16 -t UTF-8 FILE >NEW.csv");
-    if (!imki_is_text(begin, size))
-        return imk_error_set(error, IMK_ERROR_FORMAT, "", "not a text log",
-                             "CSV (plain, .gz or .zst) or .npy");
+    if (!imki_is_text(begin, size)) {
+        char others[96], expected[160];
+        snprintf(expected, sizeof expected, "CSV (plain, .gz or .zst)%s",
+                 imk_log_formats_text(" or ", false, sizeof others, others));
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "not a text log", expected);
+    }
     /* The newline of a last CR may not be seen yet. */
     if (memchr(begin, '\r', size - 1) && !memchr(begin, '\n', size))
         return imk_error_set(error, IMK_ERROR_FORMAT, "", "the end of each line is CR alone",
@@ -109,9 +118,9 @@ static imk_status replace_names(const char *columns, bool has_header, size_t cou
     return IMK_OK;
 }
 
-static imk_status read_names(imk_log_reader *reader, const imk_log_settings *settings,
-                             imk_error *error)
+static imk_status read_names(imk_log_reader *reader, imk_error *error)
 {
+    const imk_log_settings *settings = &reader->settings;
     imki_log_text *text = &reader->text;
     imki_log_piece line, cells[IMK_LOG_COLUMNS_MAX];
     bool whole, found;
@@ -200,28 +209,21 @@ static imk_status look_at_rows(imk_log_reader *reader, imk_error *error)
         if (layout->time_column >= 0)
             time[rows] = values[layout->time_column];
     }
-    if (rows == 0)
-        return imk_error_set(error, IMK_ERROR_EMPTY, "", "a header but no rows",
-                             "rows of numbers below the header");
-    if (rows < rows_wanted)
-        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "increments in a single row",
-                             "two rows; or add --rate 100Hz (samples per second)");
-    if (layout->time_column >= 0) {
-        const double scale = layout->factor[layout->time_column];
-        if (fabs(time[0]) * scale > 1e6)
-            reader->time_origin = time[0];
-        reader->last_step = (time[1] - time[0]) * scale;
-    }
-    return IMK_OK;
+    return imki_log_first_rows(reader, rows, time, "a header but no rows",
+                               "rows of numbers below the header", error);
 }
 
-imk_status imki_log_open_text(imk_log_reader *reader, const imk_log_settings *settings,
-                              imk_error *error)
+static imk_status open_csv(imk_log_reader *reader, imk_error *error)
 {
     imki_log_text *text = &reader->text;
+    csv *state = calloc(1, sizeof *state);
+    if (!state)
+        return imk_error_set(error, IMK_ERROR_MEMORY, "", NULL, NULL);
+    state->read_cells = imki_log_cells_choose();
+    reader->state = state;
     imk_status status = check_text(text, error);
     if (status == IMK_OK)
-        status = read_names(reader, settings, error);
+        status = read_names(reader, error);
     if (status != IMK_OK)
         return status;
     const size_t line = text->line;
@@ -234,3 +236,91 @@ imk_status imki_log_open_text(imk_log_reader *reader, const imk_log_settings *se
     text->line = line;
     return status;
 }
+
+/* One row in its general form, or an idle line. *rows grows by the rows it gave. */
+static imk_status read_row(imk_log_reader *reader, double *const *out, size_t *rows,
+                           imk_error *error)
+{
+    imki_log_layout_read *layout = &reader->layout;
+    imki_log_piece line;
+    bool whole, not_finite = false;
+    double values[IMK_LOG_COLUMNS_MAX];
+    const size_t number = reader->text.line;
+    if (!imki_log_text_take_line(&reader->text, &line.begin, &line.end, &whole) ||
+        imki_log_line_is_idle(line.begin, line.end))
+        return IMK_OK;
+    const imk_status status = imki_log_row_read(layout, line, whole, number, reader->labels,
+                                                &reader->label_count, values, &not_finite, error);
+    if (status != IMK_OK)
+        return status;
+    for (size_t i = 0; i < layout->cell_count; i++)
+        if (layout->cell_column[i] >= 0)
+            out[i][*rows] = values[layout->cell_column[i]];
+    ++*rows;
+    if (not_finite && reader->not_finite++ == 0)
+        reader->first_not_finite = reader->rows + *rows;
+    return IMK_OK;
+}
+
+static imk_status read_rows(imk_log_reader *reader, size_t max_rows, double *const *out,
+                            size_t *rows, imk_error *error)
+{
+    imki_log_text *text = &reader->text;
+    csv *state = reader->state;
+    const imki_log_cells cells = {reader->layout.cell_count, reader->layout.separator,
+                                  reader->layout.cell_factor};
+    *rows = 0;
+    while (*rows < max_rows) {
+        imk_status status = imki_log_text_need_line(text, error);
+        if (status != IMK_OK)
+            return status;
+        if (text->next == text->end)
+            return IMK_OK;
+        if (state->slow_left == 0 && text->next < text->lines_end) {
+            double *place[IMK_LOG_COLUMNS_MAX];
+            for (size_t i = 0; i < cells.cell_count; i++)
+                place[i] = out[i] + *rows;
+            const size_t read = state->read_cells(&cells, text->base, &text->next, text->lines_end,
+                                                  place, max_rows - *rows);
+            *rows += read;
+            text->line += read;
+            if (read > 0) {
+                state->slow_run = 0;
+                continue;
+            }
+            /* Where rows are not plain, try less and less often. */
+            state->slow_run = state->slow_run < 32 ? 2 * state->slow_run + 1 : 63;
+            state->slow_left = state->slow_run;
+        }
+        status = read_row(reader, out, rows, error);
+        if (status != IMK_OK)
+            return status;
+        state->slow_left -= state->slow_left > 0;
+    }
+    return IMK_OK;
+}
+
+/* Each line of the text. */
+static void write_comment(imki_log_output *log, const char *text)
+{
+    do {
+        const size_t length = strcspn(text, "\r\n");
+        imk_output_file_write(log->file, "# ", 2);
+        imk_output_file_write(log->file, text, length);
+        imk_output_file_write(log->file, "\n", 1);
+        text += length;
+        text += strspn(text, "\r\n");
+    } while (*text != '\0');
+}
+
+static void begin(imki_log_output *log)
+{
+    imki_log_names_write(log->file, log->rows.column_count, log->column, ',');
+    imk_output_file_write(log->file, "\n", 1);
+}
+
+const imki_log_codec imki_log_csv = {.open = open_csv,
+                                     .read = read_rows,
+                                     .comment = write_comment,
+                                     .begin = begin,
+                                     .format = imki_log_format_text};

@@ -1,9 +1,77 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Comparison of models, field by field of the schema. Numbers are compared as numbers (-0 is 0);
- * what lies beyond the number of axes or of list elements does not count. */
+/* One field of the schema in a triad: where its numbers are, whether it says anything, and whether
+ * two triads agree in it. */
 #include "model_schema_internal.h"
 
+#include <stddef.h>
 #include <string.h>
+
+/* ---- its numbers ----------------------------------------------------------------------------- */
+
+int imki_row_length(imki_shape shape)
+{
+    const bool three = shape == IMKI_OFF_DIAGONAL || shape == IMKI_ROWS ||
+                       shape == IMKI_DIRECTION || shape == IMKI_PENDULOUS;
+    return shape == IMKI_QUADRATIC ? 6 : three ? 3 : 1;
+}
+
+const double *imki_field_values(const imki_field *field, const void *base)
+{
+    /* Every one of the structs begins with its values. */
+    return (const double *)(const void *)((const char *)base + field->offset);
+}
+
+const double *imki_field_sigmas(const imki_field *field, const void *base)
+{
+    const int between =
+        field->shape == IMKI_SCALAR ? 1 : IMK_AXES_MAX * imki_row_length(field->shape);
+    return imki_field_values(field, base) + between;
+}
+
+int imki_field_rows(const imki_field *field, int axis_count)
+{
+    return field->shape == IMKI_SCALAR ? 1 : axis_count;
+}
+
+const void *imki_list_element(const imki_field *field, const imk_triad *triad, int index)
+{
+    return (const char *)triad + field->offset + (size_t)index * imki_list_of(field).size;
+}
+
+int imki_list_count(const imki_field *field, const imk_triad *triad)
+{
+    int count;
+    memcpy(&count, (const char *)triad + field->count_offset, sizeof count);
+    return count;
+}
+
+const imki_field *imki_field_find(const char *path, int kind, const imki_field **list)
+{
+    if (list)
+        *list = NULL;
+    for (size_t i = 0; i < imki_triad_field_count; i++) {
+        const imki_field *field = &imki_triad_fields[i];
+        const char *name = field->path[kind];
+        size_t length = name ? strlen(name) : 0;
+        if (!name || strncmp(path, name, length) != 0)
+            continue;
+        if (path[length] == '\0')
+            return field;
+        if (field->shape != IMKI_LIST || path[length] != '.')
+            continue;
+        imki_list terms = imki_list_of(field);
+        for (size_t j = 0; j < terms.field_count; j++) {
+            if (strcmp(path + length + 1, terms.field[j].path[kind]) != 0)
+                continue;
+            if (list)
+                *list = field;
+            return &terms.field[j];
+        }
+    }
+    return NULL;
+}
+
+/* ---- comparison ------------------------------------------------------------------------------ */
 
 static bool equal_numbers(const double *a, const double *b, size_t count)
 {
@@ -21,8 +89,8 @@ static bool all_zero(const double *a, size_t count)
     return true;
 }
 
-static bool equal_at(const imki_field *field, const void *a, const void *b, int axis_count,
-                     bool with_sigmas)
+bool imki_numbers_equal(const imki_field *field, const void *a, const void *b, int axis_count,
+                        bool with_sigmas)
 {
     size_t count = (size_t)imki_field_rows(field, axis_count) * imki_row_length(field->shape);
     return equal_numbers(imki_field_values(field, a), imki_field_values(field, b), count) &&
@@ -61,8 +129,8 @@ static bool equal_lists(const imki_field *field, const imk_triad *a, const imk_t
         return false;
     for (int i = 0; i < count; i++)
         for (size_t j = 0; j < list.field_count; j++)
-            if (!equal_at(&list.field[j], imki_list_element(field, a, i),
-                          imki_list_element(field, b, i), a->axis_count, with_sigmas))
+            if (!imki_numbers_equal(&list.field[j], imki_list_element(field, a, i),
+                                    imki_list_element(field, b, i), a->axis_count, with_sigmas))
                 return false;
     return true;
 }
@@ -82,14 +150,14 @@ bool imki_field_equal(const imki_field *field, const imk_triad *a, const imk_tri
     case IMKI_DIRECTION:
         return equal_directions(a, b);
     case IMKI_PENDULOUS:
-        return equal_at(field, a, b, a->axis_count, false);
+        return imki_numbers_equal(field, a, b, a->axis_count, false);
     case IMKI_LIST:
         return equal_lists(field, a, b, with_sigmas);
     case IMKI_POLYNOMIAL:
         return equal_polynomials(polynomial_of(field, a), polynomial_of(field, b),
                                  (size_t)a->axis_count, with_sigmas);
     default:
-        return equal_at(field, a, b, a->axis_count, with_sigmas);
+        return imki_numbers_equal(field, a, b, a->axis_count, with_sigmas);
     }
 }
 
@@ -119,27 +187,4 @@ bool imki_field_absent(const imki_field *field, const imk_triad *triad)
                all_zero(imki_field_sigmas(field, triad), count);
     }
     }
-}
-
-static bool equal_triads(const imk_triad *a, const imk_triad *b)
-{
-    if (a->present != b->present)
-        return false;
-    if (!a->present)
-        return true;
-    /* The first field is the direction, with the number of axes the others are compared on. How
-     * the file states its densities changes no number. */
-    for (size_t i = 0; i < imki_triad_field_count; i++)
-        if (imki_triad_fields[i].shape != IMKI_DENSITY &&
-            !imki_field_equal(&imki_triad_fields[i], a, b, false))
-            return false;
-    return true;
-}
-
-bool imk_model_equal(const imk_model *a, const imk_model *b)
-{
-    for (size_t i = 0; i < imki_timing_field_count; i++)
-        if (!equal_at(&imki_timing_fields[i], &a->timing, &b->timing, 1, false))
-            return false;
-    return equal_triads(&a->gyro, &b->gyro) && equal_triads(&a->accel, &b->accel);
 }
