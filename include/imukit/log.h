@@ -21,7 +21,7 @@
 extern "C" {
 #endif
 
-/** How to read a file. Start from imk_log_settings_default(). Texts may be NULL: taken from the
+/** How to read a file. Start from imk_log_default(). Texts may be NULL: taken from the
  *  header. */
 typedef struct imk_log_settings {
     uint32_t cookie;
@@ -39,7 +39,7 @@ typedef struct imk_log_settings {
 } imk_log_settings;
 
 /** Everything from the header of the file. */
-IMK_API imk_log_settings imk_log_settings_default(void);
+IMK_API imk_log_settings imk_log_default(void);
 
 typedef struct imk_log_reader imk_log_reader;
 
