@@ -32,6 +32,7 @@ typedef struct imk_record_plan_settings {
     bool curve;          /**< also IMK_PLAN_CURVE records from a minute to a week; false */
 } imk_record_plan_settings;
 
+/** Terms at 1 % significance; the rate must be set. */
 IMK_API imk_record_plan_settings imk_record_plan_default(void);
 
 /** A parameter of the gyros or of the accelerometers. */
