@@ -49,7 +49,7 @@ static void calibrate(void *context)
     imk_log log;
     imk_test_record record;
     const double start = bench_now();
-    const imk_log_settings reading = imk_log_settings_default();
+    const imk_log_settings reading = imk_log_default();
     j->status = imk_log_load(j->path, &reading, NULL, &log, NULL);
     if (j->status != IMK_OK)
         return;

@@ -41,7 +41,7 @@ static size_t read_with_strtod(const text *csv, double *const *columns)
 
 static size_t read_with_imukit(const text *csv, double *const *columns)
 {
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 100.0;
     imk_log_reader *reader;
     if (imk_log_open_memory(csv->bytes, csv->size, &settings, &reader, NULL) != IMK_OK)

@@ -110,7 +110,7 @@ static double run_whole(const imk_executor *executor)
 {
     whole_work w = {.settings = imk_identify_default()};
     w.settings.dt = 0.01;
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 100;
     const double begin = bench_now();
     if (imk_log_load(path, &settings, NULL, &w.log, NULL) != IMK_OK)

@@ -41,7 +41,7 @@ int main(int argc, char **argv)
         return 2;
     }
     imk_error error;
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     imk_log_reader *reader = NULL;
     if (imk_log_open(argv[1], &settings, &reader, &error) != IMK_OK)
         return fail(&error, argv[1]);

@@ -306,7 +306,7 @@ static int signal_index(const imk_instrument *instrument, const char *name)
 static void *started(const imk_instrument *instrument, const trial *t, uint64_t seed)
 {
     imk_error error = {0};
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = t->rate;
     settings.step = t->step;
     settings.seed = seed;

@@ -124,7 +124,7 @@ int main(int argc, char **argv)
     const uint64_t first_seed = argc > 5 ? strtoull(argv[5], NULL, 10) : 1;
     imk_error error;
     imk_log log;
-    imk_log_settings log_settings = imk_log_settings_default();
+    imk_log_settings log_settings = imk_log_default();
     log_settings.rate = rate;
     if (imk_log_load(argv[1], &log_settings, NULL, &log, &error) != IMK_OK)
         return fail(&error, argv[1]);

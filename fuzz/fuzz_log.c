@@ -11,7 +11,7 @@ enum { ROWS_MAX = 64 };
 
 static imk_log_settings settings_of(uint32_t choice)
 {
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     if (choice & 1)
         settings.rate = 100.0;
     if (choice & 2)

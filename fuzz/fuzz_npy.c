@@ -60,7 +60,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memcpy(matrix, data + names, size - names);
     check_header(matrix, size - names);
     const uint32_t choice = choice_of(data, size);
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = choice % 2 == 0 ? 100.0 : 0.0;
     settings.columns = choice % 4 < 2 ? NULL : "time,gyro_x [deg/s],-";
     input_file_put(INPUT_MATRIX_NAMES, data, names);

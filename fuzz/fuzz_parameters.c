@@ -56,7 +56,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     imk_model model;
     const uint32_t choice = choice_of(data, size);
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     settings.rate = 100;
     bool is_read = check_read(data, size, &settings, &model);
     if (!is_read) {

@@ -36,7 +36,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const uint32_t choice = choice_of(data, size);
     const char *path = input_file_put(INPUT_TABLE, data, size);
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     imk_motion_file *motion = NULL;
     imk_temperature_file *temperature = NULL;
     imk_error error = {.status = IMK_OK};

@@ -52,6 +52,11 @@ awk 'function told(line, what) { print FILENAME ":" line ": " what; found = 1 }
      member && /\*\// { member = 0 }
      END { exit found }' "${headers[@]}" || complain "a comment was broken (above)"
 
+# A public function says what it does.
+awk '/^IMK_API/ && before !~ /\*\/$/ { print FILENAME ":" FNR ": no comment"; found = 1 }
+     { before = $0 }
+     END { exit found }' include/imukit/*.h || complain "a public function has no comment (above)"
+
 # Every [KEY] cited is in docs/references.md, and there is nothing that nobody cites.
 key='[A-Z][A-Z-]+[0-9]{2,4}(\.[0-9]+)?[a-z]?'
 sources="include src cli tests bench fuzz examples tools docs/theory docs/physics"

@@ -164,7 +164,7 @@ static int show(const parameter_options *o, imk_parameter_format from, const cha
 int convert_parameters(const parameter_options *options, double rate, const char *in,
                        const char *out)
 {
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     settings.rate = rate;
     settings.density = (imk_density)options->density;
     settings.sensor = options->sensor;

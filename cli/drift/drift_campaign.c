@@ -117,7 +117,7 @@ int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_model
     c.settings.time = time;
     c.settings.time_count = scene->times.row_count;
     c.size = imk_drift_runs_workspace_size(c.one->model, &c.settings);
-    imk_campaign campaign = {.version = IMK_VERSION,
+    imk_campaign campaign = {.version = imk_version(),
                              .parameters = parameters,
                              .seed = c.seed,
                              .run_count = o->monte_carlo.value,

@@ -35,7 +35,7 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
 
 imk_log_settings log_input_settings(const log_input *input)
 {
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.columns = input->columns;
     settings.gyro_unit = input->gyro_unit;
     settings.accel_unit = input->accel_unit;

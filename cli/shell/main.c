@@ -27,7 +27,7 @@ void command_welcome(FILE *out)
             "  imukit identify LOG.csv -o model.yaml --report report.html\n"
             "The message names the option to add if the units or the rate are not in the file.\n\n"
             "%sVerbs%s\n",
-            IMK_VERSION, bold, reset, bold, reset, bold, reset);
+            imk_version(), bold, reset, bold, reset, bold, reset);
     for (size_t i = 0; i < VERB_COUNT; i++)
         fprintf(out, "  %-10s %s\n", verbs[i]->name, verbs[i]->summary);
     fprintf(out, "\n  imukit VERB --help   examples and options of a verb\n"
@@ -60,7 +60,7 @@ static void main_manual(void)
     printf(".TH IMUKIT 1 \"\" \"imukit %s\" \"imukit\"\n.SH NAME\n"
            "imukit \\- the errors of gyros and accelerometers, from logs, in logs\n"
            ".SH SYNOPSIS\n.B imukit\n.I VERB\n[operands] [options]\n.SH VERBS\n",
-           IMK_VERSION);
+           imk_version());
     for (size_t i = 0; i < VERB_COUNT; i++)
         printf(".TP\n.BR imukit\\-%s (1)\n%s\n", verbs[i]->name, verbs[i]->summary);
     fputs(
@@ -136,7 +136,7 @@ static int obey(int argc, char **argv)
         return command_finish(EXIT_DONE);
     }
     if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
-        printf("imukit %s\n", IMK_VERSION);
+        printf("imukit %s\n", imk_version());
         return command_finish(EXIT_DONE);
     }
     if (strcmp(argv[1], "help") == 0)

@@ -131,7 +131,7 @@ void options_manual(const verb *v, FILE *out)
     fputs(".TH IMUKIT\\-", out);
     for (const char *c = v->name; *c; c++)
         fputc(toupper((unsigned char)*c), out);
-    fprintf(out, " 1 \"\" \"imukit %s\" \"imukit\"\n.SH NAME\nimukit\\-%s \\- ", IMK_VERSION,
+    fprintf(out, " 1 \"\" \"imukit %s\" \"imukit\"\n.SH NAME\nimukit\\-%s \\- ", imk_version(),
             v->name);
     troff(out, v->summary);
     fprintf(out, "\n.SH SYNOPSIS\n.B imukit %s\n.I ", v->name);

@@ -13,7 +13,7 @@ imk_result *show_begin(const char *name)
 {
     imk_result *result = imk_result_create(NULL);
     (void)command_unless_memory(result ? IMK_OK : IMK_ERROR_MEMORY);
-    imk_result_text(result, "imukit", IMK_VERSION);
+    imk_result_text(result, "imukit", imk_version());
     imk_result_text(result, "command", name);
     return result;
 }

@@ -41,7 +41,7 @@ static int open_motion(const simulate_options *o, scene *s)
     if (o->no_earth)
         return command_misused("--no-earth is of a unit at rest: a motion script says `earth: no`");
     const imk_geodetic *stated = isnan(o->latitude) ? NULL : &place;
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.reopened = true;
     imk_status status =
         imk_motion_read(o->motion, &settings, stated, o->seed.value, &s->motion, &error);

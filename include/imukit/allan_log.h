@@ -36,6 +36,7 @@ typedef struct imk_allan_log_settings {
                             within its range, with several those outside are left out */
 } imk_allan_log_settings;
 
+/** OADEV at octave averaging times, 95 % intervals, missing samples kept. */
 IMK_API imk_allan_log_settings imk_allan_log_default(void);
 
 /** What was found. */
@@ -55,6 +56,7 @@ typedef struct imk_allan_log {
 IMK_API imk_status imk_allan_log_run(const imk_record_source *source,
                                      const imk_allan_log_settings *settings, const imk_job *job,
                                      imk_allan_log **result, imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_allan_log_free(imk_allan_log *result);
 
 /** Units in which deviations are written and read: of phase per second, of TDEV times a second. */

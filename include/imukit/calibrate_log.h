@@ -34,6 +34,7 @@ typedef struct imk_calibrate_log_settings {
     bool activity;       /**< say of each sample whether it stands still */
 } imk_calibrate_log_settings;
 
+/** Everything as the procedure has it; where a number is asked for, NaN. */
 IMK_API imk_calibrate_log_settings imk_calibrate_log_default(void);
 
 /** One log. */
@@ -133,6 +134,7 @@ typedef struct imk_calibrate_plan {
 IMK_API imk_status imk_calibrate_plan_run(imk_calibration *calibration,
                                           const imk_plan_settings *settings, const imk_job *job,
                                           imk_calibrate_plan **plan, imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
 /** @} */
 

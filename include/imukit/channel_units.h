@@ -16,6 +16,7 @@ typedef enum imk_channel_kind {
     IMK_CHANNEL_KINDS
 } imk_channel_kind;
 
+/** By the column's quantity. */
 IMK_API imk_channel_kind imk_channel_kind_of(const imk_log_column *column);
 /** "gyro", "accel", "channel" */
 IMK_API const char *imk_channel_kind_name(imk_channel_kind kind);

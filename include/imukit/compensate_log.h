@@ -32,6 +32,7 @@ typedef struct imk_compensate_log_settings {
     bool flags;                     /**< a column of flags is added; false */
 } imk_compensate_log_settings;
 
+/** Whole compensation, a temperature smoothed over 30 s, units as read. */
 IMK_API imk_compensate_log_settings imk_compensate_log_default(void);
 
 /** What was met on the way; rows count from 1. */
@@ -64,6 +65,7 @@ IMK_API imk_status imk_compensate_log_run(const imk_record_source *source, const
                                           const imk_compensate_log_settings *settings,
                                           const imk_record_sink *sink, const imk_job *job,
                                           imk_compensate_log **result, imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_compensate_log_free(imk_compensate_log *result);
 
 /** The terms to be taken out of a unit: those selected, with the output stage (range, resolution,

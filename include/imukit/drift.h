@@ -187,6 +187,7 @@ typedef enum imk_drift_validity {
     IMK_DRIFT_ROUGH, /**< tilt or heading beyond a tenth of a radian */
     IMK_DRIFT_LOST   /**< drms beyond IMK_DRIFT_DISTANCE_MAX: no position any more */
 } imk_drift_validity;
+/** By tilt, heading and drms. */
 IMK_API imk_drift_validity imk_drift_validity_of(const imk_drift_figures *figures);
 
 /** A wish: a figure at a time of the analysis. */

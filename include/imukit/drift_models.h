@@ -36,6 +36,7 @@ IMK_API imk_status imk_drift_times_choose(double duration, size_t count, const d
                                           double wanted, double rate, bool curves,
                                           const imk_allocator *allocator, imk_drift_times *times,
                                           imk_error *error);
+/** Free its arrays. */
 IMK_API void imk_drift_times_free(imk_drift_times *times);
 /** @} */
 
@@ -56,6 +57,7 @@ typedef struct imk_drift_models_settings {
     imk_drift_wanted want;
 } imk_drift_models_settings;
 
+/** As imk_drift_default(), nothing wanted. */
 IMK_API imk_drift_models_settings imk_drift_models_default(void);
 
 enum { IMK_DRIFT_MODELS_MAX = 8 };
@@ -137,6 +139,7 @@ IMK_API imk_status imk_drift_models_run(size_t count, const imk_model *const *mo
  *  @return IMK_ERROR_MEMORY */
 IMK_API imk_status imk_drift_models_take_runs(imk_drift_models *models, size_t runs,
                                               const double *errors, imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_drift_models_free(imk_drift_models *result);
 
 IMK_END_C

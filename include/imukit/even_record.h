@@ -41,6 +41,7 @@ typedef struct imk_even_record {
 IMK_API imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy gaps,
                                         const imk_job *job, imk_even_record *record,
                                         imk_findings *findings, imk_error *error);
+/** Free its columns. */
 IMK_API void imk_even_record_free(imk_even_record *record);
 
 /** Choose the channels among the columns of record->log. */
@@ -48,6 +49,7 @@ IMK_API void imk_even_record_choose(imk_even_record *record);
 /** Numbers of sensors and temperatures that are no readings become NaN. */
 IMK_API void imk_log_forget_faults(imk_log *log);
 
+/** The column that a channel is of. */
 IMK_API const imk_log_column *imk_even_record_column(const imk_even_record *record, size_t channel);
 /** The samples of a channel; NULL of a record that was never held in memory. */
 IMK_API double *imk_even_record_data(const imk_even_record *record, size_t channel);

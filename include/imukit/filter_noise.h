@@ -34,15 +34,15 @@ typedef enum imk_filter_flicker {
 } imk_filter_flicker;
 
 /** Start from imk_filter_noise_default(), then change fields. */
-typedef struct imk_filter_settings {
+typedef struct imk_filter_noise_settings {
     uint32_t cookie;
     imk_filter_flicker flicker;
     /** Averaging times over which the filter's model has to hold [s], 1e-9 … 1e9, from <= to:
      *  from the update interval of its aiding to the longest time without. */
     double from, to;
-} imk_filter_settings;
+} imk_filter_noise_settings;
 /** A random walk, matched over 1 s … 1000 s. */
-IMK_API imk_filter_settings imk_filter_noise_default(void);
+IMK_API imk_filter_noise_settings imk_filter_noise_default(void);
 
 /** What a bias state stands for. */
 typedef enum imk_filter_source {
@@ -92,8 +92,8 @@ typedef struct imk_filter_noise {
  *  @param triad  of a valid model
  *  @return IMK_ERROR_UNINITIALISED, _RANGE (error.field: the setting, or "axis") */
 IMK_API imk_status imk_filter_noise_of(const imk_triad *triad, int axis,
-                                       const imk_filter_settings *settings, imk_filter_noise *noise,
-                                       imk_error *error);
+                                       const imk_filter_noise_settings *settings,
+                                       imk_filter_noise *noise, imk_error *error);
 
 /** Allan variance of the states and the white noise at tau [s]. */
 IMK_API double imk_filter_noise_allan_variance(const imk_filter_noise *noise, double tau);

@@ -77,6 +77,7 @@ typedef struct imk_graded {
  *          with neither biases nor a position) */
 IMK_API imk_status imk_grade_run(const imk_model *model, const imk_job *job, imk_graded **result,
                                  imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_graded_free(imk_graded *result);
 
 IMK_END_C

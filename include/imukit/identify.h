@@ -116,10 +116,10 @@ IMK_API double imk_identification_allan_variance(const imk_identification *resul
 
 /** Put a channel's result into one axis of a model: its noise terms, its output filter and the
  *  evidence for them. Terms that are absent become zero there, with their bound in the evidence.
- *  @param accel  accelerometer axis; false: gyro
- *  @param axis   0 … IMK_AXES_MAX - 1 */
+ *  @param sensor  IMK_GYRO or IMK_ACCEL
+ *  @param axis    0 … IMK_AXES_MAX - 1 */
 IMK_API void imk_identification_store(const imk_identification *result, imk_model *model,
-                                      bool accel, int axis);
+                                      int sensor, int axis);
 
 IMK_END_C
 #endif

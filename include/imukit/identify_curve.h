@@ -21,6 +21,7 @@ typedef struct imk_identify_curve_settings {
     bool plain;                      /**< clusters that do not overlap; false */
 } imk_identify_curve_settings;
 
+/** 95 % intervals, terms at 1 % significance. */
 IMK_API imk_identify_curve_settings imk_identify_curve_default(void);
 
 /** Fit the curve of every channel.

@@ -30,6 +30,7 @@ typedef struct imk_identify_log_settings {
     bool summarise;       /**< keep what a joint estimate needs; false */
 } imk_identify_log_settings;
 
+/** 95 % intervals, terms at 1 % significance, missing samples kept, all faults taken out. */
 IMK_API imk_identify_log_settings imk_identify_log_default(void);
 
 /** What the figures are of. */
@@ -63,6 +64,7 @@ IMK_API imk_status imk_identify_log_run(const imk_record_source *source,
                                         const imk_identify_log_settings *settings,
                                         const imk_job *job, imk_identify_log **result,
                                         imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_identify_log_free(imk_identify_log *result);
 
 /** Noise model of what was identified: nothing but noise, output filter and evidence, rounded
@@ -89,6 +91,7 @@ typedef struct imk_term_display {
     imk_unit unit; /**< readable */
     char si[40];   /**< unit of the SI value */
 } imk_term_display;
+/** By the kind of the column. */
 IMK_API imk_term_display imk_channel_term(const imk_log_column *column, imk_noise_term term);
 
 /** Let the samples go, which are the bulk of the memory. */

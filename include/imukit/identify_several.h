@@ -79,6 +79,7 @@ IMK_API imk_status imk_identify_devices(size_t count, const imk_identify_log *co
                                         const imk_job *job, imk_identify_several **result,
                                         imk_error *error);
 
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_identify_several_free(imk_identify_several *result);
 
 IMK_END_C

@@ -48,7 +48,7 @@ typedef enum imk_level {
     IMK_LEVEL_SLOW = 1  /**< a map or envelope that leaves the fast part out */
 } imk_level;
 
-/** How to run an instrument. Start from imk_physics_settings_default(), then change fields. */
+/** How to run an instrument. Start from imk_physics_default(), then change fields. */
 typedef struct imk_physics_settings {
     uint32_t cookie;
     imk_level level;
@@ -64,7 +64,7 @@ typedef struct imk_physics_settings {
 } imk_physics_settings;
 
 /** 100 Hz, full dynamics, noise, seed 0. */
-IMK_API imk_physics_settings imk_physics_settings_default(void);
+IMK_API imk_physics_settings imk_physics_default(void);
 
 /* ---- design files ---------------------------------------------------------------------------- */
 

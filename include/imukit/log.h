@@ -42,7 +42,7 @@ IMK_API const imk_log_format *imk_log_format_begun(const char *begin, size_t siz
  *  @return text, of at most size - 1 bytes */
 IMK_API const char *imk_log_formats_text(const char *last, bool written, size_t size, char *text);
 
-/** How to read a file. Start from imk_log_settings_default(). Texts may be NULL: taken from the
+/** How to read a file. Start from imk_log_default(). Texts may be NULL: taken from the
  *  header. */
 typedef struct imk_log_settings {
     uint32_t cookie;
@@ -60,7 +60,7 @@ typedef struct imk_log_settings {
 } imk_log_settings;
 
 /** Everything from the header of the file. */
-IMK_API imk_log_settings imk_log_settings_default(void);
+IMK_API imk_log_settings imk_log_default(void);
 
 typedef struct imk_log_reader imk_log_reader;
 

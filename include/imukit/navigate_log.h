@@ -48,6 +48,7 @@ typedef struct imk_navigate_log_settings {
     bool gravity_free;       /**< the track as a record has the acceleration too; false */
 } imk_navigate_log_settings;
 
+/** Five minutes of alignment over inertial space, the height held. */
 IMK_API imk_navigate_log_settings imk_navigate_log_default(void);
 
 /** Columns of the track [SI]. */
@@ -99,6 +100,7 @@ IMK_API imk_status imk_navigate_log_run(const imk_record_source *source,
                                         const imk_navigate_log_settings *settings,
                                         const imk_job *job, imk_navigate_log **result,
                                         imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_navigate_log_free(imk_navigate_log *result);
 
 /** The track as a record, with the decimals that are worth writing. @return as the sink */

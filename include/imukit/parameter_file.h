@@ -51,7 +51,7 @@ typedef struct imk_parameter_notes {
     } note[IMK_PARAMETER_NOTES_MAX];
 } imk_parameter_notes;
 
-/** How to read or write. Start from imk_parameter_settings_default(). */
+/** How to read or write. Start from imk_parameter_default(). */
 typedef struct imk_parameter_settings {
     uint32_t cookie;
     imk_parameter_format format; /**< UNKNOWN: detect (reading); needed for writing */
@@ -63,11 +63,11 @@ typedef struct imk_parameter_settings {
      *  (instead of what imuSensor makes of them). UNSTATED: as the format's program takes it; where
      *  that is not settled, refuse, naming the options. */
     imk_density density;
-    const char *sensor;         /**< which of several sensors in the file; NULL: the only one */
-    imk_filter_settings filter; /**< writing FILTER: how bias instability is approximated */
+    const char *sensor; /**< which of several sensors in the file; NULL: the only one */
+    imk_filter_noise_settings filter; /**< writing FILTER: how bias instability is approximated */
 } imk_parameter_settings;
 /** Detect the format; no rate, density not stated; imk_filter_noise_default(). */
-IMK_API imk_parameter_settings imk_parameter_settings_default(void);
+IMK_API imk_parameter_settings imk_parameter_default(void);
 
 /** Read. @return IMK_ERROR_FORMAT (none of the formats), _KEY_MISSING (error.expected: the option
  *  to add), _KEY_UNKNOWN, _SYNTAX, _RANGE (a value that cannot be in the unit of the format: the

@@ -72,6 +72,7 @@ IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                        const imk_record_sink *outputs,
                                        const imk_record_sink *signals, const imk_job *job,
                                        imk_physics_log **result, imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_physics_log_free(imk_physics_log *result);
 
 /** Unit to show an output in: of the measured input, by its size. */
@@ -97,6 +98,7 @@ typedef struct imk_physics_view {
 IMK_API imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t index,
                                         const imk_job *job, imk_physics_view *view,
                                         imk_error *error);
+/** Free its data. */
 IMK_API void imk_physics_view_free(imk_physics_view *view);
 /** The view of this number from 1, or whose title begins so; -1: none. */
 IMK_API int imk_physics_view_find(const imk_instrument *instrument, const char *text);
@@ -117,6 +119,7 @@ typedef struct imk_physics_sweep {
 IMK_API imk_status imk_physics_sweep_run(const imk_physics_log_settings *settings,
                                          const imk_job *job, imk_physics_sweep **sweep,
                                          imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_physics_sweep_free(imk_physics_sweep *sweep);
 /** Figure `index`: "agrees", "close", "differs", "not measured". A figure agrees when the
  * difference is within four 1-sigma values, and is close within the tenth of it that the closed

@@ -30,11 +30,13 @@ typedef struct imk_record_plan_settings {
     bool curve;          /**< also IMK_PLAN_CURVE records from a minute to a week; false */
 } imk_record_plan_settings;
 
+/** Terms at 1 % significance; the rate must be set. */
 IMK_API imk_record_plan_settings imk_record_plan_default(void);
 
 /** A parameter of the gyros or of the accelerometers. */
 typedef struct imk_plan_parameter {
-    bool accel, time; /**< time: the correlation time of a Gauss-Markov term */
+    int sensor;       /**< IMK_GYRO or IMK_ACCEL */
+    bool time;        /**< the correlation time of a Gauss-Markov term */
     int term;         /**< imk_noise_term; IMK_NOISE_TERMS + i: Gauss-Markov term i */
     char key[48];     /**< as in the model file */
     imk_unit unit;    /**< readable */

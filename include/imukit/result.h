@@ -33,7 +33,9 @@ IMK_API void imk_result_free(imk_result *result);
  *  Members of the object that was begun last, elements of the array (then `key` is NULL). The root
  *  is an object. Keys are kept, not copied: texts that outlive the result.
  *  @{ */
+/** Begin an object. */
 IMK_API void imk_result_object(imk_result *result, const char *key);
+/** Begin an array. */
 IMK_API void imk_result_array(imk_result *result, const char *key);
 /** End the object or array that was begun last. */
 IMK_API void imk_result_end(imk_result *result);
@@ -42,10 +44,13 @@ IMK_API const char *imk_result_key(imk_result *result, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /** null when it is not finite. */
 IMK_API void imk_result_number(imk_result *result, const char *key, double value);
+/** A whole number. */
 IMK_API void imk_result_count(imk_result *result, const char *key, long long value);
 /** What is no UTF-8 becomes U+FFFD; NULL is null. */
 IMK_API void imk_result_text(imk_result *result, const char *key, const char *text);
+/** true or false. */
 IMK_API void imk_result_flag(imk_result *result, const char *key, bool value);
+/** null. */
 IMK_API void imk_result_null(imk_result *result, const char *key);
 /** {"value": …, "unit": …} */
 IMK_API void imk_result_quantity(imk_result *result, const char *key, double value,
@@ -65,6 +70,7 @@ typedef enum imk_audience {
     IMK_FOR_BOTH = 3,
     IMK_FOR_PLOT = 4 /**< a figure that stands nowhere: what a plot draws before all others */
 } imk_audience;
+/** Until it is called again. */
 IMK_API void imk_result_for(imk_result *result, imk_audience audience);
 
 /** @name Display
@@ -90,6 +96,7 @@ IMK_API void imk_result_finding(imk_result *result, int level, const char *text)
 IMK_API void imk_result_code(imk_result *result, const char *text);
 /** On paper what follows begins a new sheet; nothing on the terminal. */
 IMK_API void imk_result_break(imk_result *result);
+/** A moving picture of the page; nothing on the terminal. */
 IMK_API void imk_result_animation(imk_result *result, const imk_animation *animation,
                                   const char *caption);
 
@@ -105,6 +112,7 @@ IMK_API void imk_table_row(imk_table *table, const char *format, ...)
 /** Add cells to the last row. */
 IMK_API void imk_table_add(imk_table *table, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/** Rows so far, the header among them. */
 IMK_API size_t imk_table_rows(const imk_table *table);
 /** @} */
 

@@ -71,11 +71,13 @@ typedef struct imk_verdict {
     imk_message *message; /**< NULL when memory is exhausted: there is one at least */
 } imk_verdict;
 
+/** Of one record. @param label  before each message; NULL: nothing */
 IMK_API imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
                                          imk_result *result);
 /** @param labels  of the records */
 IMK_API imk_verdict imk_several_verdict(const imk_identify_several *several,
                                         const char *const *labels, imk_result *result);
+/** Is there a warning among its messages? */
 IMK_API bool imk_verdict_warns(const imk_verdict *verdict);
 
 /** One record, or several together, and what stands beside it. */

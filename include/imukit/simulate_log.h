@@ -20,6 +20,7 @@ typedef struct imk_simulate_log_settings {
     imk_unit gyro_unit, accel_unit; /**< as the columns are called; scale 0: the usual ones */
 } imk_simulate_log_settings;
 
+/** As imk_simulation_default(), rates in the usual units. */
 IMK_API imk_simulate_log_settings imk_simulate_log_default(void);
 
 /** The number in the name of the column for each sensor of a triad: up to three along body axes are

@@ -30,6 +30,7 @@ typedef struct imk_spectrum_log_settings {
     bool one_sided;     /**< how densities are shown; those of the result are two-sided; false */
 } imk_spectrum_log_settings;
 
+/** 95 % intervals, lines at 0.1 % false alarm. */
 IMK_API imk_spectrum_log_settings imk_spectrum_log_default(void);
 
 /** What was found on one channel. */
@@ -62,6 +63,7 @@ IMK_API imk_status imk_spectrum_log_run(const imk_record_source *source,
                                         const imk_spectrum_log_settings *settings,
                                         const imk_job *job, imk_spectrum_log **result,
                                         imk_error *error);
+/** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_spectrum_log_free(imk_spectrum_log *result);
 
 IMK_END_C

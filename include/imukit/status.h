@@ -32,6 +32,8 @@ IMK_BEGIN_C
 #define IMK_VERSION_MINOR 1
 #define IMK_VERSION_PATCH 0
 #define IMK_VERSION "0.1.0"
+/** Of the library that is linked, where IMK_VERSION is that of the header: "0.1.0". */
+IMK_API const char *imk_version(void);
 
 /** Every status there is: name, value (fixed for ever), and what it means. */
 #define IMK_STATUS_LIST(X)                                                                         \

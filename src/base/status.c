@@ -21,6 +21,11 @@ const char *imk_status_name(imk_status status)
     return "unknown";
 }
 
+const char *imk_version(void)
+{
+    return IMK_VERSION;
+}
+
 const char *imk_status_text(imk_status status)
 {
     switch (status) {

@@ -2,6 +2,7 @@
 /* What a model means for its compensation: which quantities it needs, which outputs depend on which
  * readings, and from where on a reading or a result is to be flagged. */
 #include "imukit/compensate.h"
+#include "model/model_schema_internal.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -16,9 +16,9 @@
 static const uint32_t settings_cookie = 0x666c6e31; /* "fln1" */
 enum { POINTS = 40, PARAMETERS_MAX = 4, WORKSPACE = 1024 /* doubles; 40 x 4 residuals need 700 */ };
 
-imk_filter_settings imk_filter_noise_default(void)
+imk_filter_noise_settings imk_filter_noise_default(void)
 {
-    return (imk_filter_settings){.cookie = settings_cookie, .from = 1, .to = 1000};
+    return (imk_filter_noise_settings){.cookie = settings_cookie, .from = 1, .to = 1000};
 }
 
 /* ---- states ---------------------------------------------------------------------------------- */
@@ -96,7 +96,7 @@ static imk_status two_processes(void *context, const double *x, double *residual
 /* Starts: processes spread over the range, each with the floor's height at its own hump, which is
  * 0.617 sigma high at 1.89 T. Correlation times stay within a factor 30 of the range, where they
  * still act. The best point found will do: where white noise covers the floor, many are as good. */
-static void fit_processes(imk_filter_noise *noise, const imk_filter_settings *settings,
+static void fit_processes(imk_filter_noise *noise, const imk_filter_noise_settings *settings,
                           double instability, size_t processes)
 {
     flicker_fit fit = {.rest = noise, .instability = instability};
@@ -142,7 +142,7 @@ static void add_flicker_walk(imk_filter_noise *noise, double q)
     }
 }
 
-static void add_flicker(imk_filter_noise *noise, const imk_filter_settings *settings,
+static void add_flicker(imk_filter_noise *noise, const imk_filter_noise_settings *settings,
                         double instability)
 {
     const double tau = sqrt(settings->from * settings->to);
@@ -164,7 +164,7 @@ static void add_flicker(imk_filter_noise *noise, const imk_filter_settings *sett
 
 /* Largest relative error of the Allan deviation that the approximation of flicker makes. */
 static void judge_flicker(imk_filter_noise *noise, const imk_filter_noise *rest,
-                          const imk_filter_settings *settings, double instability)
+                          const imk_filter_noise_settings *settings, double instability)
 {
     const double range = imk_ln(settings->to / settings->from);
     for (int i = 0; i < POINTS; i++) {
@@ -181,7 +181,7 @@ static void judge_flicker(imk_filter_noise *noise, const imk_filter_noise *rest,
 
 /* ---- axis ------------------------------------------------------------------------------------ */
 
-static imk_status check(const imk_triad *triad, int axis, const imk_filter_settings *settings,
+static imk_status check(const imk_triad *triad, int axis, const imk_filter_noise_settings *settings,
                         imk_error *error)
 {
     if (!settings || settings->cookie != settings_cookie)
@@ -225,7 +225,7 @@ static void add_constant(imk_filter_noise *noise, double repeatability)
 }
 
 imk_status imk_filter_noise_of(const imk_triad *triad, int axis,
-                               const imk_filter_settings *settings, imk_filter_noise *noise,
+                               const imk_filter_noise_settings *settings, imk_filter_noise *noise,
                                imk_error *error)
 {
     const imk_status status = check(triad, axis, settings, error);

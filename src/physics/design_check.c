@@ -12,7 +12,7 @@ imk_exposure imk_exposure_default(void)
     return (imk_exposure){.temperature = 293.15};
 }
 
-imk_physics_settings imk_physics_settings_default(void)
+imk_physics_settings imk_physics_default(void)
 {
     return (imk_physics_settings){.cookie = SETTINGS_COOKIE, .rate = 100.0, .noise = true};
 }
@@ -84,7 +84,7 @@ static imk_status check_settings(const imk_physics_settings *settings, imk_error
 {
     if (settings->cookie != SETTINGS_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "settings made by imk_physics_settings_default()");
+                             "settings made by imk_physics_default()");
     if (!isfinite(settings->rate) || !isfinite(settings->step))
         return imki_refuse(error, IMK_ERROR_NOT_FINITE, isfinite(settings->rate) ? "step" : "rate",
                            settings->rate, 0.0, NULL);

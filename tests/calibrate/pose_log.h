@@ -138,7 +138,7 @@ static inline pose_log *pose_log_noise(size_t count, double gyro, double accel, 
 static inline pose_log *pose_log_read(const char *path, double rate, bool counts)
 {
     pose_log *log = calloc(1, sizeof *log);
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = rate;
     if (imk_log_load(path, &settings, NULL, &log->log, NULL) != IMK_OK) {
         free(log);

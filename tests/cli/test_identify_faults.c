@@ -32,7 +32,7 @@ static int make_log(void **state)
         return -1;
     }
     imk_log log = {0};
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 100;
     CHECK_OK(imk_log_load("sound.npy", &settings, NULL, &log, NULL));
     for (int c = 0; c <= AXES; c++)

@@ -39,7 +39,7 @@ static uint64_t run(uint64_t hash, const imk_instrument *instrument, imk_level l
                     void *state)
 {
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX] = {0}, signals[IMK_INSTRUMENT_SIGNALS_MAX] = {0};
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.seed = 3;
     settings.rate = 500.0;
     settings.level = level;

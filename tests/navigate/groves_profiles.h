@@ -110,7 +110,7 @@ static inline bool groves_load(const char *path, groves_profile *profile)
     static const char *const names[10] = {"time",      "latitude", "longitude", "height",
                                           "vel_north", "vel_east", "vel_down",  "roll",
                                           "pitch",     "yaw"};
-    const imk_log_settings settings = imk_log_settings_default();
+    const imk_log_settings settings = imk_log_default();
     imk_log log;
     *profile = (groves_profile){0};
     if (imk_log_load(path, &settings, NULL, &log, NULL) != IMK_OK)

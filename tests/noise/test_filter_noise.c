@@ -12,7 +12,7 @@ static const double LN2 = 0.6931471805599453;
 
 static imk_filter_noise filter_of(const imk_model *model, imk_filter_flicker flicker)
 {
-    imk_filter_settings settings = imk_filter_noise_default();
+    imk_filter_noise_settings settings = imk_filter_noise_default();
     imk_filter_noise noise;
     settings.flicker = flicker;
     CHECK_OK(imk_filter_noise_of(&model->gyro, 0, &settings, &noise, NULL));
@@ -196,7 +196,7 @@ static void test_rest(void **state)
     (void)state;
     imk_model model;
     imk_model_default(&model);
-    imk_filter_settings settings = imk_filter_noise_default();
+    imk_filter_noise_settings settings = imk_filter_noise_default();
     imk_filter_noise noise;
     imk_error error;
     model.gyro.bias.repeatability.value[0] = 1e-3;

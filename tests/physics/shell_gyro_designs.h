@@ -64,7 +64,7 @@ static inline imk_shell_gyro hemispherical(void)
 
 static inline imk_physics_settings quiet(imk_level level, double rate)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.level = level;
     settings.rate = rate;
     settings.noise = false;

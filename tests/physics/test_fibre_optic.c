@@ -45,7 +45,7 @@ static imk_fibre_optic ideal_open(void)
 
 static imk_physics_settings quiet(double rate)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.noise = false;
     settings.rate = rate;
     return settings;
@@ -344,7 +344,7 @@ static void test_sample_ends(void **state)
 static void check_noise(const imk_fibre_optic *design, imk_level level, double rate)
 {
     enum { COUNT = 20000 };
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = rate;
     settings.level = level;
     settings.seed = 7;
@@ -401,7 +401,7 @@ static void test_repeatability(void **state)
     imk_fibre_optic design = imk_fibre_optic_default();
     design.phase_instability = 0.0;
     design.output_bits = 0;
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 1e-3;
     settings.level = IMK_LEVEL_SLOW;
     imk_model *model = malloc(sizeof *model);
@@ -453,7 +453,7 @@ static void test_chain(void **state)
 {
     (void)state;
     imk_fibre_optic design = imk_fibre_optic_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     const imk_exposure exposure = turning(0.1);
     settings.rate = 200.0;
     settings.seed = 3;
@@ -468,7 +468,7 @@ static void test_same_bits(void **state)
     (void)state;
     enum { COUNT = 400 };
     const imk_fibre_optic design = imk_fibre_optic_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 3333.0;
     const imk_exposure exposure = turning(0.3);
     double first[COUNT], second[COUNT];
@@ -538,7 +538,7 @@ static void test_refusals(void **state)
     check_refused(&design, IMK_ERROR_CONFLICT, "source.linewidth");
 
     design = ideal();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     imk_error error;
     void *gyro = started(fog, &design, &settings);
     settings.step = 5e-6; /* the transit takes 4.84 us */

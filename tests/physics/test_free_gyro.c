@@ -49,7 +49,7 @@ static imk_free_gyro checked(void)
 
 static imk_physics_settings settings_of(imk_level level, double rate, bool noise)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.level = level;
     settings.rate = rate;
     settings.noise = noise;
@@ -701,7 +701,7 @@ static void endless_rates(void **state)
 {
     (void)state;
     const imk_free_gyro design = imk_free_gyro_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 10000.0;
     const double rates[] = {1e6, 1e14, 1e300, (double)INFINITY};
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {

@@ -153,20 +153,20 @@ static void settings_are_checked(void **state)
         void *design = design_of(k);
         void *memory = aligned_alloc(64, (k->state_size + 63) / 64 * 64);
         imk_error error = {0};
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         settings.rate = 0.0;
         CHECK_STATUS(imk_instrument_init(k, design, &settings, memory, &error), IMK_ERROR_RANGE);
         assert_string_equal(error.field, "rate");
-        settings = imk_physics_settings_default();
+        settings = imk_physics_default();
         settings.step = (double)NAN;
         CHECK_STATUS(imk_instrument_init(k, design, &settings, memory, &error),
                      IMK_ERROR_NOT_FINITE);
-        settings = imk_physics_settings_default();
+        settings = imk_physics_default();
         settings.cookie = 0;
         CHECK_STATUS(imk_instrument_init(k, design, &settings, memory, &error),
                      IMK_ERROR_UNINITIALISED);
         memset(design, 0, k->design_size);
-        settings = imk_physics_settings_default();
+        settings = imk_physics_default();
         CHECK_STATUS(imk_instrument_init(k, design, &settings, memory, &error),
                      IMK_ERROR_UNINITIALISED);
         free(memory);
@@ -183,7 +183,7 @@ static void steps_that_would_lie_are_refused(void **state)
         void *design = design_of(k);
         void *memory = aligned_alloc(64, (k->state_size + 63) / 64 * 64);
         imk_error error = {0};
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         settings.rate = 0.5;
         settings.step = 1.0;
         const imk_status status = imk_instrument_init(k, design, &settings, memory, &error);
@@ -210,7 +210,7 @@ static void runs_repeat(void **state)
         imk_exposure exposure = imk_exposure_default();
         exposure.angular_rate[0] = 0.02;
         exposure.specific_force[0] = 1.0;
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         settings.rate = 20.0;
         void *one = started(k, design, &settings);
         run(k, one, &exposure, COUNT, 0, first);

@@ -66,7 +66,7 @@ static void brownian_noise_is_as_the_formula(void **state)
     static double samples[COUNT];
     const imk_mems_accelerometer d = bare_mass();
     imk_model *model = malloc(sizeof *model);
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     const imk_exposure rest = imk_exposure_default();
     imk_arma sequence;
     settings.rate = 500.0;
@@ -107,7 +107,7 @@ static void equipartition(void **state)
     d.restitution = 1.0;
     d.squeeze_film = true;
     d.quality = 0.6;
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 2.0 * d.frequency;
     settings.step = 1.0 / (30.0 * d.frequency);
     void *run_state = started(INSTRUMENT, &d, &settings);
@@ -163,7 +163,7 @@ static double mean_energy(const imk_mems_accelerometer *d, void *run_state, int 
  * takes. */
 static double numerical_loss(imk_mems_accelerometer d, double part, int cycles)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.noise = false;
     settings.rate = 1.9318 * d.frequency;
     imk_exposure push = imk_exposure_default();
@@ -204,7 +204,7 @@ static void splitting_is_of_second_order(void **state)
     d.quality = 30.0;
     d.voltage = 0.5 * imk_mems_accelerometer_pull_in(&d);
     d.squeeze_film = true;
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.noise = false;
     settings.rate = 1000.0;
     imk_exposure push = imk_exposure_default();
@@ -230,7 +230,7 @@ static void splitting_is_of_second_order(void **state)
 /* Ramp the voltage from 0.9 of pull-in by 2 % per second; where is the mass at a voltage? */
 static double position_at(imk_mems_accelerometer d, double pull_in, double part)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.noise = false;
     d.voltage = 0.97 * pull_in;
     d.voltage_rate = 0.5 * pull_in;
@@ -352,7 +352,7 @@ static void steps_that_would_be_wrong_are_refused(void **state)
     (void)state;
     const imk_mems_accelerometer open = imk_mems_accelerometer_default();
     const imk_mems_accelerometer bits = imk_mems_accelerometer_sigma_delta();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.step = 1.0 / (15.0 * open.frequency);
     refuse_settings(&open, &settings, "step");
     settings.step = 0.0;

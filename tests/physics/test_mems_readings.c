@@ -22,7 +22,7 @@ static imk_model *reduced(const imk_mems_accelerometer *d)
 
 static imk_physics_settings quiet(imk_level level)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.noise = false;
     settings.level = level;
     return settings;
@@ -320,7 +320,7 @@ static void noise_breaks_the_limit_cycle(void **state)
     const imk_mems_quantizer theory = imk_mems_accelerometer_quantizer(&d);
     imk_model *model = reduced(&d);
     CHECK_CLOSE(model->accel.dead_band.value[0], 0.0, 0.0);
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = d.clock;
     d.bias_repeatability = d.bias_instability = d.gain_repeatability = 0.0;
     imk_exposure exposure = imk_exposure_default();
@@ -353,7 +353,7 @@ static void integral_term_removes_the_dead_zone(void **state)
         CHECK_CLOSE(reading(&d, IMK_LEVEL_FULL, a * GRAVITY, 293.15), a * GRAVITY, 5e-3);
     d.output_bandwidth = 0.0;
     imk_model *model = reduced(&d);
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 1000.0;
     enum { COUNT = 10000 };
     static double samples[COUNT];
@@ -378,7 +378,7 @@ static void identified_noise_is_as_reduced(void **state)
 {
     (void)state;
     const imk_exposure rest = imk_exposure_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     imk_mems_accelerometer d = imk_mems_accelerometer_default();
     /* at 100 Hz a filter of 200 Hz is neither seen nor negligible; nor is flicker in a minute */
     d.output_bandwidth = d.bias_instability = 0.0;
@@ -423,7 +423,7 @@ static void bits_are_reproduced(void **state)
     if (getenv("IMUKIT_ISA"))
         strncpy(before, getenv("IMUKIT_ISA"), sizeof before - 1);
     for (int i = 0; i < 6; i++) {
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         settings.level = (imk_level)(i / 3);
         imk_mems_accelerometer d = designs[i % 3];
         d.squeeze_film = true;

@@ -31,7 +31,7 @@ static imk_pendulous_servo checked(void)
 
 static imk_physics_settings quiet(double rate)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = rate;
     settings.noise = false;
     return settings;
@@ -252,7 +252,7 @@ static void a_long_record_identifies_as_reduced(void **state)
 {
     (void)state;
     imk_pendulous_servo d = imk_pendulous_servo_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     imk_exposure exposure = imk_exposure_default();
     settings.rate = 50.0;
     settings.seed = 11;
@@ -276,7 +276,7 @@ static void noise_is_its_formula(void **state)
     for (int level = 0; level < 2; level++) {
         enum { COUNT = 4000 };
         static double samples[COUNT];
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         imk_exposure exposure = imk_exposure_default();
         double sum = 0.0;
         settings.rate = 50.0;
@@ -324,7 +324,7 @@ static void impossible_designs_are_refused(void **state)
     imk_error error;
     imk_pendulous_servo d = imk_pendulous_servo_default();
     void *memory = aligned_alloc(64, (servo->state_size + 63) / 64 * 64);
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     CHECK_OK(imk_pendulous_servo_validate(&d, &error));
     d.inertia = -1e-7;
     CHECK_STATUS(imk_pendulous_servo_validate(&d, &error), IMK_ERROR_RANGE);
@@ -357,7 +357,7 @@ static void states_are_plain_data(void **state)
 {
     (void)state;
     const imk_pendulous_servo d = imk_pendulous_servo_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     imk_exposure exposure = imk_exposure_default();
     double a[64], b[64];
     void *one = started(servo, &d, &settings), *two = started(servo, &d, &settings);

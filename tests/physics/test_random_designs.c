@@ -92,7 +92,7 @@ static bool runs(const imk_instrument *instrument, const void *design, void *sta
     static const double rates[] = {1.0, 100.0, 1e4, 1e6, 3.7}, turns[] = {0.0, 1.0, 174.5},
                         forces[] = {0.0, 9.8, 9806.65};
     double outputs[IMK_INSTRUMENT_OUTPUTS_MAX], signals[IMK_INSTRUMENT_SIGNALS_MAX];
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.level = uniform() < 0.4 ? IMK_LEVEL_SLOW : IMK_LEVEL_FULL;
     settings.noise = uniform() < 0.7;
     settings.rate = rates[(int)(5.0 * uniform())];

@@ -10,7 +10,7 @@ static const double pi = 3.14159265358979324, deg_per_hour = 3.14159265358979324
 
 static imk_physics_settings quiet(double rate, imk_level level)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = rate;
     settings.level = level;
     settings.noise = false;
@@ -129,7 +129,7 @@ static void test_equipartition(void **state)
     (void)state;
     imk_rate_gyro d = imk_rate_gyro_default();
     d.torque = (imk_error_torque){0};
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 80.0;
     settings.step = 1.0 / 320.0;
     const imk_exposure exposure = imk_exposure_default();
@@ -297,7 +297,7 @@ static void test_chain(void **state)
     (void)state;
     imk_rate_gyro d = imk_rate_gyro_default();
     d.torque.instability /= 8.0; /* so that 5 Hz still show the white noise */
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 5.0;
     settings.step = 1.0 / 320.0;
     settings.seed = 6;
@@ -312,7 +312,7 @@ static void test_copies_and_grade(void **state)
     (void)state;
     imk_rate_gyro d = imk_rate_gyro_default();
     d.pickoff_resolution = 1e-6;
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     const imk_exposure e = turning(0.1, 0.2, 0.3);
     void *a = started(gyro, &d, &settings), *b = started(gyro, &d, &settings);
     double x[50], y[50];

@@ -11,7 +11,7 @@ typedef imk_rate_integrating_gyro design_of;
 
 static imk_physics_settings quiet(double rate, imk_level level)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = rate;
     settings.level = level;
     settings.noise = false;
@@ -252,7 +252,7 @@ static void test_chain_analog(void **state)
     design_of d = imk_rate_integrating_gyro_default();
     d.pickoff_noise = 0.0;
     d.torque.instability = 3e-10;
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 2.0;
     settings.step = 0.01;
     settings.seed = 3;
@@ -271,7 +271,7 @@ static void test_chain_pulses(void **state)
     d.torque.instability = 0.0;
     const double pulse = imk_rate_integrating_gyro_pulse(&d);
     d.torque.noise = 0.5 * pulse * sqrt(40.0) * d.momentum; /* half a pulse a sample */
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 40.0;
     settings.seed = 4;
     const imk_exposure exposure = turning(0.0123, 0, 0);
@@ -288,7 +288,7 @@ static void test_copies_and_grade(void **state)
     imk_error error;
     for (int kind = IMK_REBALANCE_OPEN; kind <= IMK_REBALANCE_BINARY; kind++) {
         d.rebalance = (imk_rebalance)kind;
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         const imk_exposure e = turning(1e-3, 0.2, 0.3);
         void *a = started(gyro, &d, &settings), *b = started(gyro, &d, &settings);
         double x[50], y[50];

@@ -128,7 +128,7 @@ static void check_variant(const variant *v)
     imk_distortion distortion;
     CHECK_OK(imk_distortion_start(&distortion, model, NULL, IMK_KERNEL_SCALAR, &error));
     for (int level = 0; level < (v->full_only ? 1 : 2); level++) {
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         settings.noise = false;
         settings.rate = v->rate;
         settings.level = (imk_level)level;

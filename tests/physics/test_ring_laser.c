@@ -44,7 +44,7 @@ static imk_ring_laser undithered(void)
 
 static imk_physics_settings settings_of(imk_level level, bool noise)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.level = level;
     settings.noise = noise;
     settings.seed = 1;
@@ -795,7 +795,7 @@ static void endless_rates(void **state)
     const imk_ring_laser design = imk_ring_laser_default();
     const double most = 1e6 / imk_ring_laser_count_angle(&design) / 100.0; /* in 10 ms */
     for (int level = 0; level < 2; level++) {
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         settings.level = (imk_level)level;
         void *gyro = started(&imk_ring_laser_instrument, &design, &settings);
         imk_exposure exposure = imk_exposure_default();

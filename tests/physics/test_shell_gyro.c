@@ -320,7 +320,7 @@ static void test_same_bits(void **unused)
     (void)unused;
     const imk_shell_gyro designs[2] = {imk_shell_gyro_default(), hemispherical()};
     for (int i = 0; i < 4; i++) {
-        imk_physics_settings settings = imk_physics_settings_default();
+        imk_physics_settings settings = imk_physics_default();
         settings.level = (imk_level)(i % 2);
         const imk_exposure exposure = turning(0.1);
         double samples[3][40];
@@ -449,7 +449,7 @@ static void test_refused_settings(void **unused)
 {
     (void)unused;
     imk_shell_gyro design = imk_shell_gyro_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     /* 14 kHz at 16 steps a cycle */
     CHECK_BELOW(shell->step_length(&design, &settings), 1.0 / (16.0 * 14000.0));
     settings.step = 1.0 / (15.0 * 14000.0);

@@ -83,7 +83,7 @@ static void test_angle_random_walk(void **unused)
 static void test_chain(void **unused)
 {
     (void)unused;
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     const imk_exposure exposure = imk_exposure_default();
     imk_shell_gyro design = light(IMK_SHELL_REBALANCE);
     settings.rate = 1.0;

@@ -35,7 +35,7 @@ static imk_suspended_rotor perfect(void)
 
 static imk_physics_settings settings_of(imk_level level, double rate, bool noise)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.level = level;
     settings.rate = rate;
     settings.noise = noise;

@@ -10,7 +10,7 @@ static const double pi = 3.14159265358979324;
 
 static imk_physics_settings quiet(double rate, imk_level level)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = rate;
     settings.level = level;
     settings.noise = false;
@@ -370,7 +370,7 @@ static void test_chain(void **state)
     (void)state;
     imk_tuned_gyro d = imk_tuned_gyro_default();
     d.pickoff_noise = 0.0;
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = 2.0;
     settings.seed = 2;
     const imk_exposure exposure = imk_exposure_default();
@@ -381,7 +381,7 @@ static void test_copies_and_grade(void **state)
 {
     (void)state;
     const imk_tuned_gyro d = imk_tuned_gyro_default();
-    const imk_physics_settings settings = imk_physics_settings_default();
+    const imk_physics_settings settings = imk_physics_default();
     const imk_exposure e = turning(0.1, 0.2, 0.3);
     void *a = started(gyro, &d, &settings), *b = started(gyro, &d, &settings);
     double x[50], y[50];

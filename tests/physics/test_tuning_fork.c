@@ -48,7 +48,7 @@ static imk_tuning_fork slower(void)
 
 static imk_physics_settings settings_of(double rate, imk_level level, bool noise)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = rate;
     settings.level = level;
     settings.noise = noise;
@@ -669,7 +669,7 @@ static void test_refused_steps(void **unused)
 {
     (void)unused;
     const imk_tuning_fork design = imk_tuning_fork_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     imk_error error = {0};
     void *state = aligned_alloc(64, (gyro->state_size + 63) / 64 * 64);
     assert_non_null(state);

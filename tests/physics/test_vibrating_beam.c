@@ -19,7 +19,7 @@ static imk_vibrating_beam plain(void)
 
 static imk_physics_settings quiet(double rate)
 {
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     settings.rate = rate;
     settings.noise = false;
     return settings;
@@ -273,7 +273,7 @@ static void noise_is_its_formula(void **state)
     d.amplitude = 1e-8;
     for (int arrangement = 0; arrangement < 2; arrangement++)
         for (int level = 0; level < 2; level++) {
-            imk_physics_settings settings = imk_physics_settings_default();
+            imk_physics_settings settings = imk_physics_default();
             const imk_exposure exposure = force_of(0.0);
             double sum = 0.0, mean = 0.0;
             settings.rate = 400.0;
@@ -297,7 +297,7 @@ static void records_identify_as_reduced(void **state)
 {
     (void)state;
     imk_vibrating_beam d = imk_vibrating_beam_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     const imk_exposure exposure = force_of(0.3);
     settings.rate = 100.0;
     settings.seed = 5;
@@ -315,7 +315,7 @@ static void impossible_designs_are_refused(void **state)
     (void)state;
     imk_error error;
     imk_vibrating_beam d = imk_vibrating_beam_default();
-    imk_physics_settings settings = imk_physics_settings_default();
+    imk_physics_settings settings = imk_physics_default();
     void *memory = aligned_alloc(64, (beam->state_size + 63) / 64 * 64);
     d.quality = 0.4;
     CHECK_STATUS(imk_vibrating_beam_validate(&d, &error), IMK_ERROR_RANGE);

@@ -9,7 +9,8 @@
 
 #include <math.h>
 
-enum { COOKIE = 0x1A6A95, SCRATCH = 8192 };
+enum { COOKIE = 0x1A6A95, SCRATCH = 8192, BATCH = 512 };
+_Static_assert(BATCH * sizeof(imki_gap_estimate) <= SCRATCH * sizeof(double), "in the scratch");
 
 imk_allan_gaps_settings imk_allan_gaps_default(void)
 {
@@ -18,7 +19,8 @@ imk_allan_gaps_settings imk_allan_gaps_default(void)
 
 size_t imk_allan_gaps_workspace_size(size_t n)
 {
-    return 64 + (n + 1 + SCRATCH) * sizeof(double) + (n + 1) * sizeof(uint32_t) + n;
+    return IMKI_ALIGNMENT_SLACK + (n + 1 + SCRATCH) * sizeof(double) + (n + 1) * sizeof(uint32_t) +
+           n;
 }
 
 /* The record less its mean, in place of its samples; the sums carry their rounding error along, so
@@ -82,13 +84,13 @@ typedef struct gap_work {
     const imki_gap_record *record;
     bool robust;
     const size_t *factors;
-    imk_allan_gap_point *points;
+    imki_gap_estimate *estimates;
 } gap_work;
 
 static void gap_item(void *context, size_t item)
 {
     const gap_work *w = context;
-    imki_gap_point(w->record, w->robust, w->factors[item], &w->points[item]);
+    w->estimates[item] = imki_gap_estimate_at(w->record, w->robust, w->factors[item]);
 }
 
 /* Without a missing sample: the ordinary deviations, to the last bit, a batch at a time. The last
@@ -98,16 +100,16 @@ static imk_status complete_record(const imk_allan_gaps_settings *settings, size_
                                   const size_t *factors, imk_allan_gap_point *points,
                                   const imk_executor *executor)
 {
-    enum { BATCH = 63 };
-    imk_allan_point point[BATCH + 1];
-    size_t factor[BATCH + 1], told = 0;
+    enum { TOGETHER = 63 };
+    imk_allan_point point[TOGETHER + 1];
+    size_t factor[TOGETHER + 1], told = 0;
     imk_allan_settings ordinary = imk_allan_default();
     ordinary.confidence = settings->confidence;
     imk_allan_sums(n, rate, sums, executor);
     for (size_t i = 0, size; i < factor_count; i += size) {
         const size_t lead = told > 0;
         factor[0] = told;
-        for (size = 0; size < BATCH && i + size < factor_count; size++) {
+        for (size = 0; size < TOGETHER && i + size < factor_count; size++) {
             factor[lead + size] = factors[i + size];
             told = factors[i + size] <= n / 30 ? factors[i + size] : told;
         }
@@ -122,38 +124,39 @@ static imk_status complete_record(const imk_allan_gaps_settings *settings, size_
     return IMK_OK;
 }
 
-/* Variances and their subtractions become deviations with intervals. Where the noise type could not
- * be told it is that of the factor before. */
-static void finish(const imk_allan_gaps_settings *settings, size_t n, size_t count,
-                   imk_allan_gap_point *points)
+/* An estimate becomes a deviation with its interval. `type` is that of the factor before, which
+ * stays where it could not be told. */
+static imk_allan_gap_point finish(const imk_allan_gaps_settings *settings, size_t n,
+                                  const imki_gap_estimate *e, imk_power_law *type)
 {
-    imk_power_law type = IMK_WHITE_PHASE;
-    for (size_t i = 0; i < count; i++) {
-        imk_allan_gap_point *p = &points[i];
-        imk_allan_point *q = &p->point;
-        const double variance = q->deviation, share = fabs(q->edf);
-        /* Noise gets no bluer than white again with time, but by chance where clusters are few. */
-        const imk_power_law bluest = type > IMK_WHITE_RATE ? type : IMK_WHITE_RATE;
-        if (q->edf > 0)
-            type = q->type < bluest ? q->type : bluest;
-        q->type = type;
-        if (q->count == 0) {
-            q->deviation = q->lower = q->upper = q->edf = (double)NAN;
-            continue;
-        }
-        q->edf = share * imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, type, n, q->m);
-        q->edf = 2 / (2 / fmax(q->edf, 1) + q->lower * q->lower / (variance * variance));
-        const double error = variance * sqrt(2 / q->edf), rest = variance - p->correction;
-        p->resolved = p->correction == 0 || rest >= error / 2;
-        q->deviation = sqrt(p->resolved ? rest : error / 2);
-        imk_allan_interval(1, q->edf, settings->confidence, &q->lower, &q->upper);
-        const double low = q->lower * q->lower * variance - p->correction;
-        const double high = q->upper * q->upper * variance - p->correction;
-        q->lower = p->resolved && low > 0 ? sqrt(low) : 0;
-        q->upper = high > q->deviation * q->deviation ? sqrt(high) : q->deviation;
-        const double kept = q->deviation * q->deviation / variance;
-        q->edf = p->resolved ? q->edf * kept * kept : 1;
+    /* Noise gets no bluer than white again with time, but by chance where clusters are few. */
+    const imk_power_law bluest = *type > IMK_WHITE_RATE ? *type : IMK_WHITE_RATE;
+    if (e->told && e->share > 0)
+        *type = e->type < bluest ? e->type : bluest;
+    imk_allan_gap_point p = {.point = {.m = e->m, .count = e->count, .type = *type},
+                             .used = e->used,
+                             .fullness = e->fullness,
+                             .correction = e->correction};
+    imk_allan_point *q = &p.point;
+    if (e->count == 0) {
+        q->deviation = q->lower = q->upper = q->edf = (double)NAN;
+        return p;
     }
+    const double of_all = e->share * imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, *type, n, e->m);
+    const double doubt = e->correction_error * e->correction_error / (e->variance * e->variance);
+    const double edf = 2 / (2 / fmax(of_all, 1) + doubt);
+    const double error = e->variance * sqrt(2 / edf), rest = e->variance - e->correction;
+    double lower, upper;
+    p.resolved = e->correction == 0 || rest >= error / 2;
+    q->deviation = sqrt(p.resolved ? rest : error / 2);
+    imk_allan_interval(1, edf, settings->confidence, &lower, &upper);
+    const double low = lower * lower * e->variance - e->correction;
+    const double high = upper * upper * e->variance - e->correction;
+    q->lower = p.resolved && low > 0 ? sqrt(low) : 0;
+    q->upper = high > q->deviation * q->deviation ? sqrt(high) : q->deviation;
+    const double kept = q->deviation * q->deviation / e->variance;
+    q->edf = p.resolved ? edf * kept * kept : 1;
+    return p;
 }
 
 /* Samples far from the level around them count as missing. */
@@ -200,11 +203,17 @@ imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t
     take_holes(&record);
     if (record.long_holes)
         imki_gap_take_lags(&record);
-    gap_work work = {&record, settings->robust, factors, points};
-    imk_execute(executor, factor_count, gap_item, &work);
-    for (size_t i = 0; i < factor_count; i++)
-        if (points[i].point.count > 0 && !(points[i].point.deviation < HUGE_VAL))
-            return IMK_ERROR_NOT_FINITE;
-    finish(settings, n, factor_count, points);
+    imki_gap_estimate *estimates = (void *)scratch;
+    imk_power_law type = IMK_WHITE_PHASE;
+    for (size_t first = 0; first < factor_count; first += BATCH) {
+        const size_t count = factor_count - first < BATCH ? factor_count - first : BATCH;
+        gap_work work = {&record, settings->robust, factors + first, estimates};
+        imk_execute(executor, count, gap_item, &work);
+        for (size_t i = 0; i < count; i++) {
+            if (estimates[i].count > 0 && !(estimates[i].variance < HUGE_VAL))
+                return IMK_ERROR_NOT_FINITE;
+            points[first + i] = finish(settings, n, &estimates[i], &type);
+        }
+    }
     return IMK_OK;
 }

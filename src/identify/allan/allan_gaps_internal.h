@@ -20,11 +20,18 @@ typedef struct imki_gap_record {
     size_t pairs[IMKI_GAP_LAGS];     /* how many were averaged */
 } imki_gap_record;
 
-/* One averaging factor. Of the point: `deviation` becomes the variance before `correction` is
- * subtracted, `edf` its degrees of freedom as a share of those of a complete record, negative where
- * the noise type could not be told, and `lower` the standard error of `correction`. */
-void imki_gap_point(const imki_gap_record *record, bool robust, size_t m,
-                    imk_allan_gap_point *result);
+/* One averaging factor, before the correction is subtracted. */
+typedef struct imki_gap_estimate {
+    size_t m, count;
+    double variance;
+    double correction, correction_error; /* for what is missing, and its standard error */
+    double share;                        /* of the degrees of freedom of a complete record */
+    bool told;                           /* the noise type could be */
+    imk_power_law type;
+    double used, fullness; /* as of imk_allan_gap_point */
+} imki_gap_estimate;
+
+imki_gap_estimate imki_gap_estimate_at(const imki_gap_record *record, bool robust, size_t m);
 
 /* Noise type by the lag-1 autocorrelation of the means of clusters that hold `least` samples, where
  * they are neighbours; false with fewer than 30. */

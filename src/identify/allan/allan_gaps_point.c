@@ -193,31 +193,31 @@ static pair_sums choose_pairs(pair_walk *w)
     return sum;
 }
 
-void imki_gap_point(const imki_gap_record *record, bool robust, size_t m,
-                    imk_allan_gap_point *result)
+imki_gap_estimate imki_gap_estimate_at(const imki_gap_record *record, bool robust, size_t m)
 {
     /* Half as full as the record is on average, at least. */
     const double share = (double)record->present / (double)record->n;
     const double least = ceil(0.5 * share * (double)m);
     pair_walk walk = {.r = record, .m = m, .least = least > 1 ? (size_t)least : 1}, *w = &walk;
     const pair_sums sum = choose_pairs(w);
-    *result = (imk_allan_gap_point){.point = {.m = m, .count = sum.count, .edf = -1}};
+    imki_gap_estimate e = {.m = m, .count = sum.count};
     if (sum.count == 0)
-        return;
+        return e;
     const double mean_weight = sum.weights / (double)sum.count;
     const double mean_term = robust ? bounded_mean(w, &sum) : sum.terms / (double)sum.count;
-    result->point.deviation = mean_term / mean_weight / 2;
-    result->used = (double)sum.count / (double)(record->n - 2 * m + 1);
-    result->fullness = sum.fullness / (2 * (double)m * (double)sum.count);
+    e.variance = mean_term / mean_weight / 2;
+    e.used = (double)sum.count / (double)(record->n - 2 * m + 1);
+    e.fullness = sum.fullness / (2 * (double)m * (double)sum.count);
     if (mean_weight < 1 - 1e-12) {
         const double inside = inside_variance(w);
         const double simple = inside / (double)m * (1 / mean_weight - 1);
         double error = 0;
         const double factor =
             w->limit > 1 ? imki_gap_hole_factor(record, m, w->least, inside, &error) : 1;
-        result->correction = simple * factor;
-        result->point.lower = simple * error;
+        e.correction = simple * factor;
+        e.correction_error = simple * error;
     }
-    const double told = imki_gap_noise_type(record, m, w->least, &result->point.type) ? 1 : -1;
-    result->point.edf = told * share_of_edf(w) * (robust ? 0.96 : 1);
+    e.told = imki_gap_noise_type(record, m, w->least, &e.type);
+    e.share = share_of_edf(w) * (robust ? 0.96 : 1);
+    return e;
 }

@@ -35,11 +35,11 @@ static void store(const imk_estimate *estimate, imk_axes *axes, imk_evidence *ev
     }
 }
 
-void imk_identification_store(const imk_identification *result, imk_model *model, bool accel,
+void imk_identification_store(const imk_identification *result, imk_model *model, int sensor,
                               int axis)
 {
-    imk_triad *triad = accel ? &model->accel : &model->gyro;
-    imk_evidence *evidence = accel ? &model->accel_evidence : &model->gyro_evidence;
+    imk_triad *triad = imk_model_triad_to_set(model, sensor);
+    imk_evidence *evidence = sensor == IMK_GYRO ? &model->gyro_evidence : &model->accel_evidence;
     imk_noise *noise = &triad->noise;
     imk_axes *axes[IMK_NOISE_TERMS] = {&noise->quantization, &noise->white,
                                        &noise->bias_instability, &noise->random_walk, &noise->ramp};
@@ -50,7 +50,7 @@ void imk_identification_store(const imk_identification *result, imk_model *model
          "noise.acceleration_random_walk", "noise.acceleration_ramp"}};
     triad->present = true;
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
-        store(&result->term[term], axes[term], evidence, keys[accel][term], 0, axis);
+        store(&result->term[term], axes[term], evidence, keys[sensor][term], 0, axis);
 
     for (int i = 0; i < result->gauss_markov_count; i++) {
         store(&result->gauss_markov[i].sigma, &noise->gauss_markov[i].sigma, evidence,

@@ -52,7 +52,7 @@ imk_parameter_format imk_parameter_format_find(const char *name)
 
 static const uint32_t settings_cookie = 0x70617231; /* "par1" */
 
-imk_parameter_settings imk_parameter_settings_default(void)
+imk_parameter_settings imk_parameter_default(void)
 {
     return (imk_parameter_settings){.cookie = settings_cookie,
                                     .filter = imk_filter_noise_default()};
@@ -116,7 +116,7 @@ static imk_parameter_format recognise_words(const char *text)
 
 static imk_parameter_format recognise_tree(const char *text, size_t size)
 {
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     imki_parameters p = {.settings = &settings, .text = text, .size = size};
     if (!imki_parameters_document(&p))
         return recognise_words(text);
@@ -213,7 +213,7 @@ static imk_status check_settings(const imk_parameter_settings *settings, imk_err
 {
     if (!settings || settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
-                             "settings from imk_parameter_settings_default()");
+                             "settings from imk_parameter_default()");
     if (settings->rate != 0 && !(settings->rate >= 1e-9 && settings->rate <= 1e9))
         return imk_error_set(error, IMK_ERROR_RANGE, "rate", "",
                              "a sample rate from 1e-9 Hz to 1e9 Hz");

@@ -225,7 +225,8 @@ static void write_axis(tree_writer *w, const imk_filter_noise *noise, const char
 /* ---- sensors --------------------------------------------------------------------------------- */
 
 static void note_what_is_lost(imki_parameters *p, const char *sensor,
-                              const imk_filter_noise noise[3], const imk_filter_settings *settings)
+                              const imk_filter_noise noise[3],
+                              const imk_filter_noise_settings *settings)
 {
     static const char *const as[] = {"a random walk", "a Gauss-Markov process",
                                      "two Gauss-Markov processes"};

@@ -11,7 +11,7 @@ enum { LOOK = 16 }; /* bytes that tell the format */
 
 static const uint32_t settings_cookie = 0x4C4F4732; /* "LOG2" */
 
-imk_log_settings imk_log_settings_default(void)
+imk_log_settings imk_log_default(void)
 {
     return (imk_log_settings){.cookie = settings_cookie};
 }
@@ -19,8 +19,7 @@ imk_log_settings imk_log_settings_default(void)
 static imk_status check_settings(const imk_log_settings *settings, imk_error *error)
 {
     if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_log_settings_default()");
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL, "imk_log_default()");
     if (!(settings->rate >= 0.0) || !isfinite(settings->rate)) {
         imk_error_set(error, IMK_ERROR_RANGE, "rate", NULL,
                       "a positive number of samples per second, as in --rate 100Hz");
@@ -77,7 +76,7 @@ static imk_status make_reader(imki_input *input, const char *path, const imk_log
 imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_log_reader **reader,
                         imk_error *error)
 {
-    const imk_log_settings usual = imk_log_settings_default();
+    const imk_log_settings usual = imk_log_default();
     settings = settings ? settings : &usual;
     imki_input *input;
     imk_status status = check_settings(settings, error);
@@ -92,7 +91,7 @@ imk_status imk_log_open(const char *path, const imk_log_settings *settings, imk_
 imk_status imk_log_open_memory(const char *text, size_t size, const imk_log_settings *settings,
                                imk_log_reader **reader, imk_error *error)
 {
-    const imk_log_settings usual = imk_log_settings_default();
+    const imk_log_settings usual = imk_log_default();
     settings = settings ? settings : &usual;
     imki_input *input;
     imk_status status = check_settings(settings, error);

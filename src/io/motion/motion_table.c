@@ -57,7 +57,7 @@ imk_status imki_motion_table_open(const char *path, const imk_log_settings *sett
                                   const imk_geodetic *place, imk_motion_file *file,
                                   imk_error *error)
 {
-    const imk_log_settings from_header = imk_log_settings_default();
+    const imk_log_settings from_header = imk_log_default();
     const imk_log_settings *how = settings ? settings : &from_header;
     imk_status status = imk_log_load(path, how, NULL, &file->log, error);
     if (status != IMK_OK)

@@ -159,7 +159,7 @@ static imk_status open_script(const char *path, imk_temperature_file *file, imk_
 
 static imk_status open_table(const char *path, imk_temperature_file *file, imk_error *error)
 {
-    const imk_log_settings settings = imk_log_settings_default();
+    const imk_log_settings settings = imk_log_default();
     imk_log *log = &file->log;
     imk_status status = imk_log_load(path, &settings, NULL, log, error);
     if (status == IMK_ERROR_RATE_MISSING) /* here no rate can stand for the times */

@@ -17,9 +17,9 @@
 static void store_kind(const imk_identify_log *log, imk_channel_kind kind, const char *source,
                        imk_model *model)
 {
-    const bool accel = kind == IMK_CHANNEL_ACCEL;
-    imk_triad *triad = accel ? &model->accel : &model->gyro;
-    imk_evidence *evidence = accel ? &model->accel_evidence : &model->gyro_evidence;
+    const int sensor = kind == IMK_CHANNEL_ACCEL ? IMK_ACCEL : IMK_GYRO;
+    imk_triad *triad = imk_model_triad_to_set(model, sensor);
+    imk_evidence *evidence = sensor == IMK_GYRO ? &model->gyro_evidence : &model->accel_evidence;
     int axes = 0;
     for (size_t c = 0; c < log->record.count; c++) {
         const imk_log_column *column = imk_even_record_column(&log->record, c);
@@ -28,7 +28,7 @@ static void store_kind(const imk_identify_log *log, imk_channel_kind kind, const
         /* A record of single axes keeps their directions. */
         for (int k = 0; k < 3; k++)
             triad->direction[axes][k] = k == column->axis % 3 ? 1 : 0;
-        imk_identification_store(&log->result[c], model, accel, axes++);
+        imk_identification_store(&log->result[c], model, sensor, axes++);
     }
     triad->present = axes > 0;
     if (axes == 0)

@@ -14,7 +14,7 @@ static const char *const letters[IMK_NOISE_TERMS] = {"Q", "N", "B", "K", "R"};
 
 static bool names(const imk_plan_parameter *parameter, const char *given)
 {
-    const char *kind = parameter->accel ? "accel." : "gyro.";
+    const char *kind = parameter->sensor == IMK_ACCEL ? "accel." : "gyro.";
     if (strncasecmp(given, kind, strlen(kind)) == 0)
         given += strlen(kind);
     else if (strchr(given, '.') && strncasecmp(given, "gauss_markov", 12) != 0)

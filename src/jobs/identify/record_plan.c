@@ -34,18 +34,14 @@ void imk_record_plan_free(imk_record_plan *result, const imk_allocator *allocato
     imki_resize(allocator, result, 0);
 }
 
-static const imk_triad *triad_of(const imk_model *model, bool accel)
-{
-    return accel ? &model->accel : &model->gyro;
-}
-
 /* ---- parameters ------------------------------------------------------------------------------ */
 
 static void add_parameter(imk_record_plan *p, const imk_plan_parameter *made, double value)
 {
     for (size_t k = 0; k < p->parameter_count; k++) {
         imk_plan_parameter *known = &p->parameter[k];
-        if (known->accel == made->accel && known->term == made->term && known->time == made->time) {
+        if (known->sensor == made->sensor && known->term == made->term &&
+            known->time == made->time) {
             known->low = fmin(known->low, value);
             known->high = fmax(known->high, value);
             return;
@@ -58,12 +54,13 @@ static void add_parameter(imk_record_plan *p, const imk_plan_parameter *made, do
     added->low = added->high = value;
 }
 
-static void add_axis(imk_record_plan *p, const imk_expected_noise *noise, bool accel)
+static void add_axis(imk_record_plan *p, const imk_expected_noise *noise, int sensor)
 {
-    const imk_log_column column = {.quantity = accel ? IMK_QUANTITY_SPECIFIC_FORCE
-                                                     : IMK_QUANTITY_ANGULAR_RATE,
-                                   .unit = imk_unit_of(accel ? "m/s^2" : "rad/s")};
-    imk_plan_parameter made = {.accel = accel};
+    const bool gyro = sensor == IMK_GYRO;
+    const imk_log_column column = {.quantity = gyro ? IMK_QUANTITY_ANGULAR_RATE
+                                                    : IMK_QUANTITY_SPECIFIC_FORCE,
+                                   .unit = imk_unit_of(gyro ? "rad/s" : "m/s^2")};
+    imk_plan_parameter made = {.sensor = sensor};
     for (made.term = 0; made.term < IMK_NOISE_TERMS; made.term++) {
         const imk_term_display display = imk_channel_term(&column, (imk_noise_term)made.term);
         made.unit = display.unit;
@@ -85,11 +82,11 @@ static void add_axis(imk_record_plan *p, const imk_expected_noise *noise, bool a
 
 static void list_parameters(const planning *about)
 {
-    for (int accel = 0; accel < 2; accel++) {
-        const imk_triad *triad = triad_of(about->model, accel);
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const imk_triad *triad = imk_model_triad(about->model, sensor);
         for (int axis = 0; triad->present && axis < triad->axis_count; axis++) {
             const imk_expected_noise noise = imk_expected_noise_of(triad, axis);
-            add_axis(about->plan, &noise, accel);
+            add_axis(about->plan, &noise, sensor);
         }
     }
 }
@@ -106,11 +103,11 @@ static const imk_bound *bound_of(const imk_identification_bounds *bounds,
 }
 
 static void add_bounds(const imk_record_plan *p, const imk_identification_bounds *bounds,
-                       bool accel, imk_plan_record *record)
+                       int sensor, imk_plan_record *record)
 {
     for (size_t k = 0; k < p->parameter_count; k++) {
         const imk_bound *bound = bound_of(bounds, &p->parameter[k]);
-        if (p->parameter[k].accel != accel || bound->value == 0)
+        if (p->parameter[k].sensor != sensor || bound->value == 0)
             continue;
         record->relative[k] = fmax(record->relative[k], bound->relative);
         record->detection[k] = fmin(record->detection[k], bound->detection);
@@ -122,8 +119,8 @@ static imk_plan_record record_of(const planning *about, double duration)
     imk_plan_record record = {.duration = duration, .planned = duration == about->plan->duration};
     for (size_t k = 0; k < about->plan->parameter_count; k++)
         record.detection[k] = 1;
-    for (int accel = 0; accel < 2; accel++) {
-        const imk_triad *triad = triad_of(about->model, accel);
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const imk_triad *triad = imk_model_triad(about->model, sensor);
         for (int axis = 0; triad->present && axis < triad->axis_count; axis++) {
             const imk_expected_noise noise = imk_expected_noise_of(triad, axis);
             imk_identification_bounds bounds;
@@ -131,7 +128,7 @@ static imk_plan_record record_of(const planning *about, double duration)
                                     imk_bounds_workspace_size(), NULL) != IMK_OK)
                 continue;
             record.told = true;
-            add_bounds(about->plan, &bounds, accel, &record);
+            add_bounds(about->plan, &bounds, sensor, &record);
         }
     }
     return record;
@@ -169,7 +166,7 @@ static imk_status find_duration(const planning *about, imk_plan_requirement *ask
                                 imk_error *error)
 {
     const imk_plan_parameter *parameter = &about->plan->parameter[asked->parameter];
-    const imk_triad *triad = triad_of(about->model, parameter->accel);
+    const imk_triad *triad = imk_model_triad(about->model, parameter->sensor);
     const imk_identify_requirement requirement = {parameter->term, parameter->time, asked->relative,
                                                   asked->detection};
     for (int axis = 0; axis < triad->axis_count; axis++) {

@@ -17,7 +17,7 @@ enum { BLOCK_ROWS = 1024, COLUMNS_MAX = IMK_INSTRUMENT_SIGNALS_MAX + 2 };
 imk_physics_log_settings imk_physics_log_default(void)
 {
     imk_physics_log_settings settings = {.cookie = settings_cookie,
-                                         .physics = imk_physics_settings_default(),
+                                         .physics = imk_physics_default(),
                                          .input.exposure = imk_exposure_default()};
     settings.physics.rate = 100;
     settings.input.exposure.temperature = 293.15;

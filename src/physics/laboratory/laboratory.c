@@ -13,7 +13,7 @@ enum { COOKIE = 0x494D4B22, TRIALS_MAX = IMK_LABORATORY_POINTS_MAX };
 imk_laboratory imk_laboratory_default(void)
 {
     return (imk_laboratory){.cookie = COOKIE,
-                            .physics = imk_physics_settings_default(),
+                            .physics = imk_physics_default(),
                             .surroundings = imk_exposure_default(),
                             .points = 21,
                             .settle = 0.2,

@@ -31,7 +31,7 @@ typedef struct session {
 static bool load(session *s)
 {
     imk_error error;
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     memset(s, 0, sizeof *s);
     if (access(LOG, R_OK) != 0) {
         print_message("%s is not there\n", LOG);

@@ -31,7 +31,7 @@ static session *load(const char *path, bool counts)
     session *s = calloc(1, sizeof *s);
     assert_non_null(s);
     imk_error error;
-    const imk_log_settings settings = imk_log_settings_default();
+    const imk_log_settings settings = imk_log_default();
     CHECK_STATUS(imk_log_load(path, &settings, NULL, &s->log, &error), IMK_OK);
     s->record = (imk_test_record){.name = path,
                                   .count = s->log.rows,

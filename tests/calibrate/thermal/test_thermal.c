@@ -525,7 +525,7 @@ static void a_real_sweep(void **state)
         skip();
     imk_log log;
     imk_error error;
-    const imk_log_settings settings = imk_log_settings_default();
+    const imk_log_settings settings = imk_log_default();
     CHECK_OK(imk_log_load(path, &settings, NULL, &log, &error));
     imk_test_record record = {.count = log.rows,
                               .dt = log.findings.interval,

@@ -396,7 +396,7 @@ static void test_odd_records(void **state)
             CHECK_STATUS(status, IMK_OK);
         if (status == IMK_OK) {
             imk_model_default(&model);
-            imk_identification_store(&r, &model, false, 0);
+            imk_identification_store(&r, &model, IMK_GYRO, 0);
             CHECK_STATUS(imk_model_validate(&model, &error), IMK_OK);
         }
         free(workspace);
@@ -412,8 +412,8 @@ static void test_store(void **state)
     static imk_model model;
     imk_model_default(&model);
     for (int axis = 0; axis < 3; axis++) {
-        imk_identification_store(&r, &model, false, axis);
-        imk_identification_store(&r, &model, true, axis);
+        imk_identification_store(&r, &model, IMK_GYRO, axis);
+        imk_identification_store(&r, &model, IMK_ACCEL, axis);
     }
     imk_error error;
     CHECK_STATUS(imk_model_validate(&model, &error), IMK_OK);

@@ -17,7 +17,7 @@
 
 static void load(imk_log *log)
 {
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 100;
     imk_error error;
     const imk_status status = imk_log_load(LOG, &settings, NULL, log, &error);

@@ -16,7 +16,7 @@ static char sentence[1000];
 static imk_status read_text(const char *text, const char *sensor)
 {
     imk_error error = {.status = IMK_OK};
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     settings.sensor = sensor;
     const imk_status status =
         imk_parameters_parse(text, strlen(text), &settings, &model, &notes, &error);
@@ -117,7 +117,7 @@ static void test_refusals(void **state)
 /* A model with a polynomial of some order, read back as it was written. */
 static void write_and_read(int order)
 {
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     imk_triad *triads[2] = {&back.gyro, &back.accel};
     imk_error error;
     char *text = NULL;
@@ -192,7 +192,7 @@ static void test_higher_orders(void **state)
 static void test_ranges(void **state)
 {
     (void)state;
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     imk_error error;
     char *text = NULL;
     size_t size = 0;

@@ -34,7 +34,7 @@ static imk_status read_with(const imk_parameter_settings *settings, const char *
 
 static imk_status read(const char *text)
 {
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     return read_with(&settings, text);
 }
 
@@ -236,7 +236,7 @@ static void test_matlab(void **state)
     check_axes(&model.gyro.noise.white, 0.01, 0.01, 0.01);
     check_axes(&model.gyro.noise.random_walk, 0.001, 0.001, 0.001);
     assert_false(model.accel.present);
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     settings.density = IMK_DENSITY_TWO_SIDED;
     CHECK_OK(read_with(&settings, "{\"Gyroscope\": {\"NoiseDensity\": 0.01}}"));
     check_axes(&model.gyro.noise.white, 0.01, 0.01, 0.01);
@@ -246,7 +246,7 @@ static void test_matlab(void **state)
 static void test_gnss_ins_sim(void **state)
 {
     (void)state;
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     CHECK_STATUS(read(sample("gnss_ins_sim.json")), IMK_ERROR_KEY_MISSING);
     check_says("add --rate 100Hz (samples per second)");
     settings.rate = 100;
@@ -283,7 +283,7 @@ static void test_navego(void **state)
                hypot(0.3 / 60, extra));
     CHECK_STATUS(read("a.arw = 1;\nb.arw = 2;\n"), IMK_ERROR_KEY_MISSING);
     check_says("add --sensor NAME with one of a b");
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     settings.sensor = "b";
     CHECK_OK(read_with(&settings, "a.arw = 1;\nb.arw = 2;\n"));
     check_axes(&model.gyro.noise.white, 2 * degree / 60, 2 * degree / 60, 2 * degree / 60);
@@ -328,7 +328,7 @@ static void test_expressions(void **state)
 static void test_vins(void **state)
 {
     (void)state;
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     CHECK_STATUS(read(sample("vins.yaml")), IMK_ERROR_KEY_MISSING);
     check_says("add --rate 200Hz");
     check_says("--density two-sided");
@@ -478,7 +478,7 @@ static void test_round_trip(void **state)
 {
     (void)state;
     for (int i = 0; i < SAMPLES; i++) {
-        imk_parameter_settings settings = imk_parameter_settings_default();
+        imk_parameter_settings settings = imk_parameter_default();
         settings.rate = samples[i].rate;
         CHECK_OK(read_with(&settings, sample(samples[i].file)));
         imk_model first = model;
@@ -501,7 +501,7 @@ static void test_round_trip(void **state)
 static void test_lost(void **state)
 {
     (void)state;
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     imk_model full;
     imk_model_default(&full);
     char *text = NULL;
@@ -554,7 +554,7 @@ static void test_random_models(void **state)
     for (int i = 0; i < 60; i++) {
         imk_model random = random_model(&seed, 4, false);
         for (int format = 1; format <= IMK_PARAMETERS_ARDUPILOT; format++) {
-            imk_parameter_settings settings = imk_parameter_settings_default();
+            imk_parameter_settings settings = imk_parameter_default();
             settings.format = (imk_parameter_format)format;
             settings.rate = 200;
             char *text = NULL;

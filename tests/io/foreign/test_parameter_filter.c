@@ -15,7 +15,7 @@ static imk_parameter_notes notes;
 
 static imk_parameter_settings settings_at(double rate)
 {
-    imk_parameter_settings settings = imk_parameter_settings_default();
+    imk_parameter_settings settings = imk_parameter_default();
     settings.format = IMK_PARAMETERS_FILTER;
     settings.rate = rate;
     return settings;
@@ -101,7 +101,7 @@ static void test_round_trip(void **state)
         imk_error error;
         char *text = print(paths[i], &settings);
         assert_false(has_note(true, ""));
-        settings = imk_parameter_settings_default(); /* found by its content */
+        settings = imk_parameter_default(); /* found by its content */
         CHECK_OK(imk_parameters_parse(text, strlen(text), &settings, &back, &notes, &error));
         assert_true(imk_model_equal(&model, &back));
         free(text);
@@ -148,7 +148,7 @@ static void test_refusals(void **state)
                  {"imukit_filter: 1\ngyro: {white_noise: [1, 2, 3]}\n", "rad/s/sqrt(Hz)"},
                  {"imukit_filter: 1\ngyro: {bias_states: [{from: nothing}]}\n", "random_walk"},
                  {"imukit_filter: 1\ngyro: {white_noise: [1e-4, 2]}\n", "list of 3"}};
-    settings = imk_parameter_settings_default();
+    settings = imk_parameter_default();
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         assert_int_not_equal(imk_parameters_parse(wrong[i].text, strlen(wrong[i].text), &settings,
                                                   &back, &notes, &error),

@@ -38,7 +38,7 @@ static int remove_log(void **state)
 static void test_memory_of_the_settings(void **state)
 {
     (void)state;
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     imk_log log = {.rows = 77};
     imk_error error;
     char sentence[300];

@@ -260,7 +260,7 @@ static void settings_are_checked(void **state)
 {
     (void)state;
     const char text[] = "gyro_x,gyro_y\n1,2\n";
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.gyro_unit = "deg/s";
     settings.rate = -1.0;
     check_refused(text, sizeof text - 1, &settings, IMK_ERROR_RANGE, 0, "--rate");
@@ -388,7 +388,7 @@ static void every_separator_and_line_end_is_understood(void **state)
 static void settings_stand_in_for_the_header(void **state)
 {
     (void)state;
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.columns = "time,gyro_x,-,accel_z";
     settings.time_unit = "us";
     settings.gyro_unit = "deg/s";
@@ -412,7 +412,7 @@ static void settings_stand_in_for_the_header(void **state)
 static void axes_are_turned_to_forward_right_down(void **state)
 {
     (void)state;
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.axes = "right-forward-up";
     settings.rate = 1.0;
     const char text[] = "accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2]\n1,2,3\n";
@@ -435,7 +435,7 @@ static void axes_are_turned_to_forward_right_down(void **state)
 static void texts_become_labels(void **state)
 {
     (void)state;
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 2.0;
     const char text[] = "section,accel_x [count]\nx_a,1\nx_a,2\ny b,3\nx_a,4\n";
     const char *path = temporary_path("labels.csv");
@@ -471,7 +471,7 @@ static void increments_are_divided_by_the_interval(void **state)
         CHECK_CLOSE(t.data[1][i], rates[i], 0.0);
     CHECK_CLOSE(t.data[2][2], 120.0, 0.0);
     free_table(&t);
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 8.0;
     t = read_text(text, &settings);
     CHECK_CLOSE(t.data[1][0], 8.0, 0.0);
@@ -538,7 +538,7 @@ static void findings_count_what_is_wrong(void **state)
     assert_int_equal(t.findings.first_gap, 6);
     assert_int_equal(t.findings.missing, 1);
     free_table(&t);
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 50.0;
     t = read_text("gyro_x [rad/s]\n1\n2\n3\n", &settings);
     CHECK_CLOSE(t.findings.interval, 0.02, 0.0);
@@ -658,7 +658,7 @@ static void random_logs_read_the_same_every_way(void **state)
         }
         if (turn % 5 == 0)
             size -= strlen(line_end); /* the last line without its end */
-        imk_log_settings settings = imk_log_settings_default();
+        imk_log_settings settings = imk_log_default();
         settings.rate = 1.0;
         write_gzip(path, text, size);
         for (int way = 0; way < 4; way++) {
@@ -768,7 +768,7 @@ static void matrices_are_read(void **state)
         remove(names_path);
         CHECK_STATUS(imk_log_load(path, NULL, NULL, &log, &error), IMK_ERROR_COLUMN);
         assert_non_null(strstr(error.expected, "--columns"));
-        imk_log_settings settings = imk_log_settings_default();
+        imk_log_settings settings = imk_log_default();
         settings.columns = "time [s],-,gyro_y [rad/s]";
         write_file(path, bytes, 128 + 8 * value_size);
         CHECK_STATUS(imk_log_load(path, &settings, NULL, &log, &error), IMK_ERROR_FORMAT);
@@ -804,7 +804,7 @@ static void progress_is_what_was_consumed(void **state)
         assert_int_equal(snprintf(text + begin + row * ROW, ROW + 1, "%.12f\n", 1e-5 * (double)row),
                          ROW);
     write_file(path, text, begin + ROWS * ROW);
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 100;
     imk_log_reader *reader;
     static double values[TAKEN];
@@ -830,7 +830,7 @@ static void real_log_loads_whole(void **state)
         print_message("%s is not there\n", path);
         skip();
     }
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.rate = 100.0;
     uint64_t progress[2] = {0, 0};
     const imk_job job = {.progress = count_progress, .progress_context = progress};

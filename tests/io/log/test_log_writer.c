@@ -537,7 +537,7 @@ static void reader_and_writer_agree(void **state)
     make_log();
     log_data[2][777] = -1.5; /* the reader takes lines of this length in its fast way */
     for (int way = 0; way < 4; way++) {
-        const imk_log_settings settings = imk_log_settings_default();
+        const imk_log_settings settings = imk_log_default();
         imk_error error;
         imk_log log;
         write_log(path_of(names[way]), IMK_LOG_SHORTEST, 0, NULL, 0);

@@ -169,7 +169,7 @@ static void earth_fixed_rows_are_met(void **state)
              "0,%.9f,%.9f,%.9f,0.707,0,0,0.707\n0,%.9f,%.9f,%.9f,-0.707,0,0,-0.707\n",
              a.v[0], a.v[1], a.v[2], b.v[0], b.v[1], b.v[2]);
     write_table(text);
-    imk_log_settings settings = imk_log_settings_default();
+    imk_log_settings settings = imk_log_default();
     settings.columns = "-,ecef_x,ecef_y,ecef_z,qw,qx,qy,qz";
     settings.rate = 0.5;
     imk_motion_file *file = NULL;

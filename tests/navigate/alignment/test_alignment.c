@@ -862,7 +862,7 @@ static void check_drift(const parked_log *p, const imk_alignment_result *found, 
 static void test_parked_log(void **state)
 {
     (void)state;
-    const imk_log_settings reading = imk_log_settings_default();
+    const imk_log_settings reading = imk_log_default();
     imk_log log;
     if (imk_log_load(LOG, &reading, NULL, &log, NULL) != IMK_OK) {
         print_message("%s is absent: skipped\n", LOG);

@@ -7,7 +7,7 @@
 
 static const char *kind_of(const imk_plan_parameter *parameter)
 {
-    return parameter->accel ? "accel" : "gyro";
+    return parameter->sensor == IMK_ACCEL ? "accel" : "gyro";
 }
 
 /* "2 h 46 min" is enough for a plan. */
@@ -150,7 +150,7 @@ static void show_figure(const imk_record_plan *p, imk_result *result)
     imk_figure_builder *figure = imk_result_figure(result, "What a record tells", 2, "");
     for (size_t k = 0; k < p->parameter_count; k++) {
         const imk_plan_parameter *parameter = &p->parameter[k];
-        if (k == 0 || parameter->accel != p->parameter[k - 1].accel) {
+        if (k == 0 || parameter->sensor != p->parameter[k - 1].sensor) {
             first = k;
             imk_figure_panel(figure, &(imk_panel){.title = kind_of(parameter),
                                                   .x_label = "record [h]",
