@@ -52,36 +52,6 @@ static const option motion_option_table[] = {
                 "at first, from north to east, for the Earth's rotation; default 0deg"),
 };
 
-static int run(int count, char **words);
-
-const verb convert_verb = {
-    .name = "convert",
-    .summary = "logs, models and parameter files between formats",
-    .operands = "IN OUT",
-    .operands_minimum = 2,
-    .operands_maximum = 2,
-    .last_is_written = true,
-    .examples =
-        {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
-          "a log without units becomes one that says everything"},
-         {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
-          "a model becomes a parameter file of another program; without --to the way back"}},
-    .description =
-        "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
-        "Increments "
-        "become rates. Values keep their units unless an option changes them.\n\n"
-        "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
-        "Parameter files of "
-        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and "
-        "ardupilot "
-        "are recognised by their content; what was assumed about units and densities, and what a "
-        "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
-    .groups = {OPTION_GROUP("Options", convert_option_table, 0),
-               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
-               OPTION_GROUP("Another point, without gravity", motion_option_table, 0),
-               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
-    .run = run};
-
 /* What each end is. A name without an ending tells nothing of what is read: its content is looked
  * at, but a stream's only when a model is due, for it has to be copied. A stream that is written is
  * of the kind of what is read. */
@@ -210,3 +180,31 @@ static int run(int count, char **words)
     return from_model ? convert_model(operands[0], operands[1])
                       : convert_log(&o, operands[0], operands[1]);
 }
+
+const verb convert_verb = {
+    .name = "convert",
+    .summary = "logs, models and parameter files between formats",
+    .operands = "IN OUT",
+    .operands_minimum = 2,
+    .operands_maximum = 2,
+    .last_is_written = true,
+    .examples =
+        {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
+          "a log without units becomes one that says everything"},
+         {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
+          "a model becomes a parameter file of another program; without --to the way back"}},
+    .description =
+        "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
+        "Increments "
+        "become rates. Values keep their units unless an option changes them.\n\n"
+        "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
+        "Parameter files of "
+        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and "
+        "ardupilot "
+        "are recognised by their content; what was assumed about units and densities, and what a "
+        "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
+    .groups = {OPTION_GROUP("Options", convert_option_table, 0),
+               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
+               OPTION_GROUP("Another point, without gravity", motion_option_table, 0),
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
+    .run = run};
