@@ -6,6 +6,7 @@
 
 #include "imukit/convert_log.h"
 #include "imukit/model_file.h"
+#include "imukit/names.h"
 
 #include <math.h>
 
@@ -57,9 +58,9 @@ static const option motion_option_table[] = {
  * of the kind of what is read. */
 static void find_kinds(const char *in, const char *out, bool *from_model, bool *to_model)
 {
-    *to_model = parameters_or_model(out);
+    *to_model = imk_is_script_name(out);
     *from_model =
-        *to_model || !command_is_stream(in) ? imk_model_recognise(in) : parameters_or_model(in);
+        *to_model || !command_is_stream(in) ? imk_model_recognise(in) : imk_is_script_name(in);
     *to_model = *to_model || (*from_model && command_is_stream(out));
 }
 
@@ -158,7 +159,7 @@ static int run(int count, char **words)
         return code;
     operands[1] = options_output_name(operands[1]);
     bool wanted;
-    code = parameters_wanted(&o.parameters, operands[0], parameters_or_model(operands[1]), &wanted);
+    code = parameters_wanted(&o.parameters, operands[0], imk_is_script_name(operands[1]), &wanted);
     if (code >= 0)
         return code;
     if (wanted)
