@@ -67,7 +67,7 @@ static int check_axes(const compensate_options *o, const imk_model *model,
                       const imk_record_source *source)
 {
     const imk_dimension counts = imk_unit_of("count").dimension;
-    for (size_t k = 0; k < source->column_count && o->log.axes; k++) {
+    for (size_t k = 0; k < source->column_count && o->log.file.axes; k++) {
         const imk_log_column *column = &source->columns[k];
         const imk_triad *triad = column->quantity == IMK_QUANTITY_ANGULAR_RATE     ? &model->gyro
                                  : column->quantity == IMK_QUANTITY_SPECIFIC_FORCE ? &model->accel

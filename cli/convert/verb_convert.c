@@ -163,7 +163,7 @@ static int run(int count, char **words)
     if (code >= 0)
         return code;
     if (wanted)
-        return convert_parameters(&o.parameters, o.log.rate, operands[0], operands[1]);
+        return convert_parameters(&o.parameters, o.log.file.rate, operands[0], operands[1]);
     if (o.parameters.json || o.parameters.sensor || o.parameters.density)
         return command_misused("%s: --json, --sensor and --density are for parameter files; "
                                "--from says which kind it is",

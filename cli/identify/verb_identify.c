@@ -144,7 +144,7 @@ static int identify_log(identification *i, const imk_executor *executor)
 /* Options that go with Allan deviations only. @return -1 or the exit code */
 static int check_allan(const identify_options *o)
 {
-    if (o->curve && (!(o->log.rate > 0) || !(o->duration > 0)))
+    if (o->curve && (!(o->log.file.rate > 0) || !(o->duration > 0)))
         return command_misused("a curve does not say how long and how fast was recorded: give "
                                "--rate and --duration, such as --rate 100Hz --duration 3h");
     if (o->curve && (o->keep || o->twin))
