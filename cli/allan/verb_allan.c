@@ -47,33 +47,6 @@ static const option allan_option_table[] = {
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
-static int run(int count, char **words);
-
-const verb allan_verb = {
-    .name = "allan",
-    .summary = "Allan family deviations of a log with confidence intervals",
-    .operands = "LOG",
-    .operands_minimum = 1,
-    .operands_maximum = 1,
-    .examples = {{"imukit allan static.csv --plot allan.svg",
-                  "every gyro and accelerometer column of a log at rest, as a table and a plot"},
-                 {"imukit allan phase.txt --columns x --rate 1Hz --type phase -o adev.csv",
-                  "one column of phase data without header, sampled once a second"}},
-    .description =
-        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
-        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
-        "column is "
-        "analysed.\n\nWhich statistic: oadev to look at a sensor; mdev or pdev to tell "
-        "quantization from "
-        "other fast noise; ohdev when the rate drifts in a straight line; totdev, htot and theo1 "
-        "for tau near the length of the log; tdev (in units of the column times s) for the scatter "
-        "of the integral; haar as published for wavelet methods. \n\nRows that are missing or not "
-        "finite keep their places empty: oadev of rates is then taken of what is there, and the "
-        "share of the record's pairs behind each point is shown. The other statistics, and phase, "
-        "need a complete record: --gaps bridge or --gaps longest.",
-    .groups = {OPTION_GROUP("Options", allan_option_table, 0), LOG_INPUT_GROUP(AT(log))},
-    .run = run};
-
 /* Names of --statistic. @return -1 or the exit code */
 static int parse_statistics(const char *text, imk_allan_log_settings *r)
 {
@@ -273,3 +246,28 @@ static int run(int count, char **words)
     free(times);
     return code;
 }
+
+const verb allan_verb = {
+    .name = "allan",
+    .summary = "Allan family deviations of a log with confidence intervals",
+    .operands = "LOG",
+    .operands_minimum = 1,
+    .operands_maximum = 1,
+    .examples = {{"imukit allan static.csv --plot allan.svg",
+                  "every gyro and accelerometer column of a log at rest, as a table and a plot"},
+                 {"imukit allan phase.txt --columns x --rate 1Hz --type phase -o adev.csv",
+                  "one column of phase data without header, sampled once a second"}},
+    .description =
+        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
+        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
+        "column is "
+        "analysed.\n\nWhich statistic: oadev to look at a sensor; mdev or pdev to tell "
+        "quantization from "
+        "other fast noise; ohdev when the rate drifts in a straight line; totdev, htot and theo1 "
+        "for tau near the length of the log; tdev (in units of the column times s) for the scatter "
+        "of the integral; haar as published for wavelet methods. \n\nRows that are missing or not "
+        "finite keep their places empty: oadev of rates is then taken of what is there, and the "
+        "share of the record's pairs behind each point is shown. The other statistics, and phase, "
+        "need a complete record: --gaps bridge or --gaps longest.",
+    .groups = {OPTION_GROUP("Options", allan_option_table, 0), LOG_INPUT_GROUP(AT(log))},
+    .run = run};

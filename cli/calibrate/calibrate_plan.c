@@ -160,8 +160,8 @@ static int set_up(plan *p)
         p->settings.soak = o->soak;
     if (o->temperature_order.given)
         p->settings.temperature_order = (int)o->temperature_order.value;
-    if (o->log.rate > 0)
-        p->settings.rate = o->log.rate;
+    if (o->log.file.rate > 0)
+        p->settings.rate = o->log.file.rate;
     return parse_wishes(p);
 }
 

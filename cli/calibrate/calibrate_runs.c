@@ -9,18 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_model(const char *path)
-{
-    return imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml") ||
-           imk_has_ending(path, ".json");
-}
-
 bool bench_has_run_models(const bench *b)
 {
     if (!b->options->procedure || strcmp(b->options->procedure, "repeatability") != 0)
         return false;
     for (size_t k = 0; k < b->found->count; k++)
-        if (is_model(b->found->record[k].path))
+        if (imk_is_script_name(b->found->record[k].path))
             return true;
     return false;
 }
@@ -54,7 +48,7 @@ static int load_model(bench *b, size_t index, imk_model *first, imk_calibration_
 {
     bench_log *log = &b->found->record[index];
     imk_model *model = index == 0 ? first : &r->model;
-    if (!is_model(log->path))
+    if (!imk_is_script_name(log->path))
         return command_misused("--procedure repeatability: %s is a log and others are models: "
                                "calibrate each run first, or give logs only",
                                log->path);

@@ -115,42 +115,6 @@ static const option log_options[] = {
 
 _Static_assert(IMK_TEMPERATURE_ORDER_MAX == 5, "as the range of --temperature-order says");
 
-static int run(int count, char **words);
-
-const verb calibrate_verb = {
-    .name = "calibrate",
-    .summary = "logs of bench tests -> bias, scale, misalignment with uncertainty",
-    .operands = "LOG...",
-    .operands_minimum = 1,
-    .operands_maximum = IMK_TEST_RECORDS_MAX,
-    .all_are_evidence = true,
-    .examples = {{"imukit calibrate poses.csv --procedure multiposition --position \"48.1 deg, "
-                  "11.6 deg, 520 m\" -o model.yaml",
-                  "a unit turned by hand, resting some seconds in each of 20 or more attitudes"},
-                 {"imukit calibrate poses.csv table.csv --procedure multiposition,rate-table "
-                  "--motion programme.yaml -o model.yaml --report report.html",
-                  "two tests solved together; the table ran the programme"}},
-    .description =
-        "LOG is CSV (also .gz, .zst){ or logs}, in physical units or raw counts. A procedure looks "
-        "at "
-        "each log and adds what it observed; all logs are solved at once, robustly, and every "
-        "parameter comes with 1 sigma, a 95 % interval, and correlations. A verdict says in plain "
-        "words whether the result can be used.\n\n"
-        "multiposition needs no equipment: attitudes at rest, turned by hand between. sixposition "
-        "and ferraris want the faces of a housing, the latter full turns about three axes. "
-        "rate-table, tumble, centrifuge and spin want to know what the unit was exposed to: "
-        "columns reference_rate_x [deg/s] …, reference_force_x [g] … in the log (mean over the "
-        "sample, in inertial space, gravity included), table_rate [deg/s] with --table-axis, or "
-        "the programme of the table as a motion file. thermal wants a column temperature. "
-        "repeatability compares power cycles: a log, a section or a MODEL of each; models compare "
-        "the scale factors too.\n\n"
-        "docs/calibrate.md says how to do each test.",
-    .groups = {{"Options", COUNT(result_options), result_options, 0},
-               {"The test", COUNT(test_options), test_options, 0},
-               {"What to look for in the logs", COUNT(log_options), log_options, 0},
-               {"Reading the logs", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
-    .run = run};
-
 static int check_closed_form(const bench *b)
 {
     const calibrate_options *o = b->options;
@@ -246,3 +210,37 @@ static int run(int count, char **words)
     free_bench(b);
     return code;
 }
+
+const verb calibrate_verb = {
+    .name = "calibrate",
+    .summary = "logs of bench tests -> bias, scale, misalignment with uncertainty",
+    .operands = "LOG...",
+    .operands_minimum = 1,
+    .operands_maximum = IMK_TEST_RECORDS_MAX,
+    .all_are_evidence = true,
+    .examples = {{"imukit calibrate poses.csv --procedure multiposition --position \"48.1 deg, "
+                  "11.6 deg, 520 m\" -o model.yaml",
+                  "a unit turned by hand, resting some seconds in each of 20 or more attitudes"},
+                 {"imukit calibrate poses.csv table.csv --procedure multiposition,rate-table "
+                  "--motion programme.yaml -o model.yaml --report report.html",
+                  "two tests solved together; the table ran the programme"}},
+    .description =
+        "LOG is CSV (also .gz, .zst){ or logs}, in physical units or raw counts. A procedure looks "
+        "at "
+        "each log and adds what it observed; all logs are solved at once, robustly, and every "
+        "parameter comes with 1 sigma, a 95 % interval, and correlations. A verdict says in plain "
+        "words whether the result can be used.\n\n"
+        "multiposition needs no equipment: attitudes at rest, turned by hand between. sixposition "
+        "and ferraris want the faces of a housing, the latter full turns about three axes. "
+        "rate-table, tumble, centrifuge and spin want to know what the unit was exposed to: "
+        "columns reference_rate_x [deg/s] …, reference_force_x [g] … in the log (mean over the "
+        "sample, in inertial space, gravity included), table_rate [deg/s] with --table-axis, or "
+        "the programme of the table as a motion file. thermal wants a column temperature. "
+        "repeatability compares power cycles: a log, a section or a MODEL of each; models compare "
+        "the scale factors too.\n\n"
+        "docs/calibrate.md says how to do each test.",
+    .groups = {{"Options", COUNT(result_options), result_options, 0},
+               {"The test", COUNT(test_options), test_options, 0},
+               {"What to look for in the logs", COUNT(log_options), log_options, 0},
+               {"Reading the logs", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
+    .run = run};

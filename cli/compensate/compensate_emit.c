@@ -92,8 +92,8 @@ static int emit(const compensate_options *o, const char *model_name, const imk_m
     imk_firmware_file_settings files = imk_firmware_file_default();
     char name[IMK_FIRMWARE_NAME_MAX];
     settings.arithmetic = (imk_firmware_arithmetic)o->emission.arithmetic;
-    settings.rate_limit = o->rate_limit;
-    settings.force_limit = o->force_limit;
+    settings.rate_limit = o->settings.rate_limit;
+    settings.force_limit = o->settings.force_limit;
     files.name = o->emission.prefix;
     files.vectors = (uint32_t)o->emission.vectors.value;
     if (imk_firmware_plan(plan, model, &settings, &error) != IMK_OK)

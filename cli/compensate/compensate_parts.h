@@ -7,6 +7,7 @@
 #include "shell/show.h"
 #include "shell/term_selection.h"
 
+#include "imukit/compensate_log.h"
 #include "imukit/firmware_file.h"
 #include "imukit/model_file.h"
 
@@ -21,11 +22,10 @@ extern const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS];
 
 typedef struct compensate_options {
     log_input log;
+    imk_compensate_log_settings settings;
     const char *output;
-    imk_unit to_gyro_unit, to_accel_unit; /* scale 0: not given */
-    double temperature, temperature_time, powered_for, rate_limit, force_limit;
     option_integer decimals, threads;
-    bool flags, json, strict;
+    bool json, strict;
     term_selection terms;
     compensate_emission emission;
 } compensate_options;

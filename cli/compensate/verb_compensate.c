@@ -15,24 +15,25 @@ static const option compensate_option_table[] = {
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "LOG",
      .help =
          "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output"},
-    {"temperature", OPTION_QUANTITY, AT(temperature), .value = "TEMPERATURE", .unit = "degC",
-     .help = "of the unit, for a log without such a column; overrules one"},
-    {"temperature-time", OPTION_QUANTITY, AT(temperature_time), .value = "TIME", .unit = "s",
+    {"temperature", OPTION_QUANTITY, AT(settings.temperature), .value = "TEMPERATURE",
+     .unit = "degC", .help = "of the unit, for a log without such a column; overrules one"},
+    {"temperature-time", OPTION_QUANTITY, AT(settings.temperature_time), .value = "TIME",
+     .unit = "s",
      .help =
          "over which the rate of temperature is smoothed, where the model needs it; default 30s"},
-    {"powered-for", OPTION_QUANTITY, AT(powered_for), .value = "TIME", .unit = "s",
+    {"powered-for", OPTION_QUANTITY, AT(settings.powered_for), .value = "TIME", .unit = "s",
      .help = "how long the unit was on before the first row, for warm-up; default 0s"},
-    {"rate-limit", OPTION_QUANTITY, AT(rate_limit), .value = "RATE", .unit = "deg/s",
+    {"rate-limit", OPTION_QUANTITY, AT(settings.rate_limit), .value = "RATE", .unit = "deg/s",
      .choices = "positive",
      .help = "largest rate, where the model has nonlinear terms and no range"},
-    {"force-limit", OPTION_QUANTITY, AT(force_limit), .value = "FORCE", .unit = "g",
+    {"force-limit", OPTION_QUANTITY, AT(settings.force_limit), .value = "FORCE", .unit = "g",
      .choices = "positive", .help = "largest specific force, likewise"},
-    {"to-gyro-unit", OPTION_UNIT, AT(to_gyro_unit), .value = "UNIT", .unit = "rad/s",
+    {"to-gyro-unit", OPTION_UNIT, AT(settings.gyro_unit), .value = "UNIT", .unit = "rad/s",
      .help = "of the rates written; default: as read, rad/s for counts"},
-    {"to-accel-unit", OPTION_UNIT, AT(to_accel_unit), .value = "UNIT", .unit = "m/s^2",
+    {"to-accel-unit", OPTION_UNIT, AT(settings.accel_unit), .value = "UNIT", .unit = "m/s^2",
      .help = "of the forces written; default: as read, m/s^2 for counts"},
     DECIMALS_OPTION(AT(decimals)),
-    {"flags", OPTION_FLAG, AT(flags),
+    {"flags", OPTION_FLAG, AT(settings.flags),
      .help = "add a column of flags: 1 saturated, 2 temperature, 4 limit, 8 not finite, 16 "
              "acceleration"},
     STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
@@ -40,38 +41,6 @@ static const option compensate_option_table[] = {
     THREADS_OPTION(AT(threads),
                    "threads to use; default: all processors. The bytes do not depend on it"),
 };
-
-static int run(int count, char **words);
-
-const verb compensate_verb = {
-    .name = "compensate",
-    .summary = "log + model -> log without the errors the model describes; model -> C code",
-    .operands = "[LOG] MODEL",
-    .operands_minimum = 1,
-    .operands_maximum = 2,
-    .examples = {{"imukit compensate raw.csv unit.yaml -o clean.csv",
-                  "biases, scale factors, misalignment and whatever else the model has are taken "
-                  "out"},
-                 {"imukit compensate unit.yaml --emit-c firmware",
-                  "the same for a device: C99 code for one sample, with its error bound and a "
-                  "self-test"}},
-    .description =
-        "LOG is CSV (also .gz, .zst){ or logs}; - is standard input. MODEL is a model file or a "
-        "name "
-        "from `imukit devices`. Gyro and accel columns become angular rate and specific force of "
-        "the body; other columns are copied.\n\nThe deterministic terms are taken out: bias with "
-        "temperature and warm-up, scale factor, nonlinearity, misalignment, cross-axis and "
-        "g-sensitivity, lever arms, counts. Noise, hysteresis, repeatability and bandwidth stay, "
-        "because a model knows their size and not their course.\n\nWith lever arms, the angular "
-        "acceleration is the central difference of the rates. A gap in time begins anew.\n\nWith "
-        "--emit-c and no LOG, the correction is written as C99 code without loops, heap or libm. "
-        "Lever arms, warm-up and the rate of temperature stay in there.",
-    .groups = {OPTION_GROUP("Options", compensate_option_table, 0),
-               {"Code for a device", COMPENSATE_EMIT_OPTIONS, compensate_emit_options,
-                AT(emission)},
-               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
-               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
-    .run = run};
 
 int compensate_models(const compensate_options *o, const char *name, imk_model *whole,
                       imk_model *terms)
@@ -98,7 +67,7 @@ static int check_axes(const compensate_options *o, const imk_model *model,
                       const imk_record_source *source)
 {
     const imk_dimension counts = imk_unit_of("count").dimension;
-    for (size_t k = 0; k < source->column_count && o->log.axes; k++) {
+    for (size_t k = 0; k < source->column_count && o->log.file.axes; k++) {
         const imk_log_column *column = &source->columns[k];
         const imk_triad *triad = column->quantity == IMK_QUANTITY_ANGULAR_RATE     ? &model->gyro
                                  : column->quantity == IMK_QUANTITY_SPECIFIC_FORCE ? &model->accel
@@ -109,22 +78,6 @@ static int check_axes(const compensate_options *o, const imk_model *model,
                                    "compensate first, then imukit convert --axes");
     }
     return -1;
-}
-
-static imk_compensate_log_settings set_up(const compensate_options *o, const imk_model *terms)
-{
-    imk_compensate_log_settings settings = imk_compensate_log_default();
-    if (o->terms.only || o->terms.without)
-        settings.terms = terms;
-    settings.temperature = o->temperature;
-    settings.temperature_time = o->temperature_time;
-    settings.powered_for = o->powered_for;
-    settings.rate_limit = o->rate_limit;
-    settings.force_limit = o->force_limit;
-    settings.flags = o->flags;
-    settings.gyro_unit = o->to_gyro_unit;
-    settings.accel_unit = o->to_accel_unit;
-    return settings;
 }
 
 /* What went wrong with the model or with what is written; the rest is the log's. */
@@ -142,9 +95,9 @@ static int tell(const char *const *operands, const imk_compensate_log *log, imk_
 }
 
 static int compensate(const compensate_options *o, const char *const *operands,
-                      imk_log_reader *reader, const imk_model *whole,
-                      const imk_compensate_log_settings *settings)
+                      imk_log_reader *reader, const imk_model *whole)
 {
+    const imk_compensate_log_settings *settings = &o->settings;
     imk_error error;
     imk_log_sink written = {.path = o->output ? o->output : "-",
                             .fixed = o->decimals.given,
@@ -176,19 +129,19 @@ static int check(const compensate_options *o)
 {
     if (o->json && !o->emission.directory && (!o->output || strcmp(o->output, "-") == 0))
         return command_misused("--json and the log cannot both go to standard output: add -o LOG");
-    if (!isnan(o->temperature) && !(o->temperature >= 0))
+    if (!isnan(o->settings.temperature) && !(o->settings.temperature >= 0))
         return command_misused("--temperature is below absolute zero");
-    if (!(o->temperature_time > 0))
+    if (!(o->settings.temperature_time > 0))
         return command_misused("--temperature-time must be positive");
-    if (!(o->powered_for >= 0))
+    if (!(o->settings.powered_for >= 0))
         return command_misused("--powered-for must not be negative");
     return -1;
 }
 
 static int run(int count, char **words)
 {
-    compensate_options o = {
-        .temperature = (double)NAN, .temperature_time = 30, .emission = {.vectors = {.value = 64}}};
+    compensate_options o = {.settings = imk_compensate_log_default(),
+                            .emission = {.vectors = {.value = 64}}};
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&compensate_verb, count, words, &o, operands);
     if (code < 0)
@@ -202,12 +155,43 @@ static int run(int count, char **words)
     imk_log_reader *reader = NULL;
     imk_model *models = command_memory(NULL, 2 * sizeof *models);
     code = compensate_models(&o, operands[1], &models[0], &models[1]);
-    const imk_compensate_log_settings settings = set_up(&o, &models[1]);
+    if (o.terms.only || o.terms.without)
+        o.settings.terms = &models[1];
     if (code < 0)
         code = log_input_open(&o.log, operands[0], false, &reader);
     if (code < 0)
-        code = compensate(&o, operands, reader, &models[0], &settings);
+        code = compensate(&o, operands, reader, &models[0]);
     imk_log_close(reader);
     free(models);
     return code;
 }
+
+const verb compensate_verb = {
+    .name = "compensate",
+    .summary = "log + model -> log without the errors the model describes; model -> C code",
+    .operands = "[LOG] MODEL",
+    .operands_minimum = 1,
+    .operands_maximum = 2,
+    .examples = {{"imukit compensate raw.csv unit.yaml -o clean.csv",
+                  "biases, scale factors, misalignment and whatever else the model has are taken "
+                  "out"},
+                 {"imukit compensate unit.yaml --emit-c firmware",
+                  "the same for a device: C99 code for one sample, with its error bound and a "
+                  "self-test"}},
+    .description =
+        "LOG is CSV (also .gz, .zst){ or logs}; - is standard input. MODEL is a model file or a "
+        "name "
+        "from `imukit devices`. Gyro and accel columns become angular rate and specific force of "
+        "the body; other columns are copied.\n\nThe deterministic terms are taken out: bias with "
+        "temperature and warm-up, scale factor, nonlinearity, misalignment, cross-axis and "
+        "g-sensitivity, lever arms, counts. Noise, hysteresis, repeatability and bandwidth stay, "
+        "because a model knows their size and not their course.\n\nWith lever arms, the angular "
+        "acceleration is the central difference of the rates. A gap in time begins anew.\n\nWith "
+        "--emit-c and no LOG, the correction is written as C99 code without loops, heap or libm. "
+        "Lever arms, warm-up and the rate of temperature stay in there.",
+    .groups = {OPTION_GROUP("Options", compensate_option_table, 0),
+               {"Code for a device", COMPENSATE_EMIT_OPTIONS, compensate_emit_options,
+                AT(emission)},
+               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
+    .run = run};

@@ -42,12 +42,6 @@ const option parameter_option_table[PARAMETER_OPTIONS] = {
      .help = "--to filter: the longest; default 1000 s"},
 };
 
-bool parameters_or_model(const char *path)
-{
-    return imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml") ||
-           imk_has_ending(path, ".json");
-}
-
 static bool only_parameters(const char *path)
 {
     static const char *const endings[] = {".m",     ".sdf",    ".xml",   ".urdf",
@@ -64,7 +58,7 @@ int parameters_wanted(const parameter_options *options, const char *in, bool mod
     imk_error error;
     imk_parameter_format format;
     *wanted = options->from > 0 || options->to > 0;
-    const bool named = only_parameters(in) || parameters_or_model(in);
+    const bool named = only_parameters(in) || imk_is_script_name(in);
     if (*wanted || !(named || model_due)) /* logs are not looked into */
         return -1;
     const imk_status status = imk_parameter_format_detect(in, &format, &error);

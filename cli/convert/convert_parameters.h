@@ -17,9 +17,6 @@ typedef struct parameter_options {
 enum { PARAMETER_OPTIONS = 8 };
 extern const option parameter_option_table[PARAMETER_OPTIONS];
 
-/* By its name: a parameter file, or a model file. */
-bool parameters_or_model(const char *path);
-
 /* Is this a conversion of parameters: by the options, or by what the file holds?
  * @param model_due  a log cannot become what is written, so that any file is looked into
  * @return -1 or the exit code, the message printed */

@@ -6,6 +6,7 @@
 
 #include "imukit/convert_log.h"
 #include "imukit/model_file.h"
+#include "imukit/names.h"
 
 #include <math.h>
 
@@ -52,44 +53,14 @@ static const option motion_option_table[] = {
                 "at first, from north to east, for the Earth's rotation; default 0deg"),
 };
 
-static int run(int count, char **words);
-
-const verb convert_verb = {
-    .name = "convert",
-    .summary = "logs, models and parameter files between formats",
-    .operands = "IN OUT",
-    .operands_minimum = 2,
-    .operands_maximum = 2,
-    .last_is_written = true,
-    .examples =
-        {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
-          "a log without units becomes one that says everything"},
-         {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
-          "a model becomes a parameter file of another program; without --to the way back"}},
-    .description =
-        "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
-        "Increments "
-        "become rates. Values keep their units unless an option changes them.\n\n"
-        "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
-        "Parameter files of "
-        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and "
-        "ardupilot "
-        "are recognised by their content; what was assumed about units and densities, and what a "
-        "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
-    .groups = {OPTION_GROUP("Options", convert_option_table, 0),
-               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
-               OPTION_GROUP("Another point, without gravity", motion_option_table, 0),
-               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
-    .run = run};
-
 /* What each end is. A name without an ending tells nothing of what is read: its content is looked
  * at, but a stream's only when a model is due, for it has to be copied. A stream that is written is
  * of the kind of what is read. */
 static void find_kinds(const char *in, const char *out, bool *from_model, bool *to_model)
 {
-    *to_model = parameters_or_model(out);
+    *to_model = imk_is_script_name(out);
     *from_model =
-        *to_model || !command_is_stream(in) ? imk_model_recognise(in) : parameters_or_model(in);
+        *to_model || !command_is_stream(in) ? imk_model_recognise(in) : imk_is_script_name(in);
     *to_model = *to_model || (*from_model && command_is_stream(out));
 }
 
@@ -188,11 +159,11 @@ static int run(int count, char **words)
         return code;
     operands[1] = options_output_name(operands[1]);
     bool wanted;
-    code = parameters_wanted(&o.parameters, operands[0], parameters_or_model(operands[1]), &wanted);
+    code = parameters_wanted(&o.parameters, operands[0], imk_is_script_name(operands[1]), &wanted);
     if (code >= 0)
         return code;
     if (wanted)
-        return convert_parameters(&o.parameters, o.log.rate, operands[0], operands[1]);
+        return convert_parameters(&o.parameters, o.log.file.rate, operands[0], operands[1]);
     if (o.parameters.json || o.parameters.sensor || o.parameters.density)
         return command_misused("%s: --json, --sensor and --density are for parameter files; "
                                "--from says which kind it is",
@@ -210,3 +181,31 @@ static int run(int count, char **words)
     return from_model ? convert_model(operands[0], operands[1])
                       : convert_log(&o, operands[0], operands[1]);
 }
+
+const verb convert_verb = {
+    .name = "convert",
+    .summary = "logs, models and parameter files between formats",
+    .operands = "IN OUT",
+    .operands_minimum = 2,
+    .operands_maximum = 2,
+    .last_is_written = true,
+    .examples =
+        {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
+          "a log without units becomes one that says everything"},
+         {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
+          "a model becomes a parameter file of another program; without --to the way back"}},
+    .description =
+        "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
+        "Increments "
+        "become rates. Values keep their units unless an option changes them.\n\n"
+        "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
+        "Parameter files of "
+        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and "
+        "ardupilot "
+        "are recognised by their content; what was assumed about units and densities, and what a "
+        "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
+    .groups = {OPTION_GROUP("Options", convert_option_table, 0),
+               {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
+               OPTION_GROUP("Another point, without gravity", motion_option_table, 0),
+               {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
+    .run = run};

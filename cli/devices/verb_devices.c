@@ -15,22 +15,6 @@ static const option devices_option_table[] = {
     {"json", OPTION_FLAG, offsetof(devices_options, json), .help = "print as JSON"},
 };
 
-static int run(int count, char **words);
-
-const verb devices_verb = {
-    .name = "devices",
-    .summary = "catalogue of real devices and grade presets",
-    .operands = "[NAME]",
-    .operands_minimum = 0,
-    .operands_maximum = 1,
-    .examples = {{"imukit devices", "every entry with its main figures"},
-                 {"imukit devices ADIS16488", "one entry: its source, notes and model file"}},
-    .description = "Any name may stand where a verb asks for a MODEL. Figures are of the axis "
-                   "given first; bias instability is B of IEEE 952: datasheets that quote the "
-                   "floor of the Allan deviation were divided by 0.664, and the note says so.",
-    .groups = {{"Options", 1, devices_option_table, 0}},
-    .run = run};
-
 /* The figures of the overview. */
 static const struct {
     const char *title, *unit, *si;
@@ -159,3 +143,17 @@ static int run(int count, char **words)
     free(model);
     return show_end(result, &(show_options){.json = o.json}, EXIT_DONE);
 }
+
+const verb devices_verb = {
+    .name = "devices",
+    .summary = "catalogue of real devices and grade presets",
+    .operands = "[NAME]",
+    .operands_minimum = 0,
+    .operands_maximum = 1,
+    .examples = {{"imukit devices", "every entry with its main figures"},
+                 {"imukit devices ADIS16488", "one entry: its source, notes and model file"}},
+    .description = "Any name may stand where a verb asks for a MODEL. Figures are of the axis "
+                   "given first; bias instability is B of IEEE 952: datasheets that quote the "
+                   "floor of the Allan deviation were divided by 0.664, and the note says so.",
+    .groups = {{"Options", 1, devices_option_table, 0}},
+    .run = run};

@@ -74,34 +74,6 @@ static const option output_option_table[] = {
     JSON_OPTION(AT(json), "print as JSON"),
 };
 
-static int run(int count, char **words);
-
-const verb drift_verb = {
-    .name = "drift",
-    .summary = "how far off after a minute, an hour, a day, and which term is to blame",
-    .operands = "MODEL... | RESULTS.h5",
-    .operands_minimum = 1,
-    .operands_maximum = IMK_DRIFT_MODELS_MAX,
-    .examples =
-        {{"imukit drift tactical --duration 1h --monte-carlo 100",
-          "error growth of a class by covariance, with the budget of its terms, beside a hundred "
-          "simulated runs"},
-         {"imukit drift model.yaml --aligned self --want \"CEP 1 nmi @ 1h\" --report drift.html",
-          "what each term must become for a mile in an hour, and which devices would do"}},
-    .description =
-        "MODEL is a model file or a name from `imukit devices`; several are compared. The unit "
-        "navigates by itself, at rest or on a motion, and the figures say how far off it is: CEP "
-        "is the radius of the circle that holds half of all outcomes, R95 95 % of them.\n\nValues "
-        "that the model knows (bias.fixed, misalignment) shift every run alike; terms of which a "
-        "size is known (repeatability, noise) scatter. The covariance is linear: ~ marks where "
-        "attitude errors are too large for it.\n\nRESULTS.h5 is what --monte-carlo or imukit merge "
-        "wrote: its statistics are printed.",
-    .groups = {OPTION_GROUP("Navigation", navigation_option_table, 0),
-               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
-               OPTION_GROUP("Motion and place", place_option_table, 0),
-               OPTION_GROUP("Runs and output", output_option_table, 0)},
-    .run = run};
-
 /* ---- checks ---- */
 
 static bool is_csv(const char *path)
@@ -317,3 +289,29 @@ static int run(int count, char **words)
     drift_scene_free(&w.scene);
     return code < 0 ? EXIT_DONE : code;
 }
+
+const verb drift_verb = {
+    .name = "drift",
+    .summary = "how far off after a minute, an hour, a day, and which term is to blame",
+    .operands = "MODEL... | RESULTS.h5",
+    .operands_minimum = 1,
+    .operands_maximum = IMK_DRIFT_MODELS_MAX,
+    .examples =
+        {{"imukit drift tactical --duration 1h --monte-carlo 100",
+          "error growth of a class by covariance, with the budget of its terms, beside a hundred "
+          "simulated runs"},
+         {"imukit drift model.yaml --aligned self --want \"CEP 1 nmi @ 1h\" --report drift.html",
+          "what each term must become for a mile in an hour, and which devices would do"}},
+    .description =
+        "MODEL is a model file or a name from `imukit devices`; several are compared. The unit "
+        "navigates by itself, at rest or on a motion, and the figures say how far off it is: CEP "
+        "is the radius of the circle that holds half of all outcomes, R95 95 % of them.\n\nValues "
+        "that the model knows (bias.fixed, misalignment) shift every run alike; terms of which a "
+        "size is known (repeatability, noise) scatter. The covariance is linear: ~ marks where "
+        "attitude errors are too large for it.\n\nRESULTS.h5 is what --monte-carlo or imukit merge "
+        "wrote: its statistics are printed.",
+    .groups = {OPTION_GROUP("Navigation", navigation_option_table, 0),
+               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
+               OPTION_GROUP("Motion and place", place_option_table, 0),
+               OPTION_GROUP("Runs and output", output_option_table, 0)},
+    .run = run};

@@ -62,38 +62,6 @@ static const option test_options[] = {
 
 #define COUNT(table) (sizeof(table) / sizeof *(table))
 
-static int run(int count, char **words);
-
-const verb evaluate_verb = {
-    .name = "evaluate",
-    .summary = "references and readings -> linearity, hysteresis, resolution, report",
-    .operands = "FILE...",
-    .operands_minimum = 0,
-    .operands_maximum = IMK_EVALUATION_RUNS_MAX,
-    .all_are_evidence = true,
-    .examples = {{"imukit evaluate table.csv --limit \"linearity 0.05 %\" --report report.html",
-                  "a table with the columns reference [deg/s] and reading [deg/s], in the order "
-                  "taken"},
-                 {"imukit evaluate steps.csv --motion programme.yaml --static rest.csv --plot "
-                  "deviations.svg",
-                  "a log of a rate table that ran the programme, and one at rest"}},
-    .description =
-        "FILE is a table, CSV with the columns reference and reading (or several: reading_x …) "
-        "with "
-        "their units, and if there are such: direction (up, down; else inferred from the order), "
-        "run (power cycles), sigma; or a log of a sensor with what it was exposed to: columns "
-        "reference_rate_x [deg/s] …, reference_force_x [g] …, table_rate [deg/s] with "
-        "--table-axis, "
-        "or --motion. Every stretch of constant reference of a log is a reading. Each file is a "
-        "run.\n\n"
-        "Every figure comes with an interval. How large the noise is follows from repeated "
-        "readings of one reference, reached from the same side: take each level twice or more. "
-        "docs/evaluate.md has the definitions.",
-    .groups = {{"Options", COUNT(result_options), result_options, 0},
-               {"The test", COUNT(test_options), test_options, 0},
-               {"Reading logs", LOG_INPUT_OPTIONS, log_input_options, BENCH(log)}},
-    .run = run};
-
 /* ---- quantities that need the channel's unit ------------------------------------------------- */
 
 /* A quantity of an option; untouched when it was not given. */
@@ -263,3 +231,33 @@ static int run(int count, char **words)
     free(v);
     return code;
 }
+
+const verb evaluate_verb = {
+    .name = "evaluate",
+    .summary = "references and readings -> linearity, hysteresis, resolution, report",
+    .operands = "FILE...",
+    .operands_minimum = 0,
+    .operands_maximum = IMK_EVALUATION_RUNS_MAX,
+    .all_are_evidence = true,
+    .examples = {{"imukit evaluate table.csv --limit \"linearity 0.05 %\" --report report.html",
+                  "a table with the columns reference [deg/s] and reading [deg/s], in the order "
+                  "taken"},
+                 {"imukit evaluate steps.csv --motion programme.yaml --static rest.csv --plot "
+                  "deviations.svg",
+                  "a log of a rate table that ran the programme, and one at rest"}},
+    .description =
+        "FILE is a table, CSV with the columns reference and reading (or several: reading_x …) "
+        "with "
+        "their units, and if there are such: direction (up, down; else inferred from the order), "
+        "run (power cycles), sigma; or a log of a sensor with what it was exposed to: columns "
+        "reference_rate_x [deg/s] …, reference_force_x [g] …, table_rate [deg/s] with "
+        "--table-axis, "
+        "or --motion. Every stretch of constant reference of a log is a reading. Each file is a "
+        "run.\n\n"
+        "Every figure comes with an interval. How large the noise is follows from repeated "
+        "readings of one reference, reached from the same side: take each level twice or more. "
+        "docs/evaluate.md has the definitions.",
+    .groups = {{"Options", COUNT(result_options), result_options, 0},
+               {"The test", COUNT(test_options), test_options, 0},
+               {"Reading logs", LOG_INPUT_OPTIONS, log_input_options, BENCH(log)}},
+    .run = run};

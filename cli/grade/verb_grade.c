@@ -27,27 +27,6 @@ static const option grade_option_table[] = {
     JSON_OPTION(AT(json), "print as JSON"),
 };
 
-static int run(int count, char **words);
-
-const verb grade_verb = {
-    .name = "grade",
-    .summary = "class of a model by its biases and by computed performance, and what limits it",
-    .operands = "MODEL...",
-    .operands_minimum = 1,
-    .operands_maximum = MODELS_MAX,
-    .examples = {{"imukit grade model.yaml", "the class of an identified model"},
-                 {"imukit grade model.yaml HG1700 navigation --report grade.html",
-                  "beside a device of the catalogue and a class, with maps"}},
-    .description =
-        "By the table, what counts is the bias that stays after calibration: the root sum of "
-        "squares of repeatability, instability and the uncertainty of the fixed bias, on the worst "
-        "axis. The class of the unit is the worse of its gyro and its accelerometer class.\n\nBy "
-        "performance, what counts is the error of position that all terms of the model make, as "
-        "imukit drift computes it: at rest at 45 deg N, with a perfect attitude at the start, and "
-        "with one that the unit finds itself. What a class claims stands beside what is computed.",
-    .groups = {OPTION_GROUP("Options", grade_option_table, 0)},
-    .run = run};
-
 /* What the library is given, and what it gives. */
 typedef struct grading {
     size_t count;
@@ -121,3 +100,22 @@ static int run(int count, char **words)
     }
     return code;
 }
+
+const verb grade_verb = {
+    .name = "grade",
+    .summary = "class of a model by its biases and by computed performance, and what limits it",
+    .operands = "MODEL...",
+    .operands_minimum = 1,
+    .operands_maximum = MODELS_MAX,
+    .examples = {{"imukit grade model.yaml", "the class of an identified model"},
+                 {"imukit grade model.yaml HG1700 navigation --report grade.html",
+                  "beside a device of the catalogue and a class, with maps"}},
+    .description =
+        "By the table, what counts is the bias that stays after calibration: the root sum of "
+        "squares of repeatability, instability and the uncertainty of the fixed bias, on the worst "
+        "axis. The class of the unit is the worse of its gyro and its accelerometer class.\n\nBy "
+        "performance, what counts is the error of position that all terms of the model make, as "
+        "imukit drift computes it: at rest at 45 deg N, with a perfect attitude at the start, and "
+        "with one that the unit finds itself. What a class claims stands beside what is computed.",
+    .groups = {OPTION_GROUP("Options", grade_option_table, 0)},
+    .run = run};

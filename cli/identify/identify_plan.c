@@ -47,7 +47,7 @@ static int tell(const imk_record_plan *p, const char *model, imk_status status,
 
 int identify_plan(const identify_options *o)
 {
-    if (!(o->log.rate > 0))
+    if (!(o->log.file.rate > 0))
         return command_misused(
             "--plan: the sample rate of the record is due, such as --rate 100Hz");
     imk_model *model = command_memory(NULL, sizeof *model);
@@ -56,7 +56,7 @@ int identify_plan(const identify_options *o)
     int code = command_model(o->plan, model, NULL);
     if (code < 0) {
         imk_record_plan_settings settings = imk_record_plan_default();
-        settings.rate = o->log.rate;
+        settings.rate = o->log.file.rate;
         settings.duration = o->duration;
         settings.significance = o->significance;
         settings.want = o->want;

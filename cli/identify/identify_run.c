@@ -27,7 +27,7 @@ static imk_status run_curve(const identify_options *o, const imk_record_source *
                             const imk_job *job, imk_identify_log **log, imk_error *error)
 {
     imk_identify_curve_settings settings = imk_identify_curve_default();
-    settings.rate = o->log.rate;
+    settings.rate = o->log.file.rate;
     settings.duration = o->duration;
     settings.confidence = o->confidence;
     settings.significance = o->significance;

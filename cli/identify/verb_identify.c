@@ -72,40 +72,6 @@ static const option allan_option_table[] = {
 
 _Static_assert(IMK_TERMS_MAX == 8, "as the range of --gauss-markov says");
 
-static int run(int count, char **words);
-
-const verb identify_verb = {
-    .name = "identify",
-    .summary = "log of a sensor at rest -> model of its noise, with a verdict on the log",
-    .operands = "LOG... | --plan MODEL",
-    .operands_minimum = 0,
-    .operands_maximum = IMK_JOINT_RECORDS_MAX,
-    .all_are_evidence = true,
-    .examples = {{"imukit identify static.csv -o model.yaml --report report.html",
-                  "noise terms of every gyro and accelerometer axis, and a page to look at"},
-                 {"imukit identify raw.csv --rate 200Hz --columns gyro_x,gyro_y,gyro_z "
-                  "--gyro-unit deg/s -o gyro.yaml --twin --plot term",
-                  "a log without header and time column; the model's twin is drawn over it"}},
-    .description =
-        "LOG is a record of a sensor that does not move: CSV with a header such as time [s],gyro_x "
-        "[deg/s],accel_x [g] (also .gz, .zst){, or logs}; - is standard input. An hour shows the "
-        "white noise and the bias instability of most sensors, several hours the random walk.\n\n"
-        "Estimated for each channel: quantization, white noise (angle or velocity random walk), "
-        "bias instability, rate or acceleration random walk and ramp, with spectral lines, "
-        "resonances and the output filter modelled apart. A term that the record does not show is "
-        "reported as absent with an upper bound.\n\n"
-        "Missing samples stay missing; outliers, stuck and saturated samples are left out, a "
-        "warm-up and what follows a temperature column are subtracted, where the log shows them. "
-        "The verdict tells what was found; --keep leaves it in.\n\n"
-        "Several LOGs need --runs (of one sensor) or --devices (different sensors).\n\n"
-        "The mean of the record is printed but not written as a bias: at rest it holds the Earth's "
-        "rotation and gravity, which need a known attitude to be told apart.",
-    .groups = {OPTION_GROUP("Options", identify_option_table, 0),
-               OPTION_GROUP("Planning a record", plan_option_table, 0),
-               OPTION_GROUP("From Allan deviations", allan_option_table, 0),
-               LOG_INPUT_GROUP(AT(log))},
-    .run = run};
-
 void identify_warn(const imk_verdict *verdict)
 {
     (void)command_unless_memory(verdict->message ? IMK_OK : IMK_ERROR_MEMORY);
@@ -178,7 +144,7 @@ static int identify_log(identification *i, const imk_executor *executor)
 /* Options that go with Allan deviations only. @return -1 or the exit code */
 static int check_allan(const identify_options *o)
 {
-    if (o->curve && (!(o->log.rate > 0) || !(o->duration > 0)))
+    if (o->curve && (!(o->log.file.rate > 0) || !(o->duration > 0)))
         return command_misused("a curve does not say how long and how fast was recorded: give "
                                "--rate and --duration, such as --rate 100Hz --duration 3h");
     if (o->curve && (o->keep || o->twin))
@@ -298,3 +264,35 @@ static int run(int count, char **words)
         return code;
     return o.plan ? identify_plan(&o) : identify_operands(&o, logs, operands);
 }
+
+const verb identify_verb = {
+    .name = "identify",
+    .summary = "log of a sensor at rest -> model of its noise, with a verdict on the log",
+    .operands = "LOG... | --plan MODEL",
+    .operands_minimum = 0,
+    .operands_maximum = IMK_JOINT_RECORDS_MAX,
+    .all_are_evidence = true,
+    .examples = {{"imukit identify static.csv -o model.yaml --report report.html",
+                  "noise terms of every gyro and accelerometer axis, and a page to look at"},
+                 {"imukit identify raw.csv --rate 200Hz --columns gyro_x,gyro_y,gyro_z "
+                  "--gyro-unit deg/s -o gyro.yaml --twin --plot term",
+                  "a log without header and time column; the model's twin is drawn over it"}},
+    .description =
+        "LOG is a record of a sensor that does not move: CSV with a header such as time [s],gyro_x "
+        "[deg/s],accel_x [g] (also .gz, .zst){, or logs}; - is standard input. An hour shows the "
+        "white noise and the bias instability of most sensors, several hours the random walk.\n\n"
+        "Estimated for each channel: quantization, white noise (angle or velocity random walk), "
+        "bias instability, rate or acceleration random walk and ramp, with spectral lines, "
+        "resonances and the output filter modelled apart. A term that the record does not show is "
+        "reported as absent with an upper bound.\n\n"
+        "Missing samples stay missing; outliers, stuck and saturated samples are left out, a "
+        "warm-up and what follows a temperature column are subtracted, where the log shows them. "
+        "The verdict tells what was found; --keep leaves it in.\n\n"
+        "Several LOGs need --runs (of one sensor) or --devices (different sensors).\n\n"
+        "The mean of the record is printed but not written as a bias: at rest it holds the Earth's "
+        "rotation and gravity, which need a known attitude to be told apart.",
+    .groups = {OPTION_GROUP("Options", identify_option_table, 0),
+               OPTION_GROUP("Planning a record", plan_option_table, 0),
+               OPTION_GROUP("From Allan deviations", allan_option_table, 0),
+               LOG_INPUT_GROUP(AT(log))},
+    .run = run};

@@ -10,20 +10,20 @@
 #define AT(field) offsetof(log_input, field)
 
 const option log_input_options[LOG_INPUT_OPTIONS] = {
-    {"rate", OPTION_QUANTITY, AT(rate), .letter = 'r', .value = "RATE", .unit = "Hz",
+    {"rate", OPTION_QUANTITY, AT(file.rate), .letter = 'r', .value = "RATE", .unit = "Hz",
      .choices = "1e-9..1e9", .help = "sample rate, needed when the log has no time column"},
-    {"columns", OPTION_TEXT, AT(columns), .value = "NAMES",
+    {"columns", OPTION_TEXT, AT(file.columns), .value = "NAMES",
      .help = "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - "
              "skips one"},
-    {"gyro-unit", OPTION_TEXT, AT(gyro_unit), .value = "UNIT",
+    {"gyro-unit", OPTION_TEXT, AT(file.gyro_unit), .value = "UNIT",
      .help = "unit of the gyro columns where the header has none, such as deg/s"},
-    {"accel-unit", OPTION_TEXT, AT(accel_unit), .value = "UNIT",
+    {"accel-unit", OPTION_TEXT, AT(file.accel_unit), .value = "UNIT",
      .help = "unit of the accelerometer columns where the header has none, such as g"},
-    {"time-unit", OPTION_TEXT, AT(time_unit), .value = "UNIT",
+    {"time-unit", OPTION_TEXT, AT(file.time_unit), .value = "UNIT",
      .help = "unit of the time column where the header has none, such as us"},
-    {"temperature-unit", OPTION_TEXT, AT(temperature_unit), .value = "UNIT",
+    {"temperature-unit", OPTION_TEXT, AT(file.temperature_unit), .value = "UNIT",
      .help = "unit of the temperature column where the header has none, such as degC"},
-    {"axes", OPTION_TEXT, AT(axes), .value = "NAMES",
+    {"axes", OPTION_TEXT, AT(file.axes), .value = "NAMES",
      .help =
          "where the log's x, y, z point, such as right-forward-up; mapped to forward-right-down"},
     {"gaps", OPTION_CHOICE, AT(gaps), .value = "CHOICE", .choices = "refuse|bridge|longest|keep",
@@ -35,14 +35,8 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
 
 imk_log_settings log_input_settings(const log_input *input)
 {
-    imk_log_settings settings = imk_log_default();
-    settings.columns = input->columns;
-    settings.gyro_unit = input->gyro_unit;
-    settings.accel_unit = input->accel_unit;
-    settings.time_unit = input->time_unit;
-    settings.temperature_unit = input->temperature_unit;
-    settings.rate = input->rate;
-    settings.axes = input->axes;
+    imk_log_settings settings = input->file;
+    settings.cookie = imk_log_default().cookie;
     return settings;
 }
 

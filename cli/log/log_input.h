@@ -10,8 +10,7 @@
 
 /* What the options of log_input_options fill. */
 typedef struct log_input {
-    double rate; /* [Hz]; 0: from the time column */
-    const char *columns, *gyro_unit, *accel_unit, *time_unit, *temperature_unit, *axes;
+    imk_log_settings file;
     int gaps; /* imk_gap_policy; a verb that can do with missing samples begins with IMK_GAPS_KEEP
                */
     bool missing_allowed; /* it can: --gaps keep is no error */

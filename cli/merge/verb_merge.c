@@ -27,28 +27,6 @@ static const option merge_option_table[] = {
 /* More than a command line holds. */
 enum { FILES_MAX = 1000000 };
 
-static int run(int count, char **words);
-
-const verb merge_verb = {
-    .name = "merge",
-    .summary = "shards of a Monte Carlo campaign into one results file",
-    .operands = "SHARD...",
-    .operands_minimum = 1,
-    .operands_maximum = FILES_MAX,
-    .examples = {{"imukit merge shard-*.h5 -o all.h5",
-                  "the file, byte for byte, of the campaign computed in one piece"},
-                 {"imukit merge shard-*.h5 -o some.h5 --partial",
-                  "the runs that are there, with their numbers; the rest can be merged later"}},
-    .description =
-        "SHARD is a results file of imukit drift --monte-carlo … --shard i/N, or of a merge "
-        "before. The order does not matter.\n\n"
-        "A file that is damaged, or of another campaign, seed or version than most, is named and "
-        "left out. When runs are missing then, nothing is written, and the shards to compute again "
-        "are named; --partial writes what there is.\n\n"
-        "docs/clusters.md shows campaigns on many machines, docs/campaign-file.md the format.",
-    .groups = {OPTION_GROUP("Options", merge_option_table, 0)},
-    .run = run};
-
 static void warn_complaints(const imk_campaign_merge_report *report)
 {
     for (size_t i = 0; i < report->complaint_count; i++) {
@@ -157,3 +135,23 @@ static int run(int count, char **words)
     free(paths);
     return code;
 }
+
+const verb merge_verb = {
+    .name = "merge",
+    .summary = "shards of a Monte Carlo campaign into one results file",
+    .operands = "SHARD...",
+    .operands_minimum = 1,
+    .operands_maximum = FILES_MAX,
+    .examples = {{"imukit merge shard-*.h5 -o all.h5",
+                  "the file, byte for byte, of the campaign computed in one piece"},
+                 {"imukit merge shard-*.h5 -o some.h5 --partial",
+                  "the runs that are there, with their numbers; the rest can be merged later"}},
+    .description =
+        "SHARD is a results file of imukit drift --monte-carlo … --shard i/N, or of a merge "
+        "before. The order does not matter.\n\n"
+        "A file that is damaged, or of another campaign, seed or version than most, is named and "
+        "left out. When runs are missing then, nothing is written, and the shards to compute again "
+        "are named; --partial writes what there is.\n\n"
+        "docs/clusters.md shows campaigns on many machines, docs/campaign-file.md the format.",
+    .groups = {OPTION_GROUP("Options", merge_option_table, 0)},
+    .run = run};

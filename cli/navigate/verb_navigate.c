@@ -61,30 +61,6 @@ static const option navigate_option_table[] = {
     STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
 };
 
-static int run(int count, char **words);
-
-const verb navigate_verb = {
-    .name = "navigate",
-    .summary = "log + place -> attitude, velocity and position, and their drift",
-    .operands = "LOG",
-    .operands_minimum = 1,
-    .operands_maximum = 1,
-    .examples = {{"imukit navigate parked.csv --position \"34.25 deg, 108.91 deg, 380 m\" --align "
-                  "300s --model unit.yaml --report parked.html",
-                  "a unit that stands: its drift, beside what its model predicts"},
-                 {"imukit navigate drive.csv --position \"48.1 deg, 11.6 deg, 520 m\" --align 2min "
-                  "--model tactical --zero-velocity auto -o track.csv",
-                  "a drive with stops, each of which corrects"}},
-    .description =
-        "LOG is CSV (also .gz, .zst){ or logs} with three gyros and three accelerometers, as rates "
-        "or increments; - is standard input. A strapdown mechanisation on the WGS84 ellipsoid "
-        "integrates it from --position on. Nothing but --zero-velocity corrects it, so its error "
-        "grows.\n\nWith --model the error is predicted by covariance, alignment included. Errors "
-        "that the model knows are not taken out here: imukit compensate does that first.\n\n"
-        "Where the unit stands still all the time, the distance from the start is the error.",
-    .groups = {OPTION_GROUP("Options", navigate_option_table, 0), LOG_INPUT_GROUP(AT(log))},
-    .run = run};
-
 static int show(const imk_navigate_log *n, const navigate_options *o, const char *path)
 {
     if (o->output) {
@@ -183,3 +159,25 @@ static int run(int count, char **words)
     free(model);
     return code;
 }
+
+const verb navigate_verb = {
+    .name = "navigate",
+    .summary = "log + place -> attitude, velocity and position, and their drift",
+    .operands = "LOG",
+    .operands_minimum = 1,
+    .operands_maximum = 1,
+    .examples = {{"imukit navigate parked.csv --position \"34.25 deg, 108.91 deg, 380 m\" --align "
+                  "300s --model unit.yaml --report parked.html",
+                  "a unit that stands: its drift, beside what its model predicts"},
+                 {"imukit navigate drive.csv --position \"48.1 deg, 11.6 deg, 520 m\" --align 2min "
+                  "--model tactical --zero-velocity auto -o track.csv",
+                  "a drive with stops, each of which corrects"}},
+    .description =
+        "LOG is CSV (also .gz, .zst){ or logs} with three gyros and three accelerometers, as rates "
+        "or increments; - is standard input. A strapdown mechanisation on the WGS84 ellipsoid "
+        "integrates it from --position on. Nothing but --zero-velocity corrects it, so its error "
+        "grows.\n\nWith --model the error is predicted by covariance, alignment included. Errors "
+        "that the model knows are not taken out here: imukit compensate does that first.\n\n"
+        "Where the unit stands still all the time, the distance from the start is the error.",
+    .groups = {OPTION_GROUP("Options", navigate_option_table, 0), LOG_INPUT_GROUP(AT(log))},
+    .run = run};

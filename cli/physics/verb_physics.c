@@ -80,33 +80,6 @@ static const option output_option_table[] = {
     JSON_OPTION(AT(json), "print the result as JSON"),
 };
 
-static int run(int count, char **words);
-
-const verb physics_verb = {
-    .name = "physics",
-    .summary = "instruments from first principles: run them, reduce them to error models",
-    .operands = "[INSTRUMENT|DESIGN.yaml]",
-    .operands_minimum = 0,
-    .operands_maximum = 1,
-    .examples =
-        {{"imukit physics ring_laser --rate \"10 deg/s\" --duration 10s -o out.csv",
-          "ten seconds of a ring laser gyro that turns, as a log"},
-         {"imukit physics mine.yaml --reduce --sweep -o model.yaml",
-          "the error model of a design of your own, by closed forms beside experiments, for "
-          "simulate, grade and the others"}},
-    .description =
-        "INSTRUMENT is a name of the list that imukit physics prints, with its default design; "
-        "DESIGN.yaml is a design file (docs/design-file.md), begun with --show. Without an option "
-        "the design is printed.\n\nEach row of a log is the mean over the sample that ends at its "
-        "time; the input is held over a sample. x is the input axis; what y and z are stands in "
-        "the documentation of each instrument. The views are drawn under the input of --rate and "
-        "--acceleration, else each under an input that shows something.",
-    .groups = {OPTION_GROUP("What to do", task_option_table, 0),
-               OPTION_GROUP("Input", input_option_table, 0),
-               OPTION_GROUP("Running", run_option_table, 0),
-               OPTION_GROUP("Output", output_option_table, 0)},
-    .run = run};
-
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static int check_tasks(const physics_options *o, const char *operand)
@@ -385,3 +358,28 @@ static int run(int count, char **words)
         return code;
     return operands[0] ? start(&o, operands[0]) : list(&o);
 }
+
+const verb physics_verb = {
+    .name = "physics",
+    .summary = "instruments from first principles: run them, reduce them to error models",
+    .operands = "[INSTRUMENT|DESIGN.yaml]",
+    .operands_minimum = 0,
+    .operands_maximum = 1,
+    .examples =
+        {{"imukit physics ring_laser --rate \"10 deg/s\" --duration 10s -o out.csv",
+          "ten seconds of a ring laser gyro that turns, as a log"},
+         {"imukit physics mine.yaml --reduce --sweep -o model.yaml",
+          "the error model of a design of your own, by closed forms beside experiments, for "
+          "simulate, grade and the others"}},
+    .description =
+        "INSTRUMENT is a name of the list that imukit physics prints, with its default design; "
+        "DESIGN.yaml is a design file (docs/design-file.md), begun with --show. Without an option "
+        "the design is printed.\n\nEach row of a log is the mean over the sample that ends at its "
+        "time; the input is held over a sample. x is the input axis; what y and z are stands in "
+        "the documentation of each instrument. The views are drawn under the input of --rate and "
+        "--acceleration, else each under an input that shows something.",
+    .groups = {OPTION_GROUP("What to do", task_option_table, 0),
+               OPTION_GROUP("Input", input_option_table, 0),
+               OPTION_GROUP("Running", run_option_table, 0),
+               OPTION_GROUP("Output", output_option_table, 0)},
+    .run = run};

@@ -62,30 +62,6 @@ static const option motion_option_table[] = {
 
 _Static_assert(IMK_SUBSTEPS_MAX == 512, "as the range of --substeps says");
 
-static int run(int count, char **words);
-
-const verb simulate_verb = {
-    .name = "simulate",
-    .summary = "model + motion -> log of a sensor unit with all its errors",
-    .operands = "MODEL",
-    .operands_minimum = 1,
-    .operands_maximum = 1,
-    .examples = {{"imukit simulate AHRS --rate 100Hz --duration 1h --seed 1 -o static.csv",
-                  "an hour of a unit of AHRS grade, level at 45 degrees north"},
-                 {"imukit simulate model.yaml --motion car.yaml --temperature 25degC --rate 100Hz "
-                  "--runs 20 -o runs/ --truth runs/truth.csv",
-                  "a model file on a motion script, twenty runs and the truth"}},
-    .description =
-        "MODEL is a model file or a name from `imukit devices`. The log has a time column, one "
-        "column per axis, and the temperature when it is given; a model with a sensitivity makes "
-        "counts. Axes are forward-right-down, so at rest and level accel_z is about -9.8 m/s^2. A "
-        "row is the mean over the interval that ends at its time; row 0 shows the unit before the "
-        "motion begins.",
-    .groups = {OPTION_GROUP("Options", simulate_option_table, 0),
-               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
-               OPTION_GROUP("Motion and place", motion_option_table, 0)},
-    .run = run};
-
 /* ---- runs ---- */
 
 static bool is_directory(const char *path)
@@ -219,3 +195,25 @@ static int run(int count, char **words)
     free(model);
     return code;
 }
+
+const verb simulate_verb = {
+    .name = "simulate",
+    .summary = "model + motion -> log of a sensor unit with all its errors",
+    .operands = "MODEL",
+    .operands_minimum = 1,
+    .operands_maximum = 1,
+    .examples = {{"imukit simulate AHRS --rate 100Hz --duration 1h --seed 1 -o static.csv",
+                  "an hour of a unit of AHRS grade, level at 45 degrees north"},
+                 {"imukit simulate model.yaml --motion car.yaml --temperature 25degC --rate 100Hz "
+                  "--runs 20 -o runs/ --truth runs/truth.csv",
+                  "a model file on a motion script, twenty runs and the truth"}},
+    .description =
+        "MODEL is a model file or a name from `imukit devices`. The log has a time column, one "
+        "column per axis, and the temperature when it is given; a model with a sensitivity makes "
+        "counts. Axes are forward-right-down, so at rest and level accel_z is about -9.8 m/s^2. A "
+        "row is the mean over the interval that ends at its time; row 0 shows the unit before the "
+        "motion begins.",
+    .groups = {OPTION_GROUP("Options", simulate_option_table, 0),
+               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
+               OPTION_GROUP("Motion and place", motion_option_table, 0)},
+    .run = run};

@@ -11,39 +11,40 @@
 
 typedef struct spectrum_options {
     log_input log;
-    int method, window, density;
-    double resolution, from, to, confidence, false_alarm;
+    imk_spectrum_log_settings settings;
+    int density; /* one-sided: 1 */
     const char *output, *plot, *report;
-    bool trend, json;
+    bool json;
     option_integer threads;
 } spectrum_options;
 
 #define AT(field) offsetof(spectrum_options, field)
 
 static const option spectrum_option_table[] = {
-    {"method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "welch|multitaper",
+    {"method", OPTION_CHOICE, AT(settings.method), .value = "CHOICE", .choices = "welch|multitaper",
      .help = "averaged windowed segments (the default), or Slepian tapers, for records too short "
              "to be cut up"},
-    {"resolution", OPTION_QUANTITY, AT(resolution), .value = "BANDWIDTH", .unit = "Hz",
+    {"resolution", OPTION_QUANTITY, AT(settings.resolution), .value = "BANDWIDTH", .unit = "Hz",
      .choices = "positive",
      .help = "how far two lines must be apart to be told from each other; default: 31 segments, or "
              "one for multitaper"},
-    {"window", OPTION_CHOICE, AT(window), .value = "CHOICE",
+    {"window", OPTION_CHOICE, AT(settings.window), .value = "CHOICE",
      .choices = "hann|blackman-harris|kaiser",
      .help = "of the segments; the latter two for weak lines beside strong ones"},
-    {"trend", OPTION_FLAG, AT(trend),
+    {"trend", OPTION_FLAG, AT(settings.trend),
      .help = "remove a straight line from each segment, not its mean only"},
     {"density", OPTION_CHOICE, AT(density), .value = "SIDES", .choices = "two-sided|one-sided",
      .help = "of the densities shown: IEEE's convention (the default), or twice that as many data "
              "sheets and analysers have it; parameters are always two-sided"},
-    {"false-alarm", OPTION_FRACTION, AT(false_alarm), .value = "FRACTION",
+    {"false-alarm", OPTION_FRACTION, AT(settings.false_alarm), .value = "FRACTION",
      .help = "chance that a channel without lines shows any; default 0.001"},
-    {"from", OPTION_QUANTITY, AT(from), .value = "FREQUENCY", .unit = "Hz",
+    {"from", OPTION_QUANTITY, AT(settings.from), .value = "FREQUENCY", .unit = "Hz",
      .choices = "not negative",
      .help = "lowest frequency the noise parameters are fitted to; default: the lowest resolved"},
-    {"to", OPTION_QUANTITY, AT(to), .value = "FREQUENCY", .unit = "Hz", .choices = "positive",
+    {"to", OPTION_QUANTITY, AT(settings.to), .value = "FREQUENCY", .unit = "Hz",
+     .choices = "positive",
      .help = "highest; set it below the sensor's own filter; default: half the sample rate"},
-    CONFIDENCE_OPTION(AT(confidence), "of the two-sided intervals; default 0.95"),
+    CONFIDENCE_OPTION(AT(settings.confidence), "of the two-sided intervals; default 0.95"),
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE.csv",
      .help = "write the densities (100 per decade, one line per channel and frequency, SI) here; - "
              "is standard output"},
@@ -52,28 +53,6 @@ static const option spectrum_option_table[] = {
     JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
-
-static int run(int count, char **words);
-
-const verb spectrum_verb = {
-    .name = "spectrum",
-    .summary = "power spectral density of a log, its lines and its noise",
-    .operands = "LOG",
-    .operands_minimum = 1,
-    .operands_maximum = 1,
-    .examples = {{"imukit spectrum static.csv --plot spectrum.svg",
-                  "densities, vibration and interference lines, noise parameters of every channel"},
-                 {"imukit spectrum bench.csv --resolution 0.01Hz --density one-sided -o psd.csv",
-                  "finer, and in the convention of most spectrum analysers, as a table"}},
-    .description =
-        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
-        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
-        "column is "
-        "analysed.\n\nLines are listed with frequency, amplitude and what they are multiples of. "
-        "The noise parameters are a cross-check of imukit identify, which is the better "
-        "estimator; where they differ, something that neither models is in the log.",
-    .groups = {OPTION_GROUP("Options", spectrum_option_table, 0), LOG_INPUT_GROUP(AT(log))},
-    .run = run};
 
 static void write_rows(const imk_spectrum_log *s, size_t channel, imk_output_file *file)
 {
@@ -139,12 +118,11 @@ static int tell(const spectrum_options *o, const char *path, const imk_spectrum_
     imk_finding_text(failure, text, sizeof text);
     if (strcmp(error->field, "from") == 0)
         return command_misused("--from %g Hz: the spectrum of %s ends at half its sample rate, %s",
-                               o->from, path, text);
+                               o->settings.from, path, text);
     return command_misused("%s", text);
 }
 
-static int analyse(const spectrum_options *o, const char *path,
-                   const imk_spectrum_log_settings *settings)
+static int analyse(const spectrum_options *o, const char *path)
 {
     imk_log_reader *reader;
     int code = log_input_open(&o->log, path, false, &reader);
@@ -155,7 +133,7 @@ static int analyse(const spectrum_options *o, const char *path,
     threaded_job t;
     threaded_job_begin(&t, path, o->threads.value);
     const imk_record_source source = imk_log_source(reader);
-    const imk_status status = imk_spectrum_log_run(&source, settings, &t.job, &s, &error);
+    const imk_status status = imk_spectrum_log_run(&source, &o->settings, &t.job, &s, &error);
     threaded_job_end(&t);
     imk_log_close(reader);
     code = tell(o, path, s, status, &error);
@@ -167,27 +145,38 @@ static int analyse(const spectrum_options *o, const char *path,
 
 static int run(int count, char **words)
 {
-    spectrum_options o = {.confidence = 0.95, .false_alarm = 1e-3};
+    spectrum_options o = {.settings = imk_spectrum_log_default()};
+    imk_spectrum_log_settings *settings = &o.settings;
     const char *operands[OPERANDS_MAX];
     int code = options_parse(&spectrum_verb, count, words, &o, operands);
     if (code < 0)
         code = command_check_plot(o.plot);
     if (code < 0)
         code = log_input_check(&o.log);
-    if (code < 0 && o.to > 0 && !(o.from < o.to))
-        code = command_misused("--from %g Hz is not below --to %g Hz", o.from, o.to);
-    if (code >= 0)
-        return code;
-    imk_spectrum_log_settings settings = imk_spectrum_log_default();
-    settings.gaps = (imk_gap_policy)o.log.gaps;
-    settings.method = (imk_spectrum_method)o.method;
-    settings.window = (imk_window)o.window;
-    settings.resolution = o.resolution;
-    settings.trend = o.trend;
-    settings.from = o.from;
-    settings.to = o.to;
-    settings.confidence = o.confidence;
-    settings.false_alarm = o.false_alarm;
-    settings.one_sided = o.density == 1;
-    return analyse(&o, operands[0], &settings);
+    if (code < 0 && settings->to > 0 && !(settings->from < settings->to))
+        code =
+            command_misused("--from %g Hz is not below --to %g Hz", settings->from, settings->to);
+    settings->gaps = (imk_gap_policy)o.log.gaps;
+    settings->one_sided = o.density == 1;
+    return code < 0 ? analyse(&o, operands[0]) : code;
 }
+
+const verb spectrum_verb = {
+    .name = "spectrum",
+    .summary = "power spectral density of a log, its lines and its noise",
+    .operands = "LOG",
+    .operands_minimum = 1,
+    .operands_maximum = 1,
+    .examples = {{"imukit spectrum static.csv --plot spectrum.svg",
+                  "densities, vibration and interference lines, noise parameters of every channel"},
+                 {"imukit spectrum bench.csv --resolution 0.01Hz --density one-sided -o psd.csv",
+                  "finer, and in the convention of most spectrum analysers, as a table"}},
+    .description =
+        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
+        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
+        "column is "
+        "analysed.\n\nLines are listed with frequency, amplitude and what they are multiples of. "
+        "The noise parameters are a cross-check of imukit identify, which is the better "
+        "estimator; where they differ, something that neither models is in the log.",
+    .groups = {OPTION_GROUP("Options", spectrum_option_table, 0), LOG_INPUT_GROUP(AT(log))},
+    .run = run};

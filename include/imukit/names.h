@@ -21,5 +21,8 @@ IMK_API size_t imk_nearest_name(const char *name, size_t count, const char *cons
 /** Does the name end in `ending`, such as ".csv"? Case counts. @param name  NULL has no ending */
 IMK_API bool imk_has_ending(const char *name, const char *ending);
 
+/** Is it a script by its name, such as a model or a motion: .yaml, .yml, .json? */
+IMK_API bool imk_is_script_name(const char *path);
+
 IMK_END_C
 #endif

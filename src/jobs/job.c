@@ -44,6 +44,13 @@ imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status
     return imk_error_set(error, status, name, NULL, NULL);
 }
 
+imk_status imki_written(imk_findings *findings, imk_status status)
+{
+    if (status != IMK_OK)
+        imki_find(findings, IMK_FINDING_FAILURE, "not_written", NULL, IMKI_NUMBERS(status));
+    return status;
+}
+
 const imk_finding *imk_findings_failure(const imk_findings *findings)
 {
     for (size_t i = findings->count; i-- > 0;)

@@ -13,6 +13,9 @@ void imki_find(imk_findings *findings, imk_finding_level level, const char *code
 imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status, const char *code,
                      const char *name, size_t count, const double *numbers);
 
+/* What a sink returned: a failure is told. @return it */
+imk_status imki_written(imk_findings *findings, imk_status status);
+
 /* The numbers of a finding: IMKI_NUMBERS(rows, 100 * share) */
 #define IMKI_NUMBERS(...)                                                                          \
     sizeof((const double[]){__VA_ARGS__}) / sizeof(double), (const double[])                       \

@@ -115,7 +115,7 @@ imk_status imk_design_open(const char *name, imk_design_file *file, imk_error *e
     const bool is_file =
         strcmp(name, "-") == 0 || (stat(name, &found) == 0 && !S_ISDIR(found.st_mode));
     const imk_instrument *instrument = is_file ? NULL : imk_instrument_find(name);
-    if (is_file || (!instrument && (strchr(name, '/') || imki_is_script_name(name))))
+    if (is_file || (!instrument && (strchr(name, '/') || imk_is_script_name(name))))
         return imk_design_read(name, file, error);
     if (!instrument) {
         char expected[sizeof error->expected];

@@ -71,12 +71,6 @@ imk_status imki_text_file_write(const char *path, const char *bytes, size_t size
     return imk_output_file_commit(file, error);
 }
 
-bool imki_is_script_name(const char *path)
-{
-    return imk_has_ending(path, ".yaml") || imk_has_ending(path, ".yml") ||
-           imk_has_ending(path, ".json");
-}
-
 /* Does a line of the text begin with the key? JSON has a brace and a quote before it. */
 static bool has_key(const char *text, const char *key)
 {
@@ -95,7 +89,7 @@ bool imki_is_script(const char *path, const char *key)
     imki_input *input;
     char head[HEAD];
     size_t used = 0, got = 1;
-    if (imki_is_script_name(path))
+    if (imk_is_script_name(path))
         return true;
     if (imki_input_open_kept(path, &input, NULL) != IMK_OK)
         return false; /* who reads it says why */

@@ -32,9 +32,6 @@ static inline bool imki_is_text(const char *bytes, size_t size)
     return true;
 }
 
-/* Is it a script by its name: .yaml, .yml, .json? */
-bool imki_is_script_name(const char *path);
-
 /* By its name, or else by its content: does a line begin with this key? It is opened again after
  * this. */
 bool imki_is_script(const char *path, const char *key);

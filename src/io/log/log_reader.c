@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LOOK = 16 }; /* bytes that tell the format */
+enum { LOOK = 64 }; /* bytes that tell the format */
 
 static const uint32_t settings_cookie = 0x4C4F4732; /* "LOG2" */
 

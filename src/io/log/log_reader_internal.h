@@ -97,6 +97,7 @@ imk_status imki_log_rewind(imk_log_reader *reader, imk_error *error);
 /* What the first rows say: the origin of the times and the first step.
  * @param rows  how many there are, 2 standing for more
  * @param time  of the first two, as they stand; NaN where not known
+ * @param none,due  what was found where there is no row, and what is expected
  * @return IMK_ERROR_EMPTY, IMK_ERROR_TOO_SHORT (increments without a step) */
 imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const double time[2],
                                const char *none, const char *due, imk_error *error);

@@ -179,7 +179,7 @@ imk_status imk_model_open(const char *name, imk_model *model, imk_document **doc
     struct stat unused;
     bool is_file = strcmp(name, "-") == 0 || stat(name, &unused) == 0;
     const imk_device *device = is_file ? NULL : imk_device_find(name);
-    bool looks_like_file = strchr(name, '/') || imki_is_script_name(name);
+    bool looks_like_file = strchr(name, '/') || imk_is_script_name(name);
     if (is_file || (!device && looks_like_file))
         return imk_model_read(name, model, document, error);
     if (!device)

@@ -89,14 +89,6 @@ static imk_status check_model(stream *s, imk_error *error)
     return IMK_OK;
 }
 
-static imk_status not_written(stream *s, imk_status status)
-{
-    if (status != IMK_OK)
-        imki_find(&s->log->findings, IMK_FINDING_FAILURE, "not_written", NULL,
-                  IMKI_NUMBERS(status));
-    return status;
-}
-
 static imk_status begin_sink(stream *s, imk_error *error)
 {
     const imki_compensate_columns *columns = &s->columns;
@@ -107,7 +99,7 @@ static imk_status begin_sink(stream *s, imk_error *error)
         s->sink->begin(s->sink->context, columns->count, columns->column, decimals, 0, error);
     if (status == IMK_OK && s->sink->labels)
         s->sink->labels(s->sink->context, s->source);
-    return not_written(s, status);
+    return imki_written(&s->log->findings, status);
 }
 
 /* The sample interval is known when the first block has been read. */
@@ -244,7 +236,8 @@ static imk_status write_rows(stream *s, size_t count, uint64_t first_row, const 
                      : sensor == 2 ? s->flag_column
                                    : s->corrected[sensor][columns->content[k].component];
     }
-    return not_written(s, s->sink->write(s->sink->context, count, written, job->executor, error));
+    return imki_written(&s->log->findings,
+                        s->sink->write(s->sink->context, count, written, job->executor, error));
 }
 
 /* The next block. @param got  rows read; 0 at the end */

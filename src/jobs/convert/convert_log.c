@@ -124,13 +124,6 @@ static imk_status set_units(conversion *c, imk_error *error)
 
 /* ---- rows ---- */
 
-static imk_status not_written(const conversion *c, imk_status status)
-{
-    if (status != IMK_OK)
-        imki_find(c->findings, IMK_FINDING_FAILURE, "not_written", NULL, IMKI_NUMBERS(status));
-    return status;
-}
-
 static imk_status begin_sink(const conversion *c, imk_error *error)
 {
     int decimals[IMK_LOG_COLUMNS_MAX];
@@ -140,7 +133,7 @@ static imk_status begin_sink(const conversion *c, imk_error *error)
         c->sink->begin(c->sink->context, c->count, c->column, decimals, 0, error);
     if (status == IMK_OK && c->sink->labels)
         c->sink->labels(c->sink->context, c->source);
-    return not_written(c, status);
+    return imki_written(c->findings, status);
 }
 
 /* Room for a block behind what waits. */
@@ -195,7 +188,7 @@ static imk_status write_block(conversion *c, imk_error *error)
     m->stored -= ready;
     m->moved -= ready;
     m->ready = 0;
-    return not_written(c, status);
+    return imki_written(c->findings, status);
 }
 
 static imk_status convert(conversion *c, imk_error *error)

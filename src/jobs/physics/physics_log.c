@@ -81,13 +81,6 @@ static void describe_signals(const imk_instrument *instrument, sheet *s)
                    instrument->signals[i].unit);
 }
 
-static imk_status not_written(imk_physics_log *log, imk_status status)
-{
-    if (status != IMK_OK)
-        imki_find(&log->findings, IMK_FINDING_FAILURE, "not_written", NULL, IMKI_NUMBERS(status));
-    return status;
-}
-
 static imk_status begin_sheet(imk_physics_log *log, sheet *s, uint64_t rows, imki_arena *arena,
                               imk_error *error)
 {
@@ -100,8 +93,8 @@ static imk_status begin_sheet(imk_physics_log *log, sheet *s, uint64_t rows, imk
     }
     if (arena->failed)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    return not_written(
-        log, s->sink->begin(s->sink->context, s->columns, s->column, decimals, rows, error));
+    return imki_written(&log->findings, s->sink->begin(s->sink->context, s->columns, s->column,
+                                                       decimals, rows, error));
 }
 
 static imk_status flush(imk_physics_log *log, sheet *s, imk_error *error)
@@ -109,8 +102,9 @@ static imk_status flush(imk_physics_log *log, sheet *s, imk_error *error)
     const size_t rows = s->rows;
     s->rows = 0;
     return rows > 0 && s->sink
-               ? not_written(log, s->sink->write(s->sink->context, rows,
-                                                 (const double *const *)s->data, NULL, error))
+               ? imki_written(&log->findings,
+                              s->sink->write(s->sink->context, rows, (const double *const *)s->data,
+                                             NULL, error))
                : IMK_OK;
 }
 
