@@ -27,7 +27,8 @@ static bool check_steps(const imki_script_reader *reader)
                 isfinite(step->frequency));
         require(step->rate >= 0.0 && step->duration >= 0.0 && step->frequency >= 0.0);
         require(step->axis >= 0 && step->axis <= 2);
-        require(reader->step_node[i] > 0 && reader->step_node[i] < reader->reading.document->node_count);
+        require(reader->step_node[i] > 0 &&
+                reader->step_node[i] < reader->reading.document->node_count);
         pieces += RAMPS + 5.0 * fabs(step->amount) +
                   0.1 * imk_motion_step_duration(&reader->script, i) +
                   RAMPS * step->duration * step->frequency;
