@@ -8,6 +8,8 @@
 static inline void imki_copy_text(char *text, size_t size, const char *from)
 {
     size_t length = strlen(from);
+    if (size == 0)
+        return;
     if (length >= size) {
         length = size - 1;
         while (length > 0 && ((unsigned char)from[length] & 0xC0) == 0x80)
@@ -20,7 +22,8 @@ static inline void imki_copy_text(char *text, size_t size, const char *from)
 static inline void imki_append_text(char *text, size_t size, const char *more)
 {
     const size_t used = strlen(text);
-    imki_copy_text(text + used, size - used, more);
+    if (used < size)
+        imki_copy_text(text + used, size - used, more);
 }
 
 /* Whatever the locale. */

@@ -205,8 +205,9 @@ static size_t undetermined(const message *to, const imk_calibrate_log *b, const 
                    "--model MODEL that says so, as %s.direction",
                    triad->axis_count, imki_sensor_titles[parameter.sensor],
                    imki_sensor_keys[parameter.sensor]);
-    if (b->count == 1 && b->record[0].procedure == IMK_PROCEDURE_MULTIPOSITION)
-        imki_calibrate_poses(b, &b->record[0], "; of further poses most would tell ", poses,
+    const imk_calibrate_record *log = b->count == 1 ? b->record : NULL;
+    if (log && log->procedure == IMK_PROCEDURE_MULTIPOSITION)
+        imki_calibrate_poses(b, log, "; of further poses most would tell ", poses,
                              sizeof poses);
     return say(to, "the logs do not determine %s: %s%s", error->field, remedy_for(&parameter),
                poses);
