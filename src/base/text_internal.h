@@ -7,13 +7,11 @@
 
 static inline void imki_copy_text(char *text, size_t size, const char *from)
 {
-    size_t length = strlen(from);
-    if (length >= size) {
-        length = size - 1;
-        while (length > 0 && ((unsigned char)from[length] & 0xC0) == 0x80)
-            length--;
-    }
-    memcpy(text, from, length);
+    size_t length = 0;
+    for (; length + 1 < size && from[length]; length++)
+        text[length] = from[length];
+    while (length > 0 && ((unsigned char)from[length] & 0xC0) == 0x80)
+        length--;
     text[length] = '\0';
 }
 

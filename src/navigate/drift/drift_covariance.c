@@ -246,9 +246,9 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
     const imk_status status = imk_drift_validate(model, settings, error);
     if (status != IMK_OK)
         return status;
-    if (!memory)
-        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory");
     const layout l = lay_out(model, settings, memory);
+    if (!l.analysis)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory");
     if (size < imki_parts_size(&l.memory))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_drift_covariance_size() bytes");
