@@ -91,11 +91,12 @@ static inline double imki_quantised(double x, double step)
 
 #define IMKI_LENGTH(array) (sizeof(array) / sizeof((array)[0]))
 
-/* The tables of an instrument's description, under the names they have in every file. */
-#define IMKI_TABLES                                                                                \
-    .field_count = IMKI_LENGTH(fields), .fields = fields, .output_count = IMKI_LENGTH(outputs),    \
-    .outputs = outputs, .signal_count = IMKI_LENGTH(signals), .signals = signals,                  \
-    .view_count = IMKI_LENGTH(views), .views = views
+/* What the description of an instrument has under the same names in every file. */
+#define IMKI_DESCRIBED(kind)                                                                       \
+    .name = #kind, .design_size = sizeof(imk_##kind), .field_count = IMKI_LENGTH(fields),          \
+    .fields = fields, .output_count = IMKI_LENGTH(outputs), .outputs = outputs,                    \
+    .signal_count = IMKI_LENGTH(signals), .signals = signals, .view_count = IMKI_LENGTH(views),    \
+    .views = views, .set_default = set_default, .check = check, .reduce = reduce
 
 /* The functions of an instrument that differ in the type of the design only: they call
  * imk_NAME_default(), imki_NAME_reduce() and what imk_NAME_instrument lists. */

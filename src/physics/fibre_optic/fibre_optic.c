@@ -264,21 +264,16 @@ static const imk_view views[] = {
 IMKI_DESIGN_FUNCTIONS(fibre_optic);
 
 const imk_instrument imk_fibre_optic_instrument = {
-    .name = "fibre_optic",
+    IMKI_DESCRIBED(fibre_optic),
     .title = "fibre-optic gyro",
     .technology = "FOG",
     .source = "coil, loss, noise, bias and scale factor of Moeller, Burns, Frigo, J. Lightwave "
               "Technol. 7 (1989) 262, doi:10.1109/50.17765; closed loop and electronics chosen",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,
-    .design_size = sizeof(imk_fibre_optic),
     .state_size = sizeof(imki_fibre_optic_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_fibre_optic_init,
     .step = imki_fibre_optic_step,
     .observe = imki_fibre_optic_observe,
-    .reduce = reduce,
     .step_length = imki_fibre_optic_step_length,
 };

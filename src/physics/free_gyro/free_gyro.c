@@ -351,21 +351,16 @@ static void observe(const void *memory, double *values)
 IMKI_DESIGN_FUNCTIONS(free_gyro);
 
 const imk_instrument imk_free_gyro_instrument = {
-    .name = "free_gyro",
+    IMKI_DESCRIBED(free_gyro),
     .title = "free gyro",
     .technology = "",
     .source = "wheel speed and travel of an electric attitude gyro (training notes, "
               "flyingpilots.com p=264); inertias, friction and torques chosen: free_gyro.h",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,
-    .design_size = sizeof(imk_free_gyro),
     .state_size = sizeof(imki_free_gyro_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = init,
     .step = step,
     .observe = observe,
-    .reduce = reduce,
     .step_length = step_length,
 };

@@ -278,20 +278,15 @@ static imk_status check(const void *given, imk_error *error)
 IMKI_DESIGN_FUNCTIONS(mems_accelerometer);
 
 const imk_instrument imk_mems_accelerometer_instrument = {
-    .name = "mems_accelerometer",
+    IMKI_DESCRIBED(mems_accelerometer),
     .title = "MEMS accelerometer",
     .technology = "MEMS",
     .source = "Safran Colibrys MS1000 datasheet, MS1005 (2016); mass, plates and voltages chosen",
     .sensor = IMK_ACCEL,
     .cookie = DESIGN_COOKIE,
-    .design_size = sizeof(imk_mems_accelerometer),
     .state_size = sizeof(imki_mems_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_mems_init,
     .step = imki_mems_step,
     .observe = imki_mems_observe,
-    .reduce = reduce,
     .step_length = imki_mems_step_length,
 };

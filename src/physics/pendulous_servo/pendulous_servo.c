@@ -147,20 +147,15 @@ static const imk_view views[] = {
 IMKI_DESIGN_FUNCTIONS(pendulous_servo);
 
 const imk_instrument imk_pendulous_servo_instrument = {
-    .name = "pendulous_servo",
+    IMKI_DESCRIBED(pendulous_servo),
     .title = "pendulous servo accelerometer",
     .technology = "servo",
     .source = "datasheet Honeywell QA-3000; pendulum and loop chosen",
     .sensor = IMK_ACCEL,
     .cookie = COOKIE,
-    .design_size = sizeof(design_type),
     .state_size = sizeof(imki_servo),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_servo_init,
     .step = imki_servo_step,
     .observe = imki_servo_observe,
-    .reduce = reduce,
     .step_length = imki_servo_step_length,
 };

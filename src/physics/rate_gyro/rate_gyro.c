@@ -106,19 +106,14 @@ static const imk_view views[] = {
 IMKI_DESIGN_FUNCTIONS(rate_gyro);
 
 const imk_instrument imk_rate_gyro_instrument = {
-    .name = "rate_gyro",
+    IMKI_DESCRIBED(rate_gyro),
     .title = "spring-restrained rate gyro",
     .technology = "",
     .source = "figures chosen, of the size of miniature torsion-bar rate gyros; see rate_gyro.h",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,
-    .design_size = sizeof(imk_rate_gyro),
     .state_size = sizeof(imki_rate_gyro_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_rate_gyro_init,
     .step = imki_rate_gyro_step,
     .observe = imki_rate_gyro_observe,
-    .reduce = reduce,
     .step_length = imki_rate_gyro_step_length};

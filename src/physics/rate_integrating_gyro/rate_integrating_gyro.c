@@ -125,7 +125,7 @@ static const imk_view views[] = {
 IMKI_DESIGN_FUNCTIONS(rate_integrating_gyro);
 
 const imk_instrument imk_rate_integrating_gyro_instrument = {
-    .name = "rate_integrating_gyro",
+    IMKI_DESCRIBED(rate_integrating_gyro),
     .title = "floated rate-integrating gyro",
     .technology = "",
     .source =
@@ -133,13 +133,8 @@ const imk_instrument imk_rate_integrating_gyro_instrument = {
         "rate_integrating_gyro.h",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,
-    .design_size = sizeof(imk_rate_integrating_gyro),
     .state_size = sizeof(imki_rate_integrating_gyro_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_rate_integrating_gyro_init,
     .step = imki_rate_integrating_gyro_step,
     .observe = imki_rate_integrating_gyro_observe,
-    .reduce = reduce,
     .step_length = imki_rate_integrating_gyro_step_length};

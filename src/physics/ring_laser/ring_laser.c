@@ -412,7 +412,7 @@ static void observe(const void *state, double *values)
 IMKI_DESIGN_FUNCTIONS(ring_laser);
 
 const imk_instrument imk_ring_laser_instrument = {
-    .name = "ring_laser",
+    IMKI_DESCRIBED(ring_laser),
     .title = "ring laser gyro",
     .technology = "RLG",
     .source =
@@ -420,14 +420,9 @@ const imk_instrument imk_ring_laser_instrument = {
         "deg/sqrt(h), scale factor 5 ppm; the rest chosen (ring_laser.h)",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,
-    .design_size = sizeof(imk_ring_laser),
     .state_size = sizeof(imki_ring_laser),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = init,
     .step = step,
     .observe = observe,
-    .reduce = reduce,
     .step_length = step_length,
 };

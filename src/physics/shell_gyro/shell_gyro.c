@@ -257,22 +257,17 @@ static const imk_view views[] = {
 IMKI_DESIGN_FUNCTIONS(shell_gyro);
 
 const imk_instrument imk_shell_gyro_instrument = {
-    .name = "shell_gyro",
+    IMKI_DESCRIBED(shell_gyro),
     .title = "vibrating shell gyro",
     .technology = "Coriolis",
     .source = "Silicon Sensing CRG20 data sheet DCR620000255 (ring, closed loop, 55 Hz, cross axis "
               "2 %); resonator and noise chosen, see shell_gyro.h",
     .sensor = IMK_GYRO,
     .cookie = IMKI_SHELL_COOKIE,
-    .design_size = sizeof(imk_shell_gyro),
     .state_size = sizeof(imki_shell_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_shell_init,
     .step = imki_shell_step,
     .observe = imki_shell_observe,
-    .reduce = reduce,
     .step_length = imki_shell_step_length,
 };
 

@@ -415,21 +415,16 @@ static void observe(const void *memory, double *values)
 IMKI_DESIGN_FUNCTIONS(suspended_rotor);
 
 const imk_instrument imk_suspended_rotor_instrument = {
-    .name = "suspended_rotor",
+    IMKI_DESCRIBED(suspended_rotor),
     .title = "electrostatically suspended gyro",
     .technology = "ESG",
     .source = "Autonetics MICRON (N57A): solid beryllium ball of 10 mm at 2500 rev/s [Lawrence "
               "1998]; shape, torques and readout chosen: suspended_rotor.h",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,
-    .design_size = sizeof(imk_suspended_rotor),
     .state_size = sizeof(suspended_rotor_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = init,
     .step = step,
     .observe = observe,
-    .reduce = reduce,
     .step_length = step_length,
 };

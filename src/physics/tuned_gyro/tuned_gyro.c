@@ -173,19 +173,14 @@ static const imk_view views[] = {
 IMKI_DESIGN_FUNCTIONS(tuned_gyro);
 
 const imk_instrument imk_tuned_gyro_instrument = {
-    .name = "tuned_gyro",
+    IMKI_DESCRIBED(tuned_gyro),
     .title = "dynamically tuned gyro",
     .technology = "",
     .source = "figures chosen, of the size of small strapdown tuned gyros; see tuned_gyro.h",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,
-    .design_size = sizeof(imk_tuned_gyro),
     .state_size = sizeof(imki_tuned_gyro_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_tuned_gyro_init,
     .step = imki_tuned_gyro_step,
     .observe = imki_tuned_gyro_observe,
-    .reduce = reduce,
     .step_length = imki_tuned_gyro_step_length};

@@ -266,7 +266,7 @@ static const imk_view views[] = {
 IMKI_DESIGN_FUNCTIONS(tuning_fork);
 
 const imk_instrument imk_tuning_fork_instrument = {
-    .name = "tuning_fork",
+    IMKI_DESCRIBED(tuning_fork),
     .title = "tuning fork gyro",
     .technology = "Coriolis",
     .source =
@@ -274,13 +274,8 @@ const imk_instrument imk_tuning_fork_instrument = {
         "mass, Q, split, quadrature and temperature coefficients chosen",
     .sensor = IMK_GYRO,
     .cookie = COOKIE,
-    .design_size = sizeof(imk_tuning_fork),
     .state_size = sizeof(imki_fork_state),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_fork_init,
     .step = imki_fork_step,
     .observe = imki_fork_observe,
-    .reduce = reduce,
     .step_length = imki_fork_step_length};

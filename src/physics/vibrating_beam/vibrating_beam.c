@@ -183,20 +183,15 @@ static const imk_view views[] = {
 IMKI_DESIGN_FUNCTIONS(vibrating_beam);
 
 const imk_instrument imk_vibrating_beam_instrument = {
-    .name = "vibrating_beam",
+    IMKI_DESCRIBED(vibrating_beam),
     .title = "vibrating beam accelerometer",
     .technology = "vibrating beam",
     .source = "40 kHz, 80 Hz/g, 70 g of the RBA-500 family; the mechanics chosen to give them",
     .sensor = IMK_ACCEL,
     .cookie = COOKIE,
-    .design_size = sizeof(design_type),
     .state_size = sizeof(imki_beams),
-    IMKI_TABLES,
-    .set_default = set_default,
-    .check = check,
     .init = imki_beams_start,
     .step = step,
     .observe = imki_beams_observe,
-    .reduce = reduce,
     .step_length = imki_beams_step_length,
 };

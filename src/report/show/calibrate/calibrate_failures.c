@@ -262,5 +262,5 @@ size_t imk_calibrate_failure(const imk_calibrate_log *b, const imk_error *error,
     }
     if (b->settings.repeatability && error->status != IMK_ERROR_UNIT_MISSING)
         return 0;
-    return log ? of_record(&to, b, log, error) : of_solution(&to, b, error);
+    return b->failed < b->count ? of_record(&to, b, log, error) : of_solution(&to, b, error);
 }
