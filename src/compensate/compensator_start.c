@@ -2,6 +2,7 @@
 /* What a model means for its compensation: which quantities it needs, which outputs depend on which
  * readings, and from where on a reading or a result is to be flagged. */
 #include "imukit/compensate.h"
+#include "model/model_schema_internal.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -39,11 +40,11 @@ static bool any_lever_arm(const imk_triad *accel)
 static bool any_force_on_gyros(const imk_triad *gyro)
 {
     for (int i = 0; i < gyro->axis_count; i++) {
-        for (int k = 0; k < 3; k++)
-            if (gyro->g_sensitivity.value[i][k] != 0.0)
-                return true;
-        for (int k = 0; k < 6; k++)
-            if (gyro->g2_sensitivity.value[i][k] != 0.0)
+        double row[9] = {0.0};
+        imki_add_rows(gyro, i, IMKI_FORM_FORCE, row);
+        imki_add_rows(gyro, i, IMKI_FORM_PRODUCT, row + 3);
+        for (int k = 0; k < 9; k++)
+            if (row[k] != 0.0)
                 return true;
     }
     return false;

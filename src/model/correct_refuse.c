@@ -1,24 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Why a model cannot be inverted: the term without which the iteration would converge fastest. */
+#include "base/text_internal.h"
 #include "correct_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-static void append(char *text, size_t size, const char *more)
-{
-    size_t length = strlen(text);
-    while (*more && length + 1 < size)
-        text[length++] = *more++;
-    text[length] = '\0';
-}
-
 imk_status imki_correct_refuse(imk_error *error, imk_status status, int sensor, const char *key,
                                const char *found, const char *expected)
 {
     char field[64] = "";
-    append(field, sizeof field, !key ? "" : sensor == IMK_GYRO ? "gyro." : "accel.");
-    append(field, sizeof field, key ? key : "");
+    imki_append_text(field, sizeof field, !key ? "" : sensor == IMK_GYRO ? "gyro." : "accel.");
+    imki_append_text(field, sizeof field, key ? key : "");
     return imk_error_set(error, status, field, found, expected);
 }
 

@@ -64,9 +64,8 @@ static imk_status compile_cross_products(imk_axis_response *axis, const imk_tria
 
 static void compile_weights(imk_axis_response *axis, const imk_triad *triad, int sensor, int i)
 {
-    double other[3];
-    for (int j = 0; j < 3; j++)
-        other[j] = triad->misalignment.value[i][j] + triad->cross_axis.value[i][j];
+    double other[3] = {0.0};
+    imki_add_rows(triad, i, IMKI_FORM_SEEN, other);
     if (sensor == IMK_ACCEL) {
         place_row(triad->direction[i], triad->lever_arm.value[i], axis->input);
         place_row(other, triad->lever_arm.value[i], axis->other);
@@ -76,8 +75,8 @@ static void compile_weights(imk_axis_response *axis, const imk_triad *triad, int
     }
     memcpy(axis->input, triad->direction[i], sizeof triad->direction[i]);
     memcpy(axis->other, other, sizeof other);
-    memcpy(axis->other + XX, triad->g2_sensitivity.value[i], 6 * sizeof *axis->other);
-    memcpy(axis->other + THIRD, triad->g_sensitivity.value[i], 3 * sizeof *axis->other);
+    imki_add_rows(triad, i, IMKI_FORM_PRODUCT, axis->other + XX);
+    imki_add_rows(triad, i, IMKI_FORM_FORCE, axis->other + THIRD);
 }
 
 static int compile_polynomial(const imk_temperature_polynomial *from, int i, double *coefficient,

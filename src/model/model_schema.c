@@ -214,6 +214,14 @@ int imki_form_elements(imki_form form)
     return elements[form] > 0 ? elements[form] : 1;
 }
 
+void imki_add_rows(const imk_triad *triad, int axis, imki_form form, double *row)
+{
+    const int count = imki_form_elements(form);
+    for (int term = 0; term < IMK_MODEL_TERMS; term++)
+        for (int k = 0; imki_terms[term].form == form && k < count; k++)
+            row[k] += imki_term_values(term, triad)[axis * count + k];
+}
+
 const char *imki_form_element(imki_form form, int element)
 {
     static const char *const components[] = {"x", "y", "z"}, *const cross[] = {"ip", "io", "po"},

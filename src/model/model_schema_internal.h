@@ -154,6 +154,9 @@ static inline const double *imki_term_values(int term, const imk_triad *triad)
     return (const double *)(const void *)((const char *)triad + imki_terms[term].offset);
 }
 
+/* Add the numbers of an axis of all terms of a form: imki_form_elements() of them. */
+void imki_add_rows(const imk_triad *triad, int axis, imki_form form, double *row);
+
 /* weight u^p |u|^q, p + q > 0 */
 typedef struct imki_power {
     uint8_t term;

@@ -36,6 +36,7 @@
 #include "imukit/elementary.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Sums of the basis functions: 1, w, f, then what few problems need. */
 enum {
@@ -64,7 +65,8 @@ typedef struct turn_model {
     bool forces;        /* are needed */
     bool force_changes; /* ... also the rates */
     bool force_products, nonlinear;
-    double force_to_rate[3][3]; /* P G */
+    double forces_of[IMK_AXES_MAX][3], squares_of[IMK_AXES_MAX][6]; /* G and its like */
+    double force_to_rate[3][3];                                     /* P G */
     double temperature, temperature_rate;
 } turn_model;
 
@@ -85,8 +87,8 @@ static inverse invert(const turn_model *turn, int sensor, const imk_triad *triad
                     triad->bias.temperature_rate.value[i] * turn->temperature_rate +
                     (counts ? triad->zero_offset.value[i] * unit[i] : 0.0);
         for (int j = 0; j < 3; j++)
-            row[i][j] = (1.0 + s) * triad->direction[i][j] + triad->misalignment.value[i][j] +
-                        triad->cross_axis.value[i][j];
+            row[i][j] = (1.0 + s) * triad->direction[i][j];
+        imki_add_rows(triad, i, IMKI_FORM_SEEN, row[i]);
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
                 normal.m[j][k] += row[i][j] * row[i][k];
@@ -102,13 +104,18 @@ static inverse invert(const turn_model *turn, int sensor, const imk_triad *triad
     return out;
 }
 
-static bool axis_is_nonlinear(const imk_triad *gyro, int i)
+/* Find the responses of an axis to force. @return true when it is not linear */
+static bool take_axis(turn_model *turn, const imk_triad *gyro, int i)
 {
     bool any = false;
+    memset(turn->forces_of[i], 0, sizeof turn->forces_of[i]);
+    memset(turn->squares_of[i], 0, sizeof turn->squares_of[i]);
+    imki_add_rows(gyro, i, IMKI_FORM_FORCE, turn->forces_of[i]);
+    imki_add_rows(gyro, i, IMKI_FORM_PRODUCT, turn->squares_of[i]);
     for (size_t k = 0; k < imki_input_power_count; k++)
         any = any || imki_term_values(imki_input_powers[k].term, gyro)[i] != 0.0;
     for (int j = 0; j < 6; j++)
-        any = any || gyro->g2_sensitivity.value[i][j] != 0.0;
+        any = any || turn->squares_of[i][j] != 0.0;
     return any;
 }
 
@@ -146,16 +153,15 @@ static void prepare(turn_model *turn, const imk_calibration *calibration, const 
         turn->force_products = turn->force_products || form == IMKI_FORM_PRODUCT;
         turn->nonlinear = turn->nonlinear || form == IMKI_FORM_POWER;
     }
+    for (int i = 0; i < turn->gyro.count; i++)
+        turn->nonlinear = take_axis(turn, &model->gyro, i) || turn->nonlinear;
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++) {
             turn->force_to_rate[j][k] = 0.0;
             for (int i = 0; i < turn->gyro.count; i++)
-                turn->force_to_rate[j][k] +=
-                    turn->gyro.p[j][i] * model->gyro.g_sensitivity.value[i][k];
+                turn->force_to_rate[j][k] += turn->gyro.p[j][i] * turn->forces_of[i][k];
             turn->force_changes = turn->force_changes || turn->force_to_rate[j][k] != 0.0;
         }
-    for (int i = 0; i < turn->gyro.count; i++)
-        turn->nonlinear = turn->nonlinear || axis_is_nonlinear(&model->gyro, i);
     /* A record without accelerometers leaves g-sensitivity out. */
     turn->forces = (turn->forces || turn->force_changes || turn->nonlinear) &&
                    turn->record->axis_count[IMK_ACCEL] >= 3;
@@ -208,7 +214,7 @@ static void solve_nonlinear(const turn_model *turn, const double f[3], double w[
                 n += imki_term_values(imki_input_powers[k].term, gyro)[i] * power[i][k];
             }
             for (int j = 0; j < 6; j++)
-                n += gyro->g2_sensitivity.value[i][j] * product[j];
+                n += turn->squares_of[i][j] * product[j];
             for (int j = 0; j < 3; j++)
                 sum[j] += turn->gyro.p[j][i] * n;
         }
