@@ -35,7 +35,7 @@ static void run(void *context)
     allan_run *r = context;
     imk_allan_sums(SAMPLES, r->rate, r->sums, r->executor);
     imk_allan_compute(r->statistic, SAMPLES, r->sums, r->count, r->factors, r->variances, NULL,
-                      r->workspace, r->workspace_size, r->executor);
+                      r->executor, r->workspace, r->workspace_size);
 }
 
 static void set_statistic(allan_run *r, imk_allan_statistic statistic)

@@ -50,7 +50,7 @@ static void calibrate(void *context)
     imk_test_record record;
     const double start = bench_now();
     const imk_log_settings reading = imk_log_settings_default();
-    j->status = imk_log_load(j->path, &reading, NULL, NULL, &log, NULL);
+    j->status = imk_log_load(j->path, &reading, NULL, &log, NULL);
     if (j->status != IMK_OK)
         return;
     refer(&log, &record);
@@ -64,13 +64,13 @@ static void calibrate(void *context)
     size_t size = imk_procedure_workspace_size(IMK_PROCEDURE_MULTIPOSITION, &record, &settings);
     void *workspace = malloc(size);
     j->status = imk_procedure_observe(IMK_PROCEDURE_MULTIPOSITION, c, &record, &settings, false,
-                                      workspace, size, NULL, NULL);
+                                      NULL, workspace, size, NULL);
     free(workspace);
     const double observed = bench_now();
     if (j->status == IMK_OK) {
         size = imk_calibration_workspace_size(c);
         workspace = malloc(size);
-        j->status = imk_calibration_solve(c, workspace, size, &j->result, NULL);
+        j->status = imk_calibration_solve(c, &j->result, workspace, size, NULL);
         free(workspace);
     }
     const double solved = bench_now();

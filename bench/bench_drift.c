@@ -167,7 +167,7 @@ static monte_carlo *make_campaign(bool every_term, const imk_trajectory *motion,
     c->settings.time_count = 1;
     imk_error error = {0};
     expect(imk_drift_validate(&c->model, &c->settings, &error), &error);
-    c->size = imk_drift_runs_size(&c->model, &c->settings);
+    c->size = imk_drift_runs_workspace_size(&c->model, &c->settings);
     for (int i = 0; i < THREADS; i++)
         c->memory[i] = allocate(c->size);
     c->errors = allocate(runs * IMK_DRIFT_STATES * sizeof(double));
@@ -185,8 +185,8 @@ static void free_campaign(monte_carlo *c)
 static void run_eight(monte_carlo *c, size_t thread, uint32_t first)
 {
     imk_error error = {0};
-    expect(imk_drift_runs(&c->model, &c->settings, 1, first, RUNS, c->memory[thread], c->size,
-                          c->errors + first * IMK_DRIFT_STATES, &error),
+    expect(imk_drift_runs(&c->model, &c->settings, 1, first, RUNS,
+                          c->errors + first * IMK_DRIFT_STATES, c->memory[thread], c->size, &error),
            &error);
 }
 
@@ -265,7 +265,7 @@ static void run_day(void *context)
     day *d = context;
     imk_drift_analysis *analysis;
     imk_error error = {0};
-    expect(imk_drift_covariance(d->model, d->settings, d->memory, d->size, NULL, &analysis, &error),
+    expect(imk_drift_covariance(d->model, d->settings, NULL, &analysis, d->memory, d->size, &error),
            &error);
     d->sources = analysis->source_count;
     bench_use(analysis);

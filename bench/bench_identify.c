@@ -113,7 +113,7 @@ static double run_whole(const imk_executor *executor)
     imk_log_settings settings = imk_log_settings_default();
     settings.rate = 100;
     const double begin = bench_now();
-    if (imk_log_load(path, &settings, NULL, NULL, &w.log, NULL) != IMK_OK)
+    if (imk_log_load(path, &settings, NULL, &w.log, NULL) != IMK_OK)
         stop("cannot read the log");
     imk_execute(executor, CHANNELS, identify_whole, &w);
     imk_log_free(&w.log);
@@ -131,7 +131,7 @@ static void gather(void *context)
 {
     const gather_run *g = context;
     imk_identify_record *record;
-    imk_identify_record_begin(SAMPLES, g->memory, imk_identify_record_size(SAMPLES), &record, NULL);
+    imk_identify_record_begin(SAMPLES, &record, g->memory, imk_identify_record_size(SAMPLES), NULL);
     imk_identify_record_add(record, SAMPLES, g->samples, NULL);
 }
 

@@ -154,12 +154,12 @@ static imk_trajectory day_of_eights(void)
     imk_quaternion *attitude = allocate(POSES * sizeof *attitude);
     for (size_t i = 0; i < POSES; i++)
         set_pose(i, place, time, position, attitude);
-    double *workspace = allocate(imk_trajectory_poses_workspace(POSES) * sizeof *workspace);
+    void *workspace = allocate(imk_trajectory_poses_workspace_size(POSES));
     imk_trajectory_piece *piece = allocate((POSES - 1) * sizeof *piece);
     const double *const columns[3] = {position[0], position[1], position[2]};
     imk_error error;
-    if (imk_trajectory_from_poses(POSES, time, columns, attitude, workspace, piece, &error) !=
-        IMK_OK)
+    if (imk_trajectory_from_poses(POSES, time, columns, attitude, piece, workspace,
+                                  imk_trajectory_poses_workspace_size(POSES), &error) != IMK_OK)
         stop("the poses", &error);
     free(workspace);
     free(attitude);
@@ -208,7 +208,7 @@ static void simulate_day(void *context)
     void *memory = allocate(size);
     imk_simulator *simulator;
     imk_error error;
-    if (imk_simulator_start(memory, size, &work->model, &work->simulation, &simulator, &error) !=
+    if (imk_simulator_start(&work->model, &work->simulation, &simulator, memory, size, &error) !=
         IMK_OK)
         stop("the simulator", &error);
     imk_log_writer *writer = create_log(work);

@@ -221,8 +221,8 @@ static void *memory_for(const imk_model *model, const imk_simulation *simulation
 static imk_simulator *start(const imk_model *model, const imk_simulation *simulation, void *memory)
 {
     imk_simulator *simulator = NULL;
-    if (!memory || imk_simulator_start(memory, imk_simulator_size(model, simulation), model,
-                                       simulation, &simulator, NULL) != IMK_OK) {
+    if (!memory || imk_simulator_start(model, simulation, &simulator, memory,
+                                       imk_simulator_size(model, simulation), NULL) != IMK_OK) {
         fprintf(stderr, "bench: the simulator does not start\n");
         exit(1);
     }

@@ -64,7 +64,7 @@ static table make_table(double rate)
     poses.time = allocate(array);
     poses.attitude = allocate(poses.count * sizeof *poses.attitude);
     poses.piece = allocate(poses.count * sizeof *poses.piece);
-    poses.workspace = allocate(imk_trajectory_poses_workspace(poses.count) * sizeof(double));
+    poses.workspace = allocate(imk_trajectory_poses_workspace_size(poses.count));
     poses.boundary = allocate((SAMPLES + 1) * sizeof(double));
     for (int axis = 0; axis < 3; axis++) {
         poses.position[axis] = allocate(array);
@@ -99,8 +99,9 @@ static void make_pieces(void *context)
     table *poses = context;
     const double *const position[3] = {poses->position[0], poses->position[1], poses->position[2]};
     imk_error error;
-    if (imk_trajectory_from_poses(poses->count, poses->time, position, poses->attitude,
-                                  poses->workspace, poses->piece, &error) != IMK_OK) {
+    if (imk_trajectory_from_poses(
+            poses->count, poses->time, position, poses->attitude, poses->piece, poses->workspace,
+            imk_trajectory_poses_workspace_size(poses->count), &error) != IMK_OK) {
         fprintf(stderr, "bench_trajectory: the poses are refused: %s\n", error.field);
         exit(1);
     }

@@ -52,7 +52,7 @@ static imk_status simulate(const imk_model *model, const imk_trajectory *traject
     if (!memory)
         exit(EXIT_FAILURE);
     imk_simulator *simulator;
-    imk_status status = imk_simulator_start(memory, size, model, &simulation, &simulator, error);
+    imk_status status = imk_simulator_start(model, &simulation, &simulator, memory, size, error);
     if (status == IMK_OK)
         imk_simulator_next(simulator, ROWS, column, NULL);
     free(memory);

@@ -41,7 +41,7 @@ static imk_status budget(const imk_model *model, const imk_drift_settings *setti
     const size_t size = imk_drift_covariance_size(model, settings);
     void *memory = memory_of(size);
     imk_drift_analysis *analysis = NULL;
-    imk_status status = imk_drift_covariance(model, settings, memory, size, NULL, &analysis, error);
+    imk_status status = imk_drift_covariance(model, settings, NULL, &analysis, memory, size, error);
     for (size_t t = 0; status == IMK_OK && t < TIMES; t++) {
         const imk_drift_figures figures = imk_drift_figures_of(&analysis->total[t]);
         printf("%6.0f s: half of all units within %.4g m, 95 %% within %.4g m\n", analysis->time[t],
@@ -58,10 +58,10 @@ static imk_status some_runs(const imk_model *model, const imk_drift_settings *se
                             imk_error *error)
 {
     static double errors[RUNS][TIMES][IMK_DRIFT_STATES];
-    const size_t size = imk_drift_runs_size(model, settings);
+    const size_t size = imk_drift_runs_workspace_size(model, settings);
     void *memory = memory_of(size);
     imk_status status =
-        imk_drift_runs(model, settings, 1, 0, RUNS, memory, size, &errors[0][0][0], error);
+        imk_drift_runs(model, settings, 1, 0, RUNS, &errors[0][0][0], memory, size, error);
     for (int run = 0; status == IMK_OK && run < RUNS; run++)
         printf("run %d: %.4g m north, %.4g m east\n", run, errors[run][TIMES - 1][0],
                errors[run][TIMES - 1][1]);

@@ -117,7 +117,7 @@ static double time_gathered(size_t n, source *s, double *block,
     void *memory = malloc(size), *workspace = NULL;
     imk_identify_record *record;
     imk_identification result;
-    if (!memory || imk_identify_record_begin(n, memory, size, &record, NULL) != IMK_OK)
+    if (!memory || imk_identify_record_begin(n, &record, memory, size, NULL) != IMK_OK)
         return (double)NAN;
     double spent = 0;
     start(s);

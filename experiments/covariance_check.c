@@ -63,8 +63,9 @@ static void run_lanes(void *context, size_t item)
     const size_t count = w->runs - first < IMK_DRIFT_LANES ? w->runs - first : IMK_DRIFT_LANES;
     void *memory = aligned_alloc(64, (w->size + 63) / 64 * 64);
     imk_error error;
-    if (!memory || imk_drift_runs(w->model, w->settings, 1, (uint32_t)first, count, memory, w->size,
-                                  w->errors + first * w->settings->time_count * STATES, &error)) {
+    if (!memory || imk_drift_runs(w->model, w->settings, 1, (uint32_t)first, count,
+                                  w->errors + first * w->settings->time_count * STATES, memory,
+                                  w->size, &error)) {
         fprintf(stderr, "covariance_check: runs from %zu on failed\n", first);
         exit(2);
     }
@@ -229,10 +230,10 @@ static bool run_study(const study *of, size_t runs, const imk_trajectory *drive,
     const size_t size = imk_drift_covariance_size(&model, &settings);
     void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     imk_drift_analysis *analysis;
-    work w = {&model, &settings, runs, imk_drift_runs_size(&model, &settings),
+    work w = {&model, &settings, runs, imk_drift_runs_workspace_size(&model, &settings),
               malloc(runs * of->time_count * STATES * sizeof(double))};
     if (!memory || !w.errors ||
-        imk_drift_covariance(&model, &settings, memory, size, executor, &analysis, &error)) {
+        imk_drift_covariance(&model, &settings, executor, &analysis, memory, size, &error)) {
         fprintf(stderr, "covariance_check: no covariance for %s\n", of->name);
         return false;
     }

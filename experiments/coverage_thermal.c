@@ -17,8 +17,8 @@ static int run(size_t benches, uint64_t seed, bool knocks)
     memset(&count, 0, sizeof count);
     for (size_t k = 0; k < benches; k++) {
         if (!thermal_run(&bench, 1000003 * seed + k, knocks) ||
-            imk_thermal_analyse(&bench.record, &settings, &bench.nominal, bench.workspace,
-                                imk_thermal_workspace_size(), &bench.findings,
+            imk_thermal_analyse(&bench.record, &settings, &bench.nominal, &bench.findings,
+                                bench.workspace, imk_thermal_workspace_size(),
                                 &bench.error) != IMK_OK) {
             count.failed++;
             continue;

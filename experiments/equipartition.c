@@ -11,6 +11,7 @@
  * by 4 standard deviations where these are more; a standard deviation above 0.33 % is a failure
  * too. */
 #include "imukit/imukit.h"
+#include "imukit/physics.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -160,8 +160,8 @@ int main(int argc, char **argv)
                 imk_allan_gaps_settings settings = imk_allan_gaps_default();
                 make_noise(noise, random, run, rate, 1);
                 take_out(mask, random, run, rate);
-                imk_allan_gaps_points(&settings, SAMPLES, rate, FACTORS, factors, p, workspace,
-                                      size, NULL);
+                imk_allan_gaps_points(&settings, SAMPLES, rate, FACTORS, factors, p, NULL,
+                                      workspace, size);
                 const bool form = run < 100 && noise != 4;
                 if (form)
                     variogram(rate, 512, gamma);

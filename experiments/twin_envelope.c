@@ -126,7 +126,7 @@ int main(int argc, char **argv)
     imk_log log;
     imk_log_settings log_settings = imk_log_settings_default();
     log_settings.rate = rate;
-    if (imk_log_load(argv[1], &log_settings, NULL, NULL, &log, &error) != IMK_OK)
+    if (imk_log_load(argv[1], &log_settings, NULL, &log, &error) != IMK_OK)
         return fail(&error, argv[1]);
     static imk_model model;
     if (imk_model_open(argv[2], &model, NULL, &error) != IMK_OK)
@@ -163,7 +163,7 @@ int main(int argc, char **argv)
     for (size_t t = 0; t < twins; t++) {
         simulation.seed = first_seed + t;
         imk_simulator *simulator;
-        if (imk_simulator_start(memory, size, &model, &simulation, &simulator, &error) != IMK_OK)
+        if (imk_simulator_start(&model, &simulation, &simulator, memory, size, &error) != IMK_OK)
             return fail(&error, argv[2]);
         imk_simulator_next(simulator, log.rows, work.columns, &executor);
         work.deviation = twin[t];

@@ -20,35 +20,31 @@ typedef struct allan_options {
     option_integer threads;
 } allan_options;
 
-#define AT(member) offsetof(allan_options, member)
+#define AT(field) offsetof(allan_options, field)
 
 static const option allan_option_table[] = {
-    {"statistic", 0, A_TEXT("NAME,NAME…|all"), AT(statistic),
-     "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, haar; "
-     "theo1 takes seconds a million samples"},
-    {"tau", 0, A_TEXT("octave|decade|many|all|LIST"), AT(tau),
-     "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, then 32 "
-     "to the octave), every one, or a list such as 1,10,100 in seconds"},
-    {"confidence", 0, A_FRACTION("FRACTION", CONFIDENCE_RANGE), AT(confidence),
-     "of the two-sided intervals; default 0.95"},
-    {"edf", 0, A_CHOICE("CHOICE", "exact|greenhall-riley"), AT(edf),
-     "degrees of freedom behind the intervals: of the sampled process (the default), or by the "
-     "published formulas for the continuous one"},
-    {"bias", 0, A_CHOICE("CHOICE", "removed|published|left"), AT(bias),
-     "the bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: taken off for the "
-     "noise found (the default), the same with the factors in print, or left in"},
-    {"type", 0, A_CHOICE("CHOICE", "rate|phase"), AT(type),
-     "what the columns hold: rates (the default), or their integral (phase, angle)"},
-    {"output", 'o', AN_OUTPUT("FILE.csv"), AT(output),
-     "write the long table (one line per channel and averaging time, SI) here; - is standard "
-     "output"},
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the deviations with their intervals"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
-     "write one self-contained page: plot and tables"},
-    {"json", 0, A_FLAG, AT(json), "print the result as JSON instead of a table"},
-    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
-     "threads to use; default: all processors"},
+    {"statistic", OPTION_TEXT, AT(statistic), .value = "NAME,NAME…|all",
+     .help = "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, "
+             "haar; theo1 takes seconds a million samples"},
+    {"tau", OPTION_TEXT, AT(tau), .value = "octave|decade|many|all|LIST",
+     .help = "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, "
+             "then 32 to the octave), every one, or a list such as 1,10,100 in seconds"},
+    CONFIDENCE_OPTION(AT(confidence), "of the two-sided intervals; default 0.95"),
+    {"edf", OPTION_CHOICE, AT(edf), .value = "CHOICE", .choices = "exact|greenhall-riley",
+     .help = "degrees of freedom behind the intervals: of the sampled process (the default), or by "
+             "the published formulas for the continuous one"},
+    {"bias", OPTION_CHOICE, AT(bias), .value = "CHOICE", .choices = "removed|published|left",
+     .help = "the bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: taken off for "
+             "the noise found (the default), the same with the factors in print, or left in"},
+    {"type", OPTION_CHOICE, AT(type), .value = "CHOICE", .choices = "rate|phase",
+     .help = "what the columns hold: rates (the default), or their integral (phase, angle)"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE.csv",
+     .help = "write the long table (one line per channel and averaging time, SI) here; - is "
+             "standard output"},
+    PLOT_OPTION(AT(plot), "draw the deviations with their intervals"),
+    REPORT_OPTION(AT(report), "write one self-contained page: plot and tables"),
+    JSON_OPTION(AT(json), "print the result as JSON instead of a table"),
+    THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static int run(int count, char **words);
@@ -75,8 +71,7 @@ const verb allan_verb = {
         "finite keep their places empty: oadev of rates is then taken of what is there, and the "
         "share of the record's pairs behind each point is shown. The other statistics, and phase, "
         "need a complete record: --gaps bridge or --gaps longest.",
-    .groups = {{A_GROUP("Options", allan_option_table), 0},
-               {A_GROUP("Reading the log", log_input_options), AT(log)}},
+    .groups = {OPTION_GROUP("Options", allan_option_table, 0), LOG_INPUT_GROUP(AT(log))},
     .run = run};
 
 /* Names of --statistic. @return -1 or the exit code */

@@ -2,7 +2,7 @@
 /* Logs of bench tests, with rows and gaps as they are. */
 #include "calibrate_parts.h"
 
-#include "shell/progress.h"
+#include "shell/job_progress.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,13 +66,11 @@ static int check_length(const calibrate_options *o, const bench_log *log)
 int bench_load(bench *b, bench_log *log)
 {
     imk_error error;
-    char label[120];
     const imk_log_settings settings = log_input_settings(&b->options->log);
-    snprintf(label, sizeof label, "reading %.100s", log->path);
-    progress p = progress_begin(label, "B", 1);
-    const imk_status status =
-        imk_log_load(log->path, &settings, progress_update, &p, &log->log, &error);
-    progress_end(&p);
+    job_progress shown = job_progress_begin(log->path);
+    const imk_job job = job_progress_job(&shown, NULL);
+    const imk_status status = imk_log_load(log->path, &settings, &job, &log->log, &error);
+    job_progress_end(&shown);
     if (status != IMK_OK)
         return command_log_error(&error, log->path);
     int code = make_record(b, log);

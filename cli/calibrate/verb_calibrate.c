@@ -6,98 +6,112 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(member) offsetof(calibrate_options, member)
+#define AT(field) offsetof(calibrate_options, field)
 
 static const option result_options[] = {
-    {"procedure", 'p', A_TEXT("NAME"), AT(procedure),
-     "what was done: multiposition, sixposition, ferraris, rate-table, tumble, centrifuge, spin, "
-     "thermal or repeatability; one for all logs, or one for each, with commas between"},
-    {"output", 'o', AN_OUTPUT("MODEL"), AT(output), "write the model here (.yaml or .json)"},
-    {"into", 0, A_TARGET("MODEL"), AT(into),
-     "start from this model and replace only what is estimated; the changes are printed"},
-    {"model", 'm', AN_INPUT("MODEL"), AT(model),
-     "known before: sensitivities, and terms that are not estimated"},
-    {"name", 0, A_TEXT("TEXT"), AT(name), "name of the model; default: that of the log file"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
-     "write one self-contained page: verdict, parameters, residuals, model"},
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the residuals, and where each log stands still"},
-    {"poses", 0, A_FLAG, AT(poses), "print every observation with its residuals"},
-    {"json", 0, A_FLAG, AT(json), "print the result as JSON instead of tables"},
-    {"strict", 0, A_FLAG, AT(strict), "exit with 1 when there is a warning"},
-    {"plan", 0, A_FLAG, AT(plan),
-     "print the programme of a test instead; the operand is a model of the unit, with its noise, "
-     "and -o the motion file to write"},
-    {"want", 0, A_TEXT("WISHES"), AT(want),
-     "with --plan: 1 sigma to reach, such as \"accel.scale_factor 50 ppm, gyro.bias 5 deg/h\""},
-    {"soak", 0, A_QUANTITY("TIME", "s", "0..1e6"), AT(soak),
-     "with --plan, thermal: held at each temperature before it is measured; default 10min"},
-    {"anyway", 0, A_FLAG, AT(anyway),
-     "write the model although the verdict says that it is not usable"},
+    {"procedure", OPTION_TEXT, AT(procedure), .letter = 'p', .value = "NAME",
+     .help =
+         "what was done: multiposition, sixposition, ferraris, rate-table, tumble, centrifuge, "
+         "spin, thermal or repeatability; one for all logs, or one for each, with commas between"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "MODEL",
+     .help = "write the model here (.yaml or .json)"},
+    {"into", OPTION_INTO, AT(into), .value = "MODEL",
+     .help = "start from this model and replace only what is estimated; the changes are printed"},
+    {"model", OPTION_FILE, AT(model), .letter = 'm', .value = "MODEL",
+     .help = "known before: sensitivities, and terms that are not estimated"},
+    {"name", OPTION_TEXT, AT(name), .value = "TEXT",
+     .help = "name of the model; default: that of the log file"},
+    REPORT_OPTION(AT(report),
+                  "write one self-contained page: verdict, parameters, residuals, model"),
+    PLOT_OPTION(AT(plot), "draw the residuals, and where each log stands still"),
+    {"poses", OPTION_FLAG, AT(poses), .help = "print every observation with its residuals"},
+    JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
+    STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
+    {"plan", OPTION_FLAG, AT(plan),
+     .help = "print the programme of a test instead; the operand is a model of the unit, with its "
+             "noise, and -o the motion file to write"},
+    {"want", OPTION_TEXT, AT(want), .value = "WISHES",
+     .help =
+         "with --plan: 1 sigma to reach, such as \"accel.scale_factor 50 ppm, gyro.bias 5 deg/h\""},
+    {"soak", OPTION_QUANTITY, AT(soak), .value = "TIME", .unit = "s", .choices = "0..1e6",
+     .help = "with --plan, thermal: held at each temperature before it is measured; default 10min"},
+    {"anyway", OPTION_FLAG, AT(anyway),
+     .help = "write the model although the verdict says that it is not usable"},
 };
 
 static const option test_options[] = {
-    {"position", 0, A_TEXT("POSITION"), AT(position),
-     "latitude, longitude and height of the test, for gravity and the Earth's rotation, such as "
-     "\"48.1 deg, 11.6 deg, 520 m\""},
-    {"gravity", 'g', A_QUANTITY("G", "m/s^2", NULL), AT(gravity),
-     "local gravity when it is known better than by the position, such as 9.80743m/s^2"},
-    {"no-earth", 0, A_FLAG, AT(no_earth),
-     "references contain no rotation of the Earth: the gyros' bias takes it in"},
-    {"frame", 0, A_CHOICE("FRAME", "upper-triangular|lower-triangular|symmetric|reference"),
-     AT(frame),
-     "what fixes the rotation of the triads: gravity alone does not; default upper-triangular, "
-     "with a procedure of known attitudes reference"},
-    {"estimate", 0, A_TEXT("TERMS"), AT(estimate),
-     "own list of what is estimated, such as \"bias,scale_factor,accel.misalignment\"; default: "
-     "what the procedure determines"},
-    {"with", 0, A_TEXT("TERMS"), AT(with),
-     "estimate these besides: nonlinearity, cross_products, g_sensitivity, g2_sensitivity, gyro"},
-    {"without", 0, A_TEXT("TERMS"), AT(without), "do not estimate these"},
-    {"accel-sensitivity", 0, A_TEXT("NUMBER"), AT(sensitivity[1]),
-     "nominal, of logs in counts, such as \"415 count/(m/s^2)\""},
-    {"gyro-sensitivity", 0, A_TEXT("NUMBER"), AT(sensitivity[0]),
-     "the same, such as \"4778 count/(rad/s)\""},
-    {"accel-zero", 0, A_TEXT("NUMBER"), AT(zero_offset[1]),
-     "counts at zero input, such as \"32768 count\""},
-    {"gyro-zero", 0, A_TEXT("NUMBER"), AT(zero_offset[0]), "the same"},
-    {"robust", 0, A_CHOICE("CHOICE", "yes|no"), AT(robust),
-     "observations that do not fit the others lose their weight (the default)"},
-    {"estimator", 0, A_CHOICE("CHOICE", "maximum-likelihood|closed-form"), AT(estimator),
-     "ferraris: closed-form solves the session as published for it, with --trim 0s to the last "
-     "digit; for comparison. Default maximum-likelihood"},
+    {"position", OPTION_TEXT, AT(position), .value = "POSITION",
+     .help = "latitude, longitude and height of the test, for gravity and the Earth's rotation, "
+             "such as \"48.1 deg, 11.6 deg, 520 m\""},
+    {"gravity", OPTION_QUANTITY, AT(gravity), .letter = 'g', .value = "G", .unit = "m/s^2",
+     .help = "local gravity when it is known better than by the position, such as 9.80743m/s^2"},
+    {"no-earth", OPTION_FLAG, AT(no_earth),
+     .help = "references contain no rotation of the Earth: the gyros' bias takes it in"},
+    {"frame", OPTION_CHOICE, AT(frame), .value = "FRAME",
+     .choices = "upper-triangular|lower-triangular|symmetric|reference",
+     .help = "what fixes the rotation of the triads: gravity alone does not; default "
+             "upper-triangular, with a procedure of known attitudes reference"},
+    {"estimate", OPTION_TEXT, AT(estimate), .value = "TERMS",
+     .help = "own list of what is estimated, such as \"bias,scale_factor,accel.misalignment\"; "
+             "default: what the procedure determines"},
+    {"with", OPTION_TEXT, AT(with), .value = "TERMS",
+     .help = "estimate these besides: nonlinearity, cross_products, g_sensitivity, g2_sensitivity, "
+             "gyro"},
+    {"without", OPTION_TEXT, AT(without), .value = "TERMS", .help = "do not estimate these"},
+    {"accel-sensitivity", OPTION_TEXT, AT(sensitivity[1]), .value = "NUMBER",
+     .help = "nominal, of logs in counts, such as \"415 count/(m/s^2)\""},
+    {"gyro-sensitivity", OPTION_TEXT, AT(sensitivity[0]), .value = "NUMBER",
+     .help = "the same, such as \"4778 count/(rad/s)\""},
+    {"accel-zero", OPTION_TEXT, AT(zero_offset[1]), .value = "NUMBER",
+     .help = "counts at zero input, such as \"32768 count\""},
+    {"gyro-zero", OPTION_TEXT, AT(zero_offset[0]), .value = "NUMBER", .help = "the same"},
+    {"robust", OPTION_CHOICE, AT(robust), .value = "CHOICE", .choices = "yes|no",
+     .help = "observations that do not fit the others lose their weight (the default)"},
+    {"estimator", OPTION_CHOICE, AT(estimator), .value = "CHOICE",
+     .choices = "maximum-likelihood|closed-form",
+     .help = "ferraris: closed-form solves the session as published for it, with --trim 0s to the "
+             "last digit; for comparison. Default maximum-likelihood"},
 };
 
 static const option log_options[] = {
-    {"section", 0, A_TEXT("COLUMN"), AT(section),
-     "column of texts that name the holds, turns or runs; default: the only column of texts"},
-    {"initial-rest", 0, A_QUANTITY("TIME", "s", "not negative"), AT(initial_rest),
-     "the log begins with so long a rest; default: the quietest part is searched for"},
-    {"window", 0, A_QUANTITY("TIME", "s", "not negative"), AT(window),
-     "over which scatter is judged; default: chosen from the log"},
-    {"minimum", 0, A_QUANTITY("TIME", "s", "positive"), AT(minimum),
-     "shortest rest, step or run that counts; default 1s at rest, 0.5s of a reference"},
-    {"trim", 0, A_QUANTITY("TIME", "s", "not negative"), AT(trim),
-     "left out at both ends of a step or run; default 0.2s"},
-    {"settle", 0, A_QUANTITY("TIME", "s", "not negative"), AT(settle),
-     "left out at its beginning besides, until filters have settled; default 0s"},
-    {"placement", 0, A_QUANTITY("ANGLE", "deg", "0..180"), AT(placement),
-     "1 sigma of each placement on a face; default 0.1deg for sixposition and ferraris"},
-    {"mounting", 0, A_QUANTITY("ANGLE", "deg", "0..180"), AT(mounting),
-     "1 sigma of the unit's attitude on its fixture or table, which all holds share; default 0deg"},
-    {"turn-angle", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(turn_angle),
-     "ferraris: angle of each turn about its axis, with sign; default 360deg"},
-    {"motion", 0, AN_INPUT("PROGRAMME"), AT(motion),
-     "motion file that the table ran: the reference"},
-    {"motion-offset", 0, A_TEXT("TIME|auto"), AT(motion_offset),
-     "time of the log at which the programme begins; auto finds it; default 0s"},
-    {"table-axis", 0, A_CHOICE("AXIS", "x|y|z"), AT(table_axis),
-     "of the unit, about which a column table_rate [deg/s] turns it"},
-    {"temperature-order", 0, AN_INTEGER("N", "1-5"), AT(temperature_order),
-     "thermal: order of the bias, 1 to 5; default: chosen by cross-validation"},
-    {"reference-temperature", 0, A_QUANTITY("T", "degC", NULL), AT(reference_temperature),
-     "thermal: where the polynomials vanish; default 25degC if within the sweep"},
+    {"section", OPTION_TEXT, AT(section), .value = "COLUMN",
+     .help =
+         "column of texts that name the holds, turns or runs; default: the only column of texts"},
+    {"initial-rest", OPTION_QUANTITY, AT(initial_rest), .value = "TIME", .unit = "s",
+     .choices = "not negative",
+     .help = "the log begins with so long a rest; default: the quietest part is searched for"},
+    {"window", OPTION_QUANTITY, AT(window), .value = "TIME", .unit = "s", .choices = "not negative",
+     .help = "over which scatter is judged; default: chosen from the log"},
+    {"minimum", OPTION_QUANTITY, AT(minimum), .value = "TIME", .unit = "s", .choices = "positive",
+     .help = "shortest rest, step or run that counts; default 1s at rest, 0.5s of a reference"},
+    {"trim", OPTION_QUANTITY, AT(trim), .value = "TIME", .unit = "s", .choices = "not negative",
+     .help = "left out at both ends of a step or run; default 0.2s"},
+    {"settle", OPTION_QUANTITY, AT(settle), .value = "TIME", .unit = "s", .choices = "not negative",
+     .help = "left out at its beginning besides, until filters have settled; default 0s"},
+    {"placement", OPTION_QUANTITY, AT(placement), .value = "ANGLE", .unit = "deg",
+     .choices = "0..180",
+     .help = "1 sigma of each placement on a face; default 0.1deg for sixposition and ferraris"},
+    {"mounting", OPTION_QUANTITY, AT(mounting), .value = "ANGLE", .unit = "deg",
+     .choices = "0..180",
+     .help = "1 sigma of the unit's attitude on its fixture or table, which all holds share; "
+             "default 0deg"},
+    {"turn-angle", OPTION_QUANTITY, AT(turn_angle), .value = "ANGLE", .unit = "deg",
+     .choices = "-36000..36000",
+     .help = "ferraris: angle of each turn about its axis, with sign; default 360deg"},
+    {"motion", OPTION_FILE, AT(motion), .value = "PROGRAMME",
+     .help = "motion file that the table ran: the reference"},
+    {"motion-offset", OPTION_TEXT, AT(motion_offset), .value = "TIME|auto",
+     .help = "time of the log at which the programme begins; auto finds it; default 0s"},
+    {"table-axis", OPTION_CHOICE, AT(table_axis), .value = "AXIS", .choices = "x|y|z",
+     .help = "of the unit, about which a column table_rate [deg/s] turns it"},
+    {"temperature-order", OPTION_INTEGER, AT(temperature_order), .value = "N", .choices = "1-5",
+     .help = "thermal: order of the bias, 1 to 5; default: chosen by cross-validation"},
+    {"reference-temperature", OPTION_QUANTITY, AT(reference_temperature), .value = "T",
+     .unit = "degC",
+     .help = "thermal: where the polynomials vanish; default 25degC if within the sweep"},
 };
+
+#define COUNT(table) (sizeof(table) / sizeof *(table))
 
 _Static_assert(IMK_TEMPERATURE_ORDER_MAX == 5, "as the range of --temperature-order says");
 
@@ -131,9 +145,9 @@ const verb calibrate_verb = {
         "repeatability compares power cycles: a log, a section or a MODEL of each; models compare "
         "the scale factors too.\n\n"
         "docs/calibrate.md says how to do each test.",
-    .groups = {{A_GROUP("Options", result_options), 0},
-               {A_GROUP("The test", test_options), 0},
-               {A_GROUP("What to look for in the logs", log_options), 0},
+    .groups = {{"Options", COUNT(result_options), result_options, 0},
+               {"The test", COUNT(test_options), test_options, 0},
+               {"What to look for in the logs", COUNT(log_options), log_options, 0},
                {"Reading the logs", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
     .run = run};
 

@@ -8,17 +8,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(member) offsetof(compensate_emission, member)
+#define AT(field) offsetof(compensate_emission, field)
 
 const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
-    {"emit-c", 0, AN_INPUT("DIR"), AT(directory),
-     "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c"},
-    {"arithmetic", 0, A_CHOICE("KIND", "float|double|fixed"), AT(arithmetic),
-     "of that code: float (default), double, or fixed: 32-bit integers, for parts without an FPU"},
-    {"prefix", 0, A_TEXT("NAME"), AT(prefix),
-     "of its files and names; default: imukit_ and the name of the model"},
-    {"vectors", 0, AN_INTEGER("N", "1-1000000"), AT(vectors),
-     "samples in its self-test, 1 to 1000000; default 64"},
+    {"emit-c", OPTION_FILE, AT(directory), .value = "DIR",
+     .help = "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c"},
+    {"arithmetic", OPTION_CHOICE, AT(arithmetic), .value = "KIND", .choices = "float|double|fixed",
+     .help = "of that code: float (default), double, or fixed: 32-bit integers, for parts without "
+             "an FPU"},
+    {"prefix", OPTION_TEXT, AT(prefix), .value = "NAME",
+     .help = "of its files and names; default: imukit_ and the name of the model"},
+    {"vectors", OPTION_INTEGER, AT(vectors), .value = "N", .choices = "1-1000000",
+     .help = "samples in its self-test, 1 to 1000000; default 64"},
 };
 
 static const char *const arithmetics[3] = {"float", "double", "fixed"};

@@ -21,7 +21,8 @@ extern const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS];
 
 typedef struct compensate_options {
     log_input log;
-    const char *output, *to_gyro_unit, *to_accel_unit;
+    const char *output;
+    imk_unit to_gyro_unit, to_accel_unit; /* scale 0: not given */
     double temperature, temperature_time, powered_for, rate_limit, force_limit;
     option_integer decimals, threads;
     bool flags, json, strict;

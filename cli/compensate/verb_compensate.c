@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit compensate: log + model -> log without the errors the model describes. */
 #include "compensate_parts.h"
-#include "log/log_units.h"
 #include "shell/job_progress.h"
 
 #include "imukit/show.h"
@@ -10,33 +9,36 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(member) offsetof(compensate_options, member)
+#define AT(field) offsetof(compensate_options, field)
 
 static const option compensate_option_table[] = {
-    {"output", 'o', AN_OUTPUT("LOG"), AT(output),
-     "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output"},
-    {"temperature", 0, A_QUANTITY("TEMPERATURE", "degC", NULL), AT(temperature),
-     "of the unit, for a log without such a column; overrules one"},
-    {"temperature-time", 0, A_QUANTITY("TIME", "s", NULL), AT(temperature_time),
-     "over which the rate of temperature is smoothed, where the model needs it; default 30s"},
-    {"powered-for", 0, A_QUANTITY("TIME", "s", NULL), AT(powered_for),
-     "how long the unit was on before the first row, for warm-up; default 0s"},
-    {"rate-limit", 0, A_QUANTITY("RATE", "deg/s", "positive"), AT(rate_limit),
-     "largest rate, where the model has nonlinear terms and no range"},
-    {"force-limit", 0, A_QUANTITY("FORCE", "g", "positive"), AT(force_limit),
-     "largest specific force, likewise"},
-    {"to-gyro-unit", 0, A_TEXT("UNIT"), AT(to_gyro_unit),
-     "of the rates written; default: as read, rad/s for counts"},
-    {"to-accel-unit", 0, A_TEXT("UNIT"), AT(to_accel_unit),
-     "of the forces written; default: as read, m/s^2 for counts"},
-    {"decimals", 0, AN_INTEGER("N", "0-17"), AT(decimals),
-     "digits after the point, 0 to 17; default: as many as the number needs"},
-    {"flags", 0, A_FLAG, AT(flags),
-     "add a column of flags: 1 saturated, 2 temperature, 4 limit, 8 not finite, 16 acceleration"},
-    {"strict", 0, A_FLAG, AT(strict), "exit with 1 when there is a warning"},
-    {"json", 0, A_FLAG, AT(json), "print the summary as JSON; the log goes to a file then"},
-    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
-     "threads to use; default: all processors. The bytes do not depend on it"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "LOG",
+     .help =
+         "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output"},
+    {"temperature", OPTION_QUANTITY, AT(temperature), .value = "TEMPERATURE", .unit = "degC",
+     .help = "of the unit, for a log without such a column; overrules one"},
+    {"temperature-time", OPTION_QUANTITY, AT(temperature_time), .value = "TIME", .unit = "s",
+     .help =
+         "over which the rate of temperature is smoothed, where the model needs it; default 30s"},
+    {"powered-for", OPTION_QUANTITY, AT(powered_for), .value = "TIME", .unit = "s",
+     .help = "how long the unit was on before the first row, for warm-up; default 0s"},
+    {"rate-limit", OPTION_QUANTITY, AT(rate_limit), .value = "RATE", .unit = "deg/s",
+     .choices = "positive",
+     .help = "largest rate, where the model has nonlinear terms and no range"},
+    {"force-limit", OPTION_QUANTITY, AT(force_limit), .value = "FORCE", .unit = "g",
+     .choices = "positive", .help = "largest specific force, likewise"},
+    {"to-gyro-unit", OPTION_UNIT, AT(to_gyro_unit), .value = "UNIT", .unit = "rad/s",
+     .help = "of the rates written; default: as read, rad/s for counts"},
+    {"to-accel-unit", OPTION_UNIT, AT(to_accel_unit), .value = "UNIT", .unit = "m/s^2",
+     .help = "of the forces written; default: as read, m/s^2 for counts"},
+    DECIMALS_OPTION(AT(decimals)),
+    {"flags", OPTION_FLAG, AT(flags),
+     .help = "add a column of flags: 1 saturated, 2 temperature, 4 limit, 8 not finite, 16 "
+             "acceleration"},
+    STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
+    JSON_OPTION(AT(json), "print the summary as JSON; the log goes to a file then"),
+    THREADS_OPTION(AT(threads),
+                   "threads to use; default: all processors. The bytes do not depend on it"),
 };
 
 static int run(int count, char **words);
@@ -64,10 +66,10 @@ const verb compensate_verb = {
         "acceleration is the central difference of the rates. A gap in time begins anew.\n\nWith "
         "--emit-c and no LOG, the correction is written as C99 code without loops, heap or libm. "
         "Lever arms, warm-up and the rate of temperature stay in there.",
-    .groups = {{A_GROUP("Options", compensate_option_table), 0},
+    .groups = {OPTION_GROUP("Options", compensate_option_table, 0),
                {"Code for a device", COMPENSATE_EMIT_OPTIONS, compensate_emit_options,
                 AT(emission)},
-               {A_GROUP("Terms", term_options), AT(terms)},
+               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
                {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
     .run = run};
 
@@ -109,27 +111,20 @@ static int check_axes(const compensate_options *o, const imk_model *model,
     return -1;
 }
 
-static int set_up(const compensate_options *o, const imk_model *terms,
-                  imk_compensate_log_settings *settings)
+static imk_compensate_log_settings set_up(const compensate_options *o, const imk_model *terms)
 {
-    *settings = imk_compensate_log_default();
+    imk_compensate_log_settings settings = imk_compensate_log_default();
     if (o->terms.only || o->terms.without)
-        settings->terms = terms;
-    settings->temperature = o->temperature;
-    settings->temperature_time = o->temperature_time;
-    settings->powered_for = o->powered_for;
-    settings->rate_limit = o->rate_limit;
-    settings->force_limit = o->force_limit;
-    settings->flags = o->flags;
-    imk_unit gyro = imk_unit_of("rad/s"), accel = imk_unit_of("m/s^2");
-    int code = log_unit_asked("to-gyro-unit", o->to_gyro_unit, &gyro);
-    if (code < 0)
-        code = log_unit_asked("to-accel-unit", o->to_accel_unit, &accel);
-    if (o->to_gyro_unit)
-        settings->gyro_unit = gyro;
-    if (o->to_accel_unit)
-        settings->accel_unit = accel;
-    return code;
+        settings.terms = terms;
+    settings.temperature = o->temperature;
+    settings.temperature_time = o->temperature_time;
+    settings.powered_for = o->powered_for;
+    settings.rate_limit = o->rate_limit;
+    settings.force_limit = o->force_limit;
+    settings.flags = o->flags;
+    settings.gyro_unit = o->to_gyro_unit;
+    settings.accel_unit = o->to_accel_unit;
+    return settings;
 }
 
 /* What went wrong with the model or with what is written; the rest is the log's. */
@@ -205,11 +200,9 @@ static int run(int count, char **words)
     if (!operands[1])
         return command_misused("an operand is missing: imukit compensate LOG MODEL");
     imk_log_reader *reader = NULL;
-    imk_compensate_log_settings settings;
     imk_model *models = command_memory(NULL, 2 * sizeof *models);
     code = compensate_models(&o, operands[1], &models[0], &models[1]);
-    if (code < 0)
-        code = set_up(&o, &models[1], &settings);
+    const imk_compensate_log_settings settings = set_up(&o, &models[1]);
     if (code < 0)
         code = log_input_open(&o.log, operands[0], false, &reader);
     if (code < 0)

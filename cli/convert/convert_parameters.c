@@ -19,23 +19,27 @@ static const char formats[] =
 static const char target_formats[] =
     "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
 
-#define AT(member) offsetof(parameter_options, member)
+#define AT(field) offsetof(parameter_options, field)
 
 const option parameter_option_table[PARAMETER_OPTIONS] = {
-    {"from", 0, A_CHOICE("FORMAT", formats), AT(from),
-     "of the parameter file read; default: by its content"},
-    {"to", 0, A_CHOICE("FORMAT", target_formats), AT(to),
-     "of the parameter file written; default: a model file"},
-    {"density", 0, A_CHOICE("SIDES", "as-the-program|two-sided|one-sided"), AT(density),
-     "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)"},
-    {"sensor", 0, A_TEXT("NAME"), AT(sensor), "which of several in the parameter file"},
-    {"json", 0, A_FLAG, AT(json), "print what was assumed and left out as JSON"},
-    {"flicker", 0, A_CHOICE("CHOICE", "random-walk|gauss-markov|two-gauss-markov|left-out"),
-     AT(flicker), "--to filter: what stands for bias instability, which no filter state is"},
-    {"tau-from", 0, A_QUANTITY("TIME", "s", "1e-9..1e9"), AT(tau_from),
-     "--to filter: shortest averaging time at which that has to hold; default 1 s"},
-    {"tau-to", 0, A_QUANTITY("TIME", "s", "1e-9..1e9"), AT(tau_to),
-     "--to filter: the longest; default 1000 s"},
+    {"from", OPTION_CHOICE, AT(from), .value = "FORMAT", .choices = formats,
+     .help = "of the parameter file read; default: by its content"},
+    {"to", OPTION_CHOICE, AT(to), .value = "FORMAT", .choices = target_formats,
+     .help = "of the parameter file written; default: a model file"},
+    {"density", OPTION_CHOICE, AT(density), .value = "SIDES",
+     .choices = "as-the-program|two-sided|one-sided",
+     .help = "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)"},
+    {"sensor", OPTION_TEXT, AT(sensor), .value = "NAME",
+     .help = "which of several in the parameter file"},
+    JSON_OPTION(AT(json), "print what was assumed and left out as JSON"),
+    {"flicker", OPTION_CHOICE, AT(flicker), .value = "CHOICE",
+     .choices = "random-walk|gauss-markov|two-gauss-markov|left-out",
+     .help = "--to filter: what stands for bias instability, which no filter state is"},
+    {"tau-from", OPTION_QUANTITY, AT(tau_from), .value = "TIME", .unit = "s",
+     .choices = "1e-9..1e9",
+     .help = "--to filter: shortest averaging time at which that has to hold; default 1 s"},
+    {"tau-to", OPTION_QUANTITY, AT(tau_to), .value = "TIME", .unit = "s", .choices = "1e-9..1e9",
+     .help = "--to filter: the longest; default 1000 s"},
 };
 
 bool parameters_or_model(const char *path)

@@ -2,7 +2,6 @@
 /* imukit convert: logs, model files and parameter files of other programs between formats. */
 #include "convert_parameters.h"
 #include "log/log_input.h"
-#include "log/log_units.h"
 #include "shell/job_progress.h"
 
 #include "imukit/convert_log.h"
@@ -13,51 +12,44 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The units of the columns written, in the order of their settings. */
-enum { TIME_UNIT, GYRO_UNIT, ACCEL_UNIT, TEMPERATURE_UNIT, UNITS };
-
 typedef struct convert_options {
     log_input log;
     parameter_options parameters;
     imk_convert_log_settings to;
-    const char *unit[UNITS], *to_point;
+    const char *to_point;
     option_integer decimals, threads;
 } convert_options;
 
-#define AT(member) offsetof(convert_options, member)
+#define AT(field) offsetof(convert_options, field)
 
 static const option convert_option_table[] = {
-    {"select", 0, A_TEXT("NAMES"), AT(to.select),
-     "columns to keep, in this order, such as time,gyro_x; default: all"},
-    {"to-gyro-unit", 0, A_TEXT("UNIT"), AT(unit[GYRO_UNIT]),
-     "of the gyro columns written; default: as read"},
-    {"to-accel-unit", 0, A_TEXT("UNIT"), AT(unit[ACCEL_UNIT]),
-     "of the accelerometer columns written; default: as read"},
-    {"to-time-unit", 0, A_TEXT("UNIT"), AT(unit[TIME_UNIT]),
-     "of the time column written; default: as read"},
-    {"to-temperature-unit", 0, A_TEXT("UNIT"), AT(unit[TEMPERATURE_UNIT]),
-     "of the temperature column written; default: as read"},
-    {"decimals", 0, AN_INTEGER("N", "0-17"), AT(decimals),
-     "digits after the point, 0 to 17; default: as many as the number needs"},
-    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
-     "threads to use; default: all processors"},
+    {"select", OPTION_TEXT, AT(to.select), .value = "NAMES",
+     .help = "columns to keep, in this order, such as time,gyro_x; default: all"},
+    {"to-gyro-unit", OPTION_UNIT, AT(to.gyro_unit), .value = "UNIT",
+     .help = "of the gyro columns written; default: as read"},
+    {"to-accel-unit", OPTION_UNIT, AT(to.accel_unit), .value = "UNIT",
+     .help = "of the accelerometer columns written; default: as read"},
+    {"to-time-unit", OPTION_UNIT, AT(to.time_unit), .value = "UNIT",
+     .help = "of the time column written; default: as read"},
+    {"to-temperature-unit", OPTION_UNIT, AT(to.temperature_unit), .value = "UNIT",
+     .help = "of the temperature column written; default: as read"},
+    DECIMALS_OPTION(AT(decimals)),
+    THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static const option motion_option_table[] = {
-    {"to-point", 0, A_TEXT("\"X Y Z UNIT\""), AT(to_point),
-     "specific force at another point of the body, forward right down of the accelerometers, such "
-     "as \"0.1 0 -0.05 m\""},
-    {"gravity-free", 0, A_FLAG, AT(to.gravity_free),
-     "acceleration relative to the Earth instead of specific force; needs --latitude, and a unit "
-     "that is still at first"},
-    {"still", 0, A_QUANTITY("TIME", "s", NULL), AT(to.still),
-     "how long it is still, for roll and pitch; default 10s"},
-    {"latitude", 0, A_QUANTITY("ANGLE", "deg", "-90..90"), AT(to.latitude),
-     "geodetic, for gravity"},
-    {"height", 0, A_QUANTITY("LENGTH", "m", "-10000..100000"), AT(to.height),
-     "above the ellipsoid; default 0m"},
-    {"yaw", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(to.yaw),
-     "at first, from north to east, for the Earth's rotation; default 0deg"},
+    {"to-point", OPTION_TEXT, AT(to_point), .value = "\"X Y Z UNIT\"",
+     .help = "specific force at another point of the body, forward right down of the "
+             "accelerometers, such as \"0.1 0 -0.05 m\""},
+    {"gravity-free", OPTION_FLAG, AT(to.gravity_free),
+     .help = "acceleration relative to the Earth instead of specific force; needs --latitude, and "
+             "a unit that is still at first"},
+    {"still", OPTION_QUANTITY, AT(to.still), .value = "TIME", .unit = "s",
+     .help = "how long it is still, for roll and pitch; default 10s"},
+    LATITUDE_OPTION(AT(to.latitude), "geodetic, for gravity"),
+    HEIGHT_OPTION(AT(to.height)),
+    TURN_OPTION("yaw", AT(to.yaw),
+                "at first, from north to east, for the Earth's rotation; default 0deg"),
 };
 
 static int run(int count, char **words);
@@ -84,9 +76,9 @@ const verb convert_verb = {
         "ardupilot "
         "are recognised by their content; what was assumed about units and densities, and what a "
         "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
-    .groups = {{A_GROUP("Options", convert_option_table), 0},
+    .groups = {OPTION_GROUP("Options", convert_option_table, 0),
                {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
-               {A_GROUP("Another point, without gravity", motion_option_table), 0},
+               OPTION_GROUP("Another point, without gravity", motion_option_table, 0),
                {"Reading the log", LOG_FORMAT_OPTIONS, log_input_options, AT(log)}},
     .run = run};
 
@@ -133,16 +125,8 @@ static int parse_point(const char *text, double point[3])
 
 static int set_up(convert_options *o)
 {
-    static const char *const names[UNITS] = {"to-time-unit", "to-gyro-unit", "to-accel-unit",
-                                             "to-temperature-unit"};
-    imk_unit *units[UNITS] = {&o->to.time_unit, &o->to.gyro_unit, &o->to.accel_unit,
-                              &o->to.temperature_unit};
-    int code = -1;
-    for (int i = 0; i < UNITS && code < 0; i++)
-        code = log_unit_parse(names[i], o->unit[i], units[i]);
     o->to.to_point = o->to_point != NULL;
-    if (code < 0 && o->to_point)
-        code = parse_point(o->to_point, o->to.point.v);
+    int code = o->to_point ? parse_point(o->to_point, o->to.point.v) : -1;
     if (code < 0 && o->to.gravity_free && isnan(o->to.latitude))
         code = command_misused("--gravity-free: gravity differs from place to place: add "
                                "--latitude 45deg and, off the sea, --height 500m");

@@ -11,10 +11,8 @@ typedef struct devices_options {
     bool json;
 } devices_options;
 
-#define AT(member) offsetof(devices_options, member)
-
 static const option devices_option_table[] = {
-    {"json", 0, A_FLAG, AT(json), "print as JSON"},
+    {"json", OPTION_FLAG, offsetof(devices_options, json), .help = "print as JSON"},
 };
 
 static int run(int count, char **words);

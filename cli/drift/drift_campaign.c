@@ -44,8 +44,8 @@ static imk_status compute(void *context, size_t thread, uint64_t first, size_t c
         c->memory[thread] = thread_memory(c->size);
     if (!c->memory[thread])
         return imk_error_set(error, IMK_ERROR_MEMORY, "", "", "");
-    return imk_drift_runs(c->one->model, &c->settings, c->seed, (uint32_t)first, count,
-                          c->memory[thread], c->size, values, error);
+    return imk_drift_runs(c->one->model, &c->settings, c->seed, (uint32_t)first, count, values,
+                          c->memory[thread], c->size, error);
 }
 
 /* "3/10" -> 3 and 10. */
@@ -116,7 +116,7 @@ int drift_runs(const drift_options *o, const drift_scene *scene, imk_drift_model
     c.settings = c.one->settings;
     c.settings.time = time;
     c.settings.time_count = scene->times.row_count;
-    c.size = imk_drift_runs_size(c.one->model, &c.settings);
+    c.size = imk_drift_runs_workspace_size(c.one->model, &c.settings);
     imk_campaign campaign = {.version = IMK_VERSION,
                              .parameters = parameters,
                              .seed = c.seed,

@@ -13,64 +13,65 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(member) offsetof(drift_options, member)
+#define AT(field) offsetof(drift_options, field)
 
 static const option navigation_option_table[] = {
-    {"duration", 'd', A_QUANTITY("TIME", "s", NULL), AT(duration),
-     "how long; default: 24h, with --motion its length, with --want its time"},
-    {"times", 0, A_TEXT("TIMES"), AT(times), "when to look instead, such as \"1min, 10min, 1h\""},
-    {"aligned", 0, A_CHOICE("HOW", "given|self"), AT(aligned),
-     "given (the default): the attitude at the start is true, but for --initial-attitude; self: "
-     "the unit finds it at rest from its own readings"},
-    {"align-time", 0, A_QUANTITY("TIME", "s", NULL), AT(align_time),
-     "length of that alignment; default 300s"},
-    {"initial-attitude", 0, A_TEXT("ANGLES"), AT(initial_attitude),
-     "1 sigma of the error at the start: \"0.05 deg\", or about north, east and down, \"0.01 0.01 "
-     "0.1 deg\"; default 0"},
-    {"initial-velocity", 0, A_TEXT("SPEEDS"), AT(initial_velocity),
-     "likewise, \"0.1 m/s\"; default 0"},
-    {"initial-position", 0, A_TEXT("LENGTHS"), AT(initial_position),
-     "likewise, \"10 m\"; default 0"},
-    {"vertical", 0, A_CHOICE("HOW", "slaved|free"), AT(vertical),
-     "slaved (the default): height follows the truth, as with a barometer; free: it grows without "
-     "bound"},
-    {"compensated", 0, A_FLAG, AT(compensated),
-     "beside it the same after calibration: values that the model knows are taken out, their "
-     "uncertainty stays"},
-    {"want", 0, A_TEXT("WISH"), AT(want),
-     "the inverse question, \"CEP 1 nmi @ 1h\": what each term must become, and which devices "
-     "would do; also R95, DRMS, height, velocity, tilt, heading"},
+    {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
+     .help = "how long; default: 24h, with --motion its length, with --want its time"},
+    {"times", OPTION_TEXT, AT(times), .value = "TIMES",
+     .help = "when to look instead, such as \"1min, 10min, 1h\""},
+    {"aligned", OPTION_CHOICE, AT(aligned), .value = "HOW", .choices = "given|self",
+     .help = "given (the default): the attitude at the start is true, but for --initial-attitude; "
+             "self: the unit finds it at rest from its own readings"},
+    {"align-time", OPTION_QUANTITY, AT(align_time), .value = "TIME", .unit = "s",
+     .help = "length of that alignment; default 300s"},
+    {"initial-attitude", OPTION_TEXT, AT(initial_attitude), .value = "ANGLES",
+     .help = "1 sigma of the error at the start: \"0.05 deg\", or about north, east and down, "
+             "\"0.01 0.01 0.1 deg\"; default 0"},
+    {"initial-velocity", OPTION_TEXT, AT(initial_velocity), .value = "SPEEDS",
+     .help = "likewise, \"0.1 m/s\"; default 0"},
+    {"initial-position", OPTION_TEXT, AT(initial_position), .value = "LENGTHS",
+     .help = "likewise, \"10 m\"; default 0"},
+    {"vertical", OPTION_CHOICE, AT(vertical), .value = "HOW", .choices = "slaved|free",
+     .help = "slaved (the default): height follows the truth, as with a barometer; free: it grows "
+             "without bound"},
+    {"compensated", OPTION_FLAG, AT(compensated),
+     .help = "beside it the same after calibration: values that the model knows are taken out, "
+             "their uncertainty stays"},
+    {"want", OPTION_TEXT, AT(want), .value = "WISH",
+     .help = "the inverse question, \"CEP 1 nmi @ 1h\": what each term must become, and which "
+             "devices would do; also R95, DRMS, height, velocity, tilt, heading"},
 };
 
 static const option place_option_table[] = {
-    {"motion", 'm', AN_INPUT("MOTION"), AT(motion),
-     "a motion script (.yaml) or a table of poses; default: at rest as the options below say"},
-    {"rate", 'r', A_QUANTITY("RATE", "Hz", NULL), AT(rate), "of the samples; default 100Hz"},
-    {"latitude", 0, A_QUANTITY("ANGLE", "deg", "-90..90"), AT(latitude), "geodetic; default 45deg"},
-    {"height", 0, A_QUANTITY("LENGTH", "m", "-10000..100000"), AT(height),
-     "above the ellipsoid; default 0m"},
-    {"roll", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(roll), "default 0deg: level"},
-    {"pitch", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(pitch), "default 0deg: level"},
-    {"yaw", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(yaw),
-     "from north to east; default 0deg"},
+    {"motion", OPTION_FILE, AT(motion), .letter = 'm', .value = "MOTION",
+     .help =
+         "a motion script (.yaml) or a table of poses; default: at rest as the options below say"},
+    {"rate", OPTION_QUANTITY, AT(rate), .letter = 'r', .value = "RATE", .unit = "Hz",
+     .help = "of the samples; default 100Hz"},
+    LATITUDE_OPTION(AT(latitude), "geodetic; default 45deg"),
+    HEIGHT_OPTION(AT(height)),
+    TURN_OPTION("roll", AT(roll), "default 0deg: level"),
+    TURN_OPTION("pitch", AT(pitch), "default 0deg: level"),
+    TURN_OPTION("yaw", AT(yaw), "from north to east; default 0deg"),
 };
 
 static const option output_option_table[] = {
-    {"monte-carlo", 'n', AN_INTEGER("N", "1-4294967295"), AT(monte_carlo),
-     "simulate and navigate so many runs as well, without linearising"},
-    {"seed", 's', AN_INTEGER("N", NULL), AT(seed),
-     "of the runs: the same seed makes the same bytes on every machine; default 1"},
-    {"shard", 0, A_TEXT("I/N"), AT(shard),
-     "only part I of N of the runs, for imukit merge; with -o PART.h5"},
-    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
-     "threads to use; default: all processors. The results do not depend on it"},
-    {"output", 'o', AN_OUTPUT("FILE"), AT(output),
-     "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started again, it "
-     "goes on. Else figures and terms against time (.csv)"},
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the growth and the shares of the terms"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report), "write one self-contained page"},
-    {"json", 0, A_FLAG, AT(json), "print as JSON"},
+    {"monte-carlo", OPTION_INTEGER, AT(monte_carlo), .letter = 'n', .value = "N",
+     .choices = "1-4294967295",
+     .help = "simulate and navigate so many runs as well, without linearising"},
+    SEED_OPTION(AT(seed),
+                "of the runs: the same seed makes the same bytes on every machine; default 1"),
+    {"shard", OPTION_TEXT, AT(shard), .value = "I/N",
+     .help = "only part I of N of the runs, for imukit merge; with -o PART.h5"},
+    THREADS_OPTION(AT(threads),
+                   "threads to use; default: all processors. The results do not depend on it"),
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
+     .help = "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started "
+             "again, it goes on. Else figures and terms against time (.csv)"},
+    PLOT_OPTION(AT(plot), "draw the growth and the shares of the terms"),
+    REPORT_OPTION(AT(report), "write one self-contained page"),
+    JSON_OPTION(AT(json), "print as JSON"),
 };
 
 static int run(int count, char **words);
@@ -95,10 +96,10 @@ const verb drift_verb = {
         "size is known (repeatability, noise) scatter. The covariance is linear: ~ marks where "
         "attitude errors are too large for it.\n\nRESULTS.h5 is what --monte-carlo or imukit merge "
         "wrote: its statistics are printed.",
-    .groups = {{A_GROUP("Navigation", navigation_option_table), 0},
-               {A_GROUP("Terms", term_options), AT(terms)},
-               {A_GROUP("Motion and place", place_option_table), 0},
-               {A_GROUP("Runs and output", output_option_table), 0}},
+    .groups = {OPTION_GROUP("Navigation", navigation_option_table, 0),
+               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
+               OPTION_GROUP("Motion and place", place_option_table, 0),
+               OPTION_GROUP("Runs and output", output_option_table, 0)},
     .run = run};
 
 /* ---- checks ---- */

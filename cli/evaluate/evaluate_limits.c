@@ -83,12 +83,12 @@ static int refuse_limit(const imk_evaluate_limit *limit)
 
 int evaluate_check_limits(evaluation *v)
 {
-    for (size_t k = 0; k < v->channel_count; k++)
-        for (size_t i = 0; i < v->channel[k].sheet.count; i++)
-            check_row(v, v->channel[k].name, &v->channel[k].sheet.row[i]);
-    for (size_t k = 0; k < v->rest_count; k++)
-        for (size_t i = 0; i < v->rest[k].sheet.count; i++)
-            check_row(v, v->rest[k].name, &v->rest[k].sheet.row[i]);
+    for (size_t k = 0; k < v->log->channel_count; k++)
+        for (size_t i = 0; i < v->log->channel[k].sheet.count; i++)
+            check_row(v, v->log->channel[k].name, &v->log->channel[k].sheet.row[i]);
+    for (size_t k = 0; k < v->log->rest_count; k++)
+        for (size_t i = 0; i < v->log->rest[k].sheet.count; i++)
+            check_row(v, v->log->rest[k].name, &v->log->rest[k].sheet.row[i]);
     for (size_t k = 0; k < v->limit_count; k++)
         if (!v->limit[k].used)
             return refuse_limit(&v->limit[k]);

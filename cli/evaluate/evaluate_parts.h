@@ -6,6 +6,7 @@
 #include "calibrate/calibrate_parts.h"
 #include "shell/show.h"
 
+#include "imukit/evaluate_log.h"
 #include "imukit/show.h"
 
 typedef struct evaluate_options {
@@ -22,10 +23,7 @@ typedef struct evaluation {
     const evaluate_options *options;
     size_t path_count;
     const char *path[IMK_EVALUATION_RUNS_MAX];
-    size_t run_count;
-    size_t channel_count, rest_count;
-    imk_evaluate_channel channel[IMK_EVALUATE_CHANNELS];
-    imk_evaluate_rest rest[IMK_EVALUATE_CHANNELS];
+    imk_evaluate_log *log;
     size_t limit_count;
     imk_evaluate_limit limit[IMK_EVALUATE_LIMITS];
     bool has_log;            /* a file is one, and no table */
@@ -35,7 +33,7 @@ typedef struct evaluation {
 
 /* All return -1 or the exit code, the message printed, where nothing else is said. */
 
-/* evaluate_input.c: files as channels, one run each unless they say more; --static. */
+/* evaluate_input.c: files as channels; --static. */
 int evaluate_load(evaluation *v);
 int evaluate_load_rest(evaluation *v);
 

@@ -6,56 +6,61 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(member) offsetof(evaluate_options, member)
+#define AT(field) offsetof(evaluate_options, field)
+#define BENCH(field) AT(bench.field)
 
 static const option result_options[] = {
-    {"limit", 0, A_TEXT("LIMITS"), AT(limit),
-     "hold figures against limits, such as \"linearity 0.05 %, zero 0.2 deg/s\": a column says "
-     "which are met"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
-     "write a test report that can be printed: figures, plots, definitions, levels"},
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the deviations from both lines, and the hysteresis loop"},
-    {"levels", 0, A_FLAG, AT(levels), "print the mean readings of every level"},
-    {"confidence", 0, A_FRACTION("FRACTION", CONFIDENCE_RANGE), AT(confidence),
-     "of intervals, and of the coverage; default 0.95"},
-    {"json", 0, A_FLAG, AT(json), "print the result as JSON instead of tables"},
-    {"strict", 0, A_FLAG, AT(strict),
-     "exit with 1 when a limit is not met, or there is another warning"},
-    {"unit", 0, A_TEXT("TEXT"), AT(unit), "for the report: what was tested"},
-    {"serial", 0, A_TEXT("TEXT"), AT(serial), "its serial number"},
-    {"operator", 0, A_TEXT("TEXT"), AT(operator_name), "who tested it"},
-    {"laboratory", 0, A_TEXT("TEXT"), AT(laboratory), "where"},
-    {"date", 0, A_TEXT("TEXT"), AT(date), "when; never filled in by itself"},
-    {"at-temperature", 0, A_TEXT("TEXT"), AT(temperature), "at which temperature"},
+    {"limit", OPTION_TEXT, AT(limit), .value = "LIMITS",
+     .help = "hold figures against limits, such as \"linearity 0.05 %, zero 0.2 deg/s\": a column "
+             "says which are met"},
+    REPORT_OPTION(AT(report),
+                  "write a test report that can be printed: figures, plots, definitions, levels"),
+    PLOT_OPTION(AT(plot), "draw the deviations from both lines, and the hysteresis loop"),
+    {"levels", OPTION_FLAG, AT(levels), .help = "print the mean readings of every level"},
+    CONFIDENCE_OPTION(AT(confidence), "of intervals, and of the coverage; default 0.95"),
+    JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
+    STRICT_OPTION(AT(strict), "exit with 1 when a limit is not met, or there is another warning"),
+    {"unit", OPTION_TEXT, AT(unit), .value = "TEXT", .help = "for the report: what was tested"},
+    {"serial", OPTION_TEXT, AT(serial), .value = "TEXT", .help = "its serial number"},
+    {"operator", OPTION_TEXT, AT(operator_name), .value = "TEXT", .help = "who tested it"},
+    {"laboratory", OPTION_TEXT, AT(laboratory), .value = "TEXT", .help = "where"},
+    {"date", OPTION_TEXT, AT(date), .value = "TEXT", .help = "when; never filled in by itself"},
+    {"at-temperature", OPTION_TEXT, AT(temperature), .value = "TEXT",
+     .help = "at which temperature"},
 };
 
 static const option test_options[] = {
-    {"static", 0, AN_INPUT("LOG"), AT(rest),
-     "log of the unit at rest: bias instability, fitted and by the Allan minimum"},
-    {"full-scale", 0, A_TEXT("QUANTITY"), AT(full_scale),
-     "what % of full scale is of, such as \"300 deg/s\"; default: the largest reference"},
-    {"sensitivity", 0, A_TEXT("QUANTITY"), AT(sensitivity),
-     "nominal, of readings in counts, such as \"131 count/(deg/s)\": figures are then in the unit "
-     "of the reference, with accuracy"},
-    {"zero", 0, A_TEXT("QUANTITY"), AT(zero), "counts at zero, such as \"32768 count\""},
-    {"level-width", 0, A_TEXT("QUANTITY"), AT(level_width),
-     "references not further apart are one level; default 1e-5 of full scale in logs, 0 in tables"},
-    {"motion", 0, AN_INPUT("PROGRAMME"), AT(bench.motion),
-     "motion file that the table ran: the reference of a log"},
-    {"motion-offset", 0, A_TEXT("TIME|auto"), AT(bench.motion_offset),
-     "time of the log at which the programme begins; auto finds it; default 0s"},
-    {"table-axis", 0, A_CHOICE("AXIS", "x|y|z"), AT(bench.table_axis),
-     "of the unit, about which a column table_rate [deg/s] turns it"},
-    {"section", 0, A_TEXT("COLUMN"), AT(bench.section),
-     "column of texts that names the runs of a log"},
-    {"minimum", 0, A_QUANTITY("TIME", "s", "positive"), AT(bench.minimum),
-     "shortest stretch of constant reference that counts; default 0.5s"},
-    {"trim", 0, A_QUANTITY("TIME", "s", "not negative"), AT(bench.trim),
-     "left out at both ends of a stretch; default 0.2s"},
-    {"settle", 0, A_QUANTITY("TIME", "s", "not negative"), AT(bench.settle),
-     "left out at its beginning besides, until filters have settled; default 0s"},
+    {"static", OPTION_FILE, AT(rest), .value = "LOG",
+     .help = "log of the unit at rest: bias instability, fitted and by the Allan minimum"},
+    {"full-scale", OPTION_TEXT, AT(full_scale), .value = "QUANTITY",
+     .help = "what % of full scale is of, such as \"300 deg/s\"; default: the largest reference"},
+    {"sensitivity", OPTION_TEXT, AT(sensitivity), .value = "QUANTITY",
+     .help = "nominal, of readings in counts, such as \"131 count/(deg/s)\": figures are then in "
+             "the unit of the reference, with accuracy"},
+    {"zero", OPTION_TEXT, AT(zero), .value = "QUANTITY",
+     .help = "counts at zero, such as \"32768 count\""},
+    {"level-width", OPTION_TEXT, AT(level_width), .value = "QUANTITY",
+     .help = "references not further apart are one level; default 1e-5 of full scale in logs, 0 in "
+             "tables"},
+    {"motion", OPTION_FILE, BENCH(motion), .value = "PROGRAMME",
+     .help = "motion file that the table ran: the reference of a log"},
+    {"motion-offset", OPTION_TEXT, BENCH(motion_offset), .value = "TIME|auto",
+     .help = "time of the log at which the programme begins; auto finds it; default 0s"},
+    {"table-axis", OPTION_CHOICE, BENCH(table_axis), .value = "AXIS", .choices = "x|y|z",
+     .help = "of the unit, about which a column table_rate [deg/s] turns it"},
+    {"section", OPTION_TEXT, BENCH(section), .value = "COLUMN",
+     .help = "column of texts that names the runs of a log"},
+    {"minimum", OPTION_QUANTITY, BENCH(minimum), .value = "TIME", .unit = "s",
+     .choices = "positive",
+     .help = "shortest stretch of constant reference that counts; default 0.5s"},
+    {"trim", OPTION_QUANTITY, BENCH(trim), .value = "TIME", .unit = "s", .choices = "not negative",
+     .help = "left out at both ends of a stretch; default 0.2s"},
+    {"settle", OPTION_QUANTITY, BENCH(settle), .value = "TIME", .unit = "s",
+     .choices = "not negative",
+     .help = "left out at its beginning besides, until filters have settled; default 0s"},
 };
+
+#define COUNT(table) (sizeof(table) / sizeof *(table))
 
 static int run(int count, char **words);
 
@@ -84,9 +89,9 @@ const verb evaluate_verb = {
         "Every figure comes with an interval. How large the noise is follows from repeated "
         "readings of one reference, reached from the same side: take each level twice or more. "
         "docs/evaluate.md has the definitions.",
-    .groups = {{A_GROUP("Options", result_options), 0},
-               {A_GROUP("The test", test_options), 0},
-               {A_GROUP("Reading logs", log_input_options), AT(bench.log)}},
+    .groups = {{"Options", COUNT(result_options), result_options, 0},
+               {"The test", COUNT(test_options), test_options, 0},
+               {"Reading logs", LOG_INPUT_OPTIONS, log_input_options, BENCH(log)}},
     .run = run};
 
 /* ---- quantities that need the channel's unit ------------------------------------------------- */
@@ -128,8 +133,8 @@ static int check_company(const evaluation *v)
                    {"table-axis", o->bench.table_axis >= 0},
                    {"section", o->bench.section != NULL}};
     bool counts = false;
-    for (size_t k = 0; k < v->channel_count; k++)
-        counts = counts || in_counts(&v->channel[k]);
+    for (size_t k = 0; k < v->log->channel_count; k++)
+        counts = counts || in_counts(&v->log->channel[k]);
     if (o->sensitivity && !counts)
         return command_misused("--sensitivity is of readings in counts, and there are none");
     if (o->zero && !o->sensitivity)
@@ -155,76 +160,28 @@ static int apply_sensitivity(const evaluate_options *o, imk_evaluate_channel *c)
     int code = read_quantity("sensitivity", o->sensitivity, dimension, &sensitivity);
     if (code < 0)
         code = read_quantity("zero", o->zero, counts, &zero);
-    for (size_t k = 0; code < 0 && k < c->count; k++) {
-        c->reading[k] = (c->reading[k] - zero) / sensitivity;
-        c->sigma[k] /= sensitivity;
-    }
     if (code < 0)
-        c->reading_unit = c->reference_unit;
+        imk_evaluate_scale(c, sensitivity, zero);
     return code;
 }
 
-static int prepare(const evaluate_options *o, imk_evaluate_channel *c)
+static int evaluate_channel(const evaluation *v, imk_evaluate_channel *c)
 {
-    double largest = 0;
-    c->settings = imk_evaluation_default();
-    c->settings.confidence = o->confidence;
-    int code = apply_sensitivity(o, c);
-    c->settings.same_unit =
-        imk_dimension_equal(c->reading_unit.dimension, c->reference_unit.dimension);
-    for (size_t k = 0; k < c->count; k++)
-        largest = fmax(largest, fabs(c->reference[k]));
+    const evaluate_options *o = v->options;
     const imk_dimension dimension = c->reference_unit.dimension;
+    imk_error error;
+    int code = apply_sensitivity(o, c);
+    imk_evaluate_channel_settings(v->log, c);
     if (code < 0)
         code = read_quantity("full-scale", o->full_scale, dimension, &c->settings.full_scale);
-    if (c->of_log)
-        c->settings.level_width = 1e-5 * largest;
     if (code < 0)
         code = read_quantity("level-width", o->level_width, dimension, &c->settings.level_width);
+    if (code < 0 && imk_evaluate_channel_run(v->log, c, &error) != IMK_OK)
+        code = command_error(&error, c->name);
     return code;
 }
 
 /* ---- from end to end ------------------------------------------------------------------------- */
-
-static bool all_known(size_t count, const double *sigma)
-{
-    for (size_t k = 0; k < count; k++)
-        if (!isfinite(sigma[k]))
-            return false;
-    return true;
-}
-
-static bool any_direction(const imk_evaluate_channel *c)
-{
-    for (size_t k = 0; k < c->count; k++)
-        if (c->direction[k] != 0)
-            return true;
-    return false;
-}
-
-static int evaluate_channel_table(const evaluate_options *o, imk_evaluate_channel *c)
-{
-    imk_error error;
-    int code = prepare(o, c);
-    if (code >= 0)
-        return code;
-    const imk_evaluation_table table = {.count = c->count,
-                                        .reference = c->reference,
-                                        .reading = c->reading,
-                                        .sigma = all_known(c->count, c->sigma) ? c->sigma : NULL,
-                                        .direction = any_direction(c) ? c->direction : NULL,
-                                        .run = c->run};
-    const size_t size = imk_evaluation_workspace_size(&table);
-    void *workspace = command_memory(NULL, size);
-    c->level = command_memory(NULL, c->count * sizeof *c->level);
-    const imk_status status =
-        imk_evaluate(&table, &c->settings, workspace, size, c->level, c->count, &c->result, &error);
-    free(workspace);
-    if (status != IMK_OK)
-        return command_error(&error, c->name);
-    imk_evaluate_channel_figures(c);
-    return -1;
-}
 
 static int show(const evaluation *v)
 {
@@ -245,23 +202,31 @@ static int show(const evaluation *v)
                                       .report = o->report,
                                       .levels = o->levels,
                                       .missed = v->missed,
-                                      .channel_count = v->channel_count,
-                                      .rest_count = v->rest_count,
+                                      .channel_count = v->log->channel_count,
+                                      .rest_count = v->log->rest_count,
                                       .limit_count = v->limit_count,
-                                      .channel = v->channel,
-                                      .rest = v->rest};
+                                      .channel = v->log->channel,
+                                      .rest = v->log->rest};
     imk_show_evaluate(&shown, result);
     show_origin(result);
     const show_options options = {
         .report = o->report,
         .plot = o->plot,
         .json = o->json,
-        .lacking = v->channel_count == 0 ? "a table or a log with a reference" : NULL};
+        .lacking = v->log->channel_count == 0 ? "a table or a log with a reference" : NULL};
     return show_end(result, &options, end);
 }
 
 static int evaluate(evaluation *v)
 {
+    const calibrate_options *logs = &v->options->bench;
+    imk_evaluate_log_settings settings = imk_evaluate_log_default();
+    settings.confidence = v->options->confidence;
+    settings.minimum = logs->minimum;
+    settings.trim = logs->trim;
+    settings.settle = logs->settle;
+    settings.sections = logs->section != NULL;
+    (void)command_unless_memory(imk_evaluate_log_create(&settings, NULL, &v->log, NULL));
     int code = evaluate_read_limits(v);
     if (code < 0)
         code = evaluate_load(v);
@@ -269,26 +234,11 @@ static int evaluate(evaluation *v)
         code = evaluate_load_rest(v);
     if (code < 0)
         code = check_company(v);
-    for (size_t k = 0; code < 0 && k < v->channel_count; k++)
-        code = evaluate_channel_table(v->options, &v->channel[k]);
+    for (size_t k = 0; code < 0 && k < v->log->channel_count; k++)
+        code = evaluate_channel(v, &v->log->channel[k]);
     if (code < 0)
         code = evaluate_check_limits(v);
     return code < 0 ? show(v) : code;
-}
-
-static void free_evaluation(evaluation *v)
-{
-    for (size_t k = 0; k < v->channel_count; k++) {
-        imk_evaluate_channel *c = &v->channel[k];
-        free(c->reference);
-        free(c->reading);
-        free(c->sigma);
-        free(c->direction);
-        free(c->run);
-        free(c->level);
-    }
-    imk_motion_file_free(v->motion);
-    free(v);
 }
 
 static int run(int count, char **words)
@@ -308,6 +258,8 @@ static int run(int count, char **words)
         code = command_misused("an operand is missing: imukit evaluate FILE..., or --static LOG");
     if (code < 0)
         code = evaluate(v);
-    free_evaluation(v);
+    imk_evaluate_log_free(v->log);
+    imk_motion_file_free(v->motion);
+    free(v);
     return code;
 }

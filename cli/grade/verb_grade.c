@@ -16,16 +16,15 @@ typedef struct grade_options {
     int map; /* in the order of the choices */
 } grade_options;
 
-#define AT(member) offsetof(grade_options, member)
+#define AT(field) offsetof(grade_options, field)
 
 static const option grade_option_table[] = {
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the maps: stability of bias against that of scale factor, of gyros and of "
-     "accelerometers, and cost against performance"},
-    {"map", 0, A_CHOICE("WHICH", "all|gyro|accel|cost"), AT(map),
-     "the one to draw; default: all, with --plot term gyro"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report), "write one self-contained page"},
-    {"json", 0, A_FLAG, AT(json), "print as JSON"},
+    PLOT_OPTION(AT(plot), "draw the maps: stability of bias against that of scale factor, of gyros "
+                          "and of accelerometers, and cost against performance"),
+    {"map", OPTION_CHOICE, AT(map), .value = "WHICH", .choices = "all|gyro|accel|cost",
+     .help = "the one to draw; default: all, with --plot term gyro"},
+    REPORT_OPTION(AT(report), "write one self-contained page"),
+    JSON_OPTION(AT(json), "print as JSON"),
 };
 
 static int run(int count, char **words);
@@ -46,7 +45,7 @@ const verb grade_verb = {
         "performance, what counts is the error of position that all terms of the model make, as "
         "imukit drift computes it: at rest at 45 deg N, with a perfect attitude at the start, and "
         "with one that the unit finds itself. What a class claims stands beside what is computed.",
-    .groups = {{A_GROUP("Options", grade_option_table), 0}},
+    .groups = {OPTION_GROUP("Options", grade_option_table, 0)},
     .run = run};
 
 /* What the library is given, and what it gives. */

@@ -5,66 +5,69 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(member) offsetof(identify_options, member)
+#define AT(field) offsetof(identify_options, field)
 
 static const option identify_option_table[] = {
-    {"output", 'o', AN_OUTPUT("MODEL"), AT(output), "write the model here (.yaml or .json)"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
-     "write one self-contained page: verdict, parameters, Allan plots, model"},
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the Allan deviation of each channel with the model, and how far it is off"},
-    {"twin", 0, A_FLAG, AT(twin),
-     "simulate the model over the length of the log and draw its Allan deviation over the log's"},
-    {"seed", 0, AN_INTEGER("N", NULL), AT(seed), "of the twin; default 1"},
-    {"into", 0, A_TARGET("MODEL"), AT(into),
-     "start from this model and replace only what is identified: noise and output filter; the "
-     "changes are printed"},
-    {"name", 0, A_TEXT("TEXT"), AT(name), "name of the model; default: that of the log file"},
-    {"truth", 0, AN_INPUT("MODEL"), AT(truth),
-     "print these true values beside the estimates, for logs that were simulated"},
-    {"confidence", 0, A_FRACTION("FRACTION", CONFIDENCE_RANGE), AT(confidence),
-     "of intervals and bounds; default 0.95"},
-    {"significance", 0, A_FRACTION("FRACTION", NULL), AT(significance),
-     "chance that a term which is not there is called present; default 0.01"},
-    {"keep", 0, A_TEXT("LIST"), AT(keep),
-     "leave these in the log: outliers, stuck, saturated (samples), warm-up, temperature, all; "
-     "otherwise what is found of them is taken out, and told"},
-    {"runs", 0, A_FLAG, AT(runs),
-     "several logs are runs of one sensor: one joint model, do they agree, and how much the mean "
-     "differs from run to run"},
-    {"devices", 0, A_FLAG, AT(devices),
-     "several logs are of different sensors: mean and spread of each term, and which of them "
-     "differ"},
-    {"strict", 0, A_FLAG, AT(strict), "exit with 1 when the verdict holds a warning"},
-    {"json", 0, A_FLAG, AT(json), "print the result as JSON instead of tables"},
-    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
-     "threads to use; default: all processors"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "MODEL",
+     .help = "write the model here (.yaml or .json)"},
+    REPORT_OPTION(AT(report),
+                  "write one self-contained page: verdict, parameters, Allan plots, model"),
+    PLOT_OPTION(AT(plot),
+                "draw the Allan deviation of each channel with the model, and how far it is off"),
+    {"twin", OPTION_FLAG, AT(twin),
+     .help = "simulate the model over the length of the log and draw its Allan deviation over the "
+             "log's"},
+    {"seed", OPTION_INTEGER, AT(seed), .value = "N", .help = "of the twin; default 1"},
+    {"into", OPTION_INTO, AT(into), .value = "MODEL",
+     .help = "start from this model and replace only what is identified: noise and output filter; "
+             "the changes are printed"},
+    {"name", OPTION_TEXT, AT(name), .value = "TEXT",
+     .help = "name of the model; default: that of the log file"},
+    {"truth", OPTION_FILE, AT(truth), .value = "MODEL",
+     .help = "print these true values beside the estimates, for logs that were simulated"},
+    CONFIDENCE_OPTION(AT(confidence), "of intervals and bounds; default 0.95"),
+    {"significance", OPTION_FRACTION, AT(significance), .value = "FRACTION",
+     .help = "chance that a term which is not there is called present; default 0.01"},
+    {"keep", OPTION_TEXT, AT(keep), .value = "LIST",
+     .help = "leave these in the log: outliers, stuck, saturated (samples), warm-up, temperature, "
+             "all; otherwise what is found of them is taken out, and told"},
+    {"runs", OPTION_FLAG, AT(runs),
+     .help = "several logs are runs of one sensor: one joint model, do they agree, and how much "
+             "the mean differs from run to run"},
+    {"devices", OPTION_FLAG, AT(devices),
+     .help = "several logs are of different sensors: mean and spread of each term, and which of "
+             "them differ"},
+    STRICT_OPTION(AT(strict), "exit with 1 when the verdict holds a warning"),
+    JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
+    THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static const option plan_option_table[] = {
-    {"plan", 0, AN_INPUT("MODEL"), AT(plan),
-     "no LOG: how well a record of this noise (a file or a catalogue name) will tell each term; "
-     "with --rate"},
-    {"want", 0, A_TEXT("LIST"), AT(want),
-     "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected 95%\""},
-    {"duration", 0, A_QUANTITY("TIME", "s", "positive"), AT(duration),
-     "of the planned record, or of the one behind a curve"},
+    {"plan", OPTION_FILE, AT(plan), .value = "MODEL",
+     .help = "no LOG: how well a record of this noise (a file or a catalogue name) will tell each "
+             "term; with --rate"},
+    {"want", OPTION_TEXT, AT(want), .value = "LIST",
+     .help = "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected "
+             "95%\""},
+    {"duration", OPTION_QUANTITY, AT(duration), .value = "TIME", .unit = "s", .choices = "positive",
+     .help = "of the planned record, or of the one behind a curve"},
 };
 
 static const option allan_option_table[] = {
-    {"method", 0, A_CHOICE("CHOICE", "likelihood|allan"), AT(method),
-     "likelihood of the spectrum (default), which loses nothing; or generalised least squares on "
-     "the Allan deviations, for what a plot holds"},
-    {"curve", 0, A_FLAG, AT(curve),
-     "LOG is a table of Allan deviations instead: columns tau [s], gyro_x [deg/s] and so on; with "
-     "--rate and --duration"},
-    {"plain", 0, A_FLAG, AT(plain), "the clusters of the curve do not overlap; default: they do"},
-    {"tolerance", 0, A_FRACTION("FRACTION", NULL), AT(tolerance),
-     "error of the model admitted in each deviation, beside what chance explains: 2% for a curve "
-     "read from a page"},
-    {"gauss-markov", 0, AN_INTEGER("N", "0-8"), AT(gauss_markov),
-     "Gauss-Markov terms looked for in the Allan deviations; default 0 (the likelihood looks by "
-     "itself)"},
+    {"method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "likelihood|allan",
+     .help = "likelihood of the spectrum (default), which loses nothing; or generalised least "
+             "squares on the Allan deviations, for what a plot holds"},
+    {"curve", OPTION_FLAG, AT(curve),
+     .help = "LOG is a table of Allan deviations instead: columns tau [s], gyro_x [deg/s] and so "
+             "on; with --rate and --duration"},
+    {"plain", OPTION_FLAG, AT(plain),
+     .help = "the clusters of the curve do not overlap; default: they do"},
+    {"tolerance", OPTION_FRACTION, AT(tolerance), .value = "FRACTION",
+     .help = "error of the model admitted in each deviation, beside what chance explains: 2% for a "
+             "curve read from a page"},
+    {"gauss-markov", OPTION_INTEGER, AT(gauss_markov), .value = "N", .choices = "0-8",
+     .help = "Gauss-Markov terms looked for in the Allan deviations; default 0 (the likelihood "
+             "looks by itself)"},
 };
 
 _Static_assert(IMK_TERMS_MAX == 8, "as the range of --gauss-markov says");
@@ -97,10 +100,10 @@ const verb identify_verb = {
         "Several LOGs need --runs (of one sensor) or --devices (different sensors).\n\n"
         "The mean of the record is printed but not written as a bias: at rest it holds the Earth's "
         "rotation and gravity, which need a known attitude to be told apart.",
-    .groups = {{A_GROUP("Options", identify_option_table), 0},
-               {A_GROUP("Planning a record", plan_option_table), 0},
-               {A_GROUP("From Allan deviations", allan_option_table), 0},
-               {A_GROUP("Reading the log", log_input_options), AT(log)}},
+    .groups = {OPTION_GROUP("Options", identify_option_table, 0),
+               OPTION_GROUP("Planning a record", plan_option_table, 0),
+               OPTION_GROUP("From Allan deviations", allan_option_table, 0),
+               LOG_INPUT_GROUP(AT(log))},
     .run = run};
 
 void identify_warn(const imk_verdict *verdict)

@@ -7,28 +7,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(member) offsetof(log_input, member)
+#define AT(field) offsetof(log_input, field)
 
 const option log_input_options[LOG_INPUT_OPTIONS] = {
-    {"rate", 'r', A_QUANTITY("RATE", "Hz", "1e-9..1e9"), AT(rate),
-     "sample rate, needed when the log has no time column"},
-    {"columns", 0, A_TEXT("NAMES"), AT(columns),
-     "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - skips "
-     "one"},
-    {"gyro-unit", 0, A_TEXT("UNIT"), AT(gyro_unit),
-     "unit of the gyro columns where the header has none, such as deg/s"},
-    {"accel-unit", 0, A_TEXT("UNIT"), AT(accel_unit),
-     "unit of the accelerometer columns where the header has none, such as g"},
-    {"time-unit", 0, A_TEXT("UNIT"), AT(time_unit),
-     "unit of the time column where the header has none, such as us"},
-    {"temperature-unit", 0, A_TEXT("UNIT"), AT(temperature_unit),
-     "unit of the temperature column where the header has none, such as degC"},
-    {"axes", 0, A_TEXT("NAMES"), AT(axes),
-     "where the log's x, y, z point, such as right-forward-up; mapped to forward-right-down"},
-    {"gaps", 0, A_CHOICE("CHOICE", "refuse|bridge|longest|keep"), AT(gaps),
-     "rows that are missing, not finite or out of order: keep their places empty (the default of "
-     "allan and identify, which know how), refuse the log (the default elsewhere; gaps of up to "
-     "0.1 % are bridged with a warning), interpolate over them, or use the longest clean stretch"},
+    {"rate", OPTION_QUANTITY, AT(rate), .letter = 'r', .value = "RATE", .unit = "Hz",
+     .choices = "1e-9..1e9", .help = "sample rate, needed when the log has no time column"},
+    {"columns", OPTION_TEXT, AT(columns), .value = "NAMES",
+     .help = "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - "
+             "skips one"},
+    {"gyro-unit", OPTION_TEXT, AT(gyro_unit), .value = "UNIT",
+     .help = "unit of the gyro columns where the header has none, such as deg/s"},
+    {"accel-unit", OPTION_TEXT, AT(accel_unit), .value = "UNIT",
+     .help = "unit of the accelerometer columns where the header has none, such as g"},
+    {"time-unit", OPTION_TEXT, AT(time_unit), .value = "UNIT",
+     .help = "unit of the time column where the header has none, such as us"},
+    {"temperature-unit", OPTION_TEXT, AT(temperature_unit), .value = "UNIT",
+     .help = "unit of the temperature column where the header has none, such as degC"},
+    {"axes", OPTION_TEXT, AT(axes), .value = "NAMES",
+     .help =
+         "where the log's x, y, z point, such as right-forward-up; mapped to forward-right-down"},
+    {"gaps", OPTION_CHOICE, AT(gaps), .value = "CHOICE", .choices = "refuse|bridge|longest|keep",
+     .help = "rows that are missing, not finite or out of order: keep their places empty (the "
+             "default of allan and identify, which know how), refuse the log (the default "
+             "elsewhere; gaps of up to 0.1 % are bridged with a warning), interpolate over them, "
+             "or use the longest clean stretch"},
 };
 
 imk_log_settings log_input_settings(const log_input *input)

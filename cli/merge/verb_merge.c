@@ -15,12 +15,13 @@ typedef struct merge_options {
     bool partial, json;
 } merge_options;
 
-#define AT(member) offsetof(merge_options, member)
+#define AT(field) offsetof(merge_options, field)
 
 static const option merge_option_table[] = {
-    {"output", 'o', AN_OUTPUT("FILE"), AT(output), "results file: .h5 or .csv (.csv.gz, .csv.zst)"},
-    {"partial", 0, A_FLAG, AT(partial), "write what is there although runs are missing"},
-    {"json", 0, A_FLAG, AT(json), "print as JSON"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
+     .help = "results file: .h5 or .csv (.csv.gz, .csv.zst)"},
+    {"partial", OPTION_FLAG, AT(partial), .help = "write what is there although runs are missing"},
+    JSON_OPTION(AT(json), "print as JSON"),
 };
 
 /* More than a command line holds. */
@@ -45,7 +46,7 @@ const verb merge_verb = {
         "left out. When runs are missing then, nothing is written, and the shards to compute again "
         "are named; --partial writes what there is.\n\n"
         "docs/clusters.md shows campaigns on many machines, docs/campaign-file.md the format.",
-    .groups = {{A_GROUP("Options", merge_option_table), 0}},
+    .groups = {OPTION_GROUP("Options", merge_option_table, 0)},
     .run = run};
 
 static void warn_complaints(const imk_campaign_merge_report *report)

@@ -10,53 +10,55 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AT(member) offsetof(navigate_options, member)
+#define AT(field) offsetof(navigate_options, field)
 
 static const option navigate_option_table[] = {
-    {"position", 'p', A_TEXT("POSITION"), AT(position),
-     "latitude, longitude and height above the ellipsoid at the start, such as \"34.25 deg, 108.91 "
-     "deg, 380 m\""},
-    {"align", 0, A_QUANTITY("TIME", "s", NULL), AT(align),
-     "how long the unit stands at the start, to find its attitude by itself"},
-    {"align-method", 0, A_CHOICE("CHOICE", "means|inertial|fine"), AT(method),
-     "from the means of force and rate (the default for gyros that read more than 1.5 times the "
-     "Earth's rotation); from gravity's turn in inertial axes (the default for others: the unit "
-     "may rock); the same and an estimate of the rest"},
-    {"heading", 0, A_TEXT("ANGLE"), AT(heading),
-     "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 deg\""},
-    {"attitude", 0, A_TEXT("ANGLES"), AT(attitude),
-     "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\""},
-    {"model", 'm', AN_INPUT("MODEL"), AT(model),
-     "errors of the sensors, a file or a name from imukit devices: predicts the error, and weighs "
-     "updates"},
-    {"zero-velocity", 0, A_TEXT("auto|TIME"), AT(zero_velocity),
-     "correct by standing still: whenever it is seen to, or known to at the end of each TIME, such "
-     "as 60s"},
-    {"stop", 0, A_QUANTITY("TIME", "s", NULL), AT(stop),
-     "length of the stops that --zero-velocity TIME knows of; default 5s"},
-    {"still-velocity", 0, A_QUANTITY("VELOCITY", "m/s", NULL), AT(still_velocity),
-     "1 sigma of what moves in a unit that stands; default 0.01m/s"},
-    {"still-rotation", 0, A_QUANTITY("RATE", "deg/h", NULL), AT(still_rotation),
-     "use that a standing unit does not turn either, to this 1 sigma of the mean rate over a "
-     "stand; default: not used"},
-    {"vertical", 0, A_CHOICE("CHOICE", "slaved|free"), AT(vertical),
-     "height held as at the start (the default), or free: it then runs away within minutes"},
-    {"coning", 0, AN_INTEGER("N", "1-4"), AT(samples),
-     "samples that coning and sculling are computed from, 1 to 4; default 3"},
-    {"standard-gravity", 0, A_QUANTITY("G", "m/s^2", NULL), AT(standard_gravity),
-     "what g stands for in accelerometer columns in g, mg or ug; default 9.80665m/s^2"},
-    {"gravity-free", 0, A_FLAG, AT(gravity_free),
-     "put the acceleration relative to the Earth into the track: mean since the row before; north, "
-     "east, down"},
-    {"interval", 0, A_QUANTITY("TIME", "s", NULL), AT(interval),
-     "between rows of the track; default 1s"},
-    {"output", 'o', AN_OUTPUT("TRACK"), AT(output),
-     "write the track: .csv (also .gz, .zst){ or written}; - is standard output"},
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the track, and the way from the start against time"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report), "write one self-contained page"},
-    {"json", 0, A_FLAG, AT(json), "print the summary as JSON"},
-    {"strict", 0, A_FLAG, AT(strict), "exit with 1 when there is a warning"},
+    {"position", OPTION_TEXT, AT(position), .letter = 'p', .value = "POSITION",
+     .help = "latitude, longitude and height above the ellipsoid at the start, such as \"34.25 "
+             "deg, 108.91 deg, 380 m\""},
+    {"align", OPTION_QUANTITY, AT(align), .value = "TIME", .unit = "s",
+     .help = "how long the unit stands at the start, to find its attitude by itself"},
+    {"align-method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "means|inertial|fine",
+     .help = "from the means of force and rate (the default for gyros that read more than 1.5 "
+             "times the Earth's rotation); from gravity's turn in inertial axes (the default for "
+             "others: the unit may rock); the same and an estimate of the rest"},
+    {"heading", OPTION_TEXT, AT(heading), .value = "ANGLE",
+     .help = "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 "
+             "deg\""},
+    {"attitude", OPTION_TEXT, AT(attitude), .value = "ANGLES",
+     .help =
+         "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\""},
+    {"model", OPTION_FILE, AT(model), .letter = 'm', .value = "MODEL",
+     .help = "errors of the sensors, a file or a name from imukit devices: predicts the error, and "
+             "weighs updates"},
+    {"zero-velocity", OPTION_TEXT, AT(zero_velocity), .value = "auto|TIME",
+     .help = "correct by standing still: whenever it is seen to, or known to at the end of each "
+             "TIME, such as 60s"},
+    {"stop", OPTION_QUANTITY, AT(stop), .value = "TIME", .unit = "s",
+     .help = "length of the stops that --zero-velocity TIME knows of; default 5s"},
+    {"still-velocity", OPTION_QUANTITY, AT(still_velocity), .value = "VELOCITY", .unit = "m/s",
+     .help = "1 sigma of what moves in a unit that stands; default 0.01m/s"},
+    {"still-rotation", OPTION_QUANTITY, AT(still_rotation), .value = "RATE", .unit = "deg/h",
+     .help = "use that a standing unit does not turn either, to this 1 sigma of the mean rate over "
+             "a stand; default: not used"},
+    {"vertical", OPTION_CHOICE, AT(vertical), .value = "CHOICE", .choices = "slaved|free",
+     .help =
+         "height held as at the start (the default), or free: it then runs away within minutes"},
+    {"coning", OPTION_INTEGER, AT(samples), .value = "N", .choices = "1-4",
+     .help = "samples that coning and sculling are computed from, 1 to 4; default 3"},
+    {"standard-gravity", OPTION_QUANTITY, AT(standard_gravity), .value = "G", .unit = "m/s^2",
+     .help = "what g stands for in accelerometer columns in g, mg or ug; default 9.80665m/s^2"},
+    {"gravity-free", OPTION_FLAG, AT(gravity_free),
+     .help = "put the acceleration relative to the Earth into the track: mean since the row "
+             "before; north, east, down"},
+    {"interval", OPTION_QUANTITY, AT(interval), .value = "TIME", .unit = "s",
+     .help = "between rows of the track; default 1s"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "TRACK",
+     .help = "write the track: .csv (also .gz, .zst){ or written}; - is standard output"},
+    PLOT_OPTION(AT(plot), "draw the track, and the way from the start against time"),
+    REPORT_OPTION(AT(report), "write one self-contained page"),
+    JSON_OPTION(AT(json), "print the summary as JSON"),
+    STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
 };
 
 static int run(int count, char **words);
@@ -80,8 +82,7 @@ const verb navigate_verb = {
         "grows.\n\nWith --model the error is predicted by covariance, alignment included. Errors "
         "that the model knows are not taken out here: imukit compensate does that first.\n\n"
         "Where the unit stands still all the time, the distance from the start is the error.",
-    .groups = {{A_GROUP("Options", navigate_option_table), 0},
-               {A_GROUP("Reading the log", log_input_options), AT(log)}},
+    .groups = {OPTION_GROUP("Options", navigate_option_table, 0), LOG_INPUT_GROUP(AT(log))},
     .run = run};
 
 static int show(const imk_navigate_log *n, const navigate_options *o, const char *path)

@@ -10,72 +10,74 @@
 #include <string.h>
 #include <strings.h>
 
-#define AT(member) offsetof(physics_options, member)
+#define AT(field) offsetof(physics_options, field)
 
 static const option task_option_table[] = {
-    {"list", 0, A_FLAG, AT(list), "the instruments there are; also without INSTRUMENT"},
-    {"show", 0, A_FLAG, AT(show),
-     "print the design as a file with units and comments, the way to begin a design of your own"},
-    {"reduce", 0, A_FLAG, AT(reduce),
-     "the error model by closed forms, as a table; -o MODEL.yaml writes it"},
-    {"sweep", 0, A_FLAG, AT(sweep),
-     "find the error model by the experiments of a laboratory and compare it with the closed "
-     "forms; -o MODEL.yaml without --reduce writes what was measured"},
-    {"single-axis", 0, A_FLAG, AT(single_axis),
-     "write a model of one instrument along x, not of three"},
+    {"list", OPTION_FLAG, AT(list), .help = "the instruments there are; also without INSTRUMENT"},
+    {"show", OPTION_FLAG, AT(show),
+     .help = "print the design as a file with units and comments, the way to begin a design of "
+             "your own"},
+    {"reduce", OPTION_FLAG, AT(reduce),
+     .help = "the error model by closed forms, as a table; -o MODEL.yaml writes it"},
+    {"sweep", OPTION_FLAG, AT(sweep),
+     .help = "find the error model by the experiments of a laboratory and compare it with the "
+             "closed forms; -o MODEL.yaml without --reduce writes what was measured"},
+    {"single-axis", OPTION_FLAG, AT(single_axis),
+     .help = "write a model of one instrument along x, not of three"},
 };
 
 static const option input_option_table[] = {
-    {"rate", 'r', A_TEXT("RATE"), AT(rate),
-     "angular rate about x, \"10 deg/s\", or about all axes of the case, \"1 2 3 deg/s\""},
-    {"acceleration", 'a', A_TEXT("FORCE"), AT(acceleration),
-     "specific force along x, \"1 g\", or along all axes of the case, \"0 0 -9.81 m/s^2\""},
-    {"sine", 0, A_QUANTITY("FREQUENCY", "Hz", NULL), AT(sine),
-     "makes the rate or force given the amplitude of a sine"},
-    {"temperature", 't', A_QUANTITY("TEMPERATURE", "degC", NULL), AT(temperature),
-     "default 20degC"},
-    {"temperature-rate", 0, A_QUANTITY("RATE", "degC/min", NULL), AT(temperature_rate),
-     "lets it rise or fall from there"},
+    {"rate", OPTION_TEXT, AT(rate), .letter = 'r', .value = "RATE",
+     .help = "angular rate about x, \"10 deg/s\", or about all axes of the case, \"1 2 3 deg/s\""},
+    {"acceleration", OPTION_TEXT, AT(acceleration), .letter = 'a', .value = "FORCE",
+     .help = "specific force along x, \"1 g\", or along all axes of the case, \"0 0 -9.81 m/s^2\""},
+    {"sine", OPTION_QUANTITY, AT(sine), .value = "FREQUENCY", .unit = "Hz",
+     .help = "makes the rate or force given the amplitude of a sine"},
+    {"temperature", OPTION_QUANTITY, AT(temperature), .letter = 't', .value = "TEMPERATURE",
+     .unit = "degC", .help = "default 20degC"},
+    {"temperature-rate", OPTION_QUANTITY, AT(temperature_rate), .value = "RATE", .unit = "degC/min",
+     .help = "lets it rise or fall from there"},
 };
 
 static const option run_option_table[] = {
-    {"duration", 'd', A_QUANTITY("TIME", "s", NULL), AT(duration),
-     "run so long and write the log; with --view: draw the view for so long"},
-    {"output-rate", 0, A_QUANTITY("RATE", "Hz", NULL), AT(output_rate),
-     "samples per second; default 100Hz. With --view: points per second of the view"},
-    {"level", 0, A_CHOICE("LEVEL", "full|slow"), AT(level),
-     "the dynamics of all parts (the default), or a map or envelope without the fast part"},
-    {"step", 0, A_QUANTITY("TIME", "s", "positive"), AT(step),
-     "longest internal step; default: what the instrument's accuracy needs. A step that would give "
-     "wrong results is refused"},
-    {"no-noise", 0, A_FLAG, AT(no_noise), "nothing random: no noise and no constants of the run"},
-    {"seed", 's', AN_INTEGER("N", NULL), AT(seed),
-     "the same seed makes the same bytes on every machine; default 1"},
-    {"run", 0, AN_INTEGER("N", "0-4294967295"), AT(run),
-     "another run of the same instrument: other noise, other constants of the run; default 0"},
-    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
-     "threads of --sweep; default: all processors. The result does not depend on it"},
+    {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
+     .help = "run so long and write the log; with --view: draw the view for so long"},
+    {"output-rate", OPTION_QUANTITY, AT(output_rate), .value = "RATE", .unit = "Hz",
+     .help = "samples per second; default 100Hz. With --view: points per second of the view"},
+    {"level", OPTION_CHOICE, AT(level), .value = "LEVEL", .choices = "full|slow",
+     .help = "the dynamics of all parts (the default), or a map or envelope without the fast part"},
+    {"step", OPTION_QUANTITY, AT(step), .value = "TIME", .unit = "s", .choices = "positive",
+     .help = "longest internal step; default: what the instrument's accuracy needs. A step that "
+             "would give wrong results is refused"},
+    {"no-noise", OPTION_FLAG, AT(no_noise),
+     .help = "nothing random: no noise and no constants of the run"},
+    SEED_OPTION(AT(seed), "the same seed makes the same bytes on every machine; default 1"),
+    {"run", OPTION_INTEGER, AT(run), .value = "N", .choices = "0-4294967295",
+     .help =
+         "another run of the same instrument: other noise, other constants of the run; default 0"},
+    THREADS_OPTION(AT(threads),
+                   "threads of --sweep; default: all processors. The result does not depend on it"),
 };
 
 static const option output_option_table[] = {
-    {"output", 'o', AN_OUTPUT("FILE"), AT(output),
-     "the log (.csv, also .gz, .zst{, or written}; default: standard output), the model of "
-     "--reduce, or "
-     "the design of --show"},
-    {"signals", 0, AN_OUTPUT("FILE.csv"), AT(signals), "write what happens inside, against time"},
-    {"signal-rate", 0, A_QUANTITY("RATE", "Hz", NULL), AT(signal_rate),
-     "rows per second of --signals; default: the output rate. Another rate is a run of its own"},
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the outputs of the run against time (with --sine also against the input), or what "
-     "--sweep found; without either, the views of the instrument"},
-    {"view", 0, A_TEXT("VIEW"), AT(view),
-     "the view to --plot: its number, or how its title begins"},
-    {"animate", 0, AN_OUTPUT("FILE.svg"), AT(animate),
-     "draw a view of one signal against another as a picture that moves: that of --view, else the "
-     "first"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
-     "write one self-contained page: outputs, views, design, error model"},
-    {"json", 0, A_FLAG, AT(json), "print the result as JSON"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
+     .help = "the log (.csv, also .gz, .zst{, or written}; default: standard output), the model of "
+             "--reduce, or the design of --show"},
+    {"signals", OPTION_OUTPUT, AT(signals), .value = "FILE.csv",
+     .help = "write what happens inside, against time"},
+    {"signal-rate", OPTION_QUANTITY, AT(signal_rate), .value = "RATE", .unit = "Hz",
+     .help = "rows per second of --signals; default: the output rate. Another rate is a run of its "
+             "own"},
+    PLOT_OPTION(AT(plot),
+                "draw the outputs of the run against time (with --sine also against the input), or "
+                "what --sweep found; without either, the views of the instrument"),
+    {"view", OPTION_TEXT, AT(view), .value = "VIEW",
+     .help = "the view to --plot: its number, or how its title begins"},
+    {"animate", OPTION_OUTPUT, AT(animate), .value = "FILE.svg",
+     .help = "draw a view of one signal against another as a picture that moves: that of --view, "
+             "else the first"},
+    REPORT_OPTION(AT(report), "write one self-contained page: outputs, views, design, error model"),
+    JSON_OPTION(AT(json), "print the result as JSON"),
 };
 
 static int run(int count, char **words);
@@ -99,10 +101,10 @@ const verb physics_verb = {
         "time; the input is held over a sample. x is the input axis; what y and z are stands in "
         "the documentation of each instrument. The views are drawn under the input of --rate and "
         "--acceleration, else each under an input that shows something.",
-    .groups = {{A_GROUP("What to do", task_option_table), 0},
-               {A_GROUP("Input", input_option_table), 0},
-               {A_GROUP("Running", run_option_table), 0},
-               {A_GROUP("Output", output_option_table), 0}},
+    .groups = {OPTION_GROUP("What to do", task_option_table, 0),
+               OPTION_GROUP("Input", input_option_table, 0),
+               OPTION_GROUP("Running", run_option_table, 0),
+               OPTION_GROUP("Output", output_option_table, 0)},
     .run = run};
 
 /* ---- checks ---------------------------------------------------------------------------------- */

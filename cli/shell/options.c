@@ -167,6 +167,22 @@ static int set_quantity(const option *o, const char *text, double *target)
     return o->choices ? check_quantity(o, text, value) : -1;
 }
 
+static int set_unit(const option *o, const char *text, imk_unit *target)
+{
+    imk_error error;
+    if (imk_unit_parse(text, text + strlen(text), target, &error) != IMK_OK)
+        return command_misused("--%s %s: the unit is not known", o->name, text);
+    return o->unit ? options_check_unit(o->name, target, imk_unit_of(o->unit).dimension) : -1;
+}
+
+int options_check_unit(const char *name, const imk_unit *unit, imk_dimension due)
+{
+    if (imk_dimension_equal(unit->dimension, due))
+        return -1;
+    return command_misused("--%s %s: expected %s such as %s", name, unit->text,
+                           imk_dimension_name(due), imk_dimension_examples(due));
+}
+
 static int set_choice(const option *o, const char *text, int *target)
 {
     int position = 0;
@@ -212,6 +228,8 @@ static int set_value(const option *o, const option_group *group, const char *tex
         return set_integer(o, text, target);
     case OPTION_QUANTITY:
         return set_quantity(o, text, target);
+    case OPTION_UNIT:
+        return set_unit(o, text, target);
     case OPTION_FRACTION:
         return set_fraction(o, text, target);
     case OPTION_CHOICE:

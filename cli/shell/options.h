@@ -4,6 +4,8 @@
 #ifndef IMUKIT_OPTIONS_H
 #define IMUKIT_OPTIONS_H
 
+#include "imukit/units.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -17,6 +19,7 @@ typedef enum option_kind {
     OPTION_OUTPUT,   /* the same, of a file that is written: see file_clash.h */
     OPTION_INTEGER,  /* option_integer */
     OPTION_QUANTITY, /* double, SI: a number with a unit of the dimension of `unit` */
+    OPTION_UNIT,     /* imk_unit: of the dimension of `unit`; NULL: of any */
     OPTION_FRACTION, /* double in (0, 1): "0.95" or "95%" */
     OPTION_CHOICE    /* int: position in `choices` */
 } option_kind;
@@ -29,28 +32,18 @@ typedef struct option_integer {
 
 typedef struct option {
     const char *name; /* without the dashes */
-    char letter;      /* 0: none */
     option_kind kind;
+    size_t offset;       /* of the value in the settings of the group */
+    char letter;         /* 0: none */
     const char *value;   /* what --help calls the value: "RATE" */
-    const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages */
+    const char *unit;    /* OPTION_QUANTITY: a unit of its dimension, used in messages;
+                            OPTION_UNIT */
     const char *choices; /* OPTION_CHOICE: "octave|decade|all"; OPTION_INTEGER: "1-5", the least and
                             the most, NULL: any; OPTION_QUANTITY: the same as "-90..90" in `unit`,
                             or "positive", which refuses 0 and less, or "not negative";
                             OPTION_FRACTION: "0.1..0.9" */
-    size_t offset;       /* of the value in the settings of the group */
     const char *help;    /* a clause; see `description` */
 } option;
-
-/* The kind of an option, and what goes with it: {"tau", 0, A_TEXT("LIST"), offset, "help"}. */
-#define A_FLAG OPTION_FLAG, NULL, NULL, NULL
-#define A_TEXT(value) OPTION_TEXT, value, NULL, NULL
-#define AN_INPUT(value) OPTION_FILE, value, NULL, NULL
-#define A_TARGET(value) OPTION_INTO, value, NULL, NULL
-#define AN_OUTPUT(value) OPTION_OUTPUT, value, NULL, NULL
-#define AN_INTEGER(value, range) OPTION_INTEGER, value, NULL, range
-#define A_QUANTITY(value, unit, range) OPTION_QUANTITY, value, unit, range
-#define A_FRACTION(value, range) OPTION_FRACTION, value, NULL, range
-#define A_CHOICE(value, choices) OPTION_CHOICE, value, NULL, choices
 
 typedef struct option_group {
     const char *title;
@@ -59,14 +52,67 @@ typedef struct option_group {
     size_t offset; /* of the group's settings in the verb's */
 } option_group;
 
-#define A_GROUP(title, table) title, sizeof(table) / sizeof *(table), table
-
 typedef struct example {
     const char *command, *meaning;
 } example;
 
+/* All options of a table as a group. */
+#define OPTION_GROUP(title, table, offset)                                                         \
+    {                                                                                              \
+        title, sizeof(table) / sizeof(table)[0], table, offset                                     \
+    }
+
 /* OPTION_FRACTION of a confidence: beyond, its quantiles have no digits. */
 #define CONFIDENCE_RANGE "0.001..0.999999999"
+
+/* Options that several verbs have, each with its own words. */
+#define PLOT_OPTION(at, text)                                                                      \
+    {                                                                                              \
+        "plot", OPTION_OUTPUT, at, .value = "FILE.svg|.png|.pdf|term", .help = text                \
+    }
+#define REPORT_OPTION(at, text)                                                                    \
+    {                                                                                              \
+        "report", OPTION_OUTPUT, at, .value = "FILE.html", .help = text                            \
+    }
+#define JSON_OPTION(at, text)                                                                      \
+    {                                                                                              \
+        "json", OPTION_FLAG, at, .help = text                                                      \
+    }
+#define STRICT_OPTION(at, text)                                                                    \
+    {                                                                                              \
+        "strict", OPTION_FLAG, at, .help = text                                                    \
+    }
+#define THREADS_OPTION(at, text)                                                                   \
+    {                                                                                              \
+        "threads", OPTION_INTEGER, at, .value = "N", .choices = "1-65536", .help = text            \
+    }
+#define SEED_OPTION(at, text)                                                                      \
+    {                                                                                              \
+        "seed", OPTION_INTEGER, at, .letter = 's', .value = "N", .help = text                      \
+    }
+#define CONFIDENCE_OPTION(at, text)                                                                \
+    {                                                                                              \
+        "confidence", OPTION_FRACTION, at, .value = "FRACTION", .choices = CONFIDENCE_RANGE,       \
+                                           .help = text                                            \
+    }
+#define DECIMALS_OPTION(at)                                                                        \
+    {                                                                                              \
+        "decimals", OPTION_INTEGER, at,                                                            \
+            .value = "N", .choices = "0-17",                                                       \
+            .help = "digits after the point, 0 to 17; default: as many as the number needs"        \
+    }
+#define LATITUDE_OPTION(at, text) ANGLE_OPTION("latitude", "-90..90", at, text)
+#define TURN_OPTION(name, at, text) ANGLE_OPTION(name, "-36000..36000", at, text)
+#define ANGLE_OPTION(name, range, at, text)                                                        \
+    {                                                                                              \
+        name, OPTION_QUANTITY, at, .value = "ANGLE", .unit = "deg", .choices = range, .help = text \
+    }
+#define HEIGHT_OPTION(at)                                                                          \
+    {                                                                                              \
+        "height", OPTION_QUANTITY, at, .value = "LENGTH", .unit = "m",                             \
+                                       .choices = "-10000..100000",                                \
+                                       .help = "above the ellipsoid; default 0m"                   \
+    }
 
 /* OPERANDS_MAX is room for the operands of most verbs; one that takes more makes its own. */
 enum { OPERANDS_MAX = 8, GROUPS_MAX = 4 };
@@ -100,6 +146,9 @@ const char *options_output_name(const char *name);
 
 /* Does an output of the command line go to standard output? Tables for people then keep off it. */
 bool options_stdout_taken(void);
+
+/* Is the unit that an option gave of the dimension that is due? @return -1 or the exit code */
+int options_check_unit(const char *name, const imk_unit *unit, imk_dimension due);
 
 /* "--rate RATE", "-o, --output FILE": at most `size` bytes. */
 void option_synopsis(const option *o, char *text, size_t size);

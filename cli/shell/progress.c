@@ -41,9 +41,8 @@ static void write_rate(double rate, const char *unit)
     fprintf(stderr, "  %.3g %s%s/s", rate, prefix, unit);
 }
 
-void progress_update(void *context, uint64_t done, uint64_t total)
+void progress_update(progress *p, uint64_t done, uint64_t total)
 {
-    progress *p = context;
     if (!p->visible)
         return;
     double time = now();

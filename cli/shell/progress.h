@@ -15,8 +15,7 @@ typedef struct progress {
 
 /* @param unit  of the rate shown, "rows"; @param scale units per counted thing */
 progress progress_begin(const char *label, const char *unit, double scale);
-/* Fits imk_progress, with a progress as its context. */
-void progress_update(void *context, uint64_t done, uint64_t total);
+void progress_update(progress *p, uint64_t done, uint64_t total);
 /* Erase the line. */
 void progress_end(progress *p);
 

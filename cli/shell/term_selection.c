@@ -5,12 +5,12 @@
 
 #include <string.h>
 
-#define AT(member) offsetof(term_selection, member)
-
 const option term_options[TERM_OPTIONS] = {
-    {"only", 0, A_TEXT("TERMS"), AT(only),
-     "use these terms of the model alone, such as angle_random_walk,scale_factor or gyro.bias"},
-    {"without", 0, A_TEXT("TERMS"), AT(without), "use all terms of the model but these"},
+    {"only", OPTION_TEXT, offsetof(term_selection, only), .value = "TERMS",
+     .help =
+         "use these terms of the model alone, such as angle_random_walk,scale_factor or gyro.bias"},
+    {"without", OPTION_TEXT, offsetof(term_selection, without), .value = "TERMS",
+     .help = "use all terms of the model but these"},
 };
 
 enum { TERMS_MAX = 64 };

@@ -13,7 +13,8 @@ typedef struct simulate_options {
     double rate, duration, latitude, height, roll, pitch, yaw;
     option_integer seed, run, runs, decimals, threads, substeps;
     bool no_earth, increments;
-    const char *output, *format, *gyro_unit, *accel_unit;
+    const char *output, *format;
+    imk_unit gyro_unit, accel_unit; /* scale 0: not given */
     const char *motion, *temperature, *truth;
     term_selection terms;
 } simulate_options;

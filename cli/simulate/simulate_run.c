@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One run into one log, and the truth into another. */
-#include "log/log_units.h"
 #include "shell/job_progress.h"
 #include "simulate_parts.h"
 
@@ -12,14 +11,14 @@ static int check_counts(const simulate_options *o, const imk_model *model)
     if (o->increments && (gyro || accel))
         return command_misused("--increments: a model with a sensitivity makes counts, which are "
                                "rates; leave the option out");
-    if (o->gyro_unit && gyro)
+    if (o->gyro_unit.scale > 0 && gyro)
         return command_misused("--gyro-unit %s: the model's gyros have a sensitivity and make "
                                "counts; leave the option out",
-                               o->gyro_unit);
-    if (o->accel_unit && accel)
+                               o->gyro_unit.text);
+    if (o->accel_unit.scale > 0 && accel)
         return command_misused("--accel-unit %s: the model's accelerometers have a sensitivity "
                                "and make counts; leave the option out",
-                               o->accel_unit);
+                               o->accel_unit.text);
     return -1;
 }
 
@@ -27,11 +26,15 @@ int simulate_units(const simulate_options *o, const imk_model *model,
                    imk_simulate_log_settings *settings)
 {
     settings->increments = o->increments;
-    settings->gyro_unit = imk_unit_of(o->increments ? "deg" : "deg/s");
-    settings->accel_unit = imk_unit_of(o->increments ? "m/s" : "m/s^2");
-    int code = log_unit_asked("gyro-unit", o->gyro_unit, &settings->gyro_unit);
-    if (code < 0)
-        code = log_unit_asked("accel-unit", o->accel_unit, &settings->accel_unit);
+    settings->gyro_unit = o->gyro_unit;
+    settings->accel_unit = o->accel_unit;
+    int code = -1;
+    if (o->gyro_unit.scale > 0)
+        code = options_check_unit("gyro-unit", &o->gyro_unit,
+                                  imk_unit_of(o->increments ? "deg" : "deg/s").dimension);
+    if (code < 0 && o->accel_unit.scale > 0)
+        code = options_check_unit("accel-unit", &o->accel_unit,
+                                  imk_unit_of(o->increments ? "m/s" : "m/s^2").dimension);
     return code < 0 ? check_counts(o, model) : code;
 }
 

@@ -13,54 +13,51 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define AT(member) offsetof(simulate_options, member)
+#define AT(field) offsetof(simulate_options, field)
 
 static const option simulate_option_table[] = {
-    {"rate", 'r', A_QUANTITY("RATE", "Hz", NULL), AT(rate),
-     "sample rate, such as 100Hz; required unless a recorded motion has one"},
-    {"duration", 'd', A_QUANTITY("TIME", "s", NULL), AT(duration),
-     "length, such as 2h; default: the whole motion"},
-    {"output", 'o', AN_OUTPUT("LOG"), AT(output),
-     "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output; a "
-     "directory, DIR/, with --runs"},
-    {"seed", 's', AN_INTEGER("N", NULL), AT(seed),
-     "the same seed makes the same bytes on every machine; default 1"},
-    {"run", 0, AN_INTEGER("N", "0-4294967295"), AT(run),
-     "another run of the same sensor: other noise, other run-to-run biases; default 0"},
-    {"runs", 0, AN_INTEGER("N", "1-4294967295"), AT(runs),
-     "so many runs, from --run on, into DIR/run_000.csv and so on"},
-    {"format", 0, A_TEXT("EXTENSION"), AT(format),
-     "of the logs of --runs: csv (default), csv.gz, csv.zst or npy"},
-    {"truth", 0, AN_OUTPUT("FILE"), AT(truth),
-     "write the true motion, and what perfect sensors would have read, row by row"},
-    {"increments", 0, A_FLAG, AT(increments),
-     "write increments of angle and velocity (dtheta_x, dvel_x) instead of rates"},
-    {"decimals", 0, AN_INTEGER("N", "0-17"), AT(decimals),
-     "digits after the point, 0 to 17; default: as many as the number needs"},
-    {"gyro-unit", 0, A_TEXT("UNIT"), AT(gyro_unit),
-     "of the gyro columns; default deg/s, or deg for increments"},
-    {"accel-unit", 0, A_TEXT("UNIT"), AT(accel_unit),
-     "of the accelerometer columns; default m/s^2, or m/s for increments"},
-    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
-     "threads to use; default: all processors. The bytes do not depend on it"},
+    {"rate", OPTION_QUANTITY, AT(rate), .letter = 'r', .value = "RATE", .unit = "Hz",
+     .help = "sample rate, such as 100Hz; required unless a recorded motion has one"},
+    {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
+     .help = "length, such as 2h; default: the whole motion"},
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "LOG",
+     .help = "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard "
+             "output; a directory, DIR/, with --runs"},
+    SEED_OPTION(AT(seed), "the same seed makes the same bytes on every machine; default 1"),
+    {"run", OPTION_INTEGER, AT(run), .value = "N", .choices = "0-4294967295",
+     .help = "another run of the same sensor: other noise, other run-to-run biases; default 0"},
+    {"runs", OPTION_INTEGER, AT(runs), .value = "N", .choices = "1-4294967295",
+     .help = "so many runs, from --run on, into DIR/run_000.csv and so on"},
+    {"format", OPTION_TEXT, AT(format), .value = "EXTENSION",
+     .help = "of the logs of --runs: csv (default), csv.gz, csv.zst or npy"},
+    {"truth", OPTION_OUTPUT, AT(truth), .value = "FILE",
+     .help = "write the true motion, and what perfect sensors would have read, row by row"},
+    {"increments", OPTION_FLAG, AT(increments),
+     .help = "write increments of angle and velocity (dtheta_x, dvel_x) instead of rates"},
+    DECIMALS_OPTION(AT(decimals)),
+    {"gyro-unit", OPTION_UNIT, AT(gyro_unit), .value = "UNIT",
+     .help = "of the gyro columns; default deg/s, or deg for increments"},
+    {"accel-unit", OPTION_UNIT, AT(accel_unit), .value = "UNIT",
+     .help = "of the accelerometer columns; default m/s^2, or m/s for increments"},
+    THREADS_OPTION(AT(threads),
+                   "threads to use; default: all processors. The bytes do not depend on it"),
 };
 
 static const option motion_option_table[] = {
-    {"motion", 'm', AN_INPUT("MOTION"), AT(motion),
-     "a motion script (.yaml), a table of poses, or a log of true rates and forces; default: at "
-     "rest as the options below say"},
-    {"temperature", 't', AN_INPUT("PROFILE"), AT(temperature),
-     "a constant such as 25degC, a profile (.yaml), or a table of time and temperature"},
-    {"substeps", 0, AN_INTEGER("N", "1-512"), AT(substeps),
-     "parts into which a sample is divided, for vibration and bandwidth; default: as needed"},
-    {"latitude", 0, A_QUANTITY("ANGLE", "deg", "-90..90"), AT(latitude), "geodetic; default 45deg"},
-    {"height", 0, A_QUANTITY("LENGTH", "m", "-10000..100000"), AT(height),
-     "above the ellipsoid; default 0m"},
-    {"roll", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(roll), "default 0deg: level"},
-    {"pitch", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(pitch), "default 0deg: level"},
-    {"yaw", 0, A_QUANTITY("ANGLE", "deg", "-36000..36000"), AT(yaw),
-     "from north to east; default 0deg"},
-    {"no-earth", 0, A_FLAG, AT(no_earth), "without Earth rate and gravity"},
+    {"motion", OPTION_FILE, AT(motion), .letter = 'm', .value = "MOTION",
+     .help = "a motion script (.yaml), a table of poses, or a log of true rates and forces; "
+             "default: at rest as the options below say"},
+    {"temperature", OPTION_FILE, AT(temperature), .letter = 't', .value = "PROFILE",
+     .help = "a constant such as 25degC, a profile (.yaml), or a table of time and temperature"},
+    {"substeps", OPTION_INTEGER, AT(substeps), .value = "N", .choices = "1-512",
+     .help =
+         "parts into which a sample is divided, for vibration and bandwidth; default: as needed"},
+    LATITUDE_OPTION(AT(latitude), "geodetic; default 45deg"),
+    HEIGHT_OPTION(AT(height)),
+    TURN_OPTION("roll", AT(roll), "default 0deg: level"),
+    TURN_OPTION("pitch", AT(pitch), "default 0deg: level"),
+    TURN_OPTION("yaw", AT(yaw), "from north to east; default 0deg"),
+    {"no-earth", OPTION_FLAG, AT(no_earth), .help = "without Earth rate and gravity"},
 };
 
 _Static_assert(IMK_SUBSTEPS_MAX == 512, "as the range of --substeps says");
@@ -84,9 +81,9 @@ const verb simulate_verb = {
         "counts. Axes are forward-right-down, so at rest and level accel_z is about -9.8 m/s^2. A "
         "row is the mean over the interval that ends at its time; row 0 shows the unit before the "
         "motion begins.",
-    .groups = {{A_GROUP("Options", simulate_option_table), 0},
-               {A_GROUP("Terms", term_options), AT(terms)},
-               {A_GROUP("Motion and place", motion_option_table), 0}},
+    .groups = {OPTION_GROUP("Options", simulate_option_table, 0),
+               {"Terms", TERM_OPTIONS, term_options, AT(terms)},
+               OPTION_GROUP("Motion and place", motion_option_table, 0)},
     .run = run};
 
 /* ---- runs ---- */

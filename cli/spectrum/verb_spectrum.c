@@ -18,39 +18,39 @@ typedef struct spectrum_options {
     option_integer threads;
 } spectrum_options;
 
-#define AT(member) offsetof(spectrum_options, member)
+#define AT(field) offsetof(spectrum_options, field)
 
 static const option spectrum_option_table[] = {
-    {"method", 0, A_CHOICE("CHOICE", "welch|multitaper"), AT(method),
-     "averaged windowed segments (the default), or Slepian tapers, for records too short to be cut "
-     "up"},
-    {"resolution", 0, A_QUANTITY("BANDWIDTH", "Hz", "positive"), AT(resolution),
-     "how far two lines must be apart to be told from each other; default: 31 segments, or one for "
-     "multitaper"},
-    {"window", 0, A_CHOICE("CHOICE", "hann|blackman-harris|kaiser"), AT(window),
-     "of the segments; the latter two for weak lines beside strong ones"},
-    {"trend", 0, A_FLAG, AT(trend), "remove a straight line from each segment, not its mean only"},
-    {"density", 0, A_CHOICE("SIDES", "two-sided|one-sided"), AT(density),
-     "of the densities shown: IEEE's convention (the default), or twice that as many data sheets "
-     "and analysers have it; parameters are always two-sided"},
-    {"false-alarm", 0, A_FRACTION("FRACTION", NULL), AT(false_alarm),
-     "chance that a channel without lines shows any; default 0.001"},
-    {"from", 0, A_QUANTITY("FREQUENCY", "Hz", "not negative"), AT(from),
-     "lowest frequency the noise parameters are fitted to; default: the lowest resolved"},
-    {"to", 0, A_QUANTITY("FREQUENCY", "Hz", "positive"), AT(to),
-     "highest; set it below the sensor's own filter; default: half the sample rate"},
-    {"confidence", 0, A_FRACTION("FRACTION", CONFIDENCE_RANGE), AT(confidence),
-     "of the two-sided intervals; default 0.95"},
-    {"output", 'o', AN_OUTPUT("FILE.csv"), AT(output),
-     "write the densities (100 per decade, one line per channel and frequency, SI) here; - is "
-     "standard output"},
-    {"plot", 0, AN_OUTPUT("FILE.svg|.png|.pdf|term"), AT(plot),
-     "draw the root densities with their intervals, lines marked"},
-    {"report", 0, AN_OUTPUT("FILE.html"), AT(report),
-     "write one self-contained page: plot and tables"},
-    {"json", 0, A_FLAG, AT(json), "print the result as JSON instead of tables"},
-    {"threads", 0, AN_INTEGER("N", "1-65536"), AT(threads),
-     "threads to use; default: all processors"},
+    {"method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "welch|multitaper",
+     .help = "averaged windowed segments (the default), or Slepian tapers, for records too short "
+             "to be cut up"},
+    {"resolution", OPTION_QUANTITY, AT(resolution), .value = "BANDWIDTH", .unit = "Hz",
+     .choices = "positive",
+     .help = "how far two lines must be apart to be told from each other; default: 31 segments, or "
+             "one for multitaper"},
+    {"window", OPTION_CHOICE, AT(window), .value = "CHOICE",
+     .choices = "hann|blackman-harris|kaiser",
+     .help = "of the segments; the latter two for weak lines beside strong ones"},
+    {"trend", OPTION_FLAG, AT(trend),
+     .help = "remove a straight line from each segment, not its mean only"},
+    {"density", OPTION_CHOICE, AT(density), .value = "SIDES", .choices = "two-sided|one-sided",
+     .help = "of the densities shown: IEEE's convention (the default), or twice that as many data "
+             "sheets and analysers have it; parameters are always two-sided"},
+    {"false-alarm", OPTION_FRACTION, AT(false_alarm), .value = "FRACTION",
+     .help = "chance that a channel without lines shows any; default 0.001"},
+    {"from", OPTION_QUANTITY, AT(from), .value = "FREQUENCY", .unit = "Hz",
+     .choices = "not negative",
+     .help = "lowest frequency the noise parameters are fitted to; default: the lowest resolved"},
+    {"to", OPTION_QUANTITY, AT(to), .value = "FREQUENCY", .unit = "Hz", .choices = "positive",
+     .help = "highest; set it below the sensor's own filter; default: half the sample rate"},
+    CONFIDENCE_OPTION(AT(confidence), "of the two-sided intervals; default 0.95"),
+    {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE.csv",
+     .help = "write the densities (100 per decade, one line per channel and frequency, SI) here; - "
+             "is standard output"},
+    PLOT_OPTION(AT(plot), "draw the root densities with their intervals, lines marked"),
+    REPORT_OPTION(AT(report), "write one self-contained page: plot and tables"),
+    JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
+    THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static int run(int count, char **words);
@@ -72,8 +72,7 @@ const verb spectrum_verb = {
         "analysed.\n\nLines are listed with frequency, amplitude and what they are multiples of. "
         "The noise parameters are a cross-check of imukit identify, which is the better "
         "estimator; where they differ, something that neither models is in the log.",
-    .groups = {{A_GROUP("Options", spectrum_option_table), 0},
-               {A_GROUP("Reading the log", log_input_options), AT(log)}},
+    .groups = {OPTION_GROUP("Options", spectrum_option_table, 0), LOG_INPUT_GROUP(AT(log))},
     .run = run};
 
 static void write_rows(const imk_spectrum_log *s, size_t channel, imk_output_file *file)

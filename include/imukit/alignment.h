@@ -73,9 +73,9 @@ IMK_API size_t imk_alignment_size(const imk_alignment_settings *settings);
 /** @return IMK_ERROR_UNINITIALISED, _RANGE, _NOT_FINITE, _CONFLICT (within 1 deg of a pole: no
  *          north there), _UNSUPPORTED (a model without gyros or accelerometers, or with fewer than
  *          three of either), _WORKSPACE, and those of imk_model_validate() */
-IMK_API imk_status imk_alignment_start(void *memory, size_t size,
-                                       const imk_alignment_settings *settings,
-                                       imk_alignment **alignment, imk_error *error);
+IMK_API imk_status imk_alignment_start(const imk_alignment_settings *settings,
+                                       imk_alignment **alignment, void *memory, size_t memory_size,
+                                       imk_error *error);
 /** One sample: increments of angle [rad] and velocity [m/s] over dt > 0 [s], and the velocity of
  *  the unit relative to the Earth, north-east-down, in its middle (NULL: it stays; means: it does
  *  not count). About 0.2 us. */

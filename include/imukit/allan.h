@@ -91,8 +91,8 @@ IMK_API size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n,
  *  @return IMK_ERROR_RANGE, IMK_ERROR_TOO_SHORT, IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_allan_compute(imk_allan_statistic statistic, size_t n, const double *sums,
                                      size_t factor_count, const size_t *factors, double *variances,
-                                     size_t *counts, void *workspace, size_t workspace_size,
-                                     const imk_executor *executor);
+                                     size_t *counts, const imk_executor *executor, void *workspace,
+                                     size_t workspace_size);
 
 /** imk_allan_compute() for the statistics that need no workspace. */
 IMK_API imk_status imk_allan_variances(imk_allan_statistic statistic, size_t n, const double *sums,

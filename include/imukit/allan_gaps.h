@@ -59,8 +59,8 @@ IMK_API size_t imk_allan_gaps_workspace_size(size_t n);
 IMK_API imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t n,
                                          const double *rate, size_t factor_count,
                                          const size_t *factors, imk_allan_gap_point *points,
-                                         void *workspace, size_t workspace_size,
-                                         const imk_executor *executor);
+                                         const imk_executor *executor, void *workspace,
+                                         size_t workspace_size);
 
 IMK_END_C
 #endif

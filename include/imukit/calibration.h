@@ -181,18 +181,18 @@ IMK_API size_t imk_calibration_workspace_size(const imk_calibration *calibration
  *          The result is untouched on error: what is not finite or has not converged is never a
  *          result
  */
-IMK_API imk_status imk_calibration_solve(imk_calibration *calibration, void *workspace,
-                                         size_t workspace_size, imk_calibration_result *result,
-                                         imk_error *error);
+IMK_API imk_status imk_calibration_solve(imk_calibration *calibration,
+                                         imk_calibration_result *result, void *workspace,
+                                         size_t workspace_size, imk_error *error);
 
 /** Information that the observations hold about the parameters at the model's values, attitudes and
  *  placements eliminated, by stated sigmas and priors: parameter_count^2, row-major. For planning:
  *  readings are not looked at, only whether they are NaN; with IMK_INPUT_GRAVITY force must be
  *  given. Rows of what a symmetric frame ties to another element are 0. @return errors as of
  *  imk_calibration_solve() but _SINGULAR, and IMK_ERROR_KEY_MISSING ("force") */
-IMK_API imk_status imk_calibration_information(const imk_calibration *calibration, void *workspace,
-                                               size_t workspace_size, double *information,
-                                               imk_error *error);
+IMK_API imk_status imk_calibration_information(const imk_calibration *calibration,
+                                               double *information, void *workspace,
+                                               size_t workspace_size, imk_error *error);
 
 /** Half width of the interval of parameter `index` for a confidence, such as 0.95. */
 IMK_API double imk_calibration_half_width(const imk_calibration_result *result, int index,

@@ -111,8 +111,8 @@ IMK_API size_t imk_plan_workspace_size(imk_calibration *calibration,
  *          estimate; or "noise": the model states none), errors of imk_calibration_information().
  *          A wish that is not reached is no error */
 IMK_API imk_status imk_plan_make(imk_calibration *calibration, const imk_plan_settings *settings,
-                                 void *workspace, size_t workspace_size, imk_plan_step *step,
-                                 imk_plan_result *result, imk_error *error);
+                                 imk_plan_step *step, imk_plan_result *result, void *workspace,
+                                 size_t workspace_size, imk_error *error);
 
 /** Steps that imk_plan_script() may need. */
 IMK_API size_t imk_plan_script_steps(size_t step_count);
@@ -140,8 +140,8 @@ IMK_API size_t imk_next_pose_workspace_size(const imk_calibration *calibration);
  *  before it.
  *  @param sigma  of the mean of an accelerometer in such a pose [m/s^2] (gyros: of the observations
  *                there are); 0: the median of those observed, or 1e-3 */
-IMK_API imk_status imk_next_pose(const imk_calibration *calibration, double sigma, void *workspace,
-                                 size_t workspace_size, size_t count, imk_pose_advice *advice,
+IMK_API imk_status imk_next_pose(const imk_calibration *calibration, double sigma, size_t count,
+                                 imk_pose_advice *advice, void *workspace, size_t workspace_size,
                                  imk_error *error);
 
 IMK_END_C

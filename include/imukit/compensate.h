@@ -103,19 +103,20 @@ IMK_API void imk_compensator_resume(imk_compensator *compensator, double time);
  *  of the differences; with the latter there is no delay.
  *  @param out        imk_compensator_components() arrays each, NULL where not wanted
  *  @param flags      NULL: not wanted
- *  @param workspace  imk_compensate_workspace(count) doubles
- *  @return number of outputs: count, or one less at the beginning of a stretch with delay 1 */
+ *  @return number of outputs: count, or one less at the beginning of a stretch with delay 1; 0 when
+ *          the workspace is too small */
 IMK_API size_t imk_compensator_block(imk_compensator *compensator, const imk_readings *readings,
                                      size_t count, double *out[2][IMK_AXES_MAX],
-                                     unsigned char *flags, double *workspace);
+                                     unsigned char *flags, void *workspace, size_t workspace_size);
 
 /** A whole record at once, from its first sample to its last: imk_compensator_block() and what is
- *  held after it. @param flags  count flags, or NULL */
-IMK_API void imk_compensate_record(imk_compensator *compensator, const imk_readings *readings,
-                                   size_t count, double *out[2][IMK_AXES_MAX], unsigned char *flags,
-                                   double *workspace);
-/** Doubles of workspace for blocks and records of `count` samples; at most about 12 000. */
-IMK_API size_t imk_compensate_workspace(size_t count);
+ *  held after it. @param flags  count flags, or NULL. @return IMK_ERROR_WORKSPACE */
+IMK_API imk_status imk_compensate_record(imk_compensator *compensator, const imk_readings *readings,
+                                         size_t count, double *out[2][IMK_AXES_MAX],
+                                         unsigned char *flags, void *workspace,
+                                         size_t workspace_size);
+/** Bytes of workspace for blocks and records of `count` samples; at most about 96 000. */
+IMK_API size_t imk_compensate_workspace_size(size_t count);
 
 IMK_END_C
 #endif

@@ -118,18 +118,19 @@ IMK_API size_t imk_drift_covariance_size(const imk_model *model,
                                          const imk_drift_settings *settings);
 /** Covariance analysis along the motion. A day at rest takes some 40 ms at 2.7 GHz, 10 minutes of a
  *  car's drive 60 ms, most of it for the flicker noise's 32 stages.
- *  @param memory    imk_drift_covariance_size() bytes, 64-byte aligned
+ *  @param memory    imk_drift_covariance_size() bytes, in which the analysis is
  *  @param executor  sources are its work items; NULL: serial. The bits do not depend on it
  *  @return the errors of imk_drift_validate(), IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_drift_covariance(const imk_model *model, const imk_drift_settings *settings,
-                                        void *memory, size_t size, const imk_executor *executor,
-                                        imk_drift_analysis **analysis, imk_error *error);
+                                        const imk_executor *executor, imk_drift_analysis **analysis,
+                                        void *memory, size_t memory_size, imk_error *error);
 
 /* ---- Monte Carlo ------------------------------------------------------------------------------
  */
 
-/** Bytes to run up to IMK_DRIFT_LANES runs at once: one per thread. */
-IMK_API size_t imk_drift_runs_size(const imk_model *model, const imk_drift_settings *settings);
+/** Bytes of workspace to run up to IMK_DRIFT_LANES runs at once. */
+IMK_API size_t imk_drift_runs_workspace_size(const imk_model *model,
+                                             const imk_drift_settings *settings);
 /** Runs first … first + count - 1: each simulated as imk_simulator does (the samples are those of
  *  `imukit simulate --run`), aligned, and navigated. A run's bits depend on model, settings, seed
  *  and its number alone. With `compensated`, each run draws what calibration left of every known
@@ -143,15 +144,14 @@ IMK_API size_t imk_drift_runs_size(const imk_model *model, const imk_drift_setti
  *  Per run and row on a core with AVX-512 some 70 ns at rest, 90 ns on a motion; eight runs at once
  *  are best.
  *  @param count   1 … IMK_DRIFT_LANES
- *  @param memory  imk_drift_runs_size() bytes, 64-byte aligned
  *  @param errors  [run][time][state], estimate minus truth; NaN from where a run left the Earth's
  *                 surroundings (below 6000 km or above 10000 km from the centre), and for a run
  *                 that found no north
  *  @return the errors of imk_drift_validate() and of the simulator, IMK_ERROR_RANGE (count, or run
- *          numbers beyond 2^32 - 1), IMK_ERROR_WORKSPACE, IMK_ERROR_ARGUMENT (alignment) */
+ *          numbers beyond 2^32 - 1), IMK_ERROR_WORKSPACE, IMK_ERROR_ARGUMENT (no workspace) */
 IMK_API imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *settings,
-                                  uint64_t seed, uint32_t first, size_t count, void *memory,
-                                  size_t size, double *errors, imk_error *error);
+                                  uint64_t seed, uint32_t first, size_t count, double *errors,
+                                  void *workspace, size_t workspace_size, imk_error *error);
 
 /* ---- figures ----------------------------------------------------------------------------------
  */
@@ -175,9 +175,9 @@ IMK_API imk_drift_figures imk_drift_figures_of(const imk_drift_moments *moments)
  *  of the radii by order statistics (infinite above where the runs are too few to say), of root
  *  mean squares by the fourth moments. Runs with a NaN are left out; `used` (or NULL) counts the
  *  others.
- *  @param workspace  count doubles */
+ *  @param scratch  count doubles */
 IMK_API imk_drift_figures imk_drift_figures_of_runs(size_t count, size_t stride,
-                                                    const double *errors, double *workspace,
+                                                    const double *errors, double *scratch,
                                                     imk_drift_figures *low, imk_drift_figures *high,
                                                     size_t *used);
 

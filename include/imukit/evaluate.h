@@ -118,9 +118,10 @@ IMK_API size_t imk_evaluation_workspace_size(const imk_evaluation_table *table);
  *          IMK_ERROR_RANGE (settings; a sigma, direction or run, index: row), IMK_ERROR_WORKSPACE,
  *          IMK_ERROR_UNINITIALISED */
 IMK_API imk_status imk_evaluate(const imk_evaluation_table *table,
-                                const imk_evaluation_settings *settings, void *workspace,
-                                size_t workspace_size, imk_evaluation_level *level, size_t capacity,
-                                imk_evaluation *result, imk_error *error);
+                                const imk_evaluation_settings *settings,
+                                imk_evaluation_level *level, size_t capacity,
+                                imk_evaluation *result, void *workspace, size_t workspace_size,
+                                imk_error *error);
 
 /** The line whose largest distance from points is smallest, exactly: that of the convex hull's
  *  narrowest strip [CHENEY1966].
@@ -128,9 +129,9 @@ IMK_API imk_status imk_evaluate(const imk_evaluation_table *table,
  *  @param x            strictly ascending
  *  @param alternation  3 indices at which the distance is largest with alternating sign; -1 with
  *                      two points
- *  @param workspace    2 n ints */
+ *  @param scratch      2 n ints */
 IMK_API imk_evaluation_line imk_minimax_line(size_t n, const double *x, const double *y,
-                                             int alternation[3], int *workspace);
+                                             int alternation[3], int *scratch);
 
 IMK_END_C
 #endif

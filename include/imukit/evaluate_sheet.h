@@ -48,7 +48,7 @@ typedef struct imk_evaluate_sheet {
 typedef struct imk_evaluate_channel {
     char name[IMK_EVALUATE_NAME];
     imk_unit reference_unit, reading_unit; /**< to show in */
-    size_t count, capacity;
+    size_t count;
     double *reference, *reading, *sigma; /**< sigma NULL: not known */
     signed char *direction;              /**< NULL: from the order */
     int *run;

@@ -58,10 +58,9 @@ typedef struct imk_ferraris {
  *  @return the errors of imk_procedure_observe() */
 IMK_API imk_status imk_ferraris_stretches(const imk_test_record *record,
                                           const imk_procedure_settings *settings,
-                                          const imk_model *model, double gravity, void *workspace,
-                                          size_t workspace_size, size_t capacity,
+                                          const imk_model *model, double gravity, size_t capacity,
                                           imk_ferraris_stretch *stretch, size_t *count,
-                                          imk_error *error);
+                                          void *workspace, size_t workspace_size, imk_error *error);
 
 /** The closed form. Holds of one face are pooled by samples, turns about one axis by angle. Sigmas
  *  follow from the scatter within the holds and `angle_sigma`, to first order.

@@ -35,8 +35,8 @@ IMK_API size_t imk_identify_record_size(size_t expected);
 
 /** Start a record in `memory`, at any address, which the caller frees when all is done.
  *  @return IMK_ERROR_WORKSPACE, IMK_ERROR_ARGUMENT */
-IMK_API imk_status imk_identify_record_begin(size_t expected, void *memory, size_t memory_size,
-                                             imk_identify_record **record, imk_error *error);
+IMK_API imk_status imk_identify_record_begin(size_t expected, imk_identify_record **record,
+                                             void *memory, size_t memory_size, imk_error *error);
 
 /** Add samples, equally spaced and in order, in blocks of any size: the result does not depend on
  *  how the record is divided. A NaN is a missing sample.

@@ -13,6 +13,7 @@
 #include "imukit/compensate_log.h"
 #include "imukit/convert_log.h"
 #include "imukit/drift_models.h"
+#include "imukit/evaluate_log.h"
 #include "imukit/evaluate_sheet.h"
 #include "imukit/even_record.h"
 #include "imukit/grade_position.h"

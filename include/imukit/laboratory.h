@@ -96,9 +96,9 @@ IMK_API size_t imk_laboratory_workspace_size(const imk_laboratory *laboratory);
  *  @param executor  NULL for serial; work items are single points
  *  @return the errors of the instrument's init; IMK_ERROR_RANGE (field names the setting),
  *          IMK_ERROR_WORKSPACE, IMK_ERROR_UNINITIALISED */
-IMK_API imk_status imk_laboratory_run(const imk_laboratory *laboratory, void *workspace,
-                                      size_t workspace_size, const imk_executor *executor,
-                                      imk_laboratory_result *result, imk_error *error);
+IMK_API imk_status imk_laboratory_run(const imk_laboratory *laboratory,
+                                      const imk_executor *executor, imk_laboratory_result *result,
+                                      void *workspace, size_t workspace_size, imk_error *error);
 
 /** One parameter of a model of one axis, in a list that is the same for all models of one kind. */
 typedef struct imk_laboratory_figure {

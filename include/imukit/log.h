@@ -10,6 +10,7 @@
 #define IMUKIT_LOG_H
 
 #include "imukit/executor.h"
+#include "imukit/job.h"
 #include "imukit/output_file.h"
 #include "imukit/record.h"
 #include "imukit/status.h"
@@ -120,15 +121,14 @@ IMK_API void imk_log_close(imk_log_reader *reader);
  *  then. */
 IMK_API imk_record_source imk_log_source(imk_log_reader *reader);
 
-/** Called now and then on long work; `done` of `total` (0: not known) in any measure. */
-typedef void (*imk_progress)(void *context, uint64_t done, uint64_t total);
-
-/** Read a whole log. @param progress may be NULL. Free with imk_log_free().
+/** Read a whole log. Free with imk_log_free().
+ *  @param job  its allocator, progress and memory, which settings.memory overrules; NULL: as if all
+ *              zeros
  *  @return as imk_log_open(), imk_log_read(); IMK_ERROR_MEMORY (how many rows were read) for a log
- *          that takes more memory than the settings allow */
+ *          that takes more memory than allowed */
 IMK_API imk_status imk_log_load(const char *path, const imk_log_settings *settings,
-                                imk_progress progress, void *progress_context, imk_log *log,
-                                imk_error *error);
+                                const imk_job *job, imk_log *log, imk_error *error);
+
 /** How numbers are written. */
 typedef enum imk_log_precision {
     /** In SI units (scale 1) the shortest decimal that reads back to the same double. In other

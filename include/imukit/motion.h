@@ -140,17 +140,17 @@ IMK_API size_t imk_trajectory_substeps(const imk_trajectory *trajectory, double 
  *  @param time       count increasing times [s], 1e-9 … 1e9 apart
  *  @param position   3 arrays, Earth-fixed relative to `origin` [m]
  *  @param attitude   count unit quaternions q_eb; signs do not matter
- *  @param workspace  imk_trajectory_poses_workspace(count) doubles
  *  @param piece      count - 1 pieces
  *  @return IMK_ERROR_TOO_SHORT (fewer than two), IMK_ERROR_TIME_ORDER (error.index: the row),
- *          IMK_ERROR_NOT_FINITE, IMK_ERROR_RANGE (a step of time; two attitudes more than 120 deg
- *          apart: the turn between them is not known) */
+ *          IMK_ERROR_NOT_FINITE, IMK_ERROR_WORKSPACE, IMK_ERROR_RANGE (a step of time; two
+ *          attitudes more than 120 deg apart: the turn between them is not known) */
 IMK_API imk_status imk_trajectory_from_poses(size_t count, const double *time,
                                              const double *const position[3],
-                                             const imk_quaternion *attitude, double *workspace,
-                                             imk_trajectory_piece *piece, imk_error *error);
-/** Doubles of workspace for `count` poses. */
-IMK_API size_t imk_trajectory_poses_workspace(size_t count);
+                                             const imk_quaternion *attitude,
+                                             imk_trajectory_piece *piece, void *workspace,
+                                             size_t workspace_size, imk_error *error);
+/** Bytes of workspace for `count` poses. */
+IMK_API size_t imk_trajectory_poses_workspace_size(size_t count);
 
 /* ---- vibration ---------------------------------------------------------------------------------
  */

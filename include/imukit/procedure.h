@@ -104,8 +104,8 @@ IMK_API size_t imk_procedure_workspace_size(imk_procedure procedure, const imk_t
 IMK_API imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calibration,
                                          const imk_test_record *record,
                                          const imk_procedure_settings *settings, bool keep_free,
-                                         void *workspace, size_t workspace_size,
-                                         imk_procedure_findings *findings, imk_error *error);
+                                         imk_procedure_findings *findings, void *workspace,
+                                         size_t workspace_size, imk_error *error);
 
 /* ---- what looks wrong ---------------------------------------------------------------------------
  */

@@ -34,9 +34,10 @@ IMK_API size_t imk_reference_stretches_workspace_size(const imk_test_record *rec
  *  @return IMK_ERROR_KEY_MISSING (field "reference": the record has none), IMK_ERROR_WORKSPACE,
  *          IMK_ERROR_RANGE (dt), IMK_ERROR_UNINITIALISED; none found is no error */
 IMK_API imk_status imk_reference_stretches(const imk_test_record *record,
-                                           const imk_procedure_settings *settings, void *workspace,
-                                           size_t workspace_size, imk_reference_stretch *stretch,
-                                           size_t capacity, size_t *count, imk_error *error);
+                                           const imk_procedure_settings *settings,
+                                           imk_reference_stretch *stretch, size_t capacity,
+                                           size_t *count, void *workspace, size_t workspace_size,
+                                           imk_error *error);
 
 /** By how much a log and its reference differ in time. */
 typedef struct imk_reference_shift {
@@ -62,8 +63,8 @@ IMK_API size_t imk_reference_offset_workspace_size(const imk_test_record *record
  *          never change), IMK_ERROR_TOO_SHORT (less than three times max_shift), IMK_ERROR_RANGE
  *          (max_shift), IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_reference_offset(const imk_test_record *record, double max_shift,
-                                        void *workspace, size_t workspace_size,
-                                        imk_reference_shift *shift, imk_error *error);
+                                        imk_reference_shift *shift, void *workspace,
+                                        size_t workspace_size, imk_error *error);
 
 IMK_END_C
 #endif

@@ -66,13 +66,13 @@ typedef struct imk_simulator imk_simulator;
 IMK_API size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation);
 
 /** Validate and start.
- *  @param memory  imk_simulator_size() bytes, 64-byte aligned; owns nothing else. The motion and
+ *  @param memory  imk_simulator_size() bytes, in which it lives; owns nothing else. The motion and
  *                 the temperature profile must stay while it runs
  *  @return the errors of imk_model_validate() and of the motion; IMK_ERROR_RANGE;
  *          IMK_ERROR_CONFLICT (a clock error with a recorded motion, whose samples are what they
  *          are; another rate than the recorded motion's); IMK_ERROR_WORKSPACE */
-IMK_API imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model,
-                                       const imk_simulation *simulation, imk_simulator **simulator,
+IMK_API imk_status imk_simulator_start(const imk_model *model, const imk_simulation *simulation,
+                                       imk_simulator **simulator, void *memory, size_t memory_size,
                                        imk_error *error);
 
 /** Channels it makes: gyro axes, then accelerometer axes. */

@@ -108,11 +108,12 @@ IMK_API void imk_spectrum_interval(double density, double degrees, double confid
  *  quotient iteration. Error of a value below 1e-11 up to 5000 samples, 1e-9 up to 300000.
  *  @param tapers          count * n values, one sequence after the other
  *  @param concentrations  count values
- *  @param workspace       8 n + 64 doubles
  *  @return IMK_ERROR_RANGE (n < 8, count < 1, count > 2 NW, NW outside 0.5 … n/4), _WORKSPACE */
 IMK_API imk_status imk_slepian_tapers(size_t n, double time_bandwidth, int count, double *tapers,
                                       double *concentrations, void *workspace,
                                       size_t workspace_size);
+/** Bytes of workspace for tapers of n samples. */
+IMK_API size_t imk_slepian_workspace_size(size_t n);
 
 /* ---- lines ----------------------------------------------------------------------------------- */
 

@@ -72,10 +72,9 @@ IMK_API size_t imk_static_workspace_size(const imk_test_record *record,
  *          _UNINITIALISED; none standing is no error here: count is 0 */
 IMK_API imk_status imk_static_detect(const imk_test_record *record,
                                      const imk_static_settings *settings, const imk_model *model,
-                                     void *workspace, size_t workspace_size,
                                      imk_static_interval *interval, size_t capacity, size_t *count,
                                      double *activity, imk_static_findings *findings,
-                                     imk_error *error);
+                                     void *workspace, size_t workspace_size, imk_error *error);
 
 /** Mean, sigma and scatter of any stretch of samples, as in an interval that was detected. */
 IMK_API imk_static_interval imk_static_summary(const imk_test_record *record, size_t begin,

@@ -120,8 +120,8 @@ IMK_API size_t imk_thermal_workspace_size(void);
  *          IMK_ERROR_RANGE (settings), _WORKSPACE, _UNINITIALISED */
 IMK_API imk_status imk_thermal_analyse(const imk_test_record *record,
                                        const imk_thermal_settings *settings, const imk_model *model,
-                                       void *workspace, size_t workspace_size,
-                                       imk_thermal_findings *findings, imk_error *error);
+                                       imk_thermal_findings *findings, void *workspace,
+                                       size_t workspace_size, imk_error *error);
 
 /** Put findings into a model: hysteresis, temperature_rate, reference and valid range, and when
  *  `polynomials` the coefficients too (replacing what the model had). Sigmas with them.

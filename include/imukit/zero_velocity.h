@@ -115,15 +115,15 @@ typedef struct imk_zero_velocity_counts {
 
 /** A filter under way: opaque memory of imk_zero_velocity_size() bytes, given by the caller. */
 typedef struct imk_zero_velocity imk_zero_velocity;
-/** Bytes for a filter; 8-byte aligned memory will do. */
+/** Bytes for a filter. */
 IMK_API size_t imk_zero_velocity_size(const imk_zero_velocity_settings *settings);
 /** Start at a state.
  *  @return IMK_ERROR_UNINITIALISED, IMK_ERROR_RANGE (a sigma that is negative or not finite, …:
  *          error.field), IMK_ERROR_WORKSPACE */
-IMK_API imk_status imk_zero_velocity_start(void *memory, size_t size,
-                                           const imk_zero_velocity_settings *settings,
+IMK_API imk_status imk_zero_velocity_start(const imk_zero_velocity_settings *settings,
                                            const imk_navigation_state *start,
-                                           imk_zero_velocity **filter, imk_error *error);
+                                           imk_zero_velocity **filter, void *memory,
+                                           size_t memory_size, imk_error *error);
 
 /** One sample as read: increments of angle [rad] and velocity [m/s] over dt > 0 [s], body axes. The
  *  biases estimated so far are taken off inside. */

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Bytes to ask for beyond the doubles themselves. */
+/* Bytes to ask for beyond the parts. */
 enum { IMKI_ALIGNMENT_SLACK = 64 };
 
 static inline double *imki_align(void *workspace)
@@ -23,26 +23,26 @@ static inline size_t imki_aligned(size_t size)
 }
 
 /* What parts are taken from one after the other; without memory, only their size is added up. */
-typedef struct imki_arena {
+typedef struct imki_parts {
     char *memory;
     size_t used;
-} imki_arena;
+} imki_parts;
 
-/* Of a workspace, which has bytes for imki_arena_size(); NULL: only sizes are wanted. */
-static inline imki_arena imki_arena_of(void *workspace)
+/* Of a workspace, which has bytes for imki_parts_size(); NULL: only sizes are wanted. */
+static inline imki_parts imki_parts_of(void *workspace)
 {
-    return (imki_arena){(char *)imki_align(workspace), 0};
+    return (imki_parts){(char *)imki_align(workspace), 0};
 }
 
-static inline size_t imki_arena_size(const imki_arena *arena)
+static inline size_t imki_parts_size(const imki_parts *parts)
 {
-    return arena->used + IMKI_ALIGNMENT_SLACK;
+    return parts->used + IMKI_ALIGNMENT_SLACK;
 }
 
-static inline void *imki_take(imki_arena *arena, size_t size)
+static inline void *imki_take(imki_parts *parts, size_t size)
 {
-    void *part = arena->memory ? arena->memory + arena->used : NULL;
-    arena->used += imki_aligned(size);
+    void *part = parts->memory ? parts->memory + parts->used : NULL;
+    parts->used += imki_aligned(size);
     return part;
 }
 

@@ -12,6 +12,7 @@
  * give the same bits. */
 #include "imukit/compensate.h"
 
+#include "base/workspace_internal.h"
 #include "imukit/elementary.h"
 
 #include <math.h>
@@ -283,10 +284,12 @@ static size_t run(imk_compensator *c, const imk_readings *readings, size_t first
 
 size_t imk_compensator_block(imk_compensator *compensator, const imk_readings *readings,
                              size_t count, double *out[2][IMK_AXES_MAX], unsigned char *flags,
-                             double *workspace)
+                             void *workspace, size_t workspace_size)
 {
     uint32_t mark[BLOCK + BEFORE];
-    lanes l = lay_out(workspace, count < BLOCK ? count : BLOCK, mark);
+    if (!workspace || workspace_size < imk_compensate_workspace_size(count))
+        return 0;
+    lanes l = lay_out(imki_align(workspace), count < BLOCK ? count : BLOCK, mark);
     size_t written = 0;
     for (size_t first = 0; first < count; first += BLOCK) {
         const size_t left = count - first;
@@ -356,15 +359,20 @@ bool imk_compensator_finish(imk_compensator *compensator, imk_compensator_sample
     return any;
 }
 
-void imk_compensate_record(imk_compensator *compensator, const imk_readings *readings, size_t count,
-                           double *out[2][IMK_AXES_MAX], unsigned char *flags, double *workspace)
+imk_status imk_compensate_record(imk_compensator *compensator, const imk_readings *readings,
+                                 size_t count, double *out[2][IMK_AXES_MAX], unsigned char *flags,
+                                 void *workspace, size_t workspace_size)
 {
+    if (!workspace || workspace_size < imk_compensate_workspace_size(count))
+        return IMK_ERROR_WORKSPACE;
     const size_t written =
-        imk_compensator_block(compensator, readings, count, out, flags, workspace);
+        imk_compensator_block(compensator, readings, count, out, flags, workspace, workspace_size);
     finish(compensator, out, flags, written);
+    return IMK_OK;
 }
 
-size_t imk_compensate_workspace(size_t count)
+size_t imk_compensate_workspace_size(size_t count)
 {
-    return ROWS * ((count < BLOCK ? count : BLOCK) + BEFORE);
+    return ROWS * ((count < BLOCK ? count : BLOCK) + BEFORE) * sizeof(double) +
+           IMKI_ALIGNMENT_SLACK;
 }

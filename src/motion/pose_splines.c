@@ -11,6 +11,7 @@
 #include "imukit/motion.h"
 
 #include "base/refuse_internal.h"
+#include "base/workspace_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,9 +28,9 @@ typedef struct spline_system {
     double *second;  /* m, COMPONENTS of each pose */
 } spline_system;
 
-size_t imk_trajectory_poses_workspace(size_t count)
+size_t imk_trajectory_poses_workspace_size(size_t count)
 {
-    return (3 + COMPONENTS) * count;
+    return (3 + COMPONENTS) * count * sizeof(double) + IMKI_ALIGNMENT_SLACK;
 }
 
 static double product(imk_quaternion a, imk_quaternion b)
@@ -193,8 +194,8 @@ static void set_pieces(const spline_system *system, const double *const position
 
 imk_status imk_trajectory_from_poses(size_t count, const double *time,
                                      const double *const position[3],
-                                     const imk_quaternion *attitude, double *workspace,
-                                     imk_trajectory_piece *piece, imk_error *error)
+                                     const imk_quaternion *attitude, imk_trajectory_piece *piece,
+                                     void *workspace, size_t workspace_size, imk_error *error)
 {
     if (count < 2)
         return imki_refuse_at(error, IMK_ERROR_TOO_SHORT, "poses", 0, (double)count, 2.0,
@@ -204,8 +205,12 @@ imk_status imk_trajectory_from_poses(size_t count, const double *time,
         if (status)
             return status;
     }
+    if (!workspace || workspace_size < imk_trajectory_poses_workspace_size(count))
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
+                             "imk_trajectory_poses_workspace_size() bytes");
+    double *array = imki_align(workspace);
     const spline_system system = {
-        count, time, workspace, workspace + count, workspace + 2 * count, workspace + 3 * count};
+        count, time, array, array + count, array + 2 * count, array + 3 * count};
     system.sign[0] = 1.0;
     for (size_t i = 0; i + 1 < count; i++) {
         const double cosine = product(attitude[i], attitude[i + 1]);

@@ -136,6 +136,25 @@ static const struct message {
     {"drift", "attitude comes from the gyros alone: while still they were off by {0.3g} deg/h, "
               "which makes up to {1.3g} deg and {2.3g} m/s^2 in the {3.4g} s of this log"},
     {"convert:not_finite", "{0} rows have no finite rates: the attitude was held"},
+    /* evaluate_log.c */
+    {"two_units", "{name} is in {other} in another"},
+    {"too_many_readings", "there are more than {0} columns of readings"},
+    {"too_many_runs", "more than {0} runs"},
+    {"texts", "column {name} holds texts, expected numbers"},
+    {"no_unit", "{name} has no unit; write it into the header, such as {name} [deg/s] or {name} "
+                "[count]"},
+    {"direction", "row {0}: direction \"{name}\"; expected up, down or -"},
+    {"no_reading", "row {0}: {name} is no number, or beyond 1e60; leave the row out"},
+    {"no_sigma", "row {0}: sigma should be above 0"},
+    {"no_readings", "{record} has no column reference and reading"},
+    {"no_steps", "the reference never stays constant for {0.3g} s: figures need steps; imukit "
+                 "calibrate --procedure rate-table takes sines too"},
+    {"no_reference", "{record} says nothing about what the unit was exposed to: add --motion "
+                     "PROGRAMME, or columns reference_rate_z [deg/s] … or table_rate [deg/s] with "
+                     "--table-axis; of a unit at rest: --static {record}"},
+    {"no_change", "the reference of no axis changes from stretch to stretch: there is nothing to "
+                  "compare"},
+    {"static", "column {name} of the log at rest: {0t}"},
     /* navigate_log.c, navigate_align.c, navigate_run.c */
     {"column_of_counts", "{name} is in counts: imukit compensate makes rates and forces of them"},
     {"no_sensor_column", "has no column {name}: navigation needs three gyros and three "

@@ -84,7 +84,8 @@ static layout layout_of(const imk_model *model, const imk_simulation *simulation
                 .columns = imki_aligned(imki_scene_size(model, simulation) * sizeof(double))};
     for (size_t i = 0; i < count; i++)
         l.states += imki_channel_memory(axis_of(model, i));
-    l.all = imki_aligned(sizeof(imk_simulator)) + l.channels + l.states + l.columns;
+    l.all = imki_aligned(sizeof(imk_simulator)) + l.channels + l.states + l.columns +
+            IMKI_ALIGNMENT_SLACK;
     return l;
 }
 
@@ -134,7 +135,7 @@ static double constant_response(const imk_simulator *made, const imki_channel *c
     return response;
 }
 
-static imk_status start_channels(imk_simulator *made, imki_arena *memory, const imk_model *model,
+static imk_status start_channels(imk_simulator *made, imki_parts *memory, const imk_model *model,
                                  const imk_simulation *simulation, imk_error *error)
 {
     for (size_t i = 0; i < made->channels; i++) {
@@ -164,17 +165,17 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
     if (size < l.all)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_simulator_size() bytes");
-    if (!memory || (uintptr_t)memory % 64 != 0)
-        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
-    memset(memory, 0, l.all - l.columns);
-    imki_arena rest = {memory, 0};
+    if (!memory)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory");
+    imki_parts rest = imki_parts_of(memory);
+    memset(rest.memory, 0, l.all - IMKI_ALIGNMENT_SLACK - l.columns);
     imk_simulator *made = imki_take(&rest, sizeof *made);
     made->random = imk_random_seeded(simulation->seed);
     made->drops = model->timing.drops.value;
     made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
     made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
     made->channel = imki_take(&rest, l.channels);
-    imki_arena states = {imki_take(&rest, l.states), 0};
+    imki_parts states = {imki_take(&rest, l.states), 0};
     double *columns = imki_take(&rest, l.columns);
     status = imki_scene_start(&made->scene, model, simulation, checked, columns, error);
     if (status == IMK_OK)
@@ -186,11 +187,11 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
     return status;
 }
 
-imk_status imk_simulator_start(void *memory, size_t size, const imk_model *model,
-                               const imk_simulation *simulation, imk_simulator **simulator,
+imk_status imk_simulator_start(const imk_model *model, const imk_simulation *simulation,
+                               imk_simulator **simulator, void *memory, size_t memory_size,
                                imk_error *error)
 {
-    return imki_simulator_start(memory, size, model, simulation, false, simulator, error);
+    return imki_simulator_start(memory, memory_size, model, simulation, false, simulator, error);
 }
 
 size_t imk_simulator_channels(const imk_simulator *simulator)

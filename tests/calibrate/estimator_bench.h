@@ -219,7 +219,7 @@ static inline imk_status bench_solve(bench *b)
     }
     if (!b->workspace)
         abort();
-    return imk_calibration_solve(&b->calibration, b->workspace, size, &b->result, &b->error);
+    return imk_calibration_solve(&b->calibration, &b->result, b->workspace, size, &b->error);
 }
 
 #endif

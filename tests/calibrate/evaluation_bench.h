@@ -124,7 +124,7 @@ static inline void evaluation_cover(const evaluation_plan *plan, uint32_t number
                                             .run = plan->runs > 1 ? t.run : NULL};
         const size_t size = imk_evaluation_workspace_size(&table);
         void *workspace = malloc(size);
-        if (imk_evaluate(&table, &settings, workspace, size, NULL, 0, &result, NULL) != IMK_OK)
+        if (imk_evaluate(&table, &settings, NULL, 0, &result, workspace, size, NULL) != IMK_OK)
             abort();
         free(workspace);
         if (i < 0) {

@@ -169,16 +169,16 @@ static inline imk_status bench_simulate(multiposition_bench *b, uint64_t seed, u
         b->simulator_size = b->simulator ? size : 0;
     }
     imk_simulator *simulator;
-    status = imk_simulator_start(b->simulator, b->simulator_size, &b->truth, &simulation,
-                                 &simulator, &b->error);
+    status = imk_simulator_start(&b->truth, &simulation, &simulator, b->simulator,
+                                 b->simulator_size, &b->error);
     if (status != IMK_OK)
         return status;
     imk_simulator_next(simulator, b->rows, b->value, NULL);
     /* The same streams, at rest: what the biases did. */
     simulation.motion.trajectory = NULL;
     simulation.earth = false;
-    status = imk_simulator_start(b->simulator, b->simulator_size, &b->drift, &simulation,
-                                 &simulator, &b->error);
+    status = imk_simulator_start(&b->drift, &simulation, &simulator, b->simulator,
+                                 b->simulator_size, &b->error);
     if (status == IMK_OK)
         imk_simulator_next(simulator, b->rows, b->slow, NULL);
     return status;
@@ -228,12 +228,12 @@ static inline imk_status bench_observe(multiposition_bench *b)
     c->observation_capacity = c->turn_capacity = 4 * BENCH_POSES;
     const imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_MULTIPOSITION);
     return imk_procedure_observe(IMK_PROCEDURE_MULTIPOSITION, c, &b->record, &settings, false,
-                                 b->workspace, b->workspace_size, &b->findings, &b->error);
+                                 &b->findings, b->workspace, b->workspace_size, &b->error);
 }
 
 static inline imk_status bench_solve(multiposition_bench *b)
 {
-    return imk_calibration_solve(&b->calibration, b->workspace, b->workspace_size, &b->result,
+    return imk_calibration_solve(&b->calibration, &b->result, b->workspace, b->workspace_size,
                                  &b->error);
 }
 

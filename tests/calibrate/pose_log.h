@@ -72,7 +72,7 @@ static inline pose_log *pose_log_of(const imk_model *model, const imk_motion_scr
     const size_t size = (imk_simulator_size(model, &simulation) + 63) / 64 * 64;
     void *memory = aligned_alloc(64, size);
     imk_simulator *simulator;
-    CHECK_OK(imk_simulator_start(memory, size, model, &simulation, &simulator, &error));
+    CHECK_OK(imk_simulator_start(model, &simulation, &simulator, memory, size, &error));
     log->record = (imk_test_record){
         .name = "poses", .count = (size_t)(seconds * rate), .dt = 1.0 / rate, .axis_count = {3, 3}};
     for (int c = 0; c < 6; c++) {
@@ -140,7 +140,7 @@ static inline pose_log *pose_log_read(const char *path, double rate, bool counts
     pose_log *log = calloc(1, sizeof *log);
     imk_log_settings settings = imk_log_settings_default();
     settings.rate = rate;
-    if (imk_log_load(path, &settings, NULL, NULL, &log->log, NULL) != IMK_OK) {
+    if (imk_log_load(path, &settings, NULL, &log->log, NULL) != IMK_OK) {
         free(log);
         return NULL;
     }
@@ -177,9 +177,8 @@ static inline void pose_log_detect(pose_log *log, const imk_static_settings *set
     void *workspace = malloc(size);
     if (!log->activity)
         log->activity = malloc(log->record.count * sizeof(double));
-    CHECK_OK(imk_static_detect(&log->record, settings, model, workspace, size, log->interval,
-                               POSE_LOG_INTERVALS, &log->count, log->activity, &log->findings,
-                               NULL));
+    CHECK_OK(imk_static_detect(&log->record, settings, model, log->interval, POSE_LOG_INTERVALS,
+                               &log->count, log->activity, &log->findings, workspace, size, NULL));
     free(workspace);
 }
 

@@ -240,7 +240,7 @@ static inline void bench_run(const bench *b, const imk_model *model, uint64_t se
     void *memory = aligned_alloc(64, size);
     imk_simulator *simulator;
     if (!memory ||
-        imk_simulator_start(memory, size, model, &simulation, &simulator, NULL) != IMK_OK)
+        imk_simulator_start(model, &simulation, &simulator, memory, size, NULL) != IMK_OK)
         abort();
     imk_simulator_next(simulator, b->count, columns, NULL);
     free(memory);
@@ -328,12 +328,12 @@ static inline imk_status bench_solve(bench *b, imk_error *error)
     }
     imk_status status =
         imk_procedure_observe(b->procedure, &b->calibration, &b->record, &b->settings, false,
-                              b->workspace, b->workspace_size, &b->findings, error);
+                              &b->findings, b->workspace, b->workspace_size, error);
     if (status != IMK_OK)
         return status;
     const size_t size = imk_calibration_workspace_size(&b->calibration);
     void *memory = malloc(size);
-    status = imk_calibration_solve(&b->calibration, memory, size, &b->result, error);
+    status = imk_calibration_solve(&b->calibration, &b->result, memory, size, error);
     free(memory);
     return status;
 }

@@ -182,7 +182,7 @@ static inline bool bench_simulate(bench *b, const imk_model *model, uint64_t see
         b->simulator = aligned_alloc(64, (size + 63) / 64 * 64);
         b->simulator_size = size;
     }
-    if (imk_simulator_start(b->simulator, size, model, &simulation, &simulator, error) != IMK_OK)
+    if (imk_simulator_start(model, &simulation, &simulator, b->simulator, size, error) != IMK_OK)
         return false;
     imk_simulator_next(simulator, b->count, columns, NULL);
     return true;
@@ -253,11 +253,11 @@ static inline bool bench_run(bench *b, const bench_plan *plan, imk_procedure pro
     imk_procedure_settings settings = imk_procedure_default(procedure);
     settings.placement_sigma = plan->placement;
     size_t needed = imk_procedure_workspace_size(procedure, &b->record, &settings);
-    if (imk_procedure_observe(procedure, c, &b->record, &settings, false,
-                              bench_workspace(b, needed), needed, &b->findings, error) != IMK_OK)
+    if (imk_procedure_observe(procedure, c, &b->record, &settings, false, &b->findings,
+                              bench_workspace(b, needed), needed, error) != IMK_OK)
         return false;
     needed = imk_calibration_workspace_size(c);
-    return imk_calibration_solve(c, bench_workspace(b, needed), needed, &b->result, error) ==
+    return imk_calibration_solve(c, &b->result, bench_workspace(b, needed), needed, error) ==
            IMK_OK;
 }
 

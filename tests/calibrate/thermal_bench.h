@@ -142,7 +142,7 @@ static inline bool thermal_run(thermal_bench *b, uint64_t seed, bool knocks)
     const imk_simulation simulation = thermal_simulation(seed);
     const double thermometer = 0.02; /* [K], 1 sigma of a sample */
     imk_simulator *simulator;
-    if (imk_simulator_start(b->simulator, b->simulator_size, &b->truth, &simulation, &simulator,
+    if (imk_simulator_start(&b->truth, &simulation, &simulator, b->simulator, b->simulator_size,
                             &b->error) != IMK_OK)
         return false;
     imk_simulator_next(simulator, THERMAL_ROWS, b->value, NULL);

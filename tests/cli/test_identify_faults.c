@@ -34,7 +34,7 @@ static int make_log(void **state)
     imk_log log = {0};
     imk_log_settings settings = imk_log_settings_default();
     settings.rate = 100;
-    CHECK_OK(imk_log_load("sound.npy", &settings, NULL, NULL, &log, NULL));
+    CHECK_OK(imk_log_load("sound.npy", &settings, NULL, &log, NULL));
     for (int c = 0; c <= AXES; c++)
         columns[c] = malloc(ROWS * sizeof(double));
     for (size_t row = 0; row < ROWS; row++)

@@ -15,7 +15,7 @@ static const double degree = 3.14159265358979323846 / 180;
 static imk_log load(const char *path)
 {
     imk_log log;
-    CHECK_OK(imk_log_load(path, NULL, NULL, NULL, &log, NULL));
+    CHECK_OK(imk_log_load(path, NULL, NULL, &log, NULL));
     return log;
 }
 

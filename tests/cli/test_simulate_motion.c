@@ -27,7 +27,7 @@ static const char shaker[] = "imukit_motion: 1\nsteps: [hold 2 s]\nvibration:\n"
 static imk_log load(const char *path)
 {
     imk_log log;
-    CHECK_OK(imk_log_load(path, NULL, NULL, NULL, &log, NULL));
+    CHECK_OK(imk_log_load(path, NULL, NULL, &log, NULL));
     return log;
 }
 

@@ -117,11 +117,12 @@ static void outputs_of(record *r, double *out[2][IMK_AXES_MAX])
 static void compensate(const imk_model *model, record *r)
 {
     imk_compensator *c = malloc(sizeof *c);
-    double *out[2][IMK_AXES_MAX], *workspace = malloc(imk_compensate_workspace(COUNT) * 8);
+    double *out[2][IMK_AXES_MAX], *workspace = malloc(imk_compensate_workspace_size(COUNT));
     CHECK_OK(imk_compensator_start(c, model, dt, NULL, NULL));
     imk_readings readings = readings_of(r);
     outputs_of(r, out);
-    imk_compensate_record(c, &readings, COUNT, out, r->flags, workspace);
+    CHECK_OK(imk_compensate_record(c, &readings, COUNT, out, r->flags, workspace,
+                                   imk_compensate_workspace_size(COUNT)));
     free(workspace);
     free(c);
 }
@@ -195,13 +196,14 @@ static void test_lever_arms(void **state)
     CHECK_BELOW(worst(r->corrected[0], r->rate, 1, COUNT - 1), 1e-4 * 1.01 * inner);
 
     imk_compensator *c = malloc(sizeof *c);
-    double *out[2][IMK_AXES_MAX], *workspace = malloc(imk_compensate_workspace(COUNT) * 8);
+    double *out[2][IMK_AXES_MAX], *workspace = malloc(imk_compensate_workspace_size(COUNT));
     imk_readings readings = readings_of(r);
     for (int k = 0; k < 3; k++)
         readings.angular_acceleration[k] = r->acceleration[k];
     outputs_of(r, out);
     CHECK_OK(imk_compensator_start(c, &model, dt, NULL, NULL));
-    imk_compensate_record(c, &readings, COUNT, out, r->flags, workspace);
+    CHECK_OK(imk_compensate_record(c, &readings, COUNT, out, r->flags, workspace,
+                                   imk_compensate_workspace_size(COUNT)));
     CHECK_BELOW(worst(r->corrected[1], r->force, 0, COUNT), 1e-11);
     free(workspace);
     free(c);
@@ -234,7 +236,7 @@ static void test_stream_equals_record(void **state)
     static const size_t lengths[] = {1, 2, 255, 256, 257, 1000};
     record *whole = new_record(), *other = malloc(sizeof *other);
     imk_compensator *c = malloc(sizeof *c);
-    double *out[2][IMK_AXES_MAX], *workspace = malloc(imk_compensate_workspace(COUNT) * 8);
+    double *out[2][IMK_AXES_MAX], *workspace = malloc(imk_compensate_workspace_size(COUNT));
     imk_model model = unit();
     add_temperature(&model, whole);
     for (int i = 0; i < AXES; i++)
@@ -282,7 +284,8 @@ static void test_stream_equals_record(void **state)
                     }
                 const size_t left = COUNT - first;
                 done += imk_compensator_block(c, &readings, left < lengths[l] ? left : lengths[l],
-                                              out, other->flags + done, workspace);
+                                              out, other->flags + done, workspace,
+                                              imk_compensate_workspace_size(COUNT));
             }
             assert_int_equal(done, COUNT - with_arms);
             memcpy(other->corrected, other->reading, sizeof other->corrected);

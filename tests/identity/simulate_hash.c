@@ -123,7 +123,7 @@ int main(void)
     imk_simulator *simulator = NULL;
     imk_error error;
     if (!memory ||
-        imk_simulator_start(memory, size, &model, &simulation, &simulator, &error) != IMK_OK) {
+        imk_simulator_start(&model, &simulation, &simulator, memory, size, &error) != IMK_OK) {
         fprintf(stderr, "not started: %s %s\n", error.field, error.found);
         return EXIT_FAILURE;
     }

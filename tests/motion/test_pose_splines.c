@@ -9,15 +9,16 @@
 
 enum { MOST = 400 };
 
-static double times[MOST], x[MOST], y[MOST], z[MOST], workspace[10 * MOST];
+static double times[MOST], x[MOST], y[MOST], z[MOST], workspace[10 * MOST + 8];
 static const double *const position[3] = {x, y, z};
 static imk_quaternion attitude[MOST];
 static imk_trajectory_piece piece[MOST];
 
 static imk_trajectory through(size_t count)
 {
-    assert_true(imk_trajectory_poses_workspace(count) <= 10 * MOST);
-    CHECK_OK(imk_trajectory_from_poses(count, times, position, attitude, workspace, piece, NULL));
+    assert_true(imk_trajectory_poses_workspace_size(count) <= sizeof workspace);
+    CHECK_OK(imk_trajectory_from_poses(count, times, position, attitude, piece, workspace,
+                                       sizeof workspace, NULL));
     const imk_trajectory trajectory = {.piece_count = count - 1, .piece = piece};
     CHECK_OK(imk_trajectory_validate(&trajectory, NULL));
     return trajectory;
@@ -154,10 +155,12 @@ static void test_odd_tables_are_refused(void **state)
     (void)state;
     imk_error error;
     make_circle(10, 1.0);
-    CHECK_STATUS(imk_trajectory_from_poses(1, times, position, attitude, workspace, piece, &error),
+    CHECK_STATUS(imk_trajectory_from_poses(1, times, position, attitude, piece, workspace,
+                                           sizeof workspace, &error),
                  IMK_ERROR_TOO_SHORT);
     times[4] = times[3];
-    CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, workspace, piece, &error),
+    CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, piece, workspace,
+                                           sizeof workspace, &error),
                  IMK_ERROR_TIME_ORDER);
     assert_int_equal(error.index, 4);
     /* Steps of time whose powers overflow; the shortest and the longest that do not. */
@@ -171,20 +174,22 @@ static void test_odd_tables_are_refused(void **state)
         times[0] = 0.0;
         for (size_t k = 1; k < 10; k++)
             times[k] = steps[i].step + (double)(k - 1);
-        CHECK_STATUS(
-            imk_trajectory_from_poses(10, times, position, attitude, workspace, piece, &error),
-            steps[i].status);
+        CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, piece, workspace,
+                                               sizeof workspace, &error),
+                     steps[i].status);
         if (steps[i].status != IMK_OK)
             assert_int_equal(error.index, 1);
     }
     make_circle(10, 1.0);
     y[7] = (double)NAN;
-    CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, workspace, piece, &error),
+    CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, piece, workspace,
+                                           sizeof workspace, &error),
                  IMK_ERROR_NOT_FINITE);
     assert_int_equal(error.index, 7);
     make_circle(10, 1.0);
     attitude[2].w += 0.5;
-    CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, workspace, piece, &error),
+    CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, piece, workspace,
+                                           sizeof workspace, &error),
                  IMK_ERROR_RANGE);
     assert_int_equal(error.index, 2);
     /* turns of 119 and 121 degrees */
@@ -195,9 +200,9 @@ static void test_odd_tables_are_refused(void **state)
             attitude[i] = imk_quaternion_from_rotation_vector((imk_vector3){{0.0, angle, 0.0}});
         }
         const imk_status expected = turn < 120 ? IMK_OK : IMK_ERROR_RANGE;
-        CHECK_STATUS(
-            imk_trajectory_from_poses(10, times, position, attitude, workspace, piece, &error),
-            expected);
+        CHECK_STATUS(imk_trajectory_from_poses(10, times, position, attitude, piece, workspace,
+                                               sizeof workspace, &error),
+                     expected);
     }
     assert_int_equal(error.index, 5);
 }

@@ -113,7 +113,7 @@ static inline bool groves_load(const char *path, groves_profile *profile)
     const imk_log_settings settings = imk_log_settings_default();
     imk_log log;
     *profile = (groves_profile){0};
-    if (imk_log_load(path, &settings, NULL, NULL, &log, NULL) != IMK_OK)
+    if (imk_log_load(path, &settings, NULL, &log, NULL) != IMK_OK)
         return false;
     int column[10], found = 0;
     for (int i = 0; i < 10; i++)

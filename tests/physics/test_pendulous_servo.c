@@ -150,7 +150,7 @@ static void the_laboratory_finds_what_reduce_states(void **state)
     const size_t size = imk_laboratory_workspace_size(&laboratory);
     void *workspace = malloc(size);
     assert_true(found && stated && workspace);
-    CHECK_OK(imk_laboratory_run(&laboratory, workspace, size, NULL, found, NULL));
+    CHECK_OK(imk_laboratory_run(&laboratory, NULL, found, workspace, size, NULL));
     imk_pendulous_servo_reduce(&d, stated);
     imk_error error;
     CHECK_OK(imk_model_validate(stated, &error));

@@ -22,7 +22,7 @@ static inline imk_simulator *start_simulator(const imk_model *model,
     imk_simulator *simulator = NULL;
     imk_error error;
     const imk_status status =
-        imk_simulator_start(memory, size, model, simulation, &simulator, &error);
+        imk_simulator_start(model, simulation, &simulator, memory, size, &error);
     if (status != IMK_OK)
         fail_msg("not started: %s: %s", imk_status_name(status), error.field);
     return simulator;

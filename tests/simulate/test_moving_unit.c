@@ -194,7 +194,7 @@ static void test_jitter(void **state)
     const size_t size = imk_simulator_size(&model, &simulation);
     void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     imk_error error;
-    CHECK_STATUS(imk_simulator_start(memory, size, &model, &simulation, &simulator, &error),
+    CHECK_STATUS(imk_simulator_start(&model, &simulation, &simulator, memory, size, &error),
                  IMK_ERROR_RANGE);
     assert_string_equal(error.field, "timing.jitter");
     free(memory);
@@ -370,7 +370,7 @@ static void expect(const imk_model *model, const imk_simulation *simulation, imk
     void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     imk_simulator *simulator;
     imk_error error;
-    CHECK_STATUS(imk_simulator_start(memory, size, model, simulation, &simulator, &error), status);
+    CHECK_STATUS(imk_simulator_start(model, simulation, &simulator, memory, size, &error), status);
     assert_string_equal(error.field, field);
     free(memory);
 }

@@ -30,7 +30,7 @@ static imk_simulator *start(const imk_model *model, const imk_simulation *simula
     assert_non_null(memory);
     imk_simulator *simulator = NULL;
     imk_error error;
-    CHECK_OK(imk_simulator_start(memory, size, model, simulation, &simulator, &error));
+    CHECK_OK(imk_simulator_start(model, simulation, &simulator, memory, size, &error));
     return simulator;
 }
 
@@ -465,11 +465,11 @@ static void expect(const imk_model *model, const imk_simulation *simulation, imk
     void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     imk_simulator *untouched = (imk_simulator *)&size, *simulator = untouched;
     imk_error error;
-    CHECK_STATUS(imk_simulator_start(memory, size, model, simulation, &simulator, &error), status);
+    CHECK_STATUS(imk_simulator_start(model, simulation, &simulator, memory, size, &error), status);
     assert_string_equal(error.field, field);
     assert_int_equal(error.status, status);
     assert_ptr_equal(simulator, untouched);
-    CHECK_STATUS(imk_simulator_start(memory, size, model, simulation, &simulator, NULL), status);
+    CHECK_STATUS(imk_simulator_start(model, simulation, &simulator, memory, size, NULL), status);
     free(memory);
 }
 
@@ -498,10 +498,11 @@ static void test_errors(void **state)
     unsigned char *memory = aligned_alloc(64, (size + 127) / 64 * 64);
     assert_non_null(memory);
     imk_simulator *simulator;
-    CHECK_STATUS(imk_simulator_start(memory, size - 1, &model, &simulation, &simulator, NULL),
+    CHECK_STATUS(imk_simulator_start(&model, &simulation, &simulator, memory, size - 1, NULL),
                  IMK_ERROR_WORKSPACE);
-    CHECK_STATUS(imk_simulator_start(memory + 8, size, &model, &simulation, &simulator, NULL),
+    CHECK_STATUS(imk_simulator_start(&model, &simulation, &simulator, NULL, size, NULL),
                  IMK_ERROR_ARGUMENT);
+    CHECK_OK(imk_simulator_start(&model, &simulation, &simulator, memory + 8, size, NULL));
     free(memory);
 }
 

@@ -44,8 +44,8 @@ static imk_status check_forces(const imk_calibration *c, imk_error *error)
     return IMK_OK;
 }
 
-imk_status imk_calibration_information(const imk_calibration *calibration, void *workspace,
-                                       size_t workspace_size, double *information, imk_error *error)
+imk_status imk_calibration_information(const imk_calibration *calibration, double *information,
+                                       void *workspace, size_t workspace_size, imk_error *error)
 {
     imki_estimator e;
     if (!calibration || !workspace || !information)

@@ -54,7 +54,7 @@ static size_t band_width(const imk_calibration *c, size_t rest)
     return widest;
 }
 
-static void lay_out(imki_estimator *e, const imk_calibration *c, imki_arena *a)
+static void lay_out(imki_estimator *e, const imk_calibration *c, imki_parts *a)
 {
     const size_t n = c->observation_count, m = c->turn_count;
     const size_t rest = m > 0 && c->earth_rate != 0.0 ? 4 : 2; /* at most */
@@ -109,9 +109,9 @@ static void lay_out(imki_estimator *e, const imk_calibration *c, imki_arena *a)
 size_t imki_estimator_size(const imk_calibration *calibration)
 {
     imki_estimator unused;
-    imki_arena a = imki_arena_of(NULL);
+    imki_parts a = imki_parts_of(NULL);
     lay_out(&unused, calibration, &a);
-    return imki_arena_size(&a);
+    return imki_parts_size(&a);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -423,7 +423,7 @@ imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibr
     imk_status status = check(calibration, workspace_size, error);
     if (status != IMK_OK)
         return status;
-    imki_arena a = imki_arena_of(workspace);
+    imki_parts a = imki_parts_of(workspace);
     memset(e, 0, sizeof *e);
     lay_out(e, calibration, &a);
     memcpy(e->problem, calibration, sizeof *calibration);

@@ -296,9 +296,8 @@ static bool all_finite(const imk_calibration_result *result)
     return true;
 }
 
-imk_status imk_calibration_solve(imk_calibration *calibration, void *workspace,
-                                 size_t workspace_size, imk_calibration_result *result,
-                                 imk_error *error)
+imk_status imk_calibration_solve(imk_calibration *calibration, imk_calibration_result *result,
+                                 void *workspace, size_t workspace_size, imk_error *error)
 {
     imki_estimator e;
     imki_fit fit;

@@ -70,7 +70,7 @@ static size_t draws_for(size_t rows)
                                     : draws;
 }
 
-static void lay_out(imki_evaluation *e, imki_arena *a)
+static void lay_out(imki_evaluation *e, imki_parts *a)
 {
     const size_t n = e->rows, runs = e->table->run ? 2 * (size_t)IMK_EVALUATION_RUNS_MAX : 0;
     e->level_of = imki_take(a, n * sizeof *e->level_of);
@@ -99,9 +99,9 @@ static void lay_out(imki_evaluation *e, imki_arena *a)
 size_t imk_evaluation_workspace_size(const imk_evaluation_table *table)
 {
     imki_evaluation e = {.table = table, .rows = table->count, .draws = draws_for(table->count)};
-    imki_arena a = imki_arena_of(NULL);
+    imki_parts a = imki_parts_of(NULL);
     lay_out(&e, &a);
-    return imki_arena_size(&a);
+    return imki_parts_size(&a);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
@@ -198,15 +198,15 @@ static void evaluate(imki_evaluation *e)
 }
 
 imk_status imk_evaluate(const imk_evaluation_table *table, const imk_evaluation_settings *settings,
-                        void *workspace, size_t workspace_size, imk_evaluation_level *level,
-                        size_t capacity, imk_evaluation *result, imk_error *error)
+                        imk_evaluation_level *level, size_t capacity, imk_evaluation *result,
+                        void *workspace, size_t workspace_size, imk_error *error)
 {
     const imk_status status = check(table, settings, error);
     if (status != IMK_OK)
         return status;
     if (workspace_size < imk_evaluation_workspace_size(table))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL, NULL);
-    imki_arena a = imki_arena_of(workspace);
+    imki_parts a = imki_parts_of(workspace);
     imki_evaluation e = {.table = table,
                          .settings = settings,
                          .result = result,

@@ -12,6 +12,7 @@
  * Where one level stands out both are Student's interval; where several share the largest value the
  * interval is wider than it need be, since the table cannot tell which of them is the largest. The
  * noise is drawn: f s z with z normal and f^2 = freedom/chi-square. */
+#include "base/sort_internal.h"
 #include "evaluate_internal.h"
 
 #include "base/sort_internal.h"

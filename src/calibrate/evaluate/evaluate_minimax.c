@@ -34,9 +34,9 @@ static double slope(const double *x, const double *y, int a, int b)
 }
 
 imk_evaluation_line imk_minimax_line(size_t n, const double *x, const double *y, int alternation[3],
-                                     int *workspace)
+                                     int *scratch)
 {
-    int *low = workspace, *high = workspace + n;
+    int *low = scratch, *high = scratch + n;
     const int lows = hull(n, x, y, 1.0, low);
     int h = hull(n, x, y, -1.0, high) - 1, l = 0;
     double k = 0.0;

@@ -59,7 +59,7 @@ typedef struct plan_job {
 /* ---- memory ------------------------------------------------------------------------------------
  */
 
-static void lay_out(plan_job *job, const imk_plan_settings *settings, imki_arena *a)
+static void lay_out(plan_job *job, const imk_plan_settings *settings, imki_parts *a)
 {
     const size_t square = (size_t)IMK_CORRELATED_MAX * IMK_CORRELATED_MAX * sizeof(double);
     const size_t samples = settings->steps_maximum * IMKI_PLAN_TURN_SAMPLES + 1;
@@ -103,7 +103,7 @@ static size_t solver_size(imk_calibration *c, const imk_plan_settings *settings)
 size_t imk_plan_workspace_size(imk_calibration *calibration, const imk_plan_settings *settings)
 {
     plan_job unused;
-    imki_arena a = imki_arena_of(NULL);
+    imki_parts a = imki_parts_of(NULL);
     if (!calibration || !settings || settings->steps_maximum > STEPS_MOST)
         return 0;
     lay_out(&unused, settings, &a);
@@ -446,8 +446,8 @@ static imk_status plan(plan_job *job, double *hold)
     job->n = c->parameter_count;
     memset(job->before, 0, job->n * job->n * sizeof(double));
     if (status == IMK_OK && c->observation_count > 0)
-        status = imk_calibration_information(c, job->plan.solver, job->plan.solver_size,
-                                             job->before, job->error);
+        status = imk_calibration_information(c, job->before, job->plan.solver,
+                                             job->plan.solver_size, job->error);
     if (status != IMK_OK)
         return status;
     /* From here the calibration is about the programme alone. */
@@ -496,8 +496,8 @@ static void fill_result(const plan_job *job, double hold, imk_plan_result *resul
 }
 
 imk_status imk_plan_make(imk_calibration *calibration, const imk_plan_settings *settings,
-                         void *workspace, size_t workspace_size, imk_plan_step *step,
-                         imk_plan_result *result, imk_error *error)
+                         imk_plan_step *step, imk_plan_result *result, void *workspace,
+                         size_t workspace_size, imk_error *error)
 {
     if (!calibration || !settings || !workspace || !step || !result)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "", NULL, "no null pointer");
@@ -510,7 +510,7 @@ imk_status imk_plan_make(imk_calibration *calibration, const imk_plan_settings *
     if (status != IMK_OK)
         return status;
     plan_job job = {.settings = settings, .step = step, .error = error};
-    imki_arena a = imki_arena_of(workspace);
+    imki_parts a = imki_parts_of(workspace);
     lay_out(&job, settings, &a);
     job.plan.settings = settings;
     job.plan.calibration = calibration;

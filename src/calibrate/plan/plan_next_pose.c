@@ -125,7 +125,7 @@ static imk_status look(pose_job *job, imk_error *error)
             job->observation.force[i] = job->calibration->gravity * up[i];
         double *f = job->of_direction + d * n * n;
         const imk_status status =
-            imk_calibration_information(job->calibration, job->solver, job->solver_size, f, error);
+            imk_calibration_information(job->calibration, f, job->solver, job->solver_size, error);
         if (status != IMK_OK)
             return status;
         for (size_t p = 0; p < n; p++)
@@ -171,8 +171,8 @@ static void advise(pose_job *job, imk_pose_advice *advice)
     }
 }
 
-imk_status imk_next_pose(const imk_calibration *calibration, double sigma, void *workspace,
-                         size_t workspace_size, size_t count, imk_pose_advice *advice,
+imk_status imk_next_pose(const imk_calibration *calibration, double sigma, size_t count,
+                         imk_pose_advice *advice, void *workspace, size_t workspace_size,
                          imk_error *error)
 {
     if (!calibration || !workspace || (count > 0 && !advice))
@@ -198,7 +198,7 @@ imk_status imk_next_pose(const imk_calibration *calibration, double sigma, void 
     imk_status status = IMK_OK;
     if (calibration->observation_count > 0)
         status =
-            imk_calibration_information(calibration, job.solver, job.solver_size, job.sum, error);
+            imk_calibration_information(calibration, job.sum, job.solver, job.solver_size, error);
     if (status != IMK_OK)
         return status;
     prepare(&job, calibration, sigma);

@@ -140,6 +140,6 @@ imk_status imki_plan_information(imki_plan *plan, double *information, imk_error
     /* A record without samples is no record. */
     if (plan->record.count == 0)
         plan->record.count = 1;
-    return imk_calibration_information(plan->calibration, plan->solver, plan->solver_size,
-                                       information, error);
+    return imk_calibration_information(plan->calibration, information, plan->solver,
+                                       plan->solver_size, error);
 }

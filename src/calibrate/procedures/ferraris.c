@@ -25,8 +25,8 @@ size_t imki_ferraris_workspace(const imk_test_record *record,
 
 imk_status imk_ferraris_stretches(const imk_test_record *record,
                                   const imk_procedure_settings *settings, const imk_model *model,
-                                  double gravity, void *workspace, size_t workspace_size,
-                                  size_t capacity, imk_ferraris_stretch *stretch, size_t *count,
+                                  double gravity, size_t capacity, imk_ferraris_stretch *stretch,
+                                  size_t *count, void *workspace, size_t workspace_size,
                                   imk_error *error)
 {
     imki_bench_stretches list;

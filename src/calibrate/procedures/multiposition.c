@@ -86,8 +86,8 @@ static imk_status find_holds(gathering *g)
     size_t count = 0;
     const imk_static_settings stationary = detection_of(call->settings);
     const imk_status status = imk_static_detect(
-        g->record, &stationary, &call->calibration->model, rest, call->workspace_size - used,
-        g->hold, capacity, &count, NULL, &call->findings->stationary, call->error);
+        g->record, &stationary, &call->calibration->model, g->hold, capacity, &count, NULL,
+        &call->findings->stationary, rest, call->workspace_size - used, call->error);
     if (status != IMK_OK)
         return status;
     call->findings->intervals = count;

@@ -4,12 +4,11 @@
 #include "procedure_internal.h"
 
 #include "base/refuse_internal.h"
+#include "base/workspace_internal.h"
 #include "calibrate/estimator/calibration_internal.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { ALIGNMENT = 64 };
 
 #define DEGREE 0.017453292519943295
 
@@ -64,7 +63,7 @@ imk_procedure_settings imk_procedure_default(imk_procedure procedure)
 /* Room for a copy of the calibration, then what the procedure asks for. */
 static size_t copy_size(void)
 {
-    return (sizeof(imk_calibration) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT + ALIGNMENT;
+    return imki_aligned(sizeof(imk_calibration)) + IMKI_ALIGNMENT_SLACK;
 }
 
 size_t imk_procedure_workspace_size(imk_procedure procedure, const imk_test_record *record,
@@ -160,8 +159,8 @@ static imk_status check_record(const imk_test_record *record, const imk_model *m
 imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calibration,
                                  const imk_test_record *record,
                                  const imk_procedure_settings *settings, bool keep_free,
-                                 void *workspace, size_t workspace_size,
-                                 imk_procedure_findings *findings, imk_error *error)
+                                 imk_procedure_findings *findings, void *workspace,
+                                 size_t workspace_size, imk_error *error)
 {
     if (!exists(procedure) || !calibration || !record || !settings || !workspace)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "procedure", NULL, "see procedure.h");
@@ -178,7 +177,7 @@ imk_status imk_procedure_observe(imk_procedure procedure, imk_calibration *calib
     if (workspace_size < imk_procedure_workspace_size(procedure, record, settings))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
                              "imk_procedure_workspace_size() bytes");
-    char *memory = (char *)workspace + (ALIGNMENT - (uintptr_t)workspace % ALIGNMENT) % ALIGNMENT;
+    char *memory = (char *)imki_align(workspace);
     memcpy(memory, calibration, sizeof *calibration);
     imk_procedure_findings own;
     imk_procedure_findings *seen = findings ? findings : &own;

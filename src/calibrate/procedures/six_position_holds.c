@@ -124,8 +124,8 @@ static imk_status list_detected(const imk_test_record *record,
     size_t count = 0;
     const size_t used = DETECTED_MAX * sizeof *interval;
     const imk_status status =
-        imk_static_detect(record, &settings->stationary, model, workspace + used, size - used,
-                          interval, DETECTED_MAX, &count, NULL, stationary, error);
+        imk_static_detect(record, &settings->stationary, model, interval, DETECTED_MAX, &count,
+                          NULL, stationary, workspace + used, size - used, error);
     if (status != IMK_OK)
         return status;
     list->detected = true;

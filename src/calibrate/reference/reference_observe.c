@@ -365,11 +365,11 @@ static imk_status find_turning(observed *o, const imk_test_record *record, void 
     double slow = at_rest;
     rates_only.steady_force = 1e300;
     imk_status status =
-        imk_reference_stretches(record, &rates_only, scratch, scratch_size(o->record), o->stretch,
-                                possible, &o->count, call->error);
+        imk_reference_stretches(record, &rates_only, o->stretch, possible, &o->count, scratch,
+                                scratch_size(o->record), call->error);
     if (status == IMK_OK)
-        status = imk_reference_stretches(record, call->settings, scratch, scratch_size(o->record),
-                                         still, possible, &still_count, call->error);
+        status = imk_reference_stretches(record, call->settings, still, possible, &still_count,
+                                         scratch, scratch_size(o->record), call->error);
     if (status != IMK_OK)
         return status;
     /* Gyros have a bias, which is small beside the rates of a spin. */
@@ -404,9 +404,9 @@ static imk_status find_stretches(observed *o, void *scratch)
     }
     if (call->procedure == IMK_PROCEDURE_RATE_TABLE || spin)
         return find_turning(o, &shown, scratch);
-    return imk_reference_stretches(&shown, call->settings, scratch, scratch_size(o->record),
-                                   o->stretch, stretches_possible(o->record, call->settings),
-                                   &o->count, call->error);
+    return imk_reference_stretches(&shown, call->settings, o->stretch,
+                                   stretches_possible(o->record, call->settings), &o->count,
+                                   scratch, scratch_size(o->record), call->error);
 }
 
 /* A fixture for the record's mounting; none when it is exact. */

@@ -218,8 +218,9 @@ static imk_status check(const imk_test_record *record, double max_shift, size_t 
     return IMK_OK;
 }
 
-imk_status imk_reference_offset(const imk_test_record *record, double max_shift, void *workspace,
-                                size_t workspace_size, imk_reference_shift *shift, imk_error *error)
+imk_status imk_reference_offset(const imk_test_record *record, double max_shift,
+                                imk_reference_shift *shift, void *workspace, size_t workspace_size,
+                                imk_error *error)
 {
     search s = {.record = record};
     imk_status status = check(record, max_shift, workspace_size, error);

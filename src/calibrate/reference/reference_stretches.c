@@ -243,9 +243,9 @@ static size_t find(const scan *s, const lengths *l, imk_reference_stretch *stret
 }
 
 imk_status imk_reference_stretches(const imk_test_record *record,
-                                   const imk_procedure_settings *settings, void *workspace,
-                                   size_t workspace_size, imk_reference_stretch *stretch,
-                                   size_t capacity, size_t *count, imk_error *error)
+                                   const imk_procedure_settings *settings,
+                                   imk_reference_stretch *stretch, size_t capacity, size_t *count,
+                                   void *workspace, size_t workspace_size, imk_error *error)
 {
     scan s = {.record = record};
     if (settings->cookie != IMKI_PROCEDURE_COOKIE)

@@ -383,9 +383,9 @@ static void lay_out(imki_static_job *job, imki_static_blocks *kept, size_t block
 }
 
 imk_status imk_static_detect(const imk_test_record *record, const imk_static_settings *settings,
-                             const imk_model *model, void *workspace, size_t workspace_size,
-                             imk_static_interval *interval, size_t capacity, size_t *count,
-                             double *activity, imk_static_findings *findings, imk_error *error)
+                             const imk_model *model, imk_static_interval *interval, size_t capacity,
+                             size_t *count, double *activity, imk_static_findings *findings,
+                             void *workspace, size_t workspace_size, imk_error *error)
 {
     if (!record || !settings || !workspace || !count || !findings || (capacity > 0 && !interval))
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "", NULL, "no null pointer");

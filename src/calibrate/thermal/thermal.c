@@ -375,8 +375,8 @@ static imk_status check(const imk_test_record *record, const imk_thermal_setting
 }
 
 imk_status imk_thermal_analyse(const imk_test_record *record, const imk_thermal_settings *settings,
-                               const imk_model *model, void *workspace, size_t workspace_size,
-                               imk_thermal_findings *findings, imk_error *error)
+                               const imk_model *model, imk_thermal_findings *findings,
+                               void *workspace, size_t workspace_size, imk_error *error)
 {
     imk_status status = check(record, settings, model, workspace_size, error);
     if (status != IMK_OK)

@@ -276,8 +276,8 @@ static imk_status observe_one_pose(const imki_procedure_call *call)
         if (imki_thermal_is_free(c, sensor, IMK_MODEL_BIAS_TEMPERATURE))
             settings.reference_temperature =
                 imk_model_triad_to_set(&c->model, sensor)->bias.temperature.reference;
-    imk_status status = imk_thermal_analyse(c->record[call->record], &settings, &c->model,
-                                            workspace, size, findings, call->error);
+    imk_status status = imk_thermal_analyse(c->record[call->record], &settings, &c->model, findings,
+                                            workspace, size, call->error);
     if (status == IMK_OK)
         status = free_one_pose(call, findings);
     if (status == IMK_OK)

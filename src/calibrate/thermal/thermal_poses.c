@@ -115,9 +115,9 @@ imk_status imki_thermal_observe_poses(const imki_procedure_call *call)
     imk_static_interval *interval = call->workspace;
     size_t count = 0;
     imk_status status =
-        imk_static_detect(record, &call->settings->stationary, &c->model, interval + INTERVALS_MAX,
-                          call->workspace_size - INTERVALS_MAX * sizeof *interval, interval,
-                          INTERVALS_MAX, &count, NULL, &call->findings->stationary, call->error);
+        imk_static_detect(record, &call->settings->stationary, &c->model, interval, INTERVALS_MAX,
+                          &count, NULL, &call->findings->stationary, interval + INTERVALS_MAX,
+                          call->workspace_size - INTERVALS_MAX * sizeof *interval, call->error);
     if (status != IMK_OK)
         return status;
     count = count < INTERVALS_MAX ? count : INTERVALS_MAX;

@@ -130,8 +130,8 @@ static imk_status portion(const imk_allan_settings *settings, size_t n, const do
     double variances[PORTION];
     size_t counts[PORTION];
     const imk_status status =
-        imk_allan_compute(settings->statistic, n, sums, count, factors, variances, counts,
-                          settings->workspace, settings->workspace_size, executor);
+        imk_allan_compute(settings->statistic, n, sums, count, factors, variances, counts, executor,
+                          settings->workspace, settings->workspace_size);
     for (size_t i = 0; i < count && status == IMK_OK; i++) {
         if (!(variances[i] < HUGE_VAL))
             return IMK_ERROR_NOT_FINITE;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Noise model from a table of Allan variances: which terms are there, how strong, how sure. */
 #include "allan_fit_internal.h"
+#include "base/workspace_internal.h"
 #include "imukit/distributions.h"
 
 #include <math.h>
@@ -60,7 +61,7 @@ size_t imk_allan_fit_workspace_size(const imk_allan_fit_settings *settings, size
     const size_t solution = count * (count + terms + 1) + 2 * terms * terms;
     const size_t bootstrap = draws > 0 ? count * count + draws * IMK_NOISE_TERMS : 0;
     return sizeof(imki_allan_work) + imki_allan_problem_size(count, terms) +
-           (solution + bootstrap + 1) * sizeof(double);
+           (solution + bootstrap) * sizeof(double) + IMKI_ALIGNMENT_SLACK;
 }
 
 imk_status imki_allan_fit_start(const imk_allan_fit_settings *settings,
@@ -81,9 +82,7 @@ imk_status imki_allan_fit_start(const imk_allan_fit_settings *settings,
         return IMK_ERROR_ARGUMENT;
     if (workspace_size < imk_allan_fit_workspace_size(settings, table->count, 0))
         return IMK_ERROR_WORKSPACE;
-    const size_t misaligned = (uintptr_t)workspace % sizeof(double);
-    imki_allan_work *w =
-        (void *)((char *)workspace + (misaligned ? sizeof(double) - misaligned : 0));
+    imki_allan_work *w = (void *)imki_align(workspace);
     imki_allan_problem *problem = &w->problem;
     double *memory = (double *)(void *)(w + 1);
     const size_t count = table->count, terms = capacity(settings);

@@ -83,7 +83,6 @@ static void draw(bootstrap_work *w, imk_random random, size_t number)
     w->problem->variances = w->drawn;
 }
 
-/* Heap sort, ascending. */
 static void summarise(const bootstrap_work *w, double *values, double confidence, size_t draws,
                       int term, struct imk_allan_bootstrap_term *out)
 {

@@ -3,6 +3,7 @@
  * is there, and its holes by length; then one averaging factor after another
  * (allan_gaps_point.c). */
 #include "allan_gaps_internal.h"
+#include "base/workspace_internal.h"
 #include "identify/records/screen_internal.h"
 #include "imukit/elementary.h"
 
@@ -167,8 +168,8 @@ static void leave_out_outliers(size_t n, double *samples, double *scratch)
 
 imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t n,
                                  const double *rate, size_t factor_count, const size_t *factors,
-                                 imk_allan_gap_point *points, void *workspace,
-                                 size_t workspace_size, const imk_executor *executor)
+                                 imk_allan_gap_point *points, const imk_executor *executor,
+                                 void *workspace, size_t workspace_size)
 {
     if (settings->cookie != COOKIE)
         return IMK_ERROR_UNINITIALISED;
@@ -179,7 +180,7 @@ imk_status imk_allan_gaps_points(const imk_allan_gaps_settings *settings, size_t
             return n < 2 ? IMK_ERROR_TOO_SHORT : IMK_ERROR_RANGE;
     if (workspace_size < imk_allan_gaps_workspace_size(n))
         return IMK_ERROR_WORKSPACE;
-    double *scratch = (double *)((char *)workspace + (64 - (uintptr_t)workspace % 64) % 64);
+    double *scratch = imki_align(workspace);
     imki_gap_record record = {.n = n, .sums = scratch + SCRATCH};
     record.counts = (uint32_t *)(record.sums + n + 1);
     record.holes = (unsigned char *)(record.counts + n + 1);

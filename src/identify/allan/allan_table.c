@@ -3,6 +3,8 @@
  * the covariance of its variances under a given noise. */
 #include "allan_fit_internal.h"
 
+#include "base/workspace_internal.h"
+
 #include <math.h>
 
 imk_status imki_allan_table_check(const imk_allan_table *table)
@@ -39,7 +41,7 @@ void imki_allan_problem_lay(imki_allan_problem *problem, size_t count, size_t te
 
 size_t imk_allan_covariance_workspace_size(size_t count, size_t terms)
 {
-    return imki_allan_problem_size(count, terms) + sizeof(double);
+    return imki_allan_problem_size(count, terms) + IMKI_ALIGNMENT_SLACK;
 }
 
 static imk_status noise_check(const imk_allan_noise *noise)
@@ -83,10 +85,7 @@ imk_status imk_allan_covariance(const imk_allan_table *table, const imk_allan_no
     if (workspace_size < imk_allan_covariance_workspace_size(table->count, terms))
         return IMK_ERROR_WORKSPACE;
     imki_allan_problem problem = {.table = table, .noise = *noise};
-    const size_t misaligned = (uintptr_t)workspace % sizeof(double);
-    imki_allan_problem_lay(
-        &problem, table->count, terms,
-        (double *)(void *)((char *)workspace + (misaligned ? sizeof(double) - misaligned : 0)));
+    imki_allan_problem_lay(&problem, table->count, terms, imki_align(workspace));
     imki_allan_problem_terms(&problem, use);
     imki_allan_sums(&problem, 0, false);
     double amount[IMKI_ALLAN_TERMS];

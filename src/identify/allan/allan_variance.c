@@ -248,8 +248,8 @@ size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n, size_t 
 
 imk_status imk_allan_compute(imk_allan_statistic statistic, size_t n, const double *sums,
                              size_t factor_count, const size_t *factors, double *variances,
-                             size_t *counts, void *workspace, size_t workspace_size,
-                             const imk_executor *executor)
+                             size_t *counts, const imk_executor *executor, void *workspace,
+                             size_t workspace_size)
 {
     const imk_status status = check_factors(statistic, n, factor_count, factors);
     if (status != IMK_OK || factor_count == 0)
@@ -284,6 +284,6 @@ imk_status imk_allan_variances(imk_allan_statistic statistic, size_t n, const do
                                size_t factor_count, const size_t *factors, double *variances,
                                size_t *counts, const imk_executor *executor)
 {
-    return imk_allan_compute(statistic, n, sums, factor_count, factors, variances, counts, NULL, 0,
-                             executor);
+    return imk_allan_compute(statistic, n, sums, factor_count, factors, variances, counts, executor,
+                             NULL, 0);
 }

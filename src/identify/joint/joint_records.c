@@ -136,10 +136,10 @@ static void gather_resonances(size_t count, const imk_identification *single,
 size_t imk_identify_joint_workspace_size(void)
 {
     imki_work unused;
-    imki_arena arena = imki_arena_of(NULL);
-    imki_work_take_fits(&unused, &arena);
-    imki_take(&arena, sizeof(imki_bands));
-    return imki_arena_size(&arena);
+    imki_parts parts = imki_parts_of(NULL);
+    imki_work_take_fits(&unused, &parts);
+    imki_take(&parts, sizeof(imki_bands));
+    return imki_parts_size(&parts);
 }
 
 imk_status imk_identify_joint(const imk_identify_settings *settings, size_t count,
@@ -151,10 +151,10 @@ imk_status imk_identify_joint(const imk_identify_settings *settings, size_t coun
     const imk_status status = check(settings, count, summaries, workspace_size, error);
     if (status != IMK_OK)
         return status;
-    imki_arena arena = imki_arena_of(workspace);
+    imki_parts parts = imki_parts_of(workspace);
     imki_work work = {.settings = settings, .scale = summaries[0]->scale, .bands_given = true};
-    imki_work_take_fits(&work, &arena);
-    imki_bands *other = imki_take(&arena, sizeof *other);
+    imki_work_take_fits(&work, &parts);
+    imki_bands *other = imki_take(&parts, sizeof *other);
     if (!join(count, summaries, work.bands, other))
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "records", NULL,
                              "fewer of them, or of the same length");

@@ -23,25 +23,25 @@ static size_t missing_maximum(size_t n)
     return n - n / 4;
 }
 
-static void lay_out(imki_work *w, size_t missing, imki_arena *arena)
+static void lay_out(imki_work *w, size_t missing, imki_parts *parts)
 {
-    w->samples = imki_take(arena, (w->n + 1) * sizeof(double));
-    w->coefficients = imki_take(arena, (w->n + 1) * sizeof(double));
-    w->cumulative = imki_take(arena, (w->n + 1) * sizeof(double));
-    w->points = imki_take(arena, IMKI_POINTS_MAX * sizeof(imk_allan_point));
-    imki_work_take_fits(w, arena);
+    w->samples = imki_take(parts, (w->n + 1) * sizeof(double));
+    w->coefficients = imki_take(parts, (w->n + 1) * sizeof(double));
+    w->cumulative = imki_take(parts, (w->n + 1) * sizeof(double));
+    w->points = imki_take(parts, IMKI_POINTS_MAX * sizeof(imk_allan_point));
+    imki_work_take_fits(w, parts);
     w->transform_size = imk_cosine_workspace_size(w->n);
-    w->transform = imki_take(arena, w->transform_size);
-    void *place = imki_take(arena, missing > 0 ? imki_missing_size(missing) : 0);
+    w->transform = imki_take(parts, w->transform_size);
+    void *place = imki_take(parts, missing > 0 ? imki_missing_size(missing) : 0);
     w->missing = place && missing > 0 ? imki_missing_place(place, missing) : NULL;
 }
 
 size_t imk_identify_workspace_size(size_t n)
 {
     imki_work unused = {.n = n};
-    imki_arena arena = imki_arena_of(NULL);
-    lay_out(&unused, missing_maximum(n), &arena);
-    return imki_arena_size(&arena);
+    imki_parts parts = imki_parts_of(NULL);
+    lay_out(&unused, missing_maximum(n), &parts);
+    return imki_parts_size(&parts);
 }
 
 /* Cut NaN off the ends of a record; returns how many at its start. A length with large prime
@@ -226,8 +226,8 @@ imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
     if (status != IMK_OK)
         return status;
     imki_work work = {.settings = settings, .n = n, .scale = scale_of(n, samples)}, *w = &work;
-    imki_arena arena = imki_arena_of(workspace);
-    lay_out(w, missing, &arena);
+    imki_parts parts = imki_parts_of(workspace);
+    lay_out(w, missing, &parts);
     imk_identification found = {0};
     take_record(w, samples, &found);
     check_record(w, samples, &found);

@@ -5,6 +5,7 @@
  *
  * over the same kind of bands that identification uses [WHITTLE1953], and its inverse; and the
  * chance that a term is called present. */
+#include "base/workspace_internal.h"
 #include "imukit/distributions.h"
 #include "imukit/identify_plan.h"
 #include "imukit/linear_algebra.h"
@@ -515,7 +516,7 @@ imk_status imk_identify_bounds(const imk_expected_noise *noise, const imk_bounds
     const imk_status status = check(noise, settings, duration, workspace_size, error);
     if (status != IMK_OK)
         return status;
-    plan *p = (plan *)((char *)workspace + (64 - (uintptr_t)workspace % 64) % 64);
+    plan *p = (void *)imki_align(workspace);
     p->noise = noise;
     p->settings = settings;
     p->n = floor(duration / settings->dt + 0.5);

@@ -196,12 +196,12 @@ typedef struct imki_work {
     imk_allan_point *points; /* room for IMKI_POINTS_MAX */
 } imki_work;
 
-static inline void imki_work_take_fits(imki_work *w, imki_arena *arena)
+static inline void imki_work_take_fits(imki_work *w, imki_parts *parts)
 {
-    w->bands = imki_take(arena, sizeof *w->bands);
-    w->fit = imki_take(arena, sizeof *w->fit);
-    w->trial = imki_take(arena, sizeof *w->trial);
-    w->chosen = imki_take(arena, sizeof *w->chosen);
+    w->bands = imki_take(parts, sizeof *w->bands);
+    w->fit = imki_take(parts, sizeof *w->fit);
+    w->trial = imki_take(parts, sizeof *w->trial);
+    w->chosen = imki_take(parts, sizeof *w->chosen);
 }
 
 /* fast_shape.c: fits the filter and the wide resonances jointly with all amounts, and adds the

@@ -33,35 +33,35 @@ static size_t sums_size(const imki_record_sizes *sizes)
     return chunk_of(sizes) + 2 * IMKI_STRIDE_ONE + 1;
 }
 
-static void lay_out(imk_identify_record *r, const imki_record_sizes *sizes, imki_arena *arena)
+static void lay_out(imk_identify_record *r, const imki_record_sizes *sizes, imki_parts *parts)
 {
     const size_t segment = (sizes->segment + 1) * sizeof(double);
-    r->buffer = imki_take(arena, segment);
-    r->spectrum = imki_take(arena, segment);
-    r->power = imki_take(arena, segment);
+    r->buffer = imki_take(parts, segment);
+    r->spectrum = imki_take(parts, segment);
+    r->power = imki_take(parts, segment);
     r->transform_size = imk_cosine_workspace_size(sizes->segment);
-    r->transform = imki_take(arena, r->transform_size);
-    r->means = imki_take(arena, sizes->capacity * sizeof(double));
-    r->sums = imki_take(arena, sums_size(sizes) * sizeof(double));
+    r->transform = imki_take(parts, r->transform_size);
+    r->means = imki_take(parts, sizes->capacity * sizeof(double));
+    r->sums = imki_take(parts, sums_size(sizes) * sizeof(double));
 }
 
 size_t imki_record_memory(const imki_record_sizes *sizes)
 {
     imk_identify_record unused;
-    imki_arena arena = imki_arena_of(NULL);
-    imki_take(&arena, sizeof unused);
-    lay_out(&unused, sizes, &arena);
-    return imki_arena_size(&arena);
+    imki_parts parts = imki_parts_of(NULL);
+    imki_take(&parts, sizeof unused);
+    lay_out(&unused, sizes, &parts);
+    return imki_parts_size(&parts);
 }
 
 imk_identify_record *imki_record_start(const imki_record_sizes *sizes, void *memory)
 {
-    imki_arena arena = imki_arena_of(memory);
-    imk_identify_record *r = imki_take(&arena, sizeof *r);
+    imki_parts parts = imki_parts_of(memory);
+    imk_identify_record *r = imki_take(&parts, sizeof *r);
     memset(r, 0, sizeof *r);
     r->sizes = *sizes;
     r->chunk = chunk_of(sizes);
-    lay_out(r, sizes, &arena);
+    lay_out(r, sizes, &parts);
     memset(r->power, 0, (sizes->segment + 1) * sizeof(double));
     r->block = IMKI_BLOCK_LEAST;
     r->scale = 1;
@@ -76,8 +76,8 @@ size_t imk_identify_record_size(size_t expected)
     return imki_record_memory(&sizes);
 }
 
-imk_status imk_identify_record_begin(size_t expected, void *memory, size_t memory_size,
-                                     imk_identify_record **record, imk_error *error)
+imk_status imk_identify_record_begin(size_t expected, imk_identify_record **record, void *memory,
+                                     size_t memory_size, imk_error *error)
 {
     if (!memory || !record)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", NULL, NULL);

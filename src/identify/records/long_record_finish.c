@@ -161,18 +161,18 @@ imk_status imk_identify_record_finish(imk_identify_record *r, const imk_identify
     describe_samples(r, &found);
 
     const parts p = parts_of(r);
-    imki_arena arena = imki_arena_of(workspace);
-    double *coefficients = imki_take(&arena, (r->mean_count + 1) * sizeof(double));
-    double *cumulative = imki_take(&arena, (r->mean_count + 1) * sizeof(double));
-    void *transform = imki_take(&arena, p.transform_size);
-    imki_record_spectra *spectra = imki_take(&arena, sizeof *spectra);
+    imki_parts room = imki_parts_of(workspace);
+    double *coefficients = imki_take(&room, (r->mean_count + 1) * sizeof(double));
+    double *cumulative = imki_take(&room, (r->mean_count + 1) * sizeof(double));
+    void *transform = imki_take(&room, p.transform_size);
+    imki_record_spectra *spectra = imki_take(&room, sizeof *spectra);
     imki_work work = {.settings = settings, .n = p.points * r->block, .scale = r->scale};
-    work.points = imki_take(&arena, IMKI_POINTS_MAX * sizeof(imk_allan_point));
+    work.points = imki_take(&room, IMKI_POINTS_MAX * sizeof(imk_allan_point));
     work.point_count = transform_means(r, settings, p.points, coefficients, cumulative, transform,
                                        p.transform_size, work.points);
     work.spectrum_count = 2;
     work.spectra = spectra->part;
-    imki_work_take_fits(&work, &arena);
+    imki_work_take_fits(&work, &room);
 
     double weight, degrees;
     add_last_segment(r, &weight, &degrees);

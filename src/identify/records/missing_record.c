@@ -40,13 +40,13 @@ size_t imki_missing_size(size_t count)
 
 imki_missing *imki_missing_place(void *memory, size_t count)
 {
-    imki_arena arena = {memory, 0};
-    imki_missing *m = imki_take(&arena, sizeof *m);
+    imki_parts parts = {memory, 0};
+    imki_missing *m = imki_take(&parts, sizeof *m);
     memset(m, 0, offsetof(imki_missing, scratch));
     m->count = count;
     for (int i = 0; i < 3; i++)
-        m->vector[i] = imki_take(&arena, count * sizeof(double));
-    m->index = imki_take(&arena, count * sizeof(uint32_t));
+        m->vector[i] = imki_take(&parts, count * sizeof(double));
+    m->index = imki_take(&parts, count * sizeof(uint32_t));
     return m;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Screening of one channel, in the order in which one fault would hide another: missing samples,
  * saturation, runs of one value, outliers, steps; then the trends of what is left. */
+#include "base/workspace_internal.h"
 #include "imukit/elementary.h"
 #include "screen_internal.h"
 
@@ -106,11 +107,6 @@ static void find_saturation(size_t n, double *samples, imk_screen *found)
     found->saturated = mark_saturated(n, found, samples);
 }
 
-static double *workspace_begin(void *workspace)
-{
-    return (double *)((char *)workspace + (64 - (uintptr_t)workspace % 64) % 64);
-}
-
 imk_status imk_screen_channel(const imk_screen_settings *settings, size_t n, const double *samples,
                               imk_screen *found, void *workspace, size_t workspace_size,
                               imk_error *error)
@@ -118,7 +114,7 @@ imk_status imk_screen_channel(const imk_screen_settings *settings, size_t n, con
     const imk_status status = check(settings, workspace_size, n, error);
     if (status != IMK_OK)
         return status;
-    double *scratch = workspace_begin(workspace), *copy = scratch + SCRATCH;
+    double *scratch = imki_align(workspace), *copy = scratch + SCRATCH;
     imk_screen f = {.n = n};
     take_samples(n, samples, copy, &f);
     if (f.present < PRESENT_MIN)

@@ -188,6 +188,11 @@ static double concentration(size_t n, double time_bandwidth, const double *v)
     return fmin(1, sum / v[peak]);
 }
 
+size_t imk_slepian_workspace_size(size_t n)
+{
+    return (8 * n + 64) * sizeof(double);
+}
+
 imk_status imk_slepian_tapers(size_t n, double time_bandwidth, int count, double *tapers,
                               double *concentrations, void *workspace, size_t workspace_size)
 {
@@ -195,7 +200,7 @@ imk_status imk_slepian_tapers(size_t n, double time_bandwidth, int count, double
         !(time_bandwidth >= 0.5 && time_bandwidth <= 0.25 * (double)n) ||
         !((double)count <= 2 * time_bandwidth))
         return IMK_ERROR_RANGE;
-    if (!workspace || workspace_size < (8 * n + 64) * sizeof(double))
+    if (!workspace || workspace_size < imk_slepian_workspace_size(n))
         return IMK_ERROR_WORKSPACE;
     double *diagonal = imki_align(workspace), *off = diagonal + n, *upper = off + n;
     double *coarse = upper + 3 * n;

@@ -113,7 +113,7 @@ static void read_choice(const reader *r, int node, const imk_design_field *field
         }
         at = at[length] ? at + length + 1 : NULL;
     }
-    imki_refuse_word(r->reading, node, text, text, (size_t)count, names);
+    imki_refuse_name(r->reading, node, text, text, (size_t)count, names);
 }
 
 static void read_switch(const reader *r, int node, const imk_design_field *field)
@@ -164,8 +164,7 @@ static void refuse_key(const reader *r, int key, const char *prefix)
     }
     for (size_t i = 0; prefix[0] == '\0' && i < sizeof of_root / sizeof of_root[0]; i++)
         names[count++] = of_root[i];
-    r->reading->status =
-        imki_refuse_name(r->reading->document, key, count, names, r->reading->error);
+    imki_refuse_key(r->reading, key, count, names);
 }
 
 /* The field of a path, or NULL; *is_group says that fields stand below it. */

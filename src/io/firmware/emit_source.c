@@ -87,19 +87,26 @@ static void row(source *s, const imki_text *text)
     imki_text_add(&s->body, "c[%d]", number);
 }
 
+/* The rest of a row, behind the number. */
+static void end_row(source *s, imki_text *text, double value, const imk_firmware_operation *o,
+                    const imk_firmware_operation *of, imk_firmware_role within)
+{
+    imki_text_add(text, ", /* ");
+    imki_emit_decimal(text, value, 9);
+    imki_text_add(text, "  ");
+    describe(text, o, of, within);
+    imki_text_add(text, " */");
+    row(s, text);
+    free(text->bytes);
+}
+
 /* A constant of the operation `o`, its part with `of`; `within`: the role of what it belongs to. */
 static void constant(source *s, double value, const imk_firmware_operation *o,
                      const imk_firmware_operation *of, imk_firmware_role within)
 {
     imki_text text = {.bytes = NULL};
     imki_emit_number(&text, s->plan->arithmetic, value);
-    imki_text_add(&text, ", /* ");
-    imki_emit_decimal(&text, value, 9);
-    imki_text_add(&text, "  ");
-    describe(&text, o, of, within);
-    imki_text_add(&text, " */");
-    row(s, &text);
-    free(text.bytes);
+    end_row(s, &text, value, o, of, within);
 }
 
 static void fixed_constant(source *s, int32_t integer, double value,
@@ -107,13 +114,8 @@ static void fixed_constant(source *s, int32_t integer, double value,
                            imk_firmware_role within)
 {
     imki_text text = {.bytes = NULL};
-    imki_text_add(&text, "%" PRId32 ", /* ", integer);
-    imki_emit_decimal(&text, value, 9);
-    imki_text_add(&text, "  ");
-    describe(&text, o, of, within);
-    imki_text_add(&text, " */");
-    row(s, &text);
-    free(text.bytes);
+    imki_text_add(&text, "%" PRId32, integer);
+    end_row(s, &text, value, o, of, within);
 }
 
 /* ---- operations ------------------------------------------------------------------------------ */
@@ -121,38 +123,20 @@ static void fixed_constant(source *s, int32_t integer, double value,
 /* The name of an operation's value. */
 static void name_of(imki_text *out, const source *s, int n)
 {
+    static const char *const of_axis[IMK_FIRMWARE_MOTION + 1] = {
+        [IMK_FIRMWARE_BIAS] = "bias_", [IMK_FIRMWARE_INPUT] = "", [IMK_FIRMWARE_SLOPE] = "scale_"};
+    static const char *const others[IMK_FIRMWARE_MOTION + 1] = {[IMK_FIRMWARE_CELSIUS] = "celsius",
+                                                                [IMK_FIRMWARE_SCALED] = "t",
+                                                                [IMK_FIRMWARE_WITHIN] = "within",
+                                                                [IMK_FIRMWARE_ALONG] = "along",
+                                                                [IMK_FIRMWARE_REST] = "rest"};
     const imk_firmware_operation *o = &s->plan->operation[n];
-    switch (o->role) {
-    case IMK_FIRMWARE_CELSIUS:
-        imki_text_add(out, "celsius_%d", n);
-        break;
-    case IMK_FIRMWARE_SCALED:
-        imki_text_add(out, "t_%d", n);
-        break;
-    case IMK_FIRMWARE_BIAS:
-        imki_text_add(out, "bias_%s_%d", imki_emit_sensor[o->sensor], o->axis);
-        break;
-    case IMK_FIRMWARE_INPUT:
-        imki_text_add(out, "%s_%d", imki_emit_sensor[o->sensor], o->axis);
-        break;
-    case IMK_FIRMWARE_SLOPE:
-        imki_text_add(out, "scale_%s_%d", imki_emit_sensor[o->sensor], o->axis);
-        break;
-    case IMK_FIRMWARE_WITHIN:
-        imki_text_add(out, "within_%d", n);
-        break;
-    case IMK_FIRMWARE_ALONG:
-        imki_text_add(out, "along_%d", n);
-        break;
-    case IMK_FIRMWARE_REST:
-        imki_text_add(out, "rest_%d", n);
-        break;
-    case IMK_FIRMWARE_MOTION:
+    if (o->role == IMK_FIRMWARE_MOTION)
         imki_text_add(out, "%s_%d_%d", imki_emit_motion[o->sensor], o->axis, o->step);
-        break;
-    default:
-        imki_text_add(out, "part_%d", n);
-    }
+    else if (of_axis[o->role])
+        imki_text_add(out, "%s%s_%d", of_axis[o->role], imki_emit_sensor[o->sensor], o->axis);
+    else
+        imki_text_add(out, "%s_%d", others[o->role] ? others[o->role] : "part", n);
 }
 
 static bool is_inline(const source *s, int n)
@@ -203,21 +187,23 @@ static void reading(source *s, const imk_firmware_operation *o)
                       imki_emit_type(s->plan), sensor, o->axis, channel->origin);
 }
 
+static void bound(source *s, const imk_firmware_operation *o, int32_t fixed, double value)
+{
+    if (is_fixed(s))
+        fixed_constant(s, fixed, value, o, NULL, o->role);
+    else
+        constant(s, value, o, NULL, o->role);
+}
+
 static void clip(source *s, const imk_firmware_operation *o, imk_firmware_role within)
 {
     s->uses_clip = true;
     imki_text_add(&s->body, "clip(");
     operand(s, o->a, within);
     imki_text_add(&s->body, ", ");
-    if (is_fixed(s)) {
-        fixed_constant(s, o->fixed_lower, o->lower, o, NULL, o->role);
-        imki_text_add(&s->body, ", ");
-        fixed_constant(s, o->fixed_upper, o->upper, o, NULL, o->role);
-    } else {
-        constant(s, o->lower, o, NULL, o->role);
-        imki_text_add(&s->body, ", ");
-        constant(s, o->upper, o, NULL, o->role);
-    }
+    bound(s, o, o->fixed_lower, o->lower);
+    imki_text_add(&s->body, ", ");
+    bound(s, o, o->fixed_upper, o->upper);
     imki_text_add(&s->body, ")");
 }
 
@@ -333,6 +319,20 @@ static void flag_name(source *s, unsigned flag)
                                                            : "_NOT_FINITE");
 }
 
+/* The end of a condition, and the flag; where `number` is none, that one. NULL: it always is. */
+static void raise_flag(source *s, unsigned flag, const char *number)
+{
+    imki_text_add(&s->body, ")\n        flags |= ");
+    if (number)
+        imki_text_add(&s->body, "%s - %s == 0 ? ", number, number);
+    flag_name(s, flag);
+    if (number) {
+        imki_text_add(&s->body, " : ");
+        flag_name(s, IMK_FLAG_NOT_FINITE);
+    }
+    imki_text_add(&s->body, ";\n");
+}
+
 /* A number of the arithmetic, or an integer for fixed-point values and counts. */
 static void threshold(source *s, double value, bool integer, int bits)
 {
@@ -347,32 +347,24 @@ static void reading_flags(source *s, int sensor, int i)
     const imk_firmware_channel *channel = &s->plan->channel[sensor][i];
     const bool integer = channel->in_counts || is_fixed(s);
     imki_text *out = &s->body;
-    const char *name = imki_emit_sensor[sensor];
+    char name[32];
+    snprintf(name, sizeof name, "%s[%d]", imki_emit_sensor[sensor], i);
     if (!channel->flag && integer)
         return;
     if (!channel->flag) {
-        imki_text_add(out, "    if (!(%s[%d] - %s[%d] == 0))\n        flags |= ", name, i, name, i);
-        flag_name(s, IMK_FLAG_NOT_FINITE);
-        imki_text_add(out, ";\n");
+        imki_text_add(out, "    if (!(%s - %s == 0)", name, name);
+        raise_flag(s, IMK_FLAG_NOT_FINITE, NULL);
         return;
     }
-    imki_text_add(out, "    if (!(%s[%d] > ", name, i);
+    imki_text_add(out, "    if (!(%s > ", name);
     threshold(s, channel->lower, integer, channel->bits);
-    imki_text_add(out, " && %s[%d] < ", name, i);
+    imki_text_add(out, " && %s < ", name);
     if (is_fixed(s) && !channel->in_counts) /* of two integers beside it the one above */
         imki_text_add(out, "%" PRId64, (int64_t)ceil(ldexp(channel->upper, channel->bits)));
     else
         threshold(s, channel->upper, integer, channel->bits);
-    imki_text_add(out, "))\n        flags |= ");
-    if (!integer) {
-        imki_text_add(out, "%s[%d] - %s[%d] == 0 ? ", name, i, name, i);
-        flag_name(s, channel->flag);
-        imki_text_add(out, " : ");
-        flag_name(s, IMK_FLAG_NOT_FINITE);
-    } else {
-        flag_name(s, channel->flag);
-    }
-    imki_text_add(out, ";\n");
+    imki_text_add(out, ")");
+    raise_flag(s, channel->flag, integer ? NULL : name);
 }
 
 static void temperature_flags(source *s)
@@ -389,16 +381,8 @@ static void temperature_flags(source *s)
         threshold(s, f->temperature_minimum, false, 0);
     imki_text_add(out, " && temperature <= ");
     threshold(s, f->temperature_maximum, is_fixed(s), f->temperature_bits);
-    imki_text_add(out, "))\n        flags |= ");
-    if (!is_fixed(s)) {
-        imki_text_add(out, "temperature - temperature == 0 ? ");
-        flag_name(s, IMK_FLAG_TEMPERATURE);
-        imki_text_add(out, " : ");
-        flag_name(s, IMK_FLAG_NOT_FINITE);
-    } else {
-        flag_name(s, IMK_FLAG_TEMPERATURE);
-    }
-    imki_text_add(out, ";\n");
+    imki_text_add(out, ")");
+    raise_flag(s, IMK_FLAG_TEMPERATURE, is_fixed(s) ? NULL : "temperature");
 }
 
 static void output(source *s, int sensor, int j)
@@ -415,9 +399,7 @@ static void output(source *s, int sensor, int j)
     name_of(out, s, f->output[sensor][j]);
     imki_text_add(out, ") > ");
     threshold(s, f->limit[sensor][j], is_fixed(s), f->output_bits[sensor]);
-    imki_text_add(out, ")\n        flags |= ");
-    flag_name(s, IMK_FLAG_LIMIT);
-    imki_text_add(out, ";\n");
+    raise_flag(s, IMK_FLAG_LIMIT, NULL);
 }
 
 /* ---- file ------------------------------------------------------------------------------------ */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A log as a source of records, and a whole log in memory. */
+#include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
 #include "log_reader_internal.h"
 
@@ -44,34 +45,20 @@ imk_record_source imk_log_source(imk_log_reader *reader)
                                .label = label_of};
 }
 
-/* The progress of a job as that of a log. */
-typedef struct load_progress {
-    imk_progress told;
-    void *context;
-} load_progress;
-
-static bool tell(void *context, const char *stage, const char *unit, uint64_t done, uint64_t total)
-{
-    const load_progress *p = context;
-    (void)stage, (void)unit;
-    p->told(p->context, done, total);
-    return true;
-}
-
-imk_status imk_log_load(const char *path, const imk_log_settings *settings, imk_progress progress,
-                        void *progress_context, imk_log *log, imk_error *error)
+imk_status imk_log_load(const char *path, const imk_log_settings *settings, const imk_job *job,
+                        imk_log *log, imk_error *error)
 {
     imk_log_reader *reader;
-    load_progress told = {progress, progress_context};
-    const imk_job job = {.progress = progress ? tell : NULL,
-                         .progress_context = &told,
-                         .memory = settings && settings->memory > 0 ? settings->memory
-                                                                    : imk_memory_limit() / 2};
+    imk_job own = *imki_job_of(job);
+    if (settings && settings->memory > 0)
+        own.memory = settings->memory;
+    else if (own.memory == 0)
+        own.memory = imk_memory_limit() / 2;
     imk_status status = imk_log_open(path, settings, &reader, error);
     if (status != IMK_OK)
         return status;
     const imk_record_source source = imk_log_source(reader);
-    status = imki_record_load(&source, &job, log, error);
+    status = imki_record_load(&source, &own, log, error);
     imk_log_close(reader);
     return status;
 }

@@ -68,9 +68,46 @@ size_t imki_document_end(const imk_document *document, int node);
 imk_status imki_document_error(const imk_document *document, int node, imk_status status,
                                const char *found, const char *expected, imk_error *error);
 
-/* IMK_ERROR_KEY_UNKNOWN with the nearest of the names that would be known. */
-imk_status imki_refuse_name(const imk_document *document, int key, size_t count,
-                            const char *const *candidates, imk_error *error);
+/* ---- reading: document_reading.c ------------------------------------------------------------- */
+
+/* A document that is read, and the first failure: what comes after it counts for nothing. */
+typedef struct imki_reading {
+    const imk_document *document;
+    imk_error *error; /* may be NULL */
+    imk_status status;
+} imki_reading;
+
+/* A failure at a node, unless there was one before. */
+void imki_value_refuse(imki_reading *reading, int node, imk_status status, const char *found,
+                       const char *expected);
+/* The same, found being the node's text. */
+void imki_refuse_value(imki_reading *reading, int node, imk_status status, const char *expected);
+/* A key that is none of these: "did you mean" the nearest of them, or all. */
+void imki_refuse_key(imki_reading *reading, int key, size_t count, const char *const *names);
+/* The same of a value. `found` is its name, or more. */
+void imki_refuse_name(imki_reading *reading, int node, const char *name, const char *found,
+                      size_t count, const char *const *names);
+
+/* IMK_ERROR_SYNTAX unless the node is of this kind. @return false after any failure */
+bool imki_value_require(imki_reading *reading, int node, imki_node_kind kind, const char *expected);
+
+/* Text of a node, or of a key of the root; "" where there is none. It is shorter than `size`. */
+void imki_value_text(imki_reading *reading, int node, char *text, size_t size);
+void imki_value_name(imki_reading *reading, const char *key, char *text, size_t size);
+
+/* All keys of a mapping are among these; the version key of the root says 1. */
+void imki_value_keys(imki_reading *reading, int mapping, size_t count, const char *const *names);
+void imki_value_version(imki_reading *reading, const char *key);
+/* A key that must be there. @return false after any failure */
+bool imki_value_find(imki_reading *reading, int mapping, const char *key, const char *expected,
+                     int *node);
+/* "yes" and "no" as YAML has them; or other words, of which the first three mean true. */
+extern const char *const imki_yes_no[6];
+void imki_value_choice(imki_reading *reading, int node, const char *const words[6],
+                       const char *expected, bool *value);
+/* Digits only, from `least` to `most`. */
+size_t imki_value_count(imki_reading *reading, int node, size_t least, size_t most,
+                        const char *expected);
 
 /* model_yaml_read.c: the model that the tree says. Ranges are left to imk_model_validate(). */
 imk_status imki_document_read_model(const imk_document *document, imk_model *model,

@@ -2,8 +2,6 @@
 /* The nodes of a document: which one a path leads to, where one stands, and the error at one. */
 #include "document_internal.h"
 
-#include "base/nearest_name_internal.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,21 +104,4 @@ size_t imki_document_end(const imk_document *document, int node)
            document->node[node].last != IMKI_NONE)
         node = document->node[node].last;
     return document->node[node].end;
-}
-
-imk_status imki_refuse_name(const imk_document *document, int key, size_t count,
-                            const char *const *candidates, imk_error *error)
-{
-    char expected[sizeof error->expected];
-    size_t nearest = imki_nearest_name(document->node[key].text, count, candidates);
-    if (nearest != SIZE_MAX) {
-        snprintf(expected, sizeof expected, "did you mean \"%s\"?", candidates[nearest]);
-    } else {
-        size_t length = (size_t)snprintf(expected, sizeof expected, "one of");
-        for (size_t i = 0; i < count && length + strlen(candidates[i]) + 8 < sizeof expected; i++)
-            length += (size_t)snprintf(expected + length, sizeof expected - length, "%s %s",
-                                       i > 0 ? "," : "", candidates[i]);
-    }
-    return imki_document_error(document, key, IMK_ERROR_KEY_UNKNOWN, document->node[key].text,
-                               expected, error);
 }

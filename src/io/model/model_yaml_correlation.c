@@ -34,108 +34,73 @@ bool imki_correlation_equal(const imk_correlation *a, const imk_correlation *b)
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-static const imki_node *node_at(const imk_document *document, int node)
+static void read_parameters(imki_reading *r, int node, imk_correlation *into)
 {
-    return &document->node[node];
-}
-
-static imk_status fail(const imk_document *document, int node, imk_status status,
-                       const char *expected, imk_error *error)
-{
-    const imki_node *n = node_at(document, node);
-    return imki_document_error(document, node, status, n->kind == IMKI_NODE_SCALAR ? n->text : "",
-                               expected, error);
-}
-
-static imk_status read_parameters(const imk_document *document, int node, imk_correlation *into,
-                                  imk_error *error)
-{
-    const imki_node *list = node_at(document, node);
-    if (list->kind != IMKI_NODE_SEQUENCE || list->count < 1 || list->count > IMK_CORRELATED_MAX)
-        return fail(document, node, IMK_ERROR_SYNTAX,
-                    "a list of 1 to 64 parameters, like accel.bias.fixed.x", error);
-    for (int child = list->first; child != IMKI_NONE; child = node_at(document, child)->next) {
-        const imki_node *name = node_at(document, child);
-        if (name->kind != IMKI_NODE_SCALAR ||
-            imk_model_parameter_parse(name->text, &into->parameter[into->count]) != IMK_OK)
-            return fail(document, child, IMK_ERROR_KEY_UNKNOWN,
-                        "a number of the model: sensor, key and axis, like accel.bias.fixed.x or "
-                        "gyro.misalignment.x.y",
-                        error);
-        into->count++;
+    const imki_node *nodes = r->document->node, *list = &nodes[node];
+    if (list->kind != IMKI_NODE_SEQUENCE || list->count < 1 || list->count > IMK_CORRELATED_MAX) {
+        imki_refuse_value(r, node, IMK_ERROR_SYNTAX,
+                          "a list of 1 to 64 parameters, like accel.bias.fixed.x");
+        return;
     }
-    return IMK_OK;
+    for (int child = list->first; child != IMKI_NONE; child = nodes[child].next, into->count++)
+        if (nodes[child].kind != IMKI_NODE_SCALAR ||
+            imk_model_parameter_parse(nodes[child].text, &into->parameter[into->count]) != IMK_OK)
+            imki_refuse_value(r, child, IMK_ERROR_KEY_UNKNOWN,
+                              "a number of the model: sensor, key and axis, like "
+                              "accel.bias.fixed.x or gyro.misalignment.x.y");
 }
 
-/* One row: `count` numbers separated by blanks. */
-static imk_status read_row(const imk_document *document, int node, int count, float *value,
-                           imk_error *error)
+/* `count` numbers separated by blanks, and nothing else. */
+static bool parse_row(const imki_node *row, int count, float *value)
 {
-    char expected[96];
-    snprintf(expected, sizeof expected, "a row of %d number%s, with the parameters before it",
-             count, count == 1 ? "" : "s");
-    const imki_node *row = node_at(document, node);
-    if (row->kind != IMKI_NODE_SCALAR)
-        return fail(document, node, IMK_ERROR_SYNTAX, expected, error);
     const char *text = row->text, *end = row->text + row->length;
     for (int k = 0; k < count; k++) {
         double number;
-        while (*text == ' ')
-            text++;
+        text += strspn(text, " ");
         const char *behind = imk_decimal_parse(text, end, &number);
         if (behind == text || (behind < end && *behind != ' '))
-            return fail(document, node, IMK_ERROR_SYNTAX, expected, error);
+            return false;
         value[k] = (float)number;
         text = behind;
     }
-    while (*text == ' ')
-        text++;
-    return text == end ? IMK_OK : fail(document, node, IMK_ERROR_SYNTAX, expected, error);
+    return text + strspn(text, " ") == end;
 }
 
-static imk_status read_values(const imk_document *document, int node, imk_correlation *into,
-                              imk_error *error)
+static void read_values(imki_reading *r, int node, imk_correlation *into)
 {
-    const imki_node *list = node_at(document, node);
-    if (list->kind != IMKI_NODE_SEQUENCE || list->count != into->count - 1)
-        return fail(document, node, IMK_ERROR_SYNTAX,
-                    "a list with a row for each parameter but the first", error);
-    int child = list->first;
-    for (int i = 1; i < into->count; i++, child = node_at(document, child)->next) {
-        imk_status status = read_row(document, child, i, &into->value[i * (i - 1) / 2], error);
-        if (status != IMK_OK)
-            return status;
+    const imki_node *nodes = r->document->node, *list = &nodes[node];
+    if (list->kind != IMKI_NODE_SEQUENCE || list->count != into->count - 1) {
+        imki_refuse_value(r, node, IMK_ERROR_SYNTAX,
+                          "a list with a row for each parameter but the first");
+        return;
     }
-    return IMK_OK;
+    for (int i = 1, child = list->first; i < into->count; i++, child = nodes[child].next) {
+        char expected[96];
+        snprintf(expected, sizeof expected, "a row of %d number%s, with the parameters before it",
+                 i, i == 1 ? "" : "s");
+        if (nodes[child].kind != IMKI_NODE_SCALAR ||
+            !parse_row(&nodes[child], i, &into->value[i * (i - 1) / 2]))
+            imki_refuse_value(r, child, IMK_ERROR_SYNTAX, expected);
+    }
 }
 
-imk_status imki_read_correlation(const imk_document *document, imk_correlation *correlation,
-                                 imk_error *error)
+void imki_read_correlation(imki_reading *r, imk_correlation *correlation)
 {
     static const char *const names[] = {"parameters", "values"};
     static const char what[] = "a mapping with parameters and values";
-    const int node = imki_document_value(document, 0, "correlation");
-    if (node == IMKI_NONE)
-        return IMK_OK;
-    if (node_at(document, node)->kind != IMKI_NODE_MAPPING)
-        return fail(document, node, IMK_ERROR_SYNTAX, what, error);
-    for (int key = node_at(document, node)->first; key != IMKI_NONE;
-         key = node_at(document, node_at(document, key)->next)->next)
-        if (strcmp(node_at(document, key)->text, names[0]) != 0 &&
-            strcmp(node_at(document, key)->text, names[1]) != 0)
-            return imki_refuse_name(document, key, 2, names, error);
-    const int parameters = imki_document_value(document, node, names[0]);
-    const int values = imki_document_value(document, node, names[1]);
-    if (parameters == IMKI_NONE || values == IMKI_NONE)
-        return imki_document_error(document, node, IMK_ERROR_KEY_MISSING,
-                                   names[parameters != IMKI_NONE], what, error);
+    const int node = imki_document_value(r->document, 0, "correlation");
+    int parameters, values;
+    if (node == IMKI_NONE || !imki_value_require(r, node, IMKI_NODE_MAPPING, what))
+        return;
+    imki_value_keys(r, node, 2, names);
+    if (!imki_value_find(r, node, names[0], what, &parameters) ||
+        !imki_value_find(r, node, names[1], what, &values))
+        return;
     imk_correlation read = {.count = 0};
-    imk_status status = read_parameters(document, parameters, &read, error);
-    if (status == IMK_OK)
-        status = read_values(document, values, &read, error);
-    if (status == IMK_OK)
+    read_parameters(r, parameters, &read);
+    read_values(r, values, &read);
+    if (r->status == IMK_OK)
         *correlation = read;
-    return status;
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */

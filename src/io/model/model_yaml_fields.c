@@ -21,14 +21,6 @@ typedef struct quantity {
     size_t count;
 } quantity;
 
-imk_status imki_reader_require(const imki_reader *r, int node, imki_node_kind kind,
-                               const char *expected)
-{
-    return imki_reader_node(r, node)->kind == kind
-               ? IMK_OK
-               : imki_reader_fail(r, node, IMK_ERROR_SYNTAX, expected);
-}
-
 /* ---- quantities ------------------------------------------------------------------------------ */
 
 imk_status imki_parse_quantity(const char *text, size_t length, const char *si, unsigned flags,
@@ -56,13 +48,36 @@ static bool says_infinite(const char *text)
            tolower((unsigned char)text[2]) == 'f';
 }
 
-/* What stands in the file, as two-sided SI values. */
-static imk_status read_quantity(imki_reader *r, int node, const char *si, unsigned flags,
-                                size_t max_count, quantity *out)
+/* A failure of which the text of the node is to be seen. */
+static void fail(const imki_reader *r, int node, const char *expected)
 {
-    imk_status status = imki_reader_require(r, node, IMKI_NODE_SCALAR, "numbers and their unit");
-    if (status != IMK_OK)
-        return status;
+    imki_refuse_value(r->reading, node, IMK_ERROR_SYNTAX, expected);
+}
+
+/* A text that is no quantity of such a unit, and why. */
+static void refuse_quantity(const imki_reader *r, int node, const char *si, imk_status status,
+                            const imk_error *error)
+{
+    char expected[sizeof error->expected];
+    const char *text = imki_reader_node(r, node)->text;
+    snprintf(expected, sizeof expected, "a unit behind the number, like %s",
+             imk_dimension_examples(imk_unit_of(si).dimension));
+    if (status == IMK_ERROR_UNIT_MISSING)
+        imki_value_refuse(r->reading, node, status, text, expected);
+    else
+        imki_value_refuse(r->reading, node, status, error->found[0] ? error->found : text,
+                          error->expected);
+}
+
+/* What stands in the file, as two-sided SI values; zeros after a failure. */
+static quantity read_quantity(imki_reader *r, int node, const char *si, unsigned flags,
+                              size_t max_count)
+{
+    quantity q = {.count = 0};
+    imk_error error;
+    imk_unit unit = {.scale = 0};
+    if (!imki_value_require(r->reading, node, IMKI_NODE_SCALAR, "numbers and their unit"))
+        return q;
     const imki_node *n = imki_reader_node(r, node);
     if (says_infinite(n->text)) {
         bool is_time = imki_reader_node(r, n->key != IMKI_NONE ? n->key : node)->text[0] == 'c';
@@ -70,56 +85,41 @@ static imk_status read_quantity(imki_reader *r, int node, const char *si, unsign
                                ? "a finite time; a bias that never forgets is a rate_random_walk"
                                : "a finite time; a bias that never forgets is an "
                                  "acceleration_random_walk";
-        return imki_reader_fail(r, node, IMK_ERROR_NOT_FINITE, is_time ? walk : "a finite number");
+        imki_refuse_value(r->reading, node, IMK_ERROR_NOT_FINITE,
+                          is_time ? walk : "a finite number");
+        return q;
     }
-    imk_error local;
-    imk_unit unit;
-    status = imki_parse_quantity(n->text, n->length, si, flags, max_count, out->value, out->sigma,
-                                 &out->count, &unit, &local);
+    const imk_status status = imki_parse_quantity(n->text, n->length, si, flags, max_count, q.value,
+                                                  q.sigma, &q.count, &unit, &error);
     if (status != IMK_OK) {
-        imki_document_error(r->document, node, status, local.found[0] ? local.found : n->text,
-                            local.expected, r->error);
-        if (r->error && status == IMK_ERROR_UNIT_MISSING) {
-            char expected[sizeof r->error->expected];
-            snprintf(expected, sizeof expected, "a unit behind the number, like %s",
-                     imk_dimension_examples(imk_unit_of(si).dimension));
-            imki_document_error(r->document, node, status, n->text, expected, r->error);
-        }
-        return status;
+        refuse_quantity(r, node, si, status, &error);
+        return (quantity){.count = 0};
     }
-    if (!unit.per_root_hertz)
-        return IMK_OK;
-    if (r->density == IMK_DENSITY_UNSTATED)
-        return imki_document_error(
-            r->document, node, IMK_ERROR_KEY_MISSING, "density",
-            "add density: two-sided (IEEE's N) or density: one-sided (most data sheets) to noise: "
-            "/sqrt(Hz) alone does not say which",
-            r->error);
-    for (size_t i = 0; r->density == IMK_DENSITY_ONE_SIDED && i < out->count; i++) {
-        out->value[i] /= sqrt(2.0);
-        out->sigma[i] /= sqrt(2.0);
+    if (unit.per_root_hertz && r->density == IMK_DENSITY_UNSTATED)
+        imki_value_refuse(r->reading, node, IMK_ERROR_KEY_MISSING, "density",
+                          "add density: two-sided (IEEE's N) or density: one-sided (most data "
+                          "sheets) to noise: /sqrt(Hz) alone does not say which");
+    for (size_t i = 0; unit.per_root_hertz && r->density == IMK_DENSITY_ONE_SIDED && i < q.count;
+         i++) {
+        q.value[i] /= sqrt(2.0);
+        q.sigma[i] /= sqrt(2.0);
     }
-    return IMK_OK;
+    return q;
 }
 
 /* One number for all axes, or one for each. */
-imk_status imki_read_per_axis(imki_reader *r, int node, const char *si, unsigned flags,
-                              double *values, double *sigmas)
+void imki_read_per_axis(imki_reader *r, int node, const char *si, unsigned flags, double *values,
+                        double *sigmas)
 {
-    quantity q;
-    size_t axes = (size_t)r->triad->axis_count;
-    imk_status status = read_quantity(r, node, si, flags, axes, &q);
-    if (status != IMK_OK)
-        return status;
+    const size_t axes = (size_t)r->triad->axis_count;
+    const quantity q = read_quantity(r, node, si, flags, axes);
     if (q.count != 1 && q.count != axes)
-        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,
-                                "one number for all axes, or one for each");
+        fail(r, node, "one number for all axes, or one for each");
     for (size_t i = 0; i < axes; i++) {
         values[i] = q.value[q.count == 1 ? 0 : i];
         if (sigmas)
             sigmas[i] = q.sigma[q.count == 1 ? 0 : i];
     }
-    return IMK_OK;
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */
@@ -137,17 +137,16 @@ static double *sigmas_of(const imki_field *field, void *base)
 }
 
 /* Six numbers or one: xy xz yx yz zx zy. */
-static imk_status read_off_diagonal(imki_reader *r, const imki_field *field, int node)
+static void read_off_diagonal(imki_reader *r, const imki_field *field, int node)
 {
-    quantity q;
-    imk_status status = read_quantity(r, node, field->si[r->kind], field->flags, 6, &q);
-    if (status != IMK_OK)
-        return status;
-    if (r->triad->axis_count != 3 || (q.count != 1 && q.count != 6))
-        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,
-                                r->triad->axis_count == 3
-                                    ? "one number, six (xy xz yx yz zx zy), or a list of three rows"
-                                    : "a list with a row x y z for each axis");
+    const quantity q = read_quantity(r, node, field->si[r->kind], field->flags, 6);
+    if (r->triad->axis_count != 3 || (q.count != 1 && q.count != 6)) {
+        fail(r, node,
+             r->triad->axis_count == 3
+                 ? "one number, six (xy xz yx yz zx zy), or a list of three rows"
+                 : "a list with a row x y z for each axis");
+        return;
+    }
     imk_rows *rows = (imk_rows *)(void *)((char *)r->triad + field->offset);
     int k = 0;
     for (int i = 0; i < 3; i++)
@@ -157,270 +156,238 @@ static imk_status read_off_diagonal(imki_reader *r, const imki_field *field, int
             rows->sigma[i][j] = diagonal ? 0 : q.sigma[q.count == 1 ? 0 : k];
             k += !diagonal;
         }
-    return IMK_OK;
 }
 
-static imk_status read_rows(imki_reader *r, const imki_field *field, int node)
+static void read_rows(imki_reader *r, const imki_field *field, int node)
 {
-    if (field->shape == IMKI_OFF_DIAGONAL && imki_reader_node(r, node)->kind == IMKI_NODE_SCALAR)
-        return read_off_diagonal(r, field, node);
+    const imki_node *list = imki_reader_node(r, node);
+    if (field->shape == IMKI_OFF_DIAGONAL && list->kind == IMKI_NODE_SCALAR) {
+        read_off_diagonal(r, field, node);
+        return;
+    }
     int length = imki_row_length(field->shape), axes = r->triad->axis_count;
-    if (imki_reader_node(r, node)->kind != IMKI_NODE_SEQUENCE ||
-        imki_reader_node(r, node)->count != axes)
-        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,
-                                axes == 3 ? "a list of three rows, one for each axis"
-                                          : "a list with a row for each axis");
+    if (list->kind != IMKI_NODE_SEQUENCE || list->count != axes) {
+        fail(r, node,
+             axes == 3 ? "a list of three rows, one for each axis"
+                       : "a list with a row for each axis");
+        return;
+    }
     double *values = values_of(field, r->triad), *sigmas = sigmas_of(field, r->triad);
-    int child = imki_reader_node(r, node)->first;
+    int child = list->first;
     for (int i = 0; i < axes; i++, child = imki_reader_node(r, child)->next) {
-        quantity q;
-        imk_status status =
-            read_quantity(r, child, field->si[r->kind], field->flags, (size_t)length, &q);
-        if (status != IMK_OK)
-            return status;
+        const quantity q =
+            read_quantity(r, child, field->si[r->kind], field->flags, (size_t)length);
         if ((int)q.count != length)
-            return imki_reader_fail(r, child, IMK_ERROR_SYNTAX,
-                                    length == 3 ? "a row of three numbers: x y z"
-                                                : "a row of six numbers: xx yy zz xy yz zx");
+            fail(r, child,
+                 length == 3 ? "a row of three numbers: x y z"
+                             : "a row of six numbers: xx yy zz xy yz zx");
         memcpy(values + i * length, q.value, (size_t)length * sizeof *values);
         memcpy(sigmas + i * length, q.sigma, (size_t)length * sizeof *sigmas);
     }
-    return IMK_OK;
 }
 
 /* One row of any length, brought to unit length; where zeros are allowed they stay. */
-static imk_status read_unit_row(imki_reader *r, int node, bool may_be_zero, double row[3])
+static void read_unit_row(imki_reader *r, int node, bool may_be_zero, double row[3])
 {
-    quantity q;
-    imk_status status = read_quantity(r, node, "1", IMKI_BARE, 3, &q);
-    if (status != IMK_OK)
-        return status;
+    const quantity q = read_quantity(r, node, "1", IMKI_BARE, 3);
     double square = imki_dot3(q.value, q.value);
     bool is_zero = q.count == 3 && q.value[0] == 0 && q.value[1] == 0 && q.value[2] == 0;
     if (q.count != 3 || !((square > 1e-12 && square < 1e12) || (may_be_zero && is_zero)))
-        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,
-                                may_be_zero ? "a direction: three numbers x y z"
-                                            : "a direction: three numbers x y z, not all 0");
+        fail(r, node,
+             may_be_zero ? "a direction: three numbers x y z"
+                         : "a direction: three numbers x y z, not all 0");
     if (q.sigma[0] != 0 || q.sigma[1] != 0 || q.sigma[2] != 0)
-        return imki_reader_fail(
-            r, node, IMK_ERROR_SYNTAX,
-            "a direction without 1-sigma; uncertain directions are a misalignment");
+        fail(r, node, "a direction without 1-sigma; uncertain directions are a misalignment");
     /* Rows of unit length to rounding stay as they are, so that reading what was written changes
      * nothing. */
     double norm = is_zero || fabs(square - 1) < 1e-14 ? 1 : sqrt(square);
     for (int j = 0; j < 3; j++)
         row[j] = q.value[j] / norm;
-    return IMK_OK;
+}
+
+static void read_unit_rows(imki_reader *r, int node, bool may_be_zero, double (*row)[3])
+{
+    int child = imki_reader_node(r, node)->first;
+    for (int i = 0; i < r->triad->axis_count; i++, child = imki_reader_node(r, child)->next)
+        read_unit_row(r, child, may_be_zero, row[i]);
 }
 
 /* The number of rows is that of the axes. */
-imk_status imki_read_direction(imki_reader *r, int node)
+void imki_read_direction(imki_reader *r, int node)
 {
     const imki_node *list = imki_reader_node(r, node);
-    if (list->kind != IMKI_NODE_SEQUENCE || list->count < 1 || list->count > IMK_AXES_MAX)
-        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,
-                                "a list of 1 to 8 rows x y z, one for each axis");
+    if (list->kind != IMKI_NODE_SEQUENCE || list->count < 1 || list->count > IMK_AXES_MAX) {
+        fail(r, node, "a list of 1 to 8 rows x y z, one for each axis");
+        return;
+    }
     r->triad->axis_count = list->count;
     memset(r->triad->direction, 0, sizeof r->triad->direction);
-    int child = list->first;
-    for (int i = 0; i < list->count; i++, child = imki_reader_node(r, child)->next) {
-        imk_status status = read_unit_row(r, child, false, r->triad->direction[i]);
-        if (status != IMK_OK)
-            return status;
-    }
-    return IMK_OK;
+    read_unit_rows(r, node, false, r->triad->direction);
 }
 
-static imk_status read_pendulous(imki_reader *r, int node)
+static void read_pendulous(imki_reader *r, int node)
 {
     const imki_node *list = imki_reader_node(r, node);
     if (list->kind != IMKI_NODE_SEQUENCE || list->count != r->triad->axis_count)
-        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX,
-                                "a list with a row x y z for each axis, 0 0 0 for the default");
-    int child = list->first;
-    for (int i = 0; i < list->count; i++, child = imki_reader_node(r, child)->next) {
-        imk_status status = read_unit_row(r, child, true, r->triad->nonlinearity.pendulous_axis[i]);
-        if (status != IMK_OK)
-            return status;
-    }
-    return IMK_OK;
+        fail(r, node, "a list with a row x y z for each axis, 0 0 0 for the default");
+    else
+        read_unit_rows(r, node, true, r->triad->nonlinearity.pendulous_axis);
 }
 
-imk_status imki_read_density(imki_reader *r, int node)
+void imki_read_density(imki_reader *r, int node)
 {
-    imk_status status = imki_reader_require(r, node, IMKI_NODE_SCALAR,
-                                            "either density: one-sided or density: two-sided");
-    if (status != IMK_OK)
-        return status;
+    if (!imki_value_require(r->reading, node, IMKI_NODE_SCALAR,
+                            "either density: one-sided or density: two-sided"))
+        return;
     const char *text = imki_reader_node(r, node)->text;
     if (strcmp(text, "one-sided") == 0)
         r->density = IMK_DENSITY_ONE_SIDED;
     else if (strcmp(text, "two-sided") == 0)
         r->density = IMK_DENSITY_TWO_SIDED;
     else
-        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX, "either one-sided or two-sided");
+        fail(r, node, "either one-sided or two-sided");
     r->triad->noise.density = r->density;
-    return IMK_OK;
 }
 
-/* Keys of a mapping, all of which must be there; nodes in the order of the names. */
-static imk_status take_keys(imki_reader *r, int node, int count, const char *const *names,
-                            int *nodes)
+/* Keys of a mapping, all of which must be there; nodes in the order of the names.
+ * @return false when they are not */
+static bool take_keys(imki_reader *r, int node, size_t count, const char *const *names, int *nodes)
 {
     char expected[128] = "a mapping with";
-    for (int i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         size_t length = strlen(expected);
         snprintf(expected + length, sizeof expected - length, "%s %s", i > 0 ? "," : "", names[i]);
-        nodes[i] = imki_document_value(r->document, node, names[i]);
     }
-    imk_status status = imki_reader_require(r, node, IMKI_NODE_MAPPING, expected);
-    if (status != IMK_OK)
-        return status;
+    if (!imki_value_require(r->reading, node, IMKI_NODE_MAPPING, expected))
+        return false;
     for (int key = imki_reader_node(r, node)->first; key != IMKI_NONE;
          key = imki_reader_node(r, imki_reader_node(r, key)->next)->next) {
-        bool known = false;
-        for (int i = 0; i < count; i++)
-            known = known || strcmp(imki_reader_node(r, key)->text, names[i]) == 0;
-        size_t nearest =
-            known ? SIZE_MAX
-                  : imki_nearest_name(imki_reader_node(r, key)->text, (size_t)count, names);
+        const char *text = imki_reader_node(r, key)->text;
+        size_t i = 0;
+        while (i < count && strcmp(text, names[i]) != 0)
+            i++;
+        if (i < count)
+            continue;
+        const size_t nearest = imki_nearest_name(text, count, names);
         if (nearest != SIZE_MAX)
             snprintf(expected, sizeof expected, "did you mean \"%s\"?", names[nearest]);
-        if (!known)
-            return imki_reader_fail(r, key, IMK_ERROR_KEY_UNKNOWN, expected);
+        imki_refuse_value(r->reading, key, IMK_ERROR_KEY_UNKNOWN, expected);
     }
-    for (int i = 0; i < count; i++)
-        if (nodes[i] == IMKI_NONE)
-            return imki_document_error(r->document, node, IMK_ERROR_KEY_MISSING, names[i], expected,
-                                       r->error);
-    return IMK_OK;
+    for (size_t i = 0; i < count; i++)
+        if (!imki_value_find(r->reading, node, names[i], expected, &nodes[i]))
+            return false;
+    return true;
 }
 
-static imk_status read_coefficients(imki_reader *r, const imki_field *field, int node,
-                                    imk_temperature_polynomial *polynomial)
+static void read_coefficients(imki_reader *r, const imki_field *field, int node,
+                              imk_temperature_polynomial *polynomial)
 {
     const imki_node *list = imki_reader_node(r, node);
     bool single = list->kind == IMKI_NODE_SCALAR;
     int order = single ? 1 : list->count;
-    if (list->kind == IMKI_NODE_MAPPING || order < 1 || order > IMK_TEMPERATURE_ORDER_MAX)
-        return imki_reader_fail(
-            r, node, IMK_ERROR_SYNTAX,
-            "a list of 1 to 5 coefficients, of T, T^2, … (T less the reference)");
-    int child = single ? node : list->first;
-    for (int i = 0; i < order; i++) {
-        imk_status status =
-            imki_read_per_axis(r, child, imki_polynomial_si(field, r->kind, i + 1), 0,
-                               polynomial->coefficient[i].value, polynomial->coefficient[i].sigma);
-        if (status != IMK_OK)
-            return status;
-        if (!single)
-            child = imki_reader_node(r, child)->next;
+    if (list->kind == IMKI_NODE_MAPPING || order < 1 || order > IMK_TEMPERATURE_ORDER_MAX) {
+        fail(r, node, "a list of 1 to 5 coefficients, of T, T^2, … (T less the reference)");
+        return;
     }
+    int child = single ? node : list->first;
+    for (int i = 0; i < order; i++, child = single ? child : imki_reader_node(r, child)->next)
+        imki_read_per_axis(r, child, imki_polynomial_si(field, r->kind, i + 1), 0,
+                           polynomial->coefficient[i].value, polynomial->coefficient[i].sigma);
     polynomial->order = order;
-    return IMK_OK;
 }
 
-static imk_status read_polynomial(imki_reader *r, const imki_field *field, int node)
+static void read_polynomial(imki_reader *r, const imki_field *field, int node)
 {
     static const char *const names[] = {"reference_temperature", "valid_range", "coefficients"};
-    int nodes[3];
-    quantity reference, range;
-    imk_status status = take_keys(r, node, 3, names, nodes);
-    if (status == IMK_OK)
-        status = read_quantity(r, nodes[0], "K", 0, 1, &reference);
-    if (status == IMK_OK)
-        status = read_quantity(r, nodes[1], "K", 0, 2, &range);
-    if (status == IMK_OK && range.count != 2)
-        status =
-            imki_reader_fail(r, nodes[1], IMK_ERROR_SYNTAX,
-                             "two temperatures, from the lower to the higher, like -40 85 degC");
     imk_temperature_polynomial *polynomial =
         (imk_temperature_polynomial *)(void *)((char *)r->triad + field->offset);
-    if (status == IMK_OK)
-        status = read_coefficients(r, field, nodes[2], polynomial);
-    if (status != IMK_OK)
-        return status;
-    polynomial->reference = reference.value[0];
+    int nodes[3];
+    if (!take_keys(r, node, 3, names, nodes))
+        return;
+    polynomial->reference = read_quantity(r, nodes[0], "K", 0, 1).value[0];
+    const quantity range = read_quantity(r, nodes[1], "K", 0, 2);
+    if (range.count != 2)
+        fail(r, nodes[1], "two temperatures, from the lower to the higher, like -40 85 degC");
     polynomial->minimum = range.value[0];
     polynomial->maximum = range.value[1];
-    return IMK_OK;
+    read_coefficients(r, field, nodes[2], polynomial);
 }
 
-static imk_status read_list(imki_reader *r, const imki_field *field, int node)
+static void read_list(imki_reader *r, const imki_field *field, int node)
 {
     imki_list list = imki_list_of(field);
     const imki_node *sequence = imki_reader_node(r, node);
-    if (sequence->kind != IMKI_NODE_SEQUENCE || sequence->count > IMK_TERMS_MAX)
-        return imki_reader_fail(r, node, IMK_ERROR_SYNTAX, "a list of at most 8 terms: [{…}, {…}]");
+    if (sequence->kind != IMKI_NODE_SEQUENCE || sequence->count > IMK_TERMS_MAX) {
+        fail(r, node, "a list of at most 8 terms: [{…}, {…}]");
+        return;
+    }
     const char *names[4];
     int nodes[4], child = sequence->first;
     for (size_t j = 0; j < list.field_count; j++)
         names[j] = list.field[j].path[r->kind];
     for (int i = 0; i < sequence->count; i++, child = imki_reader_node(r, child)->next) {
-        imk_status status = take_keys(r, child, (int)list.field_count, names, nodes);
         char *element = (char *)r->triad + field->offset + (size_t)i * list.size;
-        for (size_t j = 0; status == IMK_OK && j < list.field_count; j++) {
+        if (!take_keys(r, child, list.field_count, names, nodes))
+            return;
+        for (size_t j = 0; j < list.field_count; j++) {
             const imki_field *of = &list.field[j];
-            status = imki_read_per_axis(r, nodes[j], of->si[r->kind], of->flags,
-                                        values_of(of, element), sigmas_of(of, element));
+            imki_read_per_axis(r, nodes[j], of->si[r->kind], of->flags, values_of(of, element),
+                               sigmas_of(of, element));
         }
-        if (status != IMK_OK)
-            return status;
     }
     memcpy((char *)r->triad + field->count_offset, &sequence->count, sizeof sequence->count);
-    return IMK_OK;
 }
 
 /* Floor of the Allan deviation: B = floor / sqrt(2 ln 2/pi). */
-static imk_status read_floor(imki_reader *r, const imki_field *field, int node)
+static void read_floor(imki_reader *r, const imki_field *field, int node)
 {
-    int noise = imki_document_value(r->document, r->sensor, "noise");
-    if (imki_document_value(r->document, noise, "bias_instability") != IMKI_NONE)
-        return imki_document_error(r->document, node, IMK_ERROR_CONFLICT,
-                                   "bias_instability and allan_floor exclude each other",
-                                   "keep one of them: the floor is 0.664 of the instability",
-                                   r->error);
+    const imk_document *document = r->reading->document;
+    int noise = imki_document_value(document, r->sensor, "noise");
+    if (imki_document_value(document, noise, "bias_instability") != IMKI_NONE)
+        imki_value_refuse(r->reading, node, IMK_ERROR_CONFLICT,
+                          "bias_instability and allan_floor exclude each other",
+                          "keep one of them: the floor is 0.664 of the instability");
     double *values = values_of(field, r->triad), *sigmas = sigmas_of(field, r->triad);
-    imk_status status =
-        imki_read_per_axis(r, node, field->si[r->kind], field->flags, values, sigmas);
-    for (int i = 0; status == IMK_OK && i < r->triad->axis_count; i++) {
+    imki_read_per_axis(r, node, field->si[r->kind], field->flags, values, sigmas);
+    for (int i = 0; i < r->triad->axis_count; i++) {
         values[i] /= IMKI_ALLAN_FLOOR;
         sigmas[i] /= IMKI_ALLAN_FLOOR;
     }
-    return status;
 }
 
-imk_status imki_read_scalar(imki_reader *r, const imki_field *field, void *base, int node)
+void imki_read_scalar(imki_reader *r, const imki_field *field, void *base, int node)
 {
-    quantity q;
-    imk_status status = read_quantity(r, node, field->si[0], field->flags, 1, &q);
-    if (status != IMK_OK)
-        return status;
+    const quantity q = read_quantity(r, node, field->si[0], field->flags, 1);
     values_of(field, base)[0] = q.value[0];
     sigmas_of(field, base)[0] = q.sigma[0];
-    return IMK_OK;
 }
 
-imk_status imki_read_field(imki_reader *r, const imki_field *field, int node)
+void imki_read_field(imki_reader *r, const imki_field *field, int node)
 {
     switch (field->shape) {
     case IMKI_DIRECTION: /* these two were read before */
     case IMKI_DENSITY:
-        return IMK_OK;
+        break;
     case IMKI_SCALAR:
-        return imki_read_scalar(r, field, r->triad, node);
+        imki_read_scalar(r, field, r->triad, node);
+        break;
     case IMKI_AXES:
         if (field->flags & IMKI_FLOOR)
-            return read_floor(r, field, node);
-        return imki_read_per_axis(r, node, field->si[r->kind], field->flags,
-                                  values_of(field, r->triad), sigmas_of(field, r->triad));
+            read_floor(r, field, node);
+        else
+            imki_read_per_axis(r, node, field->si[r->kind], field->flags,
+                               values_of(field, r->triad), sigmas_of(field, r->triad));
+        break;
     case IMKI_PENDULOUS:
-        return read_pendulous(r, node);
+        read_pendulous(r, node);
+        break;
     case IMKI_POLYNOMIAL:
-        return read_polynomial(r, field, node);
+        read_polynomial(r, field, node);
+        break;
     case IMKI_LIST:
-        return read_list(r, field, node);
+        read_list(r, field, node);
+        break;
     default:
-        return read_rows(r, field, node);
+        read_rows(r, field, node);
     }
 }

@@ -50,8 +50,7 @@ bool imki_is_bound(const imk_interval *interval, int axis_count);
 
 /* model_yaml_correlation.c. Equal as they are written: to six decimals. */
 bool imki_correlation_equal(const imk_correlation *a, const imk_correlation *b);
-imk_status imki_read_correlation(const imk_document *document, imk_correlation *correlation,
-                                 imk_error *error);
+void imki_read_correlation(imki_reading *reading, imk_correlation *correlation);
 
 /* ---- writing --------------------------------------------------------------------------------- */
 

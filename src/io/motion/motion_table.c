@@ -59,7 +59,7 @@ imk_status imki_motion_table_open(const char *path, const imk_log_settings *sett
 {
     const imk_log_settings from_header = imk_log_settings_default();
     const imk_log_settings *how = settings ? settings : &from_header;
-    imk_status status = imk_log_load(path, how, NULL, NULL, &file->log, error);
+    imk_status status = imk_log_load(path, how, NULL, &file->log, error);
     if (status != IMK_OK)
         return status;
     const bool poses = imki_has_poses(&file->log), sensors = has_sensors(&file->log);

@@ -331,8 +331,8 @@ static imk_status refuse_step(imk_status status, imk_error *error)
 /* One allocation for the positions, the quaternions and the workspace. */
 static imk_status build(pose_table *t, const double *time, imk_motion_file *file, imk_error *error)
 {
-    const size_t workspace = imk_trajectory_poses_workspace(t->rows);
-    double *memory = malloc((3 * t->rows + workspace) * sizeof *memory);
+    const size_t size = imk_trajectory_poses_workspace_size(t->rows);
+    double *memory = malloc(3 * t->rows * sizeof *memory + size);
     t->turn = malloc(t->rows * sizeof *t->turn);
     file->piece = calloc(t->rows, sizeof *file->piece);
     imk_status status = memory && t->turn && file->piece
@@ -345,8 +345,8 @@ static imk_status build(pose_table *t, const double *time, imk_motion_file *file
     }
     if (status == IMK_OK) {
         const double *const position[3] = {t->relative[0], t->relative[1], t->relative[2]};
-        status = imk_trajectory_from_poses(t->rows, time, position, t->turn, memory + 3 * t->rows,
-                                           file->piece, error);
+        status = imk_trajectory_from_poses(t->rows, time, position, t->turn, file->piece,
+                                           memory + 3 * t->rows, size, error);
         status = refuse_step(status, error);
     }
     free(memory);

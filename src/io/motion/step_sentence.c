@@ -36,35 +36,6 @@ static void copy_text(char text[TEXT_SIZE], const char *begin, const char *end)
     text[length] = '\0';
 }
 
-void imki_value_refuse(imki_reading *r, int node, imk_status status, const char *found,
-                       const char *expected)
-{
-    if (r->status == IMK_OK)
-        r->status = imki_document_error(r->document, node, status, found, expected, r->error);
-}
-
-void imki_refuse_value(imki_reading *r, int node, imk_status status, const char *expected)
-{
-    const imki_node *n = &r->document->node[node];
-    imki_value_refuse(r, node, status, n->kind == IMKI_NODE_SCALAR ? n->text : "", expected);
-}
-
-void imki_refuse_word(imki_reading *r, int node, const char *name, const char *found, size_t count,
-                      const char *const *names)
-{
-    char expected[sizeof r->error->expected];
-    const size_t nearest = imk_nearest_name(name, count, names);
-    if (nearest < count) {
-        snprintf(expected, sizeof expected, "did you mean \"%s\"?", names[nearest]);
-    } else {
-        size_t length = (size_t)snprintf(expected, sizeof expected, "one of");
-        for (size_t i = 0; i < count && length + strlen(names[i]) + 3 < sizeof expected; i++)
-            length += (size_t)snprintf(expected + length, sizeof expected - length, "%s %s",
-                                       i > 0 ? "," : "", names[i]);
-    }
-    imki_value_refuse(r, node, IMK_ERROR_NAME_UNKNOWN, found, expected);
-}
-
 void imki_sentence_refuse(const imki_sentence *s, imki_part part, imk_status status,
                           const char *expected)
 {
@@ -181,7 +152,7 @@ bool imki_sentence_read(imki_reading *reading, int node, const char *what, size_
     if (index < 0) {
         snprintf(name, sizeof name, "%.*s", (int)(verb.length < 40 ? verb.length : 40), verb.begin);
         snprintf(found, sizeof found, "\"%s\" is not %s", name, what);
-        imki_refuse_word(reading, node, name, found, count, names);
+        imki_refuse_name(reading, node, name, found, count, names);
         return false;
     }
     s.verb = &verbs[index];
@@ -291,13 +262,6 @@ double imki_sentence_positive(const imki_sentence *s, imki_part part, const char
 
 /* ---- values of keys -------------------------------------------------------------------------- */
 
-bool imki_value_require(imki_reading *r, int node, imki_node_kind kind, const char *expected)
-{
-    if (r->document->node[node].kind != kind)
-        imki_refuse_value(r, node, IMK_ERROR_SYNTAX, expected);
-    return r->status == IMK_OK;
-}
-
 void imki_number_at(imki_reading *r, int node, const char *si, double *value)
 {
     const imki_node *n = &r->document->node[node];
@@ -310,77 +274,4 @@ void imki_value_number(imki_reading *r, int mapping, const char *key, const char
     const int node = imki_document_value(r->document, mapping, key);
     if (node != IMKI_NONE)
         imki_number_at(r, node, si, value);
-}
-
-void imki_value_name(imki_reading *r, const char *key, char *text, size_t size)
-{
-    const int node = imki_document_value(r->document, 0, key);
-    text[0] = '\0';
-    if (node == IMKI_NONE || !imki_value_require(r, node, IMKI_NODE_SCALAR, "a text"))
-        return;
-    const imki_node *n = &r->document->node[node];
-    if (n->length >= size) {
-        char expected[48];
-        snprintf(expected, sizeof expected, "a text of at most %zu bytes", size - 1);
-        imki_value_refuse(r, node, IMK_ERROR_RANGE, n->text, expected);
-    } else {
-        memcpy(text, n->text, n->length + 1);
-    }
-}
-
-void imki_value_keys(imki_reading *r, int mapping, size_t count, const char *const *names)
-{
-    const imki_node *nodes = r->document->node;
-    for (int key = nodes[mapping].first; key != IMKI_NONE && r->status == IMK_OK;
-         key = nodes[nodes[key].next].next) {
-        const word w = {nodes[key].text, nodes[key].length};
-        if (find_word(w, count, names) < 0)
-            r->status = imki_refuse_name(r->document, key, count, names, r->error);
-    }
-}
-
-void imki_value_version(imki_reading *r, const char *key)
-{
-    const int node = imki_document_value(r->document, 0, key);
-    char expected[64];
-    snprintf(expected, sizeof expected, "write %s: 1, the version of the format", key);
-    if (node == IMKI_NONE)
-        imki_value_refuse(r, 0, IMK_ERROR_KEY_MISSING, "", expected);
-    else if (r->document->node[node].kind != IMKI_NODE_SCALAR ||
-             strcmp(r->document->node[node].text, "1") != 0)
-        imki_refuse_value(r, node, IMK_ERROR_VERSION, "version 1 of the format");
-}
-
-bool imki_value_find(imki_reading *r, int mapping, const char *key, const char *expected, int *node)
-{
-    *node = imki_document_value(r->document, mapping, key);
-    if (*node == IMKI_NONE)
-        imki_value_refuse(r, mapping, IMK_ERROR_KEY_MISSING, key, expected);
-    return r->status == IMK_OK;
-}
-
-const char *const imki_yes_no[6] = {"yes", "true", "on", "no", "false", "off"};
-
-void imki_value_choice(imki_reading *r, int node, const char *const words[6], const char *expected,
-                       bool *value)
-{
-    if (!imki_value_require(r, node, IMKI_NODE_SCALAR, expected))
-        return;
-    for (int i = 0; i < 6; i++)
-        if (words[i] && strcmp(words[i], r->document->node[node].text) == 0) {
-            *value = i < 3;
-            return;
-        }
-    imki_refuse_value(r, node, IMK_ERROR_SYNTAX, expected);
-}
-
-size_t imki_value_count(imki_reading *r, int node, size_t least, size_t most, const char *expected)
-{
-    const imki_node *n = &r->document->node[node];
-    char *end = NULL;
-    const bool digits = n->kind == IMKI_NODE_SCALAR && n->text[0] >= '1' && n->text[0] <= '9';
-    const size_t count = digits ? strtoul(n->text, &end, 10) : 0;
-    if (!digits || *end != '\0' || count < least || count > most)
-        imki_refuse_value(r, node, IMK_ERROR_SYNTAX, expected);
-    return count;
 }

@@ -56,22 +56,6 @@ typedef struct imki_verb {
     const char *usage;              /* "write hold 10 s" */
 } imki_verb;
 
-/* A document that is read, and the first failure: what comes after it counts for nothing. */
-typedef struct imki_reading {
-    const imk_document *document;
-    imk_error *error; /* may be NULL */
-    imk_status status;
-} imki_reading;
-
-/* A failure at a node, unless there was one before. */
-void imki_value_refuse(imki_reading *reading, int node, imk_status status, const char *found,
-                       const char *expected);
-/* The same, found being the node's text. */
-void imki_refuse_value(imki_reading *reading, int node, imk_status status, const char *expected);
-/* "did you mean" the nearest of the names, or all of them. `found` is the name, or more. */
-void imki_refuse_word(imki_reading *reading, int node, const char *name, const char *found,
-                      size_t count, const char *const *names);
-
 typedef struct imki_sentence {
     imki_reading *reading;
     int node; /* a scalar */
@@ -107,25 +91,5 @@ void imki_sentence_refuse(const imki_sentence *sentence, imki_part part, imk_sta
 void imki_value_number(imki_reading *reading, int mapping, const char *key, const char *si,
                        double *value);
 void imki_number_at(imki_reading *reading, int node, const char *si, double *value);
-
-/* IMK_ERROR_SYNTAX unless the node is of this kind. @return false after any failure */
-bool imki_value_require(imki_reading *reading, int node, imki_node_kind kind, const char *expected);
-
-/* Text of a key of the root, shorter than `size`; "" when it is not there. */
-void imki_value_name(imki_reading *reading, const char *key, char *text, size_t size);
-
-/* All keys of a mapping are among these; the version key of the root says 1. */
-void imki_value_keys(imki_reading *reading, int mapping, size_t count, const char *const *names);
-void imki_value_version(imki_reading *reading, const char *key);
-/* A key that must be there. @return false after any failure */
-bool imki_value_find(imki_reading *reading, int mapping, const char *key, const char *expected,
-                     int *node);
-/* "yes" and "no" as YAML has them; or other words, of which the first three mean true. */
-extern const char *const imki_yes_no[6];
-void imki_value_choice(imki_reading *reading, int node, const char *const words[6],
-                       const char *expected, bool *value);
-/* Digits only, from `least` to `most`. */
-size_t imki_value_count(imki_reading *reading, int node, size_t least, size_t most,
-                        const char *expected);
 
 #endif

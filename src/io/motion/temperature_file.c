@@ -161,7 +161,7 @@ static imk_status open_table(const char *path, imk_temperature_file *file, imk_e
 {
     const imk_log_settings settings = imk_log_settings_default();
     imk_log *log = &file->log;
-    imk_status status = imk_log_load(path, &settings, NULL, NULL, log, error);
+    imk_status status = imk_log_load(path, &settings, NULL, log, error);
     if (status == IMK_ERROR_RATE_MISSING) /* here no rate can stand for the times */
         return imk_error_set(error, IMK_ERROR_COLUMN, "time", "this column is missing",
                              "give time [s] and temperature [degC]");

@@ -137,8 +137,8 @@ imk_status imki_allan_curve_with_gaps(const imk_allan_settings *settings, size_t
     if (factor_count == 0)
         status = IMK_ERROR_TOO_SHORT;
     else if (workspace && point && curve_room(factor_count, true, &job->allocator, curve))
-        status = imk_allan_gaps_points(&gaps, n, rate, factor_count, factors, point, workspace,
-                                       size, job->executor);
+        status = imk_allan_gaps_points(&gaps, n, rate, factor_count, factors, point, job->executor,
+                                       workspace, size);
     for (size_t i = 0; i < factor_count && status == IMK_OK; i++) {
         curve->point[i] = point[i].point;
         curve->used[i] = point[i].used;

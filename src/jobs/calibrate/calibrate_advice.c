@@ -57,7 +57,7 @@ static bool find_poses(imk_calibration *c, imki_arena *arena, imk_pose_advice *a
     c->record_count = 1;
     const size_t size = imk_next_pose_workspace_size(c);
     void *workspace = imki_arena_room(arena, size);
-    return workspace && imk_next_pose(c, pose_sigma, workspace, size, IMK_CALIBRATE_POSES, advice,
+    return workspace && imk_next_pose(c, pose_sigma, IMK_CALIBRATE_POSES, advice, workspace, size,
                                       &error) == IMK_OK;
 }
 

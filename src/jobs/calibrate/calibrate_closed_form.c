@@ -39,7 +39,7 @@ static imk_status find(imk_calibrate_log *b, imk_ferraris_stretch *stretch, size
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     imk_status status =
         imk_ferraris_stretches(&log->record, &log->settings, &b->calibration->model, gravity,
-                               workspace, size, STRETCHES, stretch, count, error);
+                               STRETCHES, stretch, count, workspace, size, error);
     imki_resize(&b->job.allocator, workspace, 0);
     if (status == IMK_OK && *count > STRETCHES)
         return imki_fail(&b->findings, error, IMK_ERROR_RANGE, "stretches", NULL,

@@ -101,7 +101,7 @@ imk_status imk_calibrate_record_shift(const imk_calibrate_record *log, double la
     if (!workspace)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     const imk_status status =
-        imk_reference_offset(&log->record, most, workspace, size, shift, error);
+        imk_reference_offset(&log->record, most, shift, workspace, size, error);
     imki_resize(&log->log.allocator, workspace, 0);
     return status;
 }

@@ -47,8 +47,8 @@ static imk_status find_rests(imk_calibrate_log *b, imk_calibrate_record *log, vo
         if (!log->interval)
             return no_memory(error);
         status = imk_static_detect(&log->record, &log->settings.stationary, &b->calibration->model,
-                                   workspace, size, log->interval, capacity, &log->interval_count,
-                                   log->activity, &log->stationary, error);
+                                   log->interval, capacity, &log->interval_count, log->activity,
+                                   &log->stationary, workspace, size, error);
         if (status != IMK_OK || log->interval_count <= capacity)
             return status;
     }
@@ -118,8 +118,8 @@ static imk_status look_at_temperature(imk_calibrate_log *b, imk_calibrate_record
     settings.reference_temperature = log->settings.reference_temperature;
     settings.order = log->settings.temperature_order > 0 ? log->settings.temperature_order : -1;
     if (workspace && thermal)
-        status = imk_thermal_analyse(&log->record, &settings, &b->calibration->model, workspace,
-                                     size, thermal, error);
+        status = imk_thermal_analyse(&log->record, &settings, &b->calibration->model, thermal,
+                                     workspace, size, error);
     else
         (void)no_memory(error);
     imki_resize(&b->job.allocator, workspace, 0);
@@ -144,7 +144,7 @@ imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_err
     do
         status =
             imk_procedure_observe(log->procedure, c, &log->record, &log->settings,
-                                  b->settings.terms_named, workspace, size, &log->findings, error);
+                                  b->settings.terms_named, &log->findings, workspace, size, error);
     while (wants_room(status, error, c) && grow(b, error) == IMK_OK);
     imki_resize(&b->job.allocator, workspace, 0);
     if (status != IMK_OK)
@@ -179,7 +179,7 @@ imk_status imki_solve(imk_calibrate_log *b, imk_error *error)
     imk_calibration_result *result = imki_arena_take(b->memory, sizeof *result);
     imk_status status = IMK_ERROR_MEMORY;
     if (workspace && result)
-        status = imk_calibration_solve(b->calibration, workspace, size, result, error);
+        status = imk_calibration_solve(b->calibration, result, workspace, size, error);
     else
         (void)no_memory(error);
     imki_resize(&b->job.allocator, workspace, 0);

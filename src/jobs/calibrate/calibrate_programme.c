@@ -36,7 +36,7 @@ static imk_status make(imk_calibration *c, imk_calibrate_plan *p, imk_error *err
     const size_t size = imk_plan_workspace_size(c, &p->settings);
     void *workspace = imki_arena_room(&scratch, size);
     if (p->step && !scratch.failed)
-        status = imk_plan_make(c, &p->settings, workspace, size, p->step, &p->result, error);
+        status = imk_plan_make(c, &p->settings, p->step, &p->result, workspace, size, error);
     else
         (void)imk_error_set(error, status, NULL, NULL, NULL);
     c->observation = lent.observation;

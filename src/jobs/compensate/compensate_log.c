@@ -58,7 +58,7 @@ static stream *allocate(const imk_record_source *source, imki_arena *arena)
             s->corrected[sensor][i] = imki_arena_room(arena, size);
     s->flag_column = imki_arena_room(arena, size);
     s->temperature = imki_arena_take(arena, size);
-    s->workspace = imki_arena_room(arena, imk_compensate_workspace(BLOCK_ROWS) * sizeof(double));
+    s->workspace = imki_arena_room(arena, imk_compensate_workspace_size(BLOCK_ROWS));
     s->flags = imki_arena_room(arena, rows);
     s->first_time = s->last_time = (double)NAN;
     return arena->failed ? NULL : s;
@@ -161,7 +161,8 @@ static size_t correct_piece(stream *s, size_t from, size_t to, size_t done)
                 readings.channel[sensor][i] = s->data[s->columns.axis[sensor][i]] + from;
             out[sensor][i] = s->corrected[sensor][i] + done;
         }
-    return imk_compensator_block(c, &readings, to - from, out, s->flags + done, s->workspace);
+    return imk_compensator_block(c, &readings, to - from, out, s->flags + done, s->workspace,
+                                 imk_compensate_workspace_size(BLOCK_ROWS));
 }
 
 /* The sample the compensator still holds. @return 1, or 0 when there is none */

@@ -39,7 +39,7 @@ static void try_device(void *context, size_t item)
         const size_t size = imk_drift_covariance_size(model, &s->settings);
         void *memory = imki_arena_room(&scratch, size);
         c->no_memory = !memory;
-        if (memory && imk_drift_covariance(model, &s->settings, memory, size, NULL, &analysis,
+        if (memory && imk_drift_covariance(model, &s->settings, NULL, &analysis, memory, size,
                                            NULL) == IMK_OK) {
             c->figures = imk_drift_figures_of(&analysis->total[0]);
             c->usable = isfinite(imk_drift_wished(&c->figures, s->figure));

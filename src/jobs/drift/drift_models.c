@@ -113,8 +113,8 @@ static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_a
     one->figures = imki_arena_take(arena, one->settings.time_count * sizeof *one->figures);
     if (!memory || !one->figures)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    status = imk_drift_covariance(one->model, &one->settings, memory, size, executor,
-                                  &one->analysis, error);
+    status = imk_drift_covariance(one->model, &one->settings, executor, &one->analysis, memory,
+                                  size, error);
     if (status != IMK_OK)
         return status;
     for (size_t t = 0; t < one->analysis->time_count; t++)

@@ -123,8 +123,8 @@ static imk_status analyse_way(imk_graded *one, int way, const imk_job *job, imki
         return status;
     const size_t size = imk_drift_covariance_size(one->model, &settings);
     void *memory = imki_arena_room(scratch, size);
-    status = memory ? imk_drift_covariance(one->model, &settings, memory, size, job->executor,
-                                           &analysis, error)
+    status = memory ? imk_drift_covariance(one->model, &settings, job->executor, &analysis, memory,
+                                           size, error)
                     : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (status != IMK_OK)
         return status;

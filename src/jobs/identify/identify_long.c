@@ -191,7 +191,7 @@ static bool begin_records(long_record *s)
     for (size_t c = 0; c < s->log->record.count; c++) {
         void *memory = imki_arena_room(&s->arena, bytes);
         if (!memory ||
-            imk_identify_record_begin(expected, memory, bytes, &s->record[c], NULL) != IMK_OK)
+            imk_identify_record_begin(expected, &s->record[c], memory, bytes, NULL) != IMK_OK)
             return false;
     }
     return true;

@@ -123,7 +123,7 @@ imk_status imk_identify_log_twin(const imk_identify_log *log, const imk_model *n
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, "twin", NULL, NULL);
     imk_simulator *simulator;
     if (memory && data)
-        status = imk_simulator_start(memory, size, noise, &simulation, &simulator, error);
+        status = imk_simulator_start(noise, &simulation, &simulator, memory, size, error);
     if (status == IMK_OK) {
         for (size_t c = 0; c < channels; c++)
             columns[c] = data + c * (n + 1);

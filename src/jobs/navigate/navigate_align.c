@@ -198,7 +198,7 @@ static imk_status self_align(imk_navigate_log *n, imki_arena *scratch, imk_error
     void *memory = imki_arena_room(scratch, size);
     if (!memory)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    imk_status status = imk_alignment_start(memory, size, &settings, &alignment, error);
+    imk_status status = imk_alignment_start(&settings, &alignment, memory, size, error);
     for (size_t row = 0; row < n->first && status == IMK_OK; row++)
         imk_alignment_add(alignment, dt, imki_navigate_increment(n, 0, row),
                           imki_navigate_increment(n, 1, row), NULL);

@@ -335,7 +335,7 @@ imk_status imki_navigate_follow(imk_navigate_log *n, const imk_job *job, imki_ar
         return status;
     const size_t size = imk_zero_velocity_size(&settings);
     void *memory = imki_arena_room(scratch, size);
-    status = memory ? imk_zero_velocity_start(memory, size, &settings, &n->start, &filter, error)
+    status = memory ? imk_zero_velocity_start(&settings, &n->start, &filter, memory, size, error)
                     : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (status == IMK_OK)
         status = follow(n, filter, &s, every, job, error);

@@ -28,7 +28,7 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
     imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (workspace && reduced && made)
         status =
-            imk_laboratory_run(&settings, workspace, size, job->executor, &made->result, error);
+            imk_laboratory_run(&settings, job->executor, &made->result, workspace, size, error);
     if (status == IMK_OK) {
         imk_instrument_reduce(s->instrument, s->design, reduced);
         made->allocator = job->allocator;

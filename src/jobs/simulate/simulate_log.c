@@ -195,7 +195,7 @@ imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_s
         r.column[c] = block + c * BLOCK_ROWS;
     if (memory && block)
         status =
-            imk_simulator_start(memory, size, model, &settings->simulation, &r.simulator, error);
+            imk_simulator_start(model, &settings->simulation, &r.simulator, memory, size, error);
     if (status == IMK_OK)
         status = stream(&r, sink, stage, job, error);
     imki_arena_free(&arena);

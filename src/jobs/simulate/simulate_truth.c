@@ -197,7 +197,7 @@ imk_status imk_simulate_truth_run(const imk_model *model, const imk_simulate_log
     }
     if (status == IMK_OK) /* only for the true times of its rows */
         status =
-            imk_simulator_start(memory, size, model, &settings->simulation, &t->simulator, error);
+            imk_simulator_start(model, &settings->simulation, &t->simulator, memory, size, error);
     if (status == IMK_OK)
         status = stream(t, sink, job, error);
     imki_arena_free(&arena);

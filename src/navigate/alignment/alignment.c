@@ -4,6 +4,7 @@
 #include "alignment_internal.h"
 
 #include "base/refuse_internal.h"
+#include "base/workspace_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -58,20 +59,19 @@ static imk_status check(const imk_alignment_settings *s, imk_error *error)
 size_t imk_alignment_size(const imk_alignment_settings *settings)
 {
     (void)settings;
-    return sizeof(imk_alignment);
+    return sizeof(imk_alignment) + IMKI_ALIGNMENT_SLACK;
 }
 
-imk_status imk_alignment_start(void *memory, size_t size, const imk_alignment_settings *settings,
-                               imk_alignment **alignment, imk_error *error)
+imk_status imk_alignment_start(const imk_alignment_settings *settings, imk_alignment **alignment,
+                               void *memory, size_t memory_size, imk_error *error)
 {
     const imk_status status = check(settings, error);
     if (status != IMK_OK)
         return status;
-    if (memory == NULL || size < sizeof(imk_alignment) ||
-        (uintptr_t)memory % _Alignof(imk_alignment) != 0)
+    if (memory == NULL || memory_size < imk_alignment_size(settings))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "alignment", "",
-                             "imk_alignment_size() bytes, aligned as a double");
-    imk_alignment *a = memory;
+                             "imk_alignment_size() bytes");
+    imk_alignment *a = (void *)imki_align(memory);
     memset(a, 0, sizeof *a);
     a->settings = *settings;
     const bool still = settings->method == IMK_ALIGNMENT_MEANS;

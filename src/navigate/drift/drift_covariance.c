@@ -41,12 +41,12 @@ typedef struct layout {
     imki_drift_driver *driver;
     imki_driver_step (*over)[IMKI_DRIFT_SLOTS];
     double (*coefficient)[IMKI_DRIFT_COLUMNS][IMKI_DRIFT_MOMENTS][9]; /* [step] */
-    imki_arena memory;
+    imki_parts memory;
 } layout;
 
 static layout lay_out(const imk_model *model, const imk_drift_settings *settings, void *memory)
 {
-    layout l = {.memory = {memory, 0}};
+    layout l = {.memory = imki_parts_of(memory)};
     imki_drift_plan count = {.source_count = 0};
     imki_drift_sources(&count, model, settings, (imk_geodetic){0.0, 0.0, 0.0});
     const size_t sources = count.source_count, times = settings->time_count;
@@ -69,7 +69,8 @@ static layout lay_out(const imk_model *model, const imk_drift_settings *settings
 
 size_t imk_drift_covariance_size(const imk_model *model, const imk_drift_settings *settings)
 {
-    return lay_out(model, settings, NULL).memory.used;
+    const layout l = lay_out(model, settings, NULL);
+    return imki_parts_size(&l.memory);
 }
 
 /* ---- work items --------------------------------------------------------------------------------
@@ -245,10 +246,10 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
     const imk_status status = imk_drift_validate(model, settings, error);
     if (status != IMK_OK)
         return status;
-    if (!memory || (uintptr_t)memory % 64 != 0)
-        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
+    if (!memory)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory");
     const layout l = lay_out(model, settings, memory);
-    if (size < l.memory.used)
+    if (size < imki_parts_size(&l.memory))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_drift_covariance_size() bytes");
     memset(l.analysis, 0, sizeof *l.analysis);
@@ -276,9 +277,9 @@ imk_status imki_drift_covariance_on(imki_drift_earth earth, const imk_model *mod
 }
 
 imk_status imk_drift_covariance(const imk_model *model, const imk_drift_settings *settings,
-                                void *memory, size_t size, const imk_executor *executor,
-                                imk_drift_analysis **analysis, imk_error *error)
+                                const imk_executor *executor, imk_drift_analysis **analysis,
+                                void *memory, size_t memory_size, imk_error *error)
 {
-    return imki_drift_covariance_on((imki_drift_earth){0.0, 0.0}, model, settings, memory, size,
-                                    executor, analysis, error);
+    return imki_drift_covariance_on((imki_drift_earth){0.0, 0.0}, model, settings, memory,
+                                    memory_size, executor, analysis, error);
 }

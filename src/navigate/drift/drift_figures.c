@@ -67,7 +67,7 @@ double imk_drift_wished(const imk_drift_figures *figures, imk_drift_wish wish)
 typedef struct runs {
     size_t count, stride, used;
     const double *errors;
-    double *workspace;
+    double *scratch;
 } runs;
 
 /* The nine errors of a run, or NULL when one is not a number. */
@@ -171,20 +171,20 @@ static imk_drift_figures nothing(void)
 }
 
 imk_drift_figures imk_drift_figures_of_runs(size_t count, size_t stride, const double *errors,
-                                            double *workspace, imk_drift_figures *low,
+                                            double *scratch, imk_drift_figures *low,
                                             imk_drift_figures *high, size_t *used)
 {
     imk_drift_figures f = nothing(), least = f, most = f;
-    runs r = {count, stride, 0, errors, workspace};
+    runs r = {count, stride, 0, errors, scratch};
     for (size_t i = 0; i < count; i++) {
         const double *e = run_of(&r, i);
         if (e)
-            workspace[r.used++] = sqrt(e[NORTH] * e[NORTH] + e[EAST] * e[EAST]);
+            scratch[r.used++] = sqrt(e[NORTH] * e[NORTH] + e[EAST] * e[EAST]);
     }
     if (r.used > 0) {
-        imki_sort(workspace, r.used);
-        f.cep = radius_of(workspace, r.used, 0.5, &least.cep, &most.cep);
-        f.r95 = radius_of(workspace, r.used, 0.95, &least.r95, &most.r95);
+        imki_sort(scratch, r.used);
+        f.cep = radius_of(scratch, r.used, 0.5, &least.cep, &most.cep);
+        f.r95 = radius_of(scratch, r.used, 0.95, &least.r95, &most.r95);
         f.drms = rms_of(&r, NORTH, EAST, &least.drms, &most.drms);
         f.north = rms_of(&r, NORTH, -1, &least.north, &most.north);
         f.east = rms_of(&r, EAST, -1, &least.east, &most.east);

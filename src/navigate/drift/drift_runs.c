@@ -97,13 +97,13 @@ static size_t piece_count(const imk_drift_settings *settings)
                : 0;
 }
 
-size_t imk_drift_runs_size(const imk_model *model, const imk_drift_settings *settings)
+size_t imk_drift_runs_workspace_size(const imk_model *model, const imk_drift_settings *settings)
 {
     const size_t run_size =
         imki_aligned(CHANNELS * ROWS * sizeof(double)) + simulator_size(model, settings);
     return imki_aligned(sizeof(crew)) + imki_aligned(sizeof(imk_model)) +
            imki_aligned(piece_count(settings) * sizeof(imk_trajectory_piece)) +
-           imki_aligned(3 * ROWS * sizeof(double)) + LANES * run_size;
+           imki_aligned(3 * ROWS * sizeof(double)) + LANES * run_size + IMKI_ALIGNMENT_SLACK;
 }
 
 /* ---- start ---- */
@@ -132,7 +132,7 @@ static void add_standstill(crew *c, imk_trajectory_piece *piece)
     c->trajectory = &c->padded;
 }
 
-static imk_status start_motion(crew *c, imki_arena *memory, imk_error *error)
+static imk_status start_motion(crew *c, imki_parts *memory, imk_error *error)
 {
     const size_t pieces = piece_count(c->settings);
     imk_trajectory_piece *piece = imki_take(memory, pieces * sizeof *piece);
@@ -145,7 +145,7 @@ static imk_status start_motion(crew *c, imki_arena *memory, imk_error *error)
     return status;
 }
 
-static imk_status start_run(crew *c, run *r, imki_arena *memory, imk_error *error)
+static imk_status start_run(crew *c, run *r, imki_parts *memory, imk_error *error)
 {
     const imk_drift_settings *s = c->settings;
     const imk_model *model = c->model;
@@ -176,7 +176,7 @@ static imk_status start_run(crew *c, run *r, imki_arena *memory, imk_error *erro
     return IMK_OK;
 }
 
-static imk_status start(crew *c, uint32_t first, imki_arena *memory, imk_error *error)
+static imk_status start(crew *c, uint32_t first, imki_parts *memory, imk_error *error)
 {
     const imk_drift_settings *s = c->settings;
     c->drawn = imki_take(memory, sizeof *c->drawn);
@@ -393,8 +393,8 @@ static void compute(crew *c, double *errors)
 }
 
 imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *settings, uint64_t seed,
-                          uint32_t first, size_t count, void *memory, size_t size, double *errors,
-                          imk_error *error)
+                          uint32_t first, size_t count, double *errors, void *workspace,
+                          size_t workspace_size, imk_error *error)
 {
     imk_status status = imk_drift_validate(model, settings, error);
     if (status != IMK_OK)
@@ -402,12 +402,12 @@ imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *sett
     if (!(count >= 1 && count <= LANES) || count - 1 > UINT32_MAX - first)
         return imk_error_set(error, IMK_ERROR_RANGE, "count", "",
                              "1 to 8 runs with numbers below 2^32");
-    if (!memory || (uintptr_t)memory % 64 != 0)
-        return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory aligned to 64 bytes");
-    if (size < imk_drift_runs_size(model, settings))
-        return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
-                             "imk_drift_runs_size() bytes");
-    imki_arena rest = {memory, 0};
+    if (!workspace)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "workspace", "", "a workspace");
+    if (workspace_size < imk_drift_runs_workspace_size(model, settings))
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", "",
+                             "imk_drift_runs_workspace_size() bytes");
+    imki_parts rest = imki_parts_of(workspace);
     crew *c = imki_take(&rest, sizeof *c);
     memset(c, 0, sizeof *c);
     c->model = model;

@@ -4,6 +4,7 @@
 #include "zero_velocity_internal.h"
 
 #include "base/refuse_internal.h"
+#include "base/workspace_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,7 +29,7 @@ static size_t state_count(const imk_zero_velocity_settings *settings)
 size_t imk_zero_velocity_size(const imk_zero_velocity_settings *settings)
 {
     const size_t n = state_count(settings);
-    return sizeof(imk_zero_velocity) + (2 * n * n + 3 * n) * sizeof(double);
+    return sizeof(imk_zero_velocity) + (2 * n * n + 3 * n) * sizeof(double) + IMKI_ALIGNMENT_SLACK;
 }
 
 static imk_status refuse(imk_error *error, const char *field, double value, const char *expected)
@@ -160,23 +161,22 @@ static void start_covariance(imk_zero_velocity *f)
     }
 }
 
-imk_status imk_zero_velocity_start(void *memory, size_t size,
-                                   const imk_zero_velocity_settings *settings,
+imk_status imk_zero_velocity_start(const imk_zero_velocity_settings *settings,
                                    const imk_navigation_state *start, imk_zero_velocity **filter,
-                                   imk_error *error)
+                                   void *memory, size_t memory_size, imk_error *error)
 {
     const imk_status status = check(settings, error);
     if (status != IMK_OK)
         return status;
     const size_t need = imk_zero_velocity_size(settings);
-    if (size < need)
+    if (!memory || memory_size < need)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "zero_velocity", "",
                              "memory of imk_zero_velocity_size()");
-    imk_zero_velocity *f = memory;
-    memset(f, 0, need);
+    imk_zero_velocity *f = (void *)imki_align(memory);
+    memset(f, 0, need - IMKI_ALIGNMENT_SLACK);
     f->settings = *settings;
     f->states = state_count(settings);
-    f->covariance = (double *)(void *)((char *)memory + sizeof *f);
+    f->covariance = (double *)(void *)(f + 1);
     f->scratch = f->covariance + f->states * f->states;
     f->cross = f->scratch + f->states * f->states;
     f->parts[IMKI_GYRO_PART] = settings->gyro.part_count;

@@ -145,9 +145,9 @@ static stated_axes begin_model(const imk_laboratory *laboratory, imk_laboratory_
     return stated;
 }
 
-imk_status imk_laboratory_run(const imk_laboratory *laboratory, void *workspace,
-                              size_t workspace_size, const imk_executor *executor,
-                              imk_laboratory_result *result, imk_error *error)
+imk_status imk_laboratory_run(const imk_laboratory *laboratory, const imk_executor *executor,
+                              imk_laboratory_result *result, void *workspace, size_t workspace_size,
+                              imk_error *error)
 {
     char *states = (char *)imki_align(workspace);
     if (laboratory->instrument && workspace_size < imk_laboratory_workspace_size(laboratory))

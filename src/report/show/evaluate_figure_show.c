@@ -17,12 +17,6 @@ static void begin_panel(const imk_evaluate_channel *c, const char *what, imk_fig
         &(imk_panel){.title = title, .x_label = x_label, .y_label = y_label, .key = IMK_KEY_BELOW});
 }
 
-static void begin_curve(imk_figure_builder *figure, const char *label, imk_curve_style style,
-                        int color)
-{
-    imk_figure_curve(figure, &(imk_curve){.label = label, .style = style, .color = color}, 1);
-}
-
 /* The minimax line with its strip, and the mean of both directions with its interval. */
 static void show_means(const imk_evaluate_channel *c, imk_figure_builder *figure)
 {
@@ -33,7 +27,7 @@ static void show_means(const imk_evaluate_channel *c, imk_figure_builder *figure
     const imk_evaluation *r = &c->result;
     const double scale = c->reading_unit.scale;
     for (int curve = 0; curve < 3; curve++) {
-        begin_curve(figure, labels[curve], styles[curve], colors[curve]);
+        imki_begin_curve(figure, labels[curve], styles[curve], colors[curve]);
         for (size_t k = 0; k < r->levels; k++) {
             const imk_evaluation_level *l = &c->level[k];
             const double x = l->reference / c->reference_unit.scale;
@@ -54,7 +48,7 @@ static void show_side(const imk_evaluate_channel *c, bool up, const char *label,
                       imk_curve_style style, imk_figure_builder *figure)
 {
     const imk_evaluation_line *line = &c->result.line;
-    begin_curve(figure, label, style, up ? 2 : 1);
+    imki_begin_curve(figure, label, style, up ? 2 : 1);
     for (size_t k = 0; k < c->result.levels; k++) {
         const imk_evaluation_level *l = &c->level[k];
         const double mean = up ? l->up : l->down;

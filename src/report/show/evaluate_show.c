@@ -88,10 +88,7 @@ static void show_channel_data(const imk_evaluate_channel *c, imk_result *result)
 static void show_data(const imk_evaluate_shown *v, imk_result *result)
 {
     imk_result_object(result, "inputs");
-    imk_result_array(result, "files");
-    for (size_t k = 0; k < v->path_count; k++)
-        imk_result_text(result, NULL, v->path[k]);
-    imk_result_end(result);
+    imki_show_texts(result, "files", v->path_count, v->path);
     imk_result_text(result, "static", v->rest_path);
     imk_result_number(result, "confidence", v->confidence);
     imk_result_end(result);

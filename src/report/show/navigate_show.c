@@ -241,8 +241,7 @@ static void add_line(const imk_navigate_log *n, const struct line *l, imk_figure
     const size_t every = n->track_rows / POINTS_MAX + 1;
     const size_t points = (n->track_rows + every - 1) / every;
     const bool about_track = l->y >= IMK_TRACK_SIGMA && !n->at_rest;
-    imk_figure_curve(figure, &(imk_curve){.label = l->label, .style = l->style, .color = l->color},
-                     1);
+    imki_begin_curve(figure, l->label, l->style, l->color);
     for (size_t k = 0; k < points; k++) {
         const size_t row = k + 1 == points ? n->track_rows - 1 : k * every;
         const double middle =

@@ -35,6 +35,15 @@ size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t
 void imki_show_estimate(imk_result *result, const char *key, const imk_estimate *estimate,
                         double scale, const char *unit);
 
+/* Begin an object, or tell null where there is none. @return there */
+bool imki_begin_object(imk_result *result, const char *key, bool there);
+/* An array of texts. */
+void imki_show_texts(imk_result *result, const char *key, size_t count, const char *const *texts);
+
+/* A curve without points yet. */
+void imki_begin_curve(imk_figure_builder *figure, const char *label, imk_curve_style style,
+                      int color);
+
 /* A line, of a text that is put together; nothing when it is empty. The text is freed. */
 void imki_show_text(imki_text *text, imk_result *result);
 

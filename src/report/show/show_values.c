@@ -80,6 +80,29 @@ void imki_show_estimate(imk_result *result, const char *key, const imk_estimate 
     imk_result_end(result);
 }
 
+bool imki_begin_object(imk_result *result, const char *key, bool there)
+{
+    if (there)
+        imk_result_object(result, key);
+    else
+        imk_result_null(result, key);
+    return there;
+}
+
+void imki_show_texts(imk_result *result, const char *key, size_t count, const char *const *texts)
+{
+    imk_result_array(result, key);
+    for (size_t i = 0; i < count; i++)
+        imk_result_text(result, NULL, texts[i]);
+    imk_result_end(result);
+}
+
+void imki_begin_curve(imk_figure_builder *figure, const char *label, imk_curve_style style,
+                      int color)
+{
+    imk_figure_curve(figure, &(imk_curve){.label = label, .style = style, .color = color}, 1);
+}
+
 void imki_show_text(imki_text *text, imk_result *result)
 {
     if (result && text->failed)

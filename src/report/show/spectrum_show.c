@@ -187,11 +187,8 @@ static void band_data(const imk_spectrum_band *b, double scale, const char *unit
 static void parameter_data(const imk_channel_spectrum *f, const imk_log_column *column,
                            imk_result *result)
 {
-    if (f->fit_status != IMK_OK) {
-        imk_result_null(result, "parameters");
+    if (!imki_begin_object(result, "parameters", f->fit_status == IMK_OK))
         return;
-    }
-    imk_result_object(result, "parameters");
     imk_result_object(result, "terms");
     for (int term = 0; term <= IMK_NOISE_RANDOM_WALK; term++) {
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
@@ -258,18 +255,16 @@ static void show_data(const imk_spectrum_log *s, const char *name, imk_result *r
 static void show_curves(const imk_channel_spectrum *f, const char *name, int color, double scale,
                         imk_figure_builder *figure)
 {
-    imk_figure_curve(figure, &(imk_curve){.label = "", .style = IMK_CURVE_BAND, .color = color}, 1);
+    imki_begin_curve(figure, "", IMK_CURVE_BAND, color);
     for (size_t i = 0; i < f->fine_count; i++)
         imk_figure_bar(figure, f->fine[i].frequency, sqrt(f->fine[i].density) * scale,
                        sqrt(f->fine[i].lower) * scale, sqrt(f->fine[i].upper) * scale);
-    imk_figure_curve(figure, &(imk_curve){.label = name, .style = IMK_CURVE_LINE, .color = color},
-                     1);
+    imki_begin_curve(figure, name, IMK_CURVE_LINE, color);
     for (size_t i = 0; i < f->fine_count; i++)
         imk_figure_point(figure, f->fine[i].frequency, sqrt(f->fine[i].density) * scale);
     if (f->line_count == 0)
         return;
-    imk_figure_curve(figure, &(imk_curve){.label = "", .style = IMK_CURVE_MARKS, .color = color},
-                     1);
+    imki_begin_curve(figure, "", IMK_CURVE_MARKS, color);
     for (size_t i = 0; i < f->line_count; i++)
         imk_figure_point(figure, f->line[i].frequency, sqrt(f->line[i].density) * scale);
 }

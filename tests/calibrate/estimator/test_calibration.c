@@ -338,7 +338,7 @@ static void information_is_the_inverse_covariance(void **state)
     }
     double *information = calloc(count * count, sizeof *information);
     void *workspace = malloc(size);
-    CHECK_OK(imk_calibration_information(c, workspace, size, information, NULL));
+    CHECK_OK(imk_calibration_information(c, information, workspace, size, NULL));
     for (size_t p = 0; p < count; p++)
         for (size_t q = 0; q < count; q++) {
             double sum = 0.0;
@@ -622,11 +622,11 @@ static void problems_that_are_none(void **state)
     expect_refusal(b, IMK_ERROR_ARGUMENT, "observation");
     b->observation[3].record = -1;
     imk_calibration_result *result = &b->result;
-    CHECK_STATUS(imk_calibration_solve(&b->calibration, b->workspace, 100, result, NULL),
+    CHECK_STATUS(imk_calibration_solve(&b->calibration, result, b->workspace, 100, NULL),
                  IMK_ERROR_WORKSPACE);
     b->calibration.cookie = 0;
     CHECK_STATUS(
-        imk_calibration_solve(&b->calibration, b->workspace, b->workspace_size, result, NULL),
+        imk_calibration_solve(&b->calibration, result, b->workspace, b->workspace_size, NULL),
         IMK_ERROR_UNINITIALISED);
     bench_free(b);
 }

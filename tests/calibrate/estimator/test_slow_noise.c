@@ -57,7 +57,7 @@ static void solve(holds *h)
     imk_error error;
     const size_t size = imk_calibration_workspace_size(&h->calibration);
     void *memory = malloc(size);
-    CHECK_OK(imk_calibration_solve(&h->calibration, memory, size, &h->result, &error));
+    CHECK_OK(imk_calibration_solve(&h->calibration, &h->result, memory, size, &error));
     free(memory);
 }
 

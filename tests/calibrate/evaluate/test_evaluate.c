@@ -17,7 +17,7 @@ static imk_status evaluate(const imk_evaluation_table *table,
     char *workspace = malloc(size);
     assert_non_null(workspace);
     const imk_status status =
-        imk_evaluate(table, settings, workspace, size, level, LEVELS_MAX, &result, error);
+        imk_evaluate(table, settings, level, LEVELS_MAX, &result, workspace, size, error);
     free(workspace);
     return status;
 }
@@ -316,7 +316,7 @@ static void test_errors(void **state)
     char small[64];
     y[1] = 1;
     CHECK_STATUS(
-        imk_evaluate(&table, &settings, small, sizeof small, level, LEVELS_MAX, &result, &error),
+        imk_evaluate(&table, &settings, level, LEVELS_MAX, &result, small, sizeof small, &error),
         IMK_ERROR_WORKSPACE);
 }
 

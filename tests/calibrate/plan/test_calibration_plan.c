@@ -48,7 +48,7 @@ static imk_status make(bench *b, const imk_plan_settings *settings)
     const size_t size = imk_plan_workspace_size(&b->calibration, settings);
     void *workspace = malloc(size);
     const imk_status status =
-        imk_plan_make(&b->calibration, settings, workspace, size, b->step, &b->result, &b->error);
+        imk_plan_make(&b->calibration, settings, b->step, &b->result, workspace, size, &b->error);
     free(workspace);
     return status;
 }
@@ -316,11 +316,11 @@ static void programme_keeps_its_promise(void **state)
             imk_procedure_workspace_size(IMK_PROCEDURE_MULTIPOSITION, &log->record, &procedure);
         void *workspace = malloc(looking);
         CHECK_OK(imk_procedure_observe(IMK_PROCEDURE_MULTIPOSITION, c, &log->record, &procedure,
-                                       false, workspace, looking, &findings, &b->error));
+                                       false, &findings, workspace, looking, &b->error));
         free(workspace);
         const size_t solving = imk_calibration_workspace_size(c);
         workspace = malloc(solving);
-        CHECK_OK(imk_calibration_solve(c, workspace, solving, &result, &b->error));
+        CHECK_OK(imk_calibration_solve(c, &result, workspace, solving, &b->error));
         free(workspace);
         for (size_t p = 0; p < result.parameter_count; p++)
             if (result.parameter[p].term == IMK_MODEL_SCALE_FACTOR) {
@@ -374,7 +374,7 @@ static void missing_pose_is_advised(void **state)
     const size_t size = imk_next_pose_workspace_size(c);
     void *workspace = malloc(size);
     imk_pose_advice advice[3];
-    CHECK_OK(imk_next_pose(c, 0.0, workspace, size, 3, advice, &b->error));
+    CHECK_OK(imk_next_pose(c, 0.0, 3, advice, workspace, size, &b->error));
     CHECK_BELOW(advice[0].up[2], -0.9);
     CHECK_CLOSE(advice[0].roll, 0.0, 0.5);
     CHECK_CLOSE(advice[0].pitch, 0.0, 0.5);

@@ -38,7 +38,7 @@ static bool load(session *s)
         return false;
     }
     settings.rate = 204.8;
-    CHECK_OK(imk_log_load(LOG, &settings, NULL, NULL, &s->log, &error));
+    CHECK_OK(imk_log_load(LOG, &settings, NULL, &s->log, &error));
     assert_int_equal(s->log.rows, 9414);
     s->section = malloc(s->log.rows * sizeof *s->section);
     size_t label = 0;
@@ -80,8 +80,8 @@ static size_t stretches(const imk_test_record *record, const imk_procedure_setti
     size_t count = 0;
     const size_t size = imk_procedure_workspace_size(IMK_PROCEDURE_FERRARIS, record, settings);
     void *workspace = malloc(size);
-    CHECK_OK(imk_ferraris_stretches(record, settings, model, 9.81, workspace, size, CAPACITY,
-                                    stretch, &count, &error));
+    CHECK_OK(imk_ferraris_stretches(record, settings, model, 9.81, CAPACITY, stretch, &count,
+                                    workspace, size, &error));
     free(workspace);
     return count;
 }
@@ -192,7 +192,7 @@ static imk_status observe(bench *b, const imk_test_record *record,
     void *workspace = malloc(size);
     const imk_status status =
         imk_procedure_observe(IMK_PROCEDURE_FERRARIS, &b->calibration, record, settings, false,
-                              workspace, size, &b->findings, error);
+                              &b->findings, workspace, size, error);
     free(workspace);
     return status;
 }
@@ -202,7 +202,7 @@ static void solve(bench *b)
     imk_error error;
     const size_t size = imk_calibration_workspace_size(&b->calibration);
     void *workspace = malloc(size);
-    CHECK_OK(imk_calibration_solve(&b->calibration, workspace, size, &b->result, &error));
+    CHECK_OK(imk_calibration_solve(&b->calibration, &b->result, workspace, size, &error));
     free(workspace);
 }
 

@@ -27,7 +27,7 @@ static imk_status observe_record(multiposition_bench *b, const imk_procedure_set
     c->turn = b->turn;
     c->observation_capacity = c->turn_capacity = 4 * BENCH_POSES;
     return imk_procedure_observe(IMK_PROCEDURE_MULTIPOSITION, c, &b->record, settings, false,
-                                 b->workspace, b->workspace_size, &b->findings, &b->error);
+                                 &b->findings, b->workspace, b->workspace_size, &b->error);
 }
 
 /* ---- first values ------------------------------------------------------------------------------
@@ -262,8 +262,8 @@ static void test_what_is_missing(void **state)
     b->record.axis_count[IMK_ACCEL] = 3;
     b->calibration.observation_capacity = 20;
     CHECK_STATUS(imk_procedure_observe(IMK_PROCEDURE_MULTIPOSITION, &b->calibration, &b->record,
-                                       &settings, false, b->workspace, b->workspace_size,
-                                       &b->findings, &b->error),
+                                       &settings, false, &b->findings, b->workspace,
+                                       b->workspace_size, &b->error),
                  IMK_ERROR_WORKSPACE);
     CHECK_CLOSE(b->error.value, BENCH_POSES, 0.0);
     CHECK_CLOSE(b->error.limit, 20.0, 0.0);

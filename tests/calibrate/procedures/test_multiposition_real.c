@@ -32,7 +32,7 @@ static session *load(const char *path, bool counts)
     assert_non_null(s);
     imk_error error;
     const imk_log_settings settings = imk_log_settings_default();
-    CHECK_STATUS(imk_log_load(path, &settings, NULL, NULL, &s->log, &error), IMK_OK);
+    CHECK_STATUS(imk_log_load(path, &settings, NULL, &s->log, &error), IMK_OK);
     s->record = (imk_test_record){.name = path,
                                   .count = s->log.rows,
                                   .dt = s->log.findings.interval,
@@ -63,11 +63,11 @@ static session *solve(const char *path, bool counts, double gravity, bool g_sens
     size_t size = imk_procedure_workspace_size(IMK_PROCEDURE_MULTIPOSITION, &s->record, &settings);
     void *workspace = malloc(size);
     CHECK_OK(imk_procedure_observe(IMK_PROCEDURE_MULTIPOSITION, c, &s->record, &settings, false,
-                                   workspace, size, &s->findings, &error));
+                                   &s->findings, workspace, size, &error));
     free(workspace);
     size = imk_calibration_workspace_size(c);
     workspace = malloc(size);
-    const imk_status status = imk_calibration_solve(c, workspace, size, &s->result, &error);
+    const imk_status status = imk_calibration_solve(c, &s->result, workspace, size, &error);
     if (status != IMK_OK)
         fail_msg("%s: %s", imk_status_name(status), error.field);
     free(workspace);

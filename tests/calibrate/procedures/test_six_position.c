@@ -82,7 +82,7 @@ static imk_status look(bench *b, bool known, imk_procedure_findings *findings, i
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_SIXPOSITION, &b->record, &settings);
     return imk_procedure_observe(IMK_PROCEDURE_SIXPOSITION, c, &b->record, &settings, false,
-                                 bench_workspace(b, size), size, findings, error);
+                                 findings, bench_workspace(b, size), size, error);
 }
 
 static void check_faces(const bench *b, size_t holds)
@@ -160,7 +160,7 @@ static void test_offset_counts(void **state)
     }
     const size_t size = imk_calibration_workspace_size(&b->calibration);
     CHECK_OK(
-        imk_calibration_solve(&b->calibration, bench_workspace(b, size), size, &b->result, &error));
+        imk_calibration_solve(&b->calibration, &b->result, bench_workspace(b, size), size, &error));
     const imk_triad *a = &b->result.model.accel;
     for (int i = 0; i < 3; i++) {
         CHECK_CLOSE(a->sensitivity.value[i] * (1.0 + a->scale_factor.fixed.value[i]),
@@ -213,7 +213,7 @@ static void test_refusals(void **state)
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_SIXPOSITION, &b->record, &settings);
     CHECK_STATUS(imk_procedure_observe(IMK_PROCEDURE_SIXPOSITION, c, &b->record, &settings, false,
-                                       bench_workspace(b, size), size, &findings, &error),
+                                       &findings, bench_workspace(b, size), size, &error),
                  IMK_ERROR_WORKSPACE);
     CHECK_CLOSE(error.value, 12.0, 0.0);
     CHECK_CLOSE(error.limit, 11.0, 0.0);
@@ -247,7 +247,7 @@ static void test_left_out(void **state)
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_SIXPOSITION, &b->record, &settings);
     CHECK_STATUS(imk_procedure_observe(IMK_PROCEDURE_SIXPOSITION, c, &b->record, &settings, false,
-                                       bench_workspace(b, size), size, &findings, &error),
+                                       &findings, bench_workspace(b, size), size, &error),
                  IMK_ERROR_TOO_SHORT);
     CHECK_CLOSE(error.value, 0.0, 0.0);
     bench_free(b);

@@ -60,8 +60,8 @@ static size_t stretches_of(bench *b, imk_reference_stretch *stretch, size_t capa
     size_t count = 0;
     const size_t size = imk_reference_stretches_workspace_size(&b->record);
     void *memory = malloc(size);
-    CHECK_OK(imk_reference_stretches(&b->record, &b->settings, memory, size, stretch, capacity,
-                                     &count, NULL));
+    CHECK_OK(imk_reference_stretches(&b->record, &b->settings, stretch, capacity, &count, memory,
+                                     size, NULL));
     free(memory);
     return count;
 }
@@ -149,8 +149,8 @@ static void test_without_reference(void **state)
     bench_log(shared, 6, 0.0);
     for (int j = 0; j < 3; j++)
         shared->record.reference_rate[j] = shared->record.reference_force[j] = NULL;
-    CHECK_STATUS(imk_reference_stretches(&shared->record, &shared->settings, memory, sizeof memory,
-                                         stretch, 4, &count, &error),
+    CHECK_STATUS(imk_reference_stretches(&shared->record, &shared->settings, stretch, 4, &count,
+                                         memory, sizeof memory, &error),
                  IMK_ERROR_KEY_MISSING);
     CHECK_STATUS(bench_solve(shared, &error), IMK_ERROR_KEY_MISSING);
     assert_string_equal(error.field, "reference_rate");
@@ -181,7 +181,7 @@ static imk_reference_shift offset_of(bench *b, double max_shift)
     imk_reference_shift shift;
     const size_t size = imk_reference_offset_workspace_size(&b->record, max_shift);
     void *memory = malloc(size);
-    CHECK_OK(imk_reference_offset(&b->record, max_shift, memory, size, &shift, NULL));
+    CHECK_OK(imk_reference_offset(&b->record, max_shift, &shift, memory, size, NULL));
     free(memory);
     return shift;
 }
@@ -235,22 +235,22 @@ static void test_offset_refused(void **state)
     bench_log(shared, 21, 0.0);
     const size_t size = imk_reference_offset_workspace_size(&shared->record, 5.0);
     void *memory = malloc(size);
-    CHECK_STATUS(imk_reference_offset(&shared->record, 60.0, memory, size, &shift, &error),
+    CHECK_STATUS(imk_reference_offset(&shared->record, 60.0, &shift, memory, size, &error),
                  IMK_ERROR_TOO_SHORT);
-    CHECK_STATUS(imk_reference_offset(&shared->record, 5.0, memory, 8, &shift, &error),
+    CHECK_STATUS(imk_reference_offset(&shared->record, 5.0, &shift, memory, 8, &error),
                  IMK_ERROR_WORKSPACE);
     for (int j = 0; j < 3; j++)
         shared->record.reference_rate[j] = NULL;
-    CHECK_OK(imk_reference_offset(&shared->record, 5.0, memory, size, &shift, &error));
+    CHECK_OK(imk_reference_offset(&shared->record, 5.0, &shift, memory, size, &error));
     assert_int_equal(shift.sensor, IMK_ACCEL);
     for (size_t k = 0; k < shared->count; k++)
         for (int j = 0; j < 3; j++)
             shared->force[j][k] = 1.0;
-    CHECK_STATUS(imk_reference_offset(&shared->record, 5.0, memory, size, &shift, &error),
+    CHECK_STATUS(imk_reference_offset(&shared->record, 5.0, &shift, memory, size, &error),
                  IMK_ERROR_CONSTANT);
     for (int j = 0; j < 3; j++)
         shared->record.reference_force[j] = NULL;
-    CHECK_STATUS(imk_reference_offset(&shared->record, 5.0, memory, size, &shift, &error),
+    CHECK_STATUS(imk_reference_offset(&shared->record, 5.0, &shift, memory, size, &error),
                  IMK_ERROR_KEY_MISSING);
     free(memory);
 }
@@ -372,12 +372,12 @@ static void test_undetermined(void **state)
     CHECK_OK(imk_calibration_free(&shared->calibration, IMK_GYRO, IMK_MODEL_BIAS, 0, 0));
     CHECK_OK(imk_calibration_free(&shared->calibration, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, 0, 0));
     CHECK_OK(imk_procedure_observe(shared->procedure, &shared->calibration, &shared->record,
-                                   &shared->settings, true, shared->workspace,
-                                   shared->workspace_size, &shared->findings, &error));
+                                   &shared->settings, true, &shared->findings, shared->workspace,
+                                   shared->workspace_size, &error));
     assert_int_equal(shared->calibration.parameter_count, 2);
     const size_t size = imk_calibration_workspace_size(&shared->calibration);
     void *memory = malloc(size);
-    CHECK_STATUS(imk_calibration_solve(&shared->calibration, memory, size, &shared->result, &error),
+    CHECK_STATUS(imk_calibration_solve(&shared->calibration, &shared->result, memory, size, &error),
                  IMK_ERROR_SINGULAR);
     assert_string_equal(error.field, "gyro.scale_factor.fixed.x");
     free(memory);
@@ -481,15 +481,15 @@ static void test_saturated(void **state)
     for (int i = 0; i < 3; i++)
         shared->calibration.model.gyro.range.value[i] = 2.9;
     CHECK_OK(imk_procedure_observe(shared->procedure, &shared->calibration, &shared->record,
-                                   &shared->settings, false, shared->workspace,
-                                   shared->workspace_size, &shared->findings, &error));
+                                   &shared->settings, false, &shared->findings, shared->workspace,
+                                   shared->workspace_size, &error));
     /* 3 rad/s of both signs in six runs, and the one without a number */
     assert_int_equal(shared->findings.left_out, 2 * 6 + 1);
     assert_int_equal(shared->findings.observations, shared->holds - 13);
     shared->calibration.observation_capacity = shared->calibration.observation_count + 10;
     CHECK_STATUS(imk_procedure_observe(shared->procedure, &shared->calibration, &shared->record,
-                                       &shared->settings, false, shared->workspace,
-                                       shared->workspace_size, &shared->findings, &error),
+                                       &shared->settings, false, &shared->findings,
+                                       shared->workspace, shared->workspace_size, &error),
                  IMK_ERROR_WORKSPACE);
     assert_int_equal(shared->calibration.record_count, 1);
 }
@@ -607,7 +607,7 @@ static void record_script(bench *b, const imk_motion_script *script)
     const size_t size = (imk_simulator_size(&b->truth, &simulation) + 63) / 64 * 64;
     void *memory = aligned_alloc(64, size);
     imk_simulator *simulator;
-    CHECK_OK(imk_simulator_start(memory, size, &b->truth, &simulation, &simulator, NULL));
+    CHECK_OK(imk_simulator_start(&b->truth, &simulation, &simulator, memory, size, NULL));
     imk_simulator_next(simulator, b->count, columns, NULL);
     free(memory);
     free(boundary);

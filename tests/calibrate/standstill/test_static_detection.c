@@ -317,31 +317,31 @@ static void settings_are_checked(void **state)
     imk_error error;
     const size_t size = imk_static_workspace_size(&log->record, &settings);
     assert_true(size < sizeof workspace);
-    CHECK_OK(imk_static_detect(&log->record, &settings, NULL, workspace, size, NULL, 0, &count,
-                               NULL, &findings, &error));
-    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, workspace, size - 1, NULL, 0,
-                                   &count, NULL, &findings, &error),
+    CHECK_OK(imk_static_detect(&log->record, &settings, NULL, NULL, 0, &count, NULL, &findings,
+                               workspace, size, &error));
+    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, NULL, 0, &count, NULL, &findings,
+                                   workspace, size - 1, &error),
                  IMK_ERROR_WORKSPACE);
     settings.false_alarm = 0.0;
-    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, workspace, size, NULL, 0, &count,
-                                   NULL, &findings, &error),
+    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, NULL, 0, &count, NULL, &findings,
+                                   workspace, size, &error),
                  IMK_ERROR_RANGE);
     assert_string_equal(error.field, "false_alarm");
     settings = imk_static_default();
     settings.cookie = 0;
-    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, workspace, size, NULL, 0, &count,
-                                   NULL, &findings, &error),
+    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, NULL, 0, &count, NULL, &findings,
+                                   workspace, size, &error),
                  IMK_ERROR_UNINITIALISED);
     settings = imk_static_default();
     log->record.count = 63;
-    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, workspace, size, NULL, 0, &count,
-                                   NULL, &findings, &error),
+    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, NULL, 0, &count, NULL, &findings,
+                                   workspace, size, &error),
                  IMK_ERROR_TOO_SHORT);
     log->record.count = 1000;
     for (size_t k = 0; k < 1000; k++)
         log->value[0][k] = NAN;
-    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, workspace, size, NULL, 0, &count,
-                                   NULL, &findings, &error),
+    CHECK_STATUS(imk_static_detect(&log->record, &settings, NULL, NULL, 0, &count, NULL, &findings,
+                                   workspace, size, &error),
                  IMK_ERROR_NOT_FINITE);
     pose_log_free(log);
 }

@@ -43,8 +43,8 @@ static imk_status analyse(made *m, const imk_thermal_settings *settings)
     void *workspace = malloc(imk_thermal_workspace_size());
     assert_non_null(workspace);
     const imk_status status =
-        imk_thermal_analyse(&m->record, settings, &m->model, workspace,
-                            imk_thermal_workspace_size(), &m->findings, &m->error);
+        imk_thermal_analyse(&m->record, settings, &m->model, &m->findings, workspace,
+                            imk_thermal_workspace_size(), &m->error);
     free(workspace);
     return status;
 }
@@ -227,8 +227,8 @@ static void intervals_hold_the_truth(void **state)
     thermal_bench *b = open_bench();
     for (uint64_t k = 0; k < BENCHES; k++) {
         assert_true(thermal_run(b, 100 + k, false));
-        CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, b->workspace,
-                                     imk_thermal_workspace_size(), &b->findings, &b->error));
+        CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings, b->workspace,
+                                     imk_thermal_workspace_size(), &b->error));
         thermal_add(&count, b);
     }
     for (int what = 0; what < 2; what++) {
@@ -266,8 +266,8 @@ static void knocks_are_left_out(void **state)
     thermal_bench *b = open_bench();
     for (uint64_t k = 0; k < BENCHES; k++) {
         assert_true(thermal_run(b, 500 + k, true));
-        CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, b->workspace,
-                                     imk_thermal_workspace_size(), &b->findings, &b->error));
+        CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings, b->workspace,
+                                     imk_thermal_workspace_size(), &b->error));
         thermal_add(&count, b);
         CHECK_BELOW(0.02, b->findings.axis[0][0].refused);
     }
@@ -294,15 +294,15 @@ static void an_absurd_sample_is_left_out(void **state)
     thermal_bench *b = open_bench();
     assert_true(thermal_run(b, 7, false));
     const size_t rows[] = {0, b->record.count / 2, b->record.count - 1};
-    CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, b->workspace,
-                                 imk_thermal_workspace_size(), &b->findings, &b->error));
+    CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings, b->workspace,
+                                 imk_thermal_workspace_size(), &b->error));
     const imk_thermal_axis clean = b->findings.axis[0][0];
     for (size_t i = 0; i < sizeof absurd / sizeof absurd[0]; i++)
         for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
             const double kept = b->value[0][rows[k]];
             b->value[0][rows[k]] = absurd[i];
-            CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, b->workspace,
-                                         imk_thermal_workspace_size(), &b->findings, &b->error));
+            CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings,
+                                         b->workspace, imk_thermal_workspace_size(), &b->error));
             b->value[0][rows[k]] = kept;
             const imk_thermal_axis *x = &b->findings.axis[0][0];
             assert_int_equal(x->order, clean.order);
@@ -326,8 +326,8 @@ static void the_gap_is_reported(void **state)
     const imk_thermal_settings settings = imk_thermal_default();
     thermal_bench *b = open_bench();
     assert_true(thermal_run(b, 3, false));
-    CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, b->workspace,
-                                 imk_thermal_workspace_size(), &b->findings, &b->error));
+    CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings, b->workspace,
+                                 imk_thermal_workspace_size(), &b->error));
     const imk_thermal_axis *x = &b->findings.axis[IMK_ACCEL][0];
     const double width = b->truth.accel.bias.hysteresis.value[0];
     int crossed = 0;
@@ -371,16 +371,16 @@ static void the_procedure_agrees_with_the_analysis(void **state)
     size_t size = imk_procedure_workspace_size(IMK_PROCEDURE_THERMAL, &b->record, &settings);
     void *workspace = malloc(size);
     imk_procedure_findings found;
-    CHECK_OK(imk_procedure_observe(IMK_PROCEDURE_THERMAL, c, &b->record, &settings, false,
-                                   workspace, size, &found, &b->error));
+    CHECK_OK(imk_procedure_observe(IMK_PROCEDURE_THERMAL, c, &b->record, &settings, false, &found,
+                                   workspace, size, &b->error));
     free(workspace);
     assert_int_equal(found.observations, 96);
     size = imk_calibration_workspace_size(c);
     workspace = malloc(size);
-    CHECK_OK(imk_calibration_solve(c, workspace, size, result, &b->error));
+    CHECK_OK(imk_calibration_solve(c, result, workspace, size, &b->error));
     free(workspace);
-    CHECK_OK(imk_thermal_analyse(&b->record, &analysis, &b->nominal, b->workspace,
-                                 imk_thermal_workspace_size(), &b->findings, &b->error));
+    CHECK_OK(imk_thermal_analyse(&b->record, &analysis, &b->nominal, &b->findings, b->workspace,
+                                 imk_thermal_workspace_size(), &b->error));
     int compared = 0;
     for (size_t p = 0; p < result->parameter_count; p++) {
         const imk_model_parameter place = result->parameter[p];
@@ -484,14 +484,14 @@ static void poses_tell_bias_from_scale(void **state)
     void *workspace = malloc(size);
     imk_procedure_findings found;
     const imk_status seen = imk_procedure_observe(IMK_PROCEDURE_THERMAL, c, &record, &settings,
-                                                  false, workspace, size, &found, &error);
+                                                  false, &found, workspace, size, &error);
     if (seen != IMK_OK)
         fail_msg("%s: %s %g", imk_status_name(seen), error.field, error.value);
     free(workspace);
     assert_true(found.observations >= 3 * 14 - 2);
     size = imk_calibration_workspace_size(c);
     workspace = malloc(size);
-    const imk_status status = imk_calibration_solve(c, workspace, size, result, &error);
+    const imk_status status = imk_calibration_solve(c, result, workspace, size, &error);
     if (status != IMK_OK)
         fail_msg("%s: %s", imk_status_name(status), error.field);
     free(workspace);
@@ -526,7 +526,7 @@ static void a_real_sweep(void **state)
     imk_log log;
     imk_error error;
     const imk_log_settings settings = imk_log_settings_default();
-    CHECK_OK(imk_log_load(path, &settings, NULL, NULL, &log, &error));
+    CHECK_OK(imk_log_load(path, &settings, NULL, &log, &error));
     imk_test_record record = {.count = log.rows,
                               .dt = log.findings.interval,
                               .time = log.data[imk_log_find(&log, IMK_QUANTITY_TIME, -1)],
@@ -543,8 +543,8 @@ static void a_real_sweep(void **state)
     imk_thermal_settings thermal = imk_thermal_default();
     void *workspace = malloc(imk_thermal_workspace_size());
     thermal.order = 3;
-    CHECK_OK(imk_thermal_analyse(&record, &thermal, &model, workspace, imk_thermal_workspace_size(),
-                                 &found, &error));
+    CHECK_OK(imk_thermal_analyse(&record, &thermal, &model, &found, workspace,
+                                 imk_thermal_workspace_size(), &error));
     const imk_thermal_axis *z = &found.axis[IMK_ACCEL][2];
     CHECK_CLOSE(z->rms_polynomial, 0.0443, 0.00005); /* as many digits as are stated */
     CHECK_CLOSE(1.0 - z->rms_polynomial * z->rms_polynomial / (z->scatter * z->scatter), 0.945,
@@ -562,8 +562,8 @@ static void a_real_sweep(void **state)
             CHECK_CLOSE(z->gap[g].value, expected, celsius > 49.0 ? 0.009 : 0.003);
     }
     thermal.order = -1;
-    CHECK_OK(imk_thermal_analyse(&record, &thermal, &model, workspace, imk_thermal_workspace_size(),
-                                 &found, &error));
+    CHECK_OK(imk_thermal_analyse(&record, &thermal, &model, &found, workspace,
+                                 imk_thermal_workspace_size(), &error));
     CHECK_BELOW(z->rms_polynomial, 0.0444);
     CHECK_BELOW(z->rms, 0.5 * z->rms_polynomial); /* the loop is what the cubic could not follow */
     assert_true(z->cause == IMK_THERMAL_HYSTERESIS || z->cause == IMK_THERMAL_BOTH);

@@ -27,7 +27,7 @@ static double deviation(imk_allan_statistic statistic, size_t n, const double *s
     const size_t size = imk_allan_workspace_size(statistic, n, 1, &m, 1);
     void *workspace = malloc(size + 1);
     CHECK_STATUS(
-        imk_allan_compute(statistic, n, sums, 1, &m, &variance, NULL, workspace, size, NULL),
+        imk_allan_compute(statistic, n, sums, 1, &m, &variance, NULL, NULL, workspace, size),
         IMK_OK);
     free(workspace);
     return sqrt(variance);
@@ -283,8 +283,8 @@ static void test_degrees_and_bias_by_draws(void **state)
             for (imk_allan_statistic k = 0; k < IMK_ALLAN_STATISTICS; k++) {
                 double v[FACTORS];
                 CHECK_STATUS(imk_allan_compute(k, N, s, FACTORS,
-                                               k == IMK_ALLAN_THEO1 ? theo : factors, v, NULL,
-                                               workspace, sizeof workspace, NULL),
+                                               k == IMK_ALLAN_THEO1 ? theo : factors, v, NULL, NULL,
+                                               workspace, sizeof workspace),
                              IMK_OK);
                 for (size_t i = 0; i < FACTORS; i++) {
                     mean[k][i] += v[i] / RECORDS;
@@ -384,21 +384,21 @@ static void test_executors_and_refusals(void **state)
         const size_t count = imk_allan_factors_for(k, IMK_ALLAN_DECADE, N, f);
         const size_t size = imk_allan_workspace_size(k, N, count, f, 3);
         char *workspace = malloc(size + 8);
-        CHECK_STATUS(imk_allan_compute(k, N, s, count, f, first, NULL, workspace + 1, size, NULL),
+        CHECK_STATUS(imk_allan_compute(k, N, s, count, f, first, NULL, NULL, workspace + 1, size),
                      IMK_OK);
         CHECK_STATUS(
-            imk_allan_compute(k, N, s, count, f, second, NULL, workspace + 3, size, &backwards),
+            imk_allan_compute(k, N, s, count, f, second, NULL, &backwards, workspace + 3, size),
             IMK_OK);
         assert_memory_equal(first, second, count * sizeof *first);
         if (size > 0)
             CHECK_STATUS(
-                imk_allan_compute(k, N, s, count, f, first, NULL, workspace, size - 1, &backwards),
+                imk_allan_compute(k, N, s, count, f, first, NULL, &backwards, workspace, size - 1),
                 IMK_ERROR_WORKSPACE);
         size_t lowest, highest, step;
         imk_allan_range(k, N, &lowest, &highest, &step);
         const size_t bad[] = {highest + step, lowest - 1};
         for (size_t i = 0; i < 2; i++)
-            CHECK_STATUS(imk_allan_compute(k, N, s, 1, &bad[i], first, NULL, workspace, size, NULL),
+            CHECK_STATUS(imk_allan_compute(k, N, s, 1, &bad[i], first, NULL, NULL, workspace, size),
                          IMK_ERROR_RANGE);
         free(workspace);
         assert_non_null(imk_allan_title(k));

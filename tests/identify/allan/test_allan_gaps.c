@@ -24,8 +24,8 @@ static void evaluate(size_t n, bool robust, size_t count, const size_t *m,
     imk_allan_gaps_settings settings = imk_allan_gaps_default();
     settings.robust = robust;
     assert_true(imk_allan_gaps_workspace_size(n) <= sizeof workspace);
-    assert_int_equal(imk_allan_gaps_points(&settings, n, rate, count, m, points, workspace,
-                                           sizeof workspace, NULL),
+    assert_int_equal(imk_allan_gaps_points(&settings, n, rate, count, m, points, NULL, workspace,
+                                           sizeof workspace),
                      IMK_OK);
 }
 
@@ -250,30 +250,30 @@ static void test_refusals(void **state)
     for (size_t i = 0; i < 100; i++)
         rate[i] = i == 50 ? 1 : (double)NAN;
     const size_t size = imk_allan_gaps_workspace_size(100);
-    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
+    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, NULL, workspace, size),
                      IMK_ERROR_TOO_SHORT);
     rate[51] = 2;
-    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
+    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, NULL, workspace, size),
                      IMK_OK);
     assert_true(p.point.count == 0 || p.point.deviation > 0);
     /* Values whose squares overflow have no variance, and their noise no type. */
     for (size_t i = 0; i < 100; i++)
         rate[i] = i == 50 ? 1e160 : i == 52 ? (double)NAN : sin((double)i);
     m = 1;
-    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
+    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, NULL, workspace, size),
                      IMK_ERROR_NOT_FINITE);
     m = 51;
-    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
+    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, NULL, workspace, size),
                      IMK_ERROR_RANGE);
     m = 3;
     assert_int_equal(
-        imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size - 1, NULL),
+        imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, NULL, workspace, size - 1),
         IMK_ERROR_WORKSPACE);
     settings.confidence = NAN;
-    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
+    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, NULL, workspace, size),
                      IMK_ERROR_RANGE);
     settings.cookie = 0;
-    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, workspace, size, NULL),
+    assert_int_equal(imk_allan_gaps_points(&settings, 100, rate, 1, &m, &p, NULL, workspace, size),
                      IMK_ERROR_UNINITIALISED);
 }
 

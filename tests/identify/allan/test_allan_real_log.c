@@ -28,7 +28,7 @@ static void test_published_wavelet_variances(void **state)
     imk_log_settings settings = imk_log_settings_default();
     settings.rate = 100;
     imk_error error;
-    const imk_status status = imk_log_load(LOG, &settings, NULL, NULL, &log, &error);
+    const imk_status status = imk_log_load(LOG, &settings, NULL, &log, &error);
     CHECK_STATUS(status, IMK_OK);
     char line[256];
     size_t compared = 0;

@@ -20,7 +20,7 @@ static void load(imk_log *log)
     imk_log_settings settings = imk_log_settings_default();
     settings.rate = 100;
     imk_error error;
-    const imk_status status = imk_log_load(LOG, &settings, NULL, NULL, log, &error);
+    const imk_status status = imk_log_load(LOG, &settings, NULL, log, &error);
     CHECK_STATUS(status, IMK_OK);
     assert_int_equal(log->rows, 1000000);
 }

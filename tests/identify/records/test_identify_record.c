@@ -361,9 +361,9 @@ static void test_memory(void **state)
     CHECK_BELOW((double)size, 12e6);
     CHECK_BELOW((double)imk_identify_record_size(86400000), 12e6);
     void *memory = malloc(size);
-    CHECK_STATUS(imk_identify_record_begin(0, memory, size - 1, &record, &error),
+    CHECK_STATUS(imk_identify_record_begin(0, &record, memory, size - 1, &error),
                  IMK_ERROR_WORKSPACE);
-    CHECK_OK(imk_identify_record_begin(0, (char *)memory, size, &record, &error));
+    CHECK_OK(imk_identify_record_begin(0, &record, (char *)memory, size, &error));
     imk_identification result;
     imk_identify_settings settings = imk_identify_default();
     CHECK_STATUS(imk_identify_record_finish(record, &settings, &result, NULL, 0, &error),

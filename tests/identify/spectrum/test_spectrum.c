@@ -173,7 +173,7 @@ static void test_slepian(void **state)
         {0.01019224695291466, 0.02050133175008394, -0.003838277268291607, 0.9521247255139191}};
     enum { LONG = 5000 };
     double *v = malloc(7 * LONG * sizeof *v), lambda[7];
-    const size_t size = (8 * LONG + 64) * sizeof *v;
+    const size_t size = imk_slepian_workspace_size(LONG);
     void *workspace = malloc(size);
     CHECK_OK(imk_slepian_tapers(64, 4, 7, v, lambda, workspace, size));
     static const size_t places[3] = {0, 10, 31}, long_places[3] = {0, 777, 2400};

@@ -43,21 +43,21 @@ static void test_memory_of_the_settings(void **state)
     imk_error error;
     char sentence[300];
     settings.memory = (ROWS - 1) * COLUMNS * sizeof(double);
-    CHECK_STATUS(imk_log_load(path, &settings, NULL, NULL, &log, &error), IMK_ERROR_MEMORY);
+    CHECK_STATUS(imk_log_load(path, &settings, NULL, &log, &error), IMK_ERROR_MEMORY);
     assert_int_equal(log.rows, 77);
     imk_error_text(&error, "x.csv.gz", sentence, sizeof sentence);
     assert_string_equal(sentence,
                         "x.csv.gz: memory is full: 99999 rows of 2 columns take 1.6 MB; cut the "
                         "log into parts, or leave out columns (--columns with -)");
-    CHECK_STATUS(imk_log_load(path, &settings, NULL, NULL, &log, NULL), IMK_ERROR_MEMORY);
+    CHECK_STATUS(imk_log_load(path, &settings, NULL, &log, NULL), IMK_ERROR_MEMORY);
     settings.memory = 1;
-    CHECK_STATUS(imk_log_load(path, &settings, NULL, NULL, &log, NULL), IMK_ERROR_MEMORY);
+    CHECK_STATUS(imk_log_load(path, &settings, NULL, &log, NULL), IMK_ERROR_MEMORY);
     settings.memory = (ROWS + 1) * COLUMNS * sizeof(double);
-    CHECK_OK(imk_log_load(path, &settings, NULL, NULL, &log, &error));
+    CHECK_OK(imk_log_load(path, &settings, NULL, &log, &error));
     assert_int_equal(log.rows, ROWS);
     imk_log_free(&log);
     settings.memory = 0; /* half of what there is */
-    CHECK_OK(imk_log_load(path, &settings, NULL, NULL, &log, &error));
+    CHECK_OK(imk_log_load(path, &settings, NULL, &log, &error));
     assert_int_equal(log.rows, ROWS);
     imk_log_free(&log);
 }

@@ -316,7 +316,7 @@ static void damaged_gzip_is_an_error_after_its_good_rows(void **state)
     write_file(path, packed, packed_size / 2);
     imk_log log;
     imk_error error;
-    CHECK_STATUS(imk_log_load(path, NULL, NULL, NULL, &log, &error), IMK_ERROR_COMPRESSED);
+    CHECK_STATUS(imk_log_load(path, NULL, NULL, &log, &error), IMK_ERROR_COMPRESSED);
     imk_log_reader *reader;
     CHECK_OK(imk_log_open(path, NULL, &reader, &error));
     table t;
@@ -441,7 +441,7 @@ static void texts_become_labels(void **state)
     const char *path = temporary_path("labels.csv");
     write_file(path, text, sizeof text - 1);
     imk_log log;
-    CHECK_OK(imk_log_load(path, &settings, NULL, NULL, &log, NULL));
+    CHECK_OK(imk_log_load(path, &settings, NULL, &log, NULL));
     remove(path);
     assert_true(log.column[0].label && !log.column[1].label);
     assert_int_equal(log.rows, 4);
@@ -755,7 +755,7 @@ static void matrices_are_read(void **state)
         write_file(names_path, names, sizeof names - 1);
         imk_log log;
         imk_error error;
-        CHECK_OK(imk_log_load(path, NULL, NULL, NULL, &log, &error));
+        CHECK_OK(imk_log_load(path, NULL, NULL, &log, &error));
         assert_int_equal(log.rows, 3);
         CHECK_CLOSE(log.data[0][2], 3.0, 0.0);
         CHECK_CLOSE(log.data[1][1], 2.0 * degree, 0.0);
@@ -766,24 +766,28 @@ static void matrices_are_read(void **state)
         imk_log_free(&log);
         /* Without names: the option is asked for; and cut in the middle. */
         remove(names_path);
-        CHECK_STATUS(imk_log_load(path, NULL, NULL, NULL, &log, &error), IMK_ERROR_COLUMN);
+        CHECK_STATUS(imk_log_load(path, NULL, NULL, &log, &error), IMK_ERROR_COLUMN);
         assert_non_null(strstr(error.expected, "--columns"));
         imk_log_settings settings = imk_log_settings_default();
         settings.columns = "time [s],-,gyro_y [rad/s]";
         write_file(path, bytes, 128 + 8 * value_size);
-        CHECK_STATUS(imk_log_load(path, &settings, NULL, NULL, &log, &error), IMK_ERROR_FORMAT);
+        CHECK_STATUS(imk_log_load(path, &settings, NULL, &log, &error), IMK_ERROR_FORMAT);
         remove(path);
     }
 }
 
 /* -------------------------------------------------------------------------------------- loading */
 
-static void count_progress(void *context, uint64_t done, uint64_t total)
+static bool count_progress(void *context, const char *stage, const char *unit, uint64_t done,
+                           uint64_t total)
 {
     uint64_t *last = context;
+    assert_string_equal(stage, "reading");
+    assert_string_equal(unit, "B");
     assert_true(done >= last[0] && (total == 0 || done <= total));
     last[0] = done;
     last[1]++;
+    return true;
 }
 
 /* Not what has been fetched ahead, which depends on how much the system gives at a time. */
@@ -829,8 +833,9 @@ static void real_log_loads_whole(void **state)
     imk_log_settings settings = imk_log_settings_default();
     settings.rate = 100.0;
     uint64_t progress[2] = {0, 0};
+    const imk_job job = {.progress = count_progress, .progress_context = progress};
     imk_log log;
-    CHECK_OK(imk_log_load(path, &settings, count_progress, progress, &log, NULL));
+    CHECK_OK(imk_log_load(path, &settings, &job, &log, NULL));
     assert_int_equal(log.rows, 1000000);
     assert_true(progress[1] > 5);
     assert_int_equal(log.findings.not_finite, 0);

@@ -541,7 +541,7 @@ static void reader_and_writer_agree(void **state)
         imk_error error;
         imk_log log;
         write_log(path_of(names[way]), IMK_LOG_SHORTEST, 0, NULL, 0);
-        CHECK_OK(imk_log_load(path_of(names[way]), &settings, NULL, NULL, &log, &error));
+        CHECK_OK(imk_log_load(path_of(names[way]), &settings, NULL, &log, &error));
         assert_int_equal(log.rows, LOG_ROWS);
         assert_int_equal(log.column_count, LOG_COLUMNS);
         assert_string_equal(log.column[1].name, "gyro_x");

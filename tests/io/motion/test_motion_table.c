@@ -390,7 +390,7 @@ static void groves_profile_is_read(void **state)
     }
     imk_motion_file *file = NULL;
     CHECK_OK(imk_motion_read(path, NULL, NULL, 0, &file, NULL));
-    CHECK_OK(imk_log_load(path, NULL, NULL, NULL, &log, NULL));
+    CHECK_OK(imk_log_load(path, NULL, NULL, &log, NULL));
     assert_string_equal(imk_motion_file_note(file), "3 columns are not used");
     CHECK_CLOSE(imk_motion_file_duration(file), log.data[0][log.rows - 1], 0);
     for (size_t row = 0; row < log.rows; row += 97) {

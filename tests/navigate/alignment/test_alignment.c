@@ -43,7 +43,7 @@ static bench begin(const imk_alignment_settings *settings)
     bench b = {.size = imk_alignment_size(settings)};
     b.memory = malloc(b.size);
     assert_non_null(b.memory);
-    CHECK_OK(imk_alignment_start(b.memory, b.size, settings, &b.alignment, NULL));
+    CHECK_OK(imk_alignment_start(settings, &b.alignment, b.memory, b.size, NULL));
     return b;
 }
 
@@ -373,7 +373,7 @@ static void normalised_errors(const imk_model *model, double latitude, uint32_t 
     for (uint32_t run = 0; run < runs; run++) {
         simulation.run = run;
         imk_simulator *simulator;
-        CHECK_OK(imk_simulator_start(memory, size, model, &simulation, &simulator, NULL));
+        CHECK_OK(imk_simulator_start(model, &simulation, &simulator, memory, size, NULL));
         imk_simulator_next(simulator, SAMPLES, columns, NULL);
         for (int method = 0; method < 3; method++) {
             imk_alignment_settings settings =
@@ -697,38 +697,38 @@ static void test_refusals(void **state)
     imk_alignment *alignment = NULL;
     imk_error error;
     imk_alignment_settings s = {0};
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, &error),
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, &error),
                  IMK_ERROR_UNINITIALISED);
     s = settings_for(IMK_ALIGNMENT_FINE, (imk_geodetic){89.5 * degree, 0.0, 0.0}, 60.0);
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, &error),
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, &error),
                  IMK_ERROR_CONFLICT);
     assert_string_equal(error.field, "place.latitude");
     s.place.latitude = -89.5 * degree;
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, NULL),
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, NULL),
                  IMK_ERROR_CONFLICT);
     s.place.latitude = 91.0 * degree;
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, NULL), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, NULL), IMK_ERROR_RANGE);
     s.place.latitude = (double)NAN;
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, NULL),
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, NULL),
                  IMK_ERROR_NOT_FINITE);
     s.place.latitude = 0.5;
     s.duration = 0.0;
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, NULL), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, NULL), IMK_ERROR_RANGE);
     s.duration = 60.0;
     s.method = (imk_alignment_method)3;
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, NULL), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, NULL), IMK_ERROR_RANGE);
     s.method = IMK_ALIGNMENT_FINE;
-    CHECK_STATUS(imk_alignment_start(memory, imk_alignment_size(&s) - 1, &s, &alignment, NULL),
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, imk_alignment_size(&s) - 1, NULL),
                  IMK_ERROR_WORKSPACE);
     imk_model model;
     imk_model_default(&model);
     model.gyro.noise.white.value[1] = -1.0;
     s.model = &model;
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, &error),
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, &error),
                  IMK_ERROR_RANGE);
     imk_model_default(&model);
     model.accel.axis_count = 2;
-    CHECK_STATUS(imk_alignment_start(memory, sizeof memory, &s, &alignment, &error),
+    CHECK_STATUS(imk_alignment_start(&s, &alignment, memory, sizeof memory, &error),
                  IMK_ERROR_UNSUPPORTED);
     assert_string_equal(error.field, "accel");
     assert_null(alignment);
@@ -864,7 +864,7 @@ static void test_parked_log(void **state)
     (void)state;
     const imk_log_settings reading = imk_log_settings_default();
     imk_log log;
-    if (imk_log_load(LOG, &reading, NULL, NULL, &log, NULL) != IMK_OK) {
+    if (imk_log_load(LOG, &reading, NULL, &log, NULL) != IMK_OK) {
         print_message("%s is absent: skipped\n", LOG);
         skip();
     }

@@ -654,7 +654,7 @@ static void expect(imk_status status, const imk_model *model, const imk_drift_se
     char memory[64];
     imk_drift_analysis *analysis = NULL;
     CHECK_STATUS(
-        imk_drift_covariance(model, settings, memory, sizeof memory, NULL, &analysis, &error),
+        imk_drift_covariance(model, settings, NULL, &analysis, memory, sizeof memory, &error),
         status);
 }
 
@@ -698,14 +698,13 @@ static void what_is_not_valid_is_refused(void **state)
     without.gyro.noise.white.value[0] = NAN;
     expect(IMK_ERROR_NOT_FINITE, &without, &good);
 
-    _Alignas(64) char small[64];
+    char small[64];
     imk_drift_analysis *analysis = NULL;
     imk_error error;
-    CHECK_STATUS(imk_drift_covariance(&model, &good, small, sizeof small, NULL, &analysis, &error),
+    CHECK_STATUS(imk_drift_covariance(&model, &good, NULL, &analysis, small, sizeof small, &error),
                  IMK_ERROR_WORKSPACE);
-    CHECK_STATUS(
-        imk_drift_covariance(&model, &good, small + 8, sizeof small, NULL, &analysis, &error),
-        IMK_ERROR_ARGUMENT);
+    CHECK_STATUS(imk_drift_covariance(&model, &good, NULL, &analysis, NULL, sizeof small, &error),
+                 IMK_ERROR_ARGUMENT);
 }
 
 /* A unit that aligns itself stands still: it turns by less than a thousandth of the Earth's

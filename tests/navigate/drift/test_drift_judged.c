@@ -24,7 +24,7 @@ static imk_drift_analysis *analyse(const imk_model *model, const imk_drift_setti
     void *memory = aligned_alloc(64, size);
     imk_drift_analysis *analysis = NULL;
     assert_non_null(memory);
-    CHECK_OK(imk_drift_covariance(model, settings, memory, size, NULL, &analysis, NULL));
+    CHECK_OK(imk_drift_covariance(model, settings, NULL, &analysis, memory, size, NULL));
     return analysis;
 }
 

@@ -68,7 +68,7 @@ static double simulate(drive *d, const imk_model *model)
     void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     imk_simulator *simulator = NULL;
     assert_non_null(memory);
-    CHECK_OK(imk_simulator_start(memory, size, model, &simulation, &simulator, NULL));
+    CHECK_OK(imk_simulator_start(model, &simulation, &simulator, memory, size, NULL));
     imk_simulator_next(simulator, ROWS + 1, d->column, NULL);
     const double last = imk_simulator_true_time(simulator, ROWS);
     free(memory);
@@ -113,7 +113,7 @@ static imk_drift_analysis *analyse(const imk_model *model, const imk_drift_setti
     void *memory = aligned_alloc(64, size);
     imk_drift_analysis *analysis = NULL;
     assert_non_null(memory);
-    CHECK_OK(imk_drift_covariance(model, settings, memory, size, NULL, &analysis, NULL));
+    CHECK_OK(imk_drift_covariance(model, settings, NULL, &analysis, memory, size, NULL));
     return analysis;
 }
 

@@ -39,7 +39,7 @@ static void drive(car *c)
 
 static void *make_memory(const imk_model *model, const imk_drift_settings *settings, size_t *size)
 {
-    *size = imk_drift_runs_size(model, settings);
+    *size = imk_drift_runs_workspace_size(model, settings);
     void *memory = aligned_alloc(64, (*size + 63) / 64 * 64);
     assert_non_null(memory);
     return memory;
@@ -53,8 +53,8 @@ static void compute(const imk_model *model, const imk_drift_settings *settings, 
     void *memory = make_memory(model, settings, &size);
     for (size_t done = 0; done < count; done += LANES) {
         const size_t now = count - done < LANES ? count - done : LANES;
-        CHECK_OK(imk_drift_runs(model, settings, seed, first + (uint32_t)done, now, memory, size,
-                                errors + done * settings->time_count * STATES, NULL));
+        CHECK_OK(imk_drift_runs(model, settings, seed, first + (uint32_t)done, now,
+                                errors + done * settings->time_count * STATES, memory, size, NULL));
     }
     free(memory);
 }
@@ -106,7 +106,7 @@ static double *plain_rows(const imk_model *model, const imk_simulation *simulati
     double *log = malloc(6 * rows * sizeof *log), *column[6];
     *memory = aligned_alloc(64, (size + 63) / 64 * 64);
     assert_non_null(*memory);
-    CHECK_OK(imk_simulator_start(*memory, size, model, simulation, simulator, NULL));
+    CHECK_OK(imk_simulator_start(model, simulation, simulator, *memory, size, NULL));
     for (size_t i = 0; i < 6; i++)
         column[i] = log + i * rows;
     imk_simulator_next(*simulator, rows, column, NULL);
@@ -713,25 +713,23 @@ static void test_refusals(void **state)
     void *memory = make_memory(&model, &settings, &size);
     imk_error error;
     double *out = errors[0];
-    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 0, memory, size, out, &error),
+    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 0, out, memory, size, &error),
                  IMK_ERROR_RANGE);
     assert_string_equal(error.field, "count");
-    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, LANES + 1, memory, size, out, &error),
+    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, LANES + 1, out, memory, size, &error),
                  IMK_ERROR_RANGE);
-    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, UINT32_MAX, 2, memory, size, out, &error),
+    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, UINT32_MAX, 2, out, memory, size, &error),
                  IMK_ERROR_RANGE);
-    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, memory, size - 1, out, &error),
+    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, out, memory, size - 1, &error),
                  IMK_ERROR_WORKSPACE);
-    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, (char *)memory + 8, size, out, &error),
-                 IMK_ERROR_ARGUMENT);
-    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, NULL, size, out, &error),
+    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, out, NULL, size, &error),
                  IMK_ERROR_ARGUMENT);
     settings.time_count = 0;
-    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, memory, size, out, &error),
+    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, out, memory, size, &error),
                  IMK_ERROR_EMPTY);
     settings.time_count = 1;
     settings.cookie = 0;
-    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, memory, size, out, &error),
+    CHECK_STATUS(imk_drift_runs(&model, &settings, 0, 0, 1, out, memory, size, &error),
                  IMK_ERROR_UNINITIALISED);
     CHECK_CLOSE(errors[0][0], 7.0, 0.0); /* untouched */
     free(memory);

@@ -38,7 +38,7 @@ static readings simulate(const imk_trajectory *trajectory)
     readings r;
     imk_simulator *simulator;
     assert_non_null(memory);
-    CHECK_OK(imk_simulator_start(memory, size, &model, &simulation, &simulator, NULL));
+    CHECK_OK(imk_simulator_start(&model, &simulation, &simulator, memory, size, NULL));
     assert_int_equal(imk_simulator_channels(simulator), 6);
     for (int i = 0; i < 6; i++) {
         r.column[i] = malloc((COUNT + 1) * sizeof(double));

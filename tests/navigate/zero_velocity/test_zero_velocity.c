@@ -241,7 +241,7 @@ static imk_zero_velocity *start_filter(memory *m, const imk_zero_velocity_settin
     imk_zero_velocity *filter;
     imk_error error;
     assert_true(imk_zero_velocity_size(s) <= sizeof *m);
-    CHECK_OK(imk_zero_velocity_start(m, sizeof *m, s, start, &filter, &error));
+    CHECK_OK(imk_zero_velocity_start(s, start, &filter, m, sizeof *m, &error));
     return filter;
 }
 
@@ -380,7 +380,7 @@ static void check_self_alignment(const char *name, imk_alignment_method method)
         settings.duration = aligned;
         settings.model = &model;
         assert_true(imk_alignment_size(&settings) <= sizeof am);
-        CHECK_OK(imk_alignment_start(&am, sizeof am, &settings, &alignment, &error));
+        CHECK_OK(imk_alignment_start(&settings, &alignment, &am, sizeof am, &error));
         for (long k = 0; k < lround(aligned * u.rate); k++) {
             sample(&u, &angle, &velocity);
             imk_alignment_add(alignment, 1.0 / u.rate, angle, velocity, NULL);
@@ -661,17 +661,17 @@ static void test_refusals(void **state)
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         imk_zero_velocity_settings s = tactical(1.0);
         *(double *)(void *)((char *)&s + cases[k].offset) = cases[k].value;
-        CHECK_STATUS(imk_zero_velocity_start(&m, sizeof m, &s, &start, &filter, &error),
+        CHECK_STATUS(imk_zero_velocity_start(&s, &start, &filter, &m, sizeof m, &error),
                      cases[k].status);
         assert_string_equal(error.field, cases[k].field);
         assert_null(filter);
     }
     imk_zero_velocity_settings s = tactical(1.0);
     CHECK_STATUS(
-        imk_zero_velocity_start(&m, imk_zero_velocity_size(&s) - 1, &s, &start, &filter, &error),
+        imk_zero_velocity_start(&s, &start, &filter, &m, imk_zero_velocity_size(&s) - 1, &error),
         IMK_ERROR_WORKSPACE);
     s.cookie = 0;
-    CHECK_STATUS(imk_zero_velocity_start(&m, sizeof m, &s, &start, &filter, &error),
+    CHECK_STATUS(imk_zero_velocity_start(&s, &start, &filter, &m, sizeof m, &error),
                  IMK_ERROR_UNINITIALISED);
     assert_null(filter);
 }

@@ -23,7 +23,7 @@ static imk_zero_velocity *start_filter(memory *m, const imk_zero_velocity_settin
     imk_zero_velocity *filter;
     imk_error error;
     assert_true(imk_zero_velocity_size(s) <= sizeof *m);
-    CHECK_OK(imk_zero_velocity_start(m, sizeof *m, s, start, &filter, &error));
+    CHECK_OK(imk_zero_velocity_start(s, start, &filter, m, sizeof *m, &error));
     return filter;
 }
 

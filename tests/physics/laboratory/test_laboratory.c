@@ -137,7 +137,7 @@ static imk_laboratory_result *experiment(const imk_laboratory *laboratory)
     void *workspace = malloc(size);
     imk_error error;
     assert_true(result && workspace);
-    CHECK_OK(imk_laboratory_run(laboratory, workspace, size, NULL, result, &error));
+    CHECK_OK(imk_laboratory_run(laboratory, NULL, result, workspace, size, &error));
     free(workspace);
     return result;
 }
@@ -310,10 +310,10 @@ static void settings_out_of_range_are_named(void **state)
         laboratory.full_scale = cases[i].full_scale;
         const size_t size = imk_laboratory_workspace_size(&laboratory);
         void *workspace = malloc(size);
-        CHECK_STATUS(imk_laboratory_run(&laboratory, workspace, size, NULL, result, &error),
+        CHECK_STATUS(imk_laboratory_run(&laboratory, NULL, result, workspace, size, &error),
                      IMK_ERROR_RANGE);
         assert_string_equal(error.field, cases[i].field);
-        CHECK_STATUS(imk_laboratory_run(&laboratory, workspace, 100, NULL, result, &error),
+        CHECK_STATUS(imk_laboratory_run(&laboratory, NULL, result, workspace, 100, &error),
                      IMK_ERROR_WORKSPACE);
         free(workspace);
     }

@@ -24,11 +24,6 @@ static void add_panel(drawing *d, const imk_panel *panel)
     imk_figure_panel(d->figure, panel);
 }
 
-static void add_curve(drawing *d, const char *label, imk_curve_style style, int color)
-{
-    imk_figure_curve(d->figure, &(imk_curve){.label = label, .style = style, .color = color}, 1);
-}
-
 static void show_residuals(const imk_calibrate_log *b, int sensor, drawing *d)
 {
     static const imk_panel panels[2] = {
@@ -47,7 +42,7 @@ static void show_residuals(const imk_calibrate_log *b, int sensor, drawing *d)
                 add_panel(d, &panels[sensor]);
             begun = true;
             if (count++ == 0)
-                add_curve(d, axes[axis], IMK_CURVE_POINTS, axis);
+                imki_begin_curve(d->figure, axes[axis], IMK_CURVE_POINTS, axis);
             imk_figure_point(d->figure, (double)k + 1, residual / scales[sensor]);
         }
     }
@@ -66,7 +61,7 @@ static void show_activity(const imk_calibrate_record *log, drawing *d)
                               .y_label = "scatter / threshold",
                               .y_logarithmic = true,
                               .key = IMK_KEY_BELOW});
-    add_curve(d, "scatter over threshold", IMK_CURVE_POINTS, 0);
+    imki_begin_curve(d->figure, "scatter over threshold", IMK_CURVE_POINTS, 0);
     for (size_t row = 0; row < rows; row += every) {
         double most = 0;
         for (size_t k = row; k < row + every && k < rows; k++)
@@ -75,7 +70,7 @@ static void show_activity(const imk_calibrate_record *log, drawing *d)
         top = most > top && isfinite(most) ? most : top;
         imk_figure_point(d->figure, end, most > 0 ? most : (double)NAN /* not looked at */);
     }
-    add_curve(d, "threshold", IMK_CURVE_DASHES, 1);
+    imki_begin_curve(d->figure, "threshold", IMK_CURVE_DASHES, 1);
     imk_figure_point(d->figure, imk_test_record_time(record, 0), 1);
     imk_figure_point(d->figure, end, 1);
     for (size_t k = 0; k < log->interval_count && k < REGIONS_MAX; k++)

@@ -99,11 +99,8 @@ static void show_repeatability(const char *key, int axes, const imk_repeatabilit
 
 static void show_runs(const imk_calibrate_log *b, imk_result *result)
 {
-    if (!b->runs) {
-        imk_result_null(result, "repeatability");
+    if (!imki_begin_object(result, "repeatability", b->runs))
         return;
-    }
-    imk_result_object(result, "repeatability");
     for (int sensor = 0; sensor < 2; sensor++) {
         const int axes = b->runs->axis_count[sensor];
         imk_result_object(result, imki_sensor_keys[sensor]);
@@ -127,11 +124,8 @@ static void show_matrix(const char *key, const double *m, imk_result *result)
 /* The matrices of ferraris.h, in the unit of the readings. */
 static void show_closed_form(const imk_calibrate_log *b, imk_result *result)
 {
-    if (!b->ferraris) {
-        imk_result_null(result, "closed_form");
+    if (!imki_begin_object(result, "closed_form", b->ferraris))
         return;
-    }
-    imk_result_object(result, "closed_form");
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_ferraris_triad *t = sensor == 0 ? &b->ferraris->gyro : &b->ferraris->accel;
         const bool counts = b->record[0].record.counts[sensor];
@@ -173,11 +167,8 @@ static void show_thermal_axis(const imk_thermal_findings *f, const imk_thermal_a
 
 static void show_thermal(const imk_thermal_findings *f, imk_result *result)
 {
-    if (!f) {
-        imk_result_null(result, "thermal");
+    if (!imki_begin_object(result, "thermal", f))
         return;
-    }
-    imk_result_object(result, "thermal");
     imk_result_quantity(result, "reference", f->reference, "K");
     imk_result_quantity(result, "minimum", f->minimum, "K");
     imk_result_quantity(result, "maximum", f->maximum, "K");

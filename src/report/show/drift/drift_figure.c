@@ -50,7 +50,7 @@ static void begin_panel(const drawing *d, const char *title, const char *y_label
 static void add_line(const drawing *d, const imk_drift_case *one, imk_drift_wish wish,
                      const char *label, int color)
 {
-    imk_figure_curve(d->figure, &(imk_curve){.label = label, .color = color}, 1);
+    imki_begin_curve(d->figure, label, IMK_CURVE_LINE, color);
     for (size_t t = 0; t < d->count; t++) {
         const imk_drift_figures *f = &one->figures[t];
         imk_figure_point(d->figure, d->time[t],
@@ -62,8 +62,7 @@ static void add_line(const drawing *d, const imk_drift_case *one, imk_drift_wish
 static void add_runs(const drawing *d, imk_drift_wish wish, const char *label, int color)
 {
     const imk_drift_models *r = d->of;
-    imk_figure_curve(d->figure,
-                     &(imk_curve){.label = label, .style = IMK_CURVE_POINTS, .color = color}, 1);
+    imki_begin_curve(d->figure, label, IMK_CURVE_POINTS, color);
     for (size_t k = 0; k < r->times->row_count; k++) {
         const double found = imk_drift_wished(&r->found[k], wish) / d->length,
                      low = imk_drift_wished(&r->low[k], wish) / d->length,
@@ -164,9 +163,7 @@ static void add_bands(const drawing *d, const imk_drift_case *one, const band *b
             rest = fmax(rest, 100 - below[t]);
         if (b == count && !(rest > 0.5))
             break;
-        imk_figure_curve(
-            d->figure,
-            &(imk_curve){.label = of->label, .style = IMK_CURVE_LAYER, .color = of->color}, 1);
+        imki_begin_curve(d->figure, of->label, IMK_CURVE_LAYER, of->color);
         for (size_t t = 0; t < d->count; t++) {
             const double above = b < count ? below[t] + 100 * share_at(one->analysis, of->source, t)
                                            : below[t] + (100 - below[t]);

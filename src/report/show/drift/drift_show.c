@@ -92,10 +92,7 @@ static void show_case(const imk_drift_models *r, const imk_drift_case *one, imk_
     imk_result_end(result);
     imk_result_quantity(result, "budget_time", times->time[one->time], "s");
     show_budget_data(one, result);
-    imk_result_array(result, "omitted");
-    for (size_t i = 0; i < one->analysis->omitted_count; i++)
-        imk_result_text(result, NULL, one->analysis->omitted[i]);
-    imk_result_end(result);
+    imki_show_texts(result, "omitted", one->analysis->omitted_count, one->analysis->omitted);
     imk_result_end(result);
 }
 
@@ -104,10 +101,7 @@ static void show_inputs(const imk_drift_models *r, const imk_drift_shown *shown,
     static const char *const units[] = {"m", "m/s", "rad"};
     const imk_drift_settings *s = &r->settings.drift;
     imk_result_object(result, "inputs");
-    imk_result_array(result, "models");
-    for (size_t m = 0; m < r->model_count; m++)
-        imk_result_text(result, NULL, r->name[m]);
-    imk_result_end(result);
+    imki_show_texts(result, "models", r->model_count, r->name);
     imk_result_text(result, "motion", shown->motion);
     imk_result_quantity(result, "rate", s->rate, "Hz");
     imk_result_text(result, "vertical", s->vertical == IMK_VERTICAL_FREE ? "free" : "slaved");

@@ -152,11 +152,7 @@ static void add_presets(bool gyro, imk_figure_builder *figure)
     imk_model *model = figure ? imki_arena_take(figure->arena, sizeof *model) : NULL;
     if (!model)
         return;
-    imk_figure_curve(figure,
-                     &(imk_curve){.label = "presets, strategic to control",
-                                  .style = IMK_CURVE_POINTS,
-                                  .color = 7},
-                     1);
+    imki_begin_curve(figure, "presets, strategic to control", IMK_CURVE_POINTS, 7);
     for (size_t i = 0; i < 5; i++) {
         imk_device_model(imk_device_get(i), model);
         const imk_grade_result table = imk_grade_model(model);
@@ -178,11 +174,7 @@ static void add_model(const imk_graded *one, const char *name, int color, int ma
     if (isnan(s.x) && isnan(s.y))
         return;
     snprintf(label, sizeof label, "%.60s%s", name, s.remark);
-    imk_figure_curve(figure,
-                     &(imk_curve){.label = label,
-                                  .style = line ? IMK_CURVE_DASHES : IMK_CURVE_MARKS,
-                                  .color = color % 6},
-                     1);
+    imki_begin_curve(figure, label, line ? IMK_CURVE_DASHES : IMK_CURVE_MARKS, color % 6);
     for (size_t i = 0; i < (line ? 2 : 1); i++)
         imk_figure_point(figure, isnan(s.x) ? maps[map].x_range[i] : s.x,
                          isnan(s.y) ? maps[map].y_range[i] : s.y);

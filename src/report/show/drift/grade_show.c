@@ -72,18 +72,12 @@ static void show_computed(const imk_graded *one, imk_result *result)
 {
     static const char *const names[IMK_GRADE_WAYS] = {"given", "self", "given_compensated",
                                                       "self_compensated"};
-    if (one->no_position) {
-        imk_result_null(result, "position");
+    if (!imki_begin_object(result, "position", !one->no_position))
         return;
-    }
-    imk_result_object(result, "position");
     for (int way = 0; way < IMK_GRADE_WAYS; way++)
         show_way(names[way], &one->way[way], result);
     show_shares("shares", one->share_count, one->share, "share", result);
-    if (one->next == IMK_GRADE_NONE) {
-        imk_result_null(result, "next");
-    } else {
-        imk_result_object(result, "next");
+    if (imki_begin_object(result, "next", one->next != IMK_GRADE_NONE)) {
         imk_result_text(result, "class", grade_name(one->next));
         imk_result_number(result, "all", one->next_all);
         show_shares("terms", one->need_count, one->need, "times_better", result);
@@ -414,10 +408,7 @@ static void show_case(const imk_graded *one, const char *name, imk_result *resul
 void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *result)
 {
     imk_result_object(result, "inputs");
-    imk_result_array(result, "models");
-    for (size_t m = 0; m < r->count; m++)
-        imk_result_text(result, NULL, r->name[m]);
-    imk_result_end(result);
+    imki_show_texts(result, "models", r->count, r->name);
     imk_result_end(result);
     imk_result_object(result, "result");
     imk_result_array(result, "models");

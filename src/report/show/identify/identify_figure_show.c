@@ -30,12 +30,6 @@ static double deviation_of(const imk_identify_log *log, size_t channel, size_t m
     return sqrt(imk_identification_allan_variance(&log->result[channel], log->record.dt, m, term));
 }
 
-static void begin_curve(imk_figure_builder *figure, const char *label, imk_curve_style style,
-                        int color)
-{
-    imk_figure_curve(figure, &(imk_curve){.label = label, .style = style, .color = color}, 1);
-}
-
 /* The model, or one term of it, at ten averaging times to a decade. */
 static void show_model(const imk_identify_log *log, size_t channel, int term, double scale,
                        imk_figure_builder *figure)
@@ -73,7 +67,7 @@ static void show_deviations(const imk_identify_shown *shown, size_t channel,
                                           .y_label = label,
                                           .x_logarithmic = true,
                                           .y_logarithmic = true});
-    begin_curve(figure, "expected spread", IMK_CURVE_BAND, BAND_COLOR);
+    imki_begin_curve(figure, "expected spread", IMK_CURVE_BAND, BAND_COLOR);
     for (size_t k = 0; k < curve->count; k++) {
         /* Under the model the measured variance is the model's times chi^2/edf. */
         const double edf = curve->point[k].edf;
@@ -84,10 +78,10 @@ static void show_deviations(const imk_identify_shown *shown, size_t channel,
     }
     for (int term = 0; term < IMK_NOISE_TERMS; term++)
         if (log->result[channel].term[term].present) {
-            begin_curve(figure, names[accel][term], IMK_CURVE_DASHES, colors[term]);
+            imki_begin_curve(figure, names[accel][term], IMK_CURVE_DASHES, colors[term]);
             show_model(log, channel, term, unit.scale, figure);
         }
-    begin_curve(figure, "model", IMK_CURVE_LINE, MODEL_COLOR);
+    imki_begin_curve(figure, "model", IMK_CURVE_LINE, MODEL_COLOR);
     show_model(log, channel, -1, unit.scale, figure);
     if (twin && twin->count == curve->count)
         imk_figure_curve(figure,
@@ -110,13 +104,13 @@ static void show_misfit(const imk_identify_log *log, size_t channel, imk_figure_
                                   .x_label = "averaging time [s]",
                                   .y_label = "measured over model [sigma]",
                                   .x_logarithmic = true});
-    begin_curve(figure, "", IMK_CURVE_BAND, BAND_COLOR);
+    imki_begin_curve(figure, "", IMK_CURVE_BAND, BAND_COLOR);
     for (size_t k = 0; k < curve->count; k++)
         imk_figure_bar(figure, curve->tau[k], 0, -most, most);
-    begin_curve(figure, "", IMK_CURVE_LINE, MODEL_COLOR);
+    imki_begin_curve(figure, "", IMK_CURVE_LINE, MODEL_COLOR);
     for (size_t k = 0; k < curve->count; k++)
         imk_figure_point(figure, curve->tau[k], 0);
-    begin_curve(figure, "", IMK_CURVE_POINTS, DATA_COLOR);
+    imki_begin_curve(figure, "", IMK_CURVE_POINTS, DATA_COLOR);
     for (size_t k = 0; k < curve->count; k++) {
         const double model = deviation_of(log, channel, curve->point[k].m, -1);
         imk_figure_point(figure, curve->tau[k],

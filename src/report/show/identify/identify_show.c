@@ -62,13 +62,10 @@ static void extras_data(const imk_identification *r, imk_unit unit, imk_result *
         imk_result_end(result);
     }
     imk_result_end(result);
-    if (r->filter.bandwidth > 0) {
-        imk_result_object(result, "filter");
+    if (imki_begin_object(result, "filter", r->filter.bandwidth > 0)) {
         imk_result_quantity(result, "bandwidth", r->filter.bandwidth, "Hz");
         imk_result_quantity(result, "damping", r->filter.damping, "1");
         imk_result_end(result);
-    } else {
-        imk_result_null(result, "filter");
     }
     imk_result_end(result);
 }
@@ -84,11 +81,8 @@ static void count_data(imk_result *result, const char *key, const imk_screen_cou
 
 static void warm_up_data(const imk_screen *s, imk_unit unit, imk_result *result)
 {
-    if (!s->warm_up) {
-        imk_result_null(result, "warm_up");
+    if (!imki_begin_object(result, "warm_up", s->warm_up))
         return;
-    }
-    imk_result_object(result, "warm_up");
     imk_result_quantity(result, "amplitude", s->warm_up_amplitude / unit.scale, unit.text);
     imk_result_quantity(result, "amplitude_sigma", s->warm_up_amplitude_sigma / unit.scale,
                         unit.text);
@@ -100,21 +94,21 @@ static void warm_up_data(const imk_screen *s, imk_unit unit, imk_result *result)
 static void temperature_data(const imk_screen *s, imk_unit unit, imk_result *result)
 {
     char per_kelvin[64];
-    if (s->temperature_degree == 0) {
-        imk_result_null(result, "temperature");
+    if (!imki_begin_object(result, "temperature", s->temperature_degree > 0))
         return;
-    }
     snprintf(per_kelvin, sizeof per_kelvin, "%.40s/K", unit.text);
-    imk_result_object(result, "temperature");
     imk_result_count(result, "degree", s->temperature_degree);
     imk_result_quantity(result, "slope", s->temperature_slope / unit.scale, per_kelvin);
     imk_result_quantity(result, "slope_sigma", s->temperature_slope_sigma / unit.scale, per_kelvin);
     imk_result_end(result);
 }
 
-static void screening_data(const imk_screen *s, imk_unit unit, imk_result *result)
+static void screening_data(const imk_identify_log *log, size_t channel, imk_unit unit,
+                           imk_result *result)
 {
-    imk_result_object(result, "screening");
+    const imk_screen *s = &log->screen[channel];
+    if (!imki_begin_object(result, "screening", log->screened))
+        return;
     count_data(result, "missing", &s->missing);
     count_data(result, "outliers", &s->outliers);
     count_data(result, "stuck", &s->stuck);
@@ -145,10 +139,7 @@ void imki_channel_data(const imk_identify_log *log, size_t channel, imk_result *
     imk_result_quantity(result, "valid_to", r->valid_to, "s");
     imk_result_count(result, "missing", (long long)r->missing);
     imk_result_quantity(result, "largest_gap", r->largest_gap, "s");
-    if (log->screened)
-        screening_data(&log->screen[channel], unit, result);
-    else
-        imk_result_null(result, "screening");
+    screening_data(log, channel, unit, result);
 }
 
 void imki_channels_data(const imk_identify_log *log, imk_result *result)

@@ -158,10 +158,8 @@ static void show_figure(const imk_record_plan *p, imk_result *result)
                                                   .x_logarithmic = true,
                                                   .y_logarithmic = true});
         }
-        const imk_curve curve = {.label = parameter->key,
-                                 .color = (int)(k - first),
-                                 .style = parameter->time ? IMK_CURVE_DASHES : IMK_CURVE_LINE};
-        imk_figure_curve(figure, &curve, 1);
+        imki_begin_curve(figure, parameter->key,
+                         parameter->time ? IMK_CURVE_DASHES : IMK_CURVE_LINE, (int)(k - first));
         for (size_t d = 0; d < p->curve_count; d++) {
             const imk_plan_record *record = &p->curve[d];
             const bool known = record->told && record->relative[k] < 2;

@@ -174,15 +174,12 @@ static void run_data(const imk_identify_several *s, size_t channel,
     imk_result_number(result, "chi_square", a->chi_square);
     imk_result_count(result, "degrees", (long long)a->degrees);
     imk_result_number(result, "probability", a->probability);
-    if (a->record >= 0 && a->term >= 0) {
-        imk_result_object(result, "largest_difference");
+    if (imki_begin_object(result, "largest_difference", a->record >= 0 && a->term >= 0)) {
         imk_result_text(result, "log", records[a->record].label);
         imk_result_text(result, "term",
                         imk_channel_term(column_of(s, channel), (imk_noise_term)a->term).key);
         imk_result_number(result, "sigmas", a->sigmas);
         imk_result_end(result);
-    } else {
-        imk_result_null(result, "largest_difference");
     }
     imk_result_end(result);
     imk_result_object(result, "run_to_run");
@@ -207,11 +204,8 @@ static void population_data(const imk_identify_several *s, size_t channel, imk_r
         const imk_term_display display = imk_channel_term(column, (imk_noise_term)term);
         const imk_device_term *t = &s->term[channel][term];
         const char *key = imk_result_key(result, "%s", display.key);
-        if (!t->compared) {
-            imk_result_null(result, key);
+        if (!imki_begin_object(result, key, t->compared))
             continue;
-        }
-        imk_result_object(result, key);
         imk_result_number(result, "mean", t->mean / scale);
         imk_result_number(result, "mean_lower", t->lower / scale);
         imk_result_number(result, "mean_upper", t->upper / scale);
