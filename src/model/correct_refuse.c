@@ -10,8 +10,10 @@ imk_status imki_correct_refuse(imk_error *error, imk_status status, int sensor, 
                                const char *found, const char *expected)
 {
     char field[64] = "";
-    imki_append_text(field, sizeof field, !key ? "" : sensor == IMK_GYRO ? "gyro." : "accel.");
-    imki_append_text(field, sizeof field, key ? key : "");
+    if (key) {
+        imki_append_text(field, sizeof field, sensor == IMK_GYRO ? "gyro." : "accel.");
+        imki_append_text(field, sizeof field, key);
+    }
     return imk_error_set(error, status, field, found, expected);
 }
 
