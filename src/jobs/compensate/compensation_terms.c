@@ -132,11 +132,6 @@ void imk_compensation_model(const imk_model *whole, imk_model *selected)
     }
 }
 
-static bool needs_temperature(imki_form form)
-{
-    return form == IMKI_FORM_WARMTH || form == IMKI_FORM_WARM_INPUT || form == IMKI_FORM_WARMING;
-}
-
 bool imki_temperature_term(const imk_model *model, char *name, size_t size)
 {
     const imk_triad *triads[2] = {&model->gyro, &model->accel};
@@ -144,7 +139,8 @@ bool imki_temperature_term(const imk_model *model, char *name, size_t size)
         const imki_field *field = &imki_triad_fields[i];
         const int term = imki_field_term(field);
         for (int sensor = 0; sensor < 2; sensor++)
-            if (term >= 0 && needs_temperature(imki_terms[term].form) && field->path[sensor] &&
+            if (term >= 0 && imki_terms[term].form >= IMKI_FORM_WARMTH &&
+                imki_terms[term].form <= IMKI_FORM_WARMING && field->path[sensor] &&
                 triads[sensor]->present && is_there(field, triads[sensor])) {
                 snprintf(name, size, "%s.%s", sensors[sensor], field->path[sensor]);
                 return true;

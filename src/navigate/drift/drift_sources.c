@@ -25,27 +25,17 @@ typedef struct known_term {
 /* The kind of column of a form, and which part of it number j is. */
 static imki_column_kind kind_of(const known_term *known, int axis, int j, int *part)
 {
-    *part = known->width > 1 ? j : 0;
-    switch (imki_terms[known->term].form) {
-    case IMKI_FORM_INPUT:
-        *part = axis;
-        return imki_drift_own_input(known->sensor);
-    case IMKI_FORM_SEEN:
-        return imki_drift_own_input(known->sensor);
-    case IMKI_FORM_POWER:
-        *part = imki_power_of(known->term);
-        return IMKI_COLUMN_POWER;
-    case IMKI_FORM_CROSS:
-        return IMKI_COLUMN_CROSS;
-    case IMKI_FORM_FORCE:
-        return IMKI_COLUMN_FORCE;
-    case IMKI_FORM_PRODUCT:
-        return IMKI_COLUMN_PRODUCT;
-    case IMKI_FORM_PLACE:
-        return IMKI_COLUMN_LEVER;
-    default:
-        return IMKI_COLUMN_ONE;
-    }
+    static const imki_column_kind kind[] = {
+        [IMKI_FORM_POWER] = IMKI_COLUMN_POWER, [IMKI_FORM_CROSS] = IMKI_COLUMN_CROSS,
+        [IMKI_FORM_FORCE] = IMKI_COLUMN_FORCE, [IMKI_FORM_PRODUCT] = IMKI_COLUMN_PRODUCT,
+        [IMKI_FORM_PLACE] = IMKI_COLUMN_LEVER, [IMKI_FORM_TIME] = IMKI_COLUMN_ONE};
+    const imki_form form = imki_terms[known->term].form;
+    *part = form == IMKI_FORM_INPUT   ? axis
+            : form == IMKI_FORM_POWER ? imki_power_of(known->term)
+            : known->width > 1        ? j
+                                      : 0;
+    return form == IMKI_FORM_INPUT || form == IMKI_FORM_SEEN ? imki_drift_own_input(known->sensor)
+                                                             : kind[form];
 }
 
 static imki_drift_column known_column(const known_term *known, const imk_triad *triad, int axis,
