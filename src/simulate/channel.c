@@ -304,22 +304,26 @@ static void put_in_batch(batch *b, const imki_generator *generator, unsigned cha
     }
 }
 
-/* The terms first … last - 1 of a channel, one after another. */
-static void add_terms(imki_channel *channel, int first, int last, batch *b, double *block)
+/* The terms first … last - 1 of a channel, one after another. Its memory is on the stack: not while
+ * the terms that go across use theirs. */
+static __attribute__((noinline)) void add_terms(imki_channel *channel, int first, int last,
+                                                double *block)
 {
+    batch b;
+    b.parts = b.draws = b.used = 0;
     for (int t = first; t < last; t++) {
         const imki_channel_term *term = &channel->term[t];
         const imki_generator *generator = term->generator;
         for (size_t i = 0; i < term->count && !generator->across;) {
             const size_t left = term->count - i;
             const size_t now = left < generator->together ? left : generator->together;
-            if (b->used + now * generator->normals > BATCH_NORMALS || b->parts == BATCH_PARTS)
-                add_batch(channel, b, block);
-            put_in_batch(b, generator, term->states + i * generator->state_size, now);
+            if (b.used + now * generator->normals > BATCH_NORMALS || b.parts == BATCH_PARTS)
+                add_batch(channel, &b, block);
+            put_in_batch(&b, generator, term->states + i * generator->state_size, now);
             i += now;
         }
     }
-    add_batch(channel, b, block);
+    add_batch(channel, &b, block);
 }
 
 /* The deterministic part, and the ramp, in segment order. */
@@ -380,8 +384,6 @@ static size_t states_across(size_t count, imki_channel *const *channels, int t)
 void imki_channel_blocks(size_t count, imki_channel *const *channels, bool constant,
                          double *const *out)
 {
-    batch b;
-    b.parts = b.draws = b.used = 0;
     for (size_t i = 0; i < count; i++)
         begin_block(channels[i], constant, out[i]);
     for (int t = 0, done = 0; t <= IMKI_NOISE_TERMS; t++) {
@@ -389,7 +391,7 @@ void imki_channel_blocks(size_t count, imki_channel *const *channels, bool const
         if (across == 0 && t < IMKI_NOISE_TERMS)
             continue;
         for (size_t i = 0; i < count && t > done; i++)
-            add_terms(channels[i], done, t, &b, out[i]);
+            add_terms(channels[i], done, t, out[i]);
         for (size_t j = 0; j < across; j++)
             add_across(count, channels, t, j, out);
         done = t;
