@@ -5,7 +5,7 @@
  * to the procedures' own experiments; here sigmas are stated right, three times too small, and
  * a tenth of the poses have a force that is 3 % off. */
 #include "../tests/calibrate/coverage.h"
-#include "../tests/calibrate/estimator_bench.h"
+#include "../tests/calibrate/estimator_session.h"
 
 #include "imukit/distributions.h"
 
@@ -17,11 +17,11 @@ typedef struct kind {
     bool unknown_latitude;
 } kind;
 
-static void make(bench *b, const kind *k)
+static void make(session *b, const kind *k)
 {
     b->understated = k->understated;
     if (k->unknown_latitude) { /* anywhere on a sphere */
-        b->place = asin(2.0 * imk_normal_probability(bench_normal(b)) - 1.0);
+        b->place = asin(2.0 * imk_normal_probability(session_normal(b)) - 1.0);
         b->calibration.latitude = (double)NAN;
     }
     if (k->reference) {
@@ -29,15 +29,15 @@ static void make(bench *b, const kind *k)
         b->truth.accel.misalignment.value[1][0] = -.002;
         b->truth.accel.misalignment.value[2][0] = .0015;
         b->truth.accel.misalignment.value[2][1] = -.001;
-        bench_free_all(b);
+        session_free_all(b);
     } else {
-        bench_free_static(b);
+        session_free_static(b);
     }
-    bench_know_the_rest(b);
+    session_know_the_rest(b);
     for (int i = 0; i < k->poses; i++)
-        bench_pose(b, i < k->bad ? 1.03 : 1.0);
+        session_pose(b, i < k->bad ? 1.03 : 1.0);
     for (int i = 0; i < k->known; i++)
-        bench_known(b);
+        session_known(b);
 }
 
 static void run(const kind *k, size_t benches, uint64_t seed)
@@ -46,16 +46,16 @@ static void run(const kind *k, size_t benches, uint64_t seed)
     size_t refused = 0, poses = 0;
     memset(&count, 0, sizeof count);
     for (size_t i = 0; i < benches; i++) {
-        bench *b = bench_new(seed, (uint32_t)i);
+        session *b = session_new(seed, (uint32_t)i);
         make(b, k);
-        if (bench_solve(b) == IMK_OK) {
+        if (session_solve(b) == IMK_OK) {
             coverage_add(&count, &b->result, &b->truth, 0.95);
             refused += b->result.observations_refused;
             poses += b->calibration.observation_count;
         } else {
             count.failed++;
         }
-        bench_free(b);
+        session_free(b);
     }
     printf("%s: %zu benches, %zu not solved; %.2f %% of the observations refused\n", k->name,
            count.benches, count.failed, 100.0 * (double)refused / (double)poses);

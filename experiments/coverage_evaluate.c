@@ -6,7 +6,7 @@
  *     coverage_evaluate [TABLES] [SEED]
  *
  * Share of 95 % intervals that hold the truth, and the bias of the value in standard deviations. */
-#include "../tests/calibrate/evaluation_bench.h"
+#include "../tests/calibrate/evaluation_session.h"
 
 #include <stdio.h>
 

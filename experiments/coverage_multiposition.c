@@ -3,24 +3,24 @@
  *
  *     coverage_multiposition [BENCHES] [SEED]        3000 and 1 by default
  *
- * Whole bench tests are simulated (tests/calibrate/multiposition_bench.h): 24 poses by hand, 120 s
- * at 100 Hz, MEMS noise, counts, the Earth. Each goes through detection, procedure and solver. Per
- * parameter: the share of benches in which the 95 % interval holds the truth, and the bias of the
- * estimate in its own sigmas; then the same with a tenth of the poses spoilt. */
-#include "../tests/calibrate/multiposition_bench.h"
+ * Whole bench tests are simulated (tests/calibrate/multiposition_session.h): 24 poses by hand, 120
+ * s at 100 Hz, MEMS noise, counts, the Earth. Each goes through detection, procedure and solver.
+ * Per parameter: the share of benches in which the 95 % interval holds the truth, and the bias of
+ * the estimate in its own sigmas; then the same with a tenth of the poses spoilt. */
+#include "../tests/calibrate/multiposition_session.h"
 
 int main(int count, char **arguments)
 {
     const long benches = count > 1 ? atol(arguments[1]) : 3000;
     const uint64_t seed = count > 2 ? strtoull(arguments[2], NULL, 10) : 1;
-    multiposition_bench *b = bench_start();
+    multiposition_session *b = session_start();
     if (!b)
         return EXIT_FAILURE;
     for (int bad = 0; bad <= BENCH_POSES / 10; bad += BENCH_POSES / 10) {
         coverage_count sum = {0};
         size_t refused = 0, turns_refused = 0, turns = 0;
         for (long run = 0; run < benches; run++) {
-            const imk_status status = bench_run(b, seed, (uint32_t)run, bad, &sum);
+            const imk_status status = session_run(b, seed, (uint32_t)run, bad, &sum);
             if (status != IMK_OK)
                 fprintf(stderr, "bench %ld: %s %s\n", run, imk_status_name(status), b->error.field);
             refused += b->result.observations_refused;
@@ -35,6 +35,6 @@ int main(int count, char **arguments)
         if (sum.benches > 0)
             coverage_print(&sum, stdout);
     }
-    bench_stop(b);
+    session_stop(b);
     return EXIT_SUCCESS;
 }

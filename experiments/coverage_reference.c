@@ -9,36 +9,36 @@
  * square of the errors in sigmas; then the same with a tenth of the holds disturbed. Of sines, in
  * blocks of 50 ms, a tenth of BENCHES are done, of spins a fifth. */
 #include "../tests/calibrate/coverage.h"
-#include "../tests/calibrate/reference_bench.h"
+#include "../tests/calibrate/reference_session.h"
 
 static const struct {
     const char *name;
     imk_procedure procedure;
-    void (*programme)(bench *);
+    void (*programme)(session *);
     size_t part; /* of the benches asked for: thousands of observations take their time */
 } programmes[] = {
-    {"rate-table, steps", IMK_PROCEDURE_RATE_TABLE, bench_rate_steps, 1},
-    {"rate-table, sine", IMK_PROCEDURE_RATE_TABLE, bench_rate_sine, 10},
-    {"tumble", IMK_PROCEDURE_TUMBLE, bench_tumble, 1},
-    {"centrifuge", IMK_PROCEDURE_CENTRIFUGE, bench_centrifuge, 1},
-    {"spin", IMK_PROCEDURE_SPIN, bench_spin, 5},
+    {"rate-table, steps", IMK_PROCEDURE_RATE_TABLE, session_rate_steps, 1},
+    {"rate-table, sine", IMK_PROCEDURE_RATE_TABLE, session_rate_sine, 10},
+    {"tumble", IMK_PROCEDURE_TUMBLE, session_tumble, 1},
+    {"centrifuge", IMK_PROCEDURE_CENTRIFUGE, session_centrifuge, 1},
+    {"spin", IMK_PROCEDURE_SPIN, session_spin, 5},
 };
 
 static void run(size_t which, size_t benches, uint64_t seed, double bad)
 {
-    bench *b = malloc(sizeof *b);
+    session *b = malloc(sizeof *b);
     coverage_count count = {0};
     if (!b)
         return;
-    bench_start(b, programmes[which].procedure, programmes[which].programme);
+    session_start(b, programmes[which].procedure, programmes[which].programme);
     if (b->procedure == IMK_PROCEDURE_TUMBLE)
         b->settings.nonlinear = true;
     if (b->procedure == IMK_PROCEDURE_RATE_TABLE)
         b->settings.sine_block = 0.05;
     for (size_t i = 0; i < benches; i++) {
         imk_error error;
-        bench_log(b, seed * 1000000 + i, bad);
-        if (bench_solve(b, &error) == IMK_OK) {
+        session_log(b, seed * 1000000 + i, bad);
+        if (session_solve(b, &error) == IMK_OK) {
             coverage_add(&count, &b->result, &b->truth, 0.95);
             continue;
         }

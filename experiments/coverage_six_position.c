@@ -4,17 +4,17 @@
  * usage: coverage_six_position [BENCHES] [SEED]
  *
  * Simulates whole bench tests, raw samples with noise, instability, quantization, placement errors
- * and the turning Earth (tests/calibrate/six_position_bench.h), calibrates each, and prints per
+ * and the turning Earth (tests/calibrate/six_position_session.h), calibrates each, and prints per
  * parameter how often the 95 % interval held the truth and the bias in sigmas. The last plans have
  * 10 % bad poses. */
-#include "../tests/calibrate/six_position_bench.h"
+#include "../tests/calibrate/six_position_session.h"
 
 #include <stdio.h>
 
 typedef struct plan {
     const char *name;
     imk_procedure procedure;
-    bench_plan bench;
+    session_plan session;
 } plan;
 
 int main(int argc, char **argv)
@@ -41,13 +41,13 @@ int main(int argc, char **argv)
         fputs("usage: coverage_six_position [BENCHES] [SEED]\n", stderr);
         return 2;
     }
-    bench *b = bench_new();
+    session *b = session_new();
     for (size_t i = 0; i < sizeof plans / sizeof *plans; i++) {
         static coverage_count count;
         memset(&count, 0, sizeof count);
         for (int n = 0; n < benches; n++) {
             imk_error error;
-            if (bench_run(b, &plans[i].bench, plans[i].procedure, seed, (uint32_t)n, &error)) {
+            if (session_run(b, &plans[i].session, plans[i].procedure, seed, (uint32_t)n, &error)) {
                 coverage_add(&count, &b->result, &b->truth, 0.95);
             } else if (count.failed++ == 0) {
                 printf("bench %d: %s %s %s\n", n, imk_status_name(error.status), error.field,
@@ -59,6 +59,6 @@ int main(int argc, char **argv)
             coverage_print(&count, stdout);
         fflush(stdout);
     }
-    bench_free(b);
+    session_free(b);
     return 0;
 }

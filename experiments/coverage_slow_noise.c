@@ -16,30 +16,31 @@
 static const struct {
     const char *name;
     imk_procedure procedure;
-    void (*programme)(bench *);
+    void (*programme)(session *);
     void (*slower)(imk_model *);
 } programmes[] = {
-    {"rate-table, flicker", IMK_PROCEDURE_RATE_TABLE, bench_rate_steps, slow_flicker},
+    {"rate-table, flicker", IMK_PROCEDURE_RATE_TABLE, session_rate_steps, slow_flicker},
     {"rate-table, flicker, random walk and Gauss-Markov", IMK_PROCEDURE_RATE_TABLE,
-     bench_rate_steps, slow_all},
-    {"tumble, flicker", IMK_PROCEDURE_TUMBLE, bench_tumble, slow_flicker},
-    {"tumble, flicker, random walk and Gauss-Markov", IMK_PROCEDURE_TUMBLE, bench_tumble, slow_all},
+     session_rate_steps, slow_all},
+    {"tumble, flicker", IMK_PROCEDURE_TUMBLE, session_tumble, slow_flicker},
+    {"tumble, flicker, random walk and Gauss-Markov", IMK_PROCEDURE_TUMBLE, session_tumble,
+     slow_all},
 };
 
 static void run(size_t which, size_t benches, uint64_t seed, bool known)
 {
-    bench *b = malloc(sizeof *b);
+    session *b = malloc(sizeof *b);
     coverage_count count = {0};
     if (!b)
         return;
-    bench_start(b, programmes[which].procedure, programmes[which].programme);
+    session_start(b, programmes[which].procedure, programmes[which].programme);
     b->settings.nonlinear = true;
     b->slower = programmes[which].slower;
     b->noise_known = known;
     double factor[2] = {0.0, 0.0};
     for (size_t i = 0; i < benches; i++) {
-        bench_log(b, seed * 1000000 + i, 0.0);
-        if (bench_solve(b, NULL) != IMK_OK) {
+        session_log(b, seed * 1000000 + i, 0.0);
+        if (session_solve(b, NULL) != IMK_OK) {
             count.failed++;
             continue;
         }

@@ -3,7 +3,7 @@
  * steps, and a short script is compiled into a trajectory that is valid. Compiling takes 4 us a
  * piece, with the sanitizers five times that: scripts of many pieces are left to the tests.
  * Reads: src/io/motion/motion_file.c src/io/motion/motion_script_read.c
- * src/io/motion/motion_sentence.c src/io/motion/step_sentence.c src/io/motion/vibration_lines.c
+ * src/io/motion/step_read.c src/io/motion/step_text.c src/io/motion/vibration_lines.c
  * src/motion/script_check.c */
 #include "harness.h"
 

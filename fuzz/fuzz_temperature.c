@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Fuzz entry point of temperature profiles: scripts, and constants, which begin as numbers do. What
  * is read is a valid profile.
- * Reads: src/io/motion/temperature_file.c src/io/motion/step_sentence.c */
+ * Reads: src/io/motion/temperature_file.c src/io/motion/step_text.c */
 #include "harness.h"
 
 #include "imukit/motion_file.h"

@@ -18,7 +18,7 @@ static inline void require(bool condition)
         abort();
 }
 
-/* A refusal carries its status and makes a sentence; what was read left the error alone. The error
+/* A refusal carries its status and makes a message; what was read left the error alone. The error
  * is begun as (imk_error){.status = IMK_OK}. */
 void require_told(imk_status status, const imk_error *error);
 

@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-int bench_done(const bench *b, imk_status status, const imk_error *error)
+int session_done(const session *b, imk_status status, const imk_error *error)
 {
     const imk_calibrate_log *found = b->found;
     char text[1000];
@@ -22,7 +22,7 @@ int bench_done(const bench *b, imk_status status, const imk_error *error)
                          found->failed < found->count ? found->record[found->failed].path : NULL);
 }
 
-static void show_next(const bench *b, bool useless, imk_result *result)
+static void show_next(const session *b, bool useless, imk_result *result)
 {
     const calibrate_options *o = b->options;
     if (o->report)
@@ -40,7 +40,7 @@ static void show_next(const bench *b, bool useless, imk_result *result)
 }
 
 /* What was warned of on the way here belongs to the verdict, and what that warns of is told too. */
-static imk_verdict judge(const bench *b, imk_result *result)
+static imk_verdict assess(const session *b, imk_result *result)
 {
     const size_t count = command_warning_count();
     imk_message *before = command_memory(NULL, (count + 1) * sizeof *before);
@@ -56,7 +56,7 @@ static imk_verdict judge(const bench *b, imk_result *result)
     return v;
 }
 
-static int write_model(bench *b)
+static int write_model(session *b)
 {
     imk_error error;
     const calibrate_options *o = b->options;
@@ -68,14 +68,14 @@ static int write_model(bench *b)
     return -1;
 }
 
-int bench_show(bench *b)
+int session_show(session *b)
 {
     const calibrate_options *o = b->options;
     imk_model *model = &b->found->model;
     if (o->name || !model->name[0] || !o->into)
         command_model_name(o->name, b->found->record[0].path, model->name, sizeof model->name);
     imk_result *result = show_begin("calibrate");
-    const imk_verdict verdict = judge(b, result);
+    const imk_verdict verdict = assess(b, result);
     const bool useless = imk_verdict_level(&verdict) == IMK_FINDING_FAILURE;
     const bool writes = !useless || o->anyway;
     const int end = (useless && !o->anyway) || (o->strict && command_warning_count() > 0)

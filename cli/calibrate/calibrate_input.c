@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* The wanted column of texts is not there. */
-static int no_section(const bench_log *log, const char *wanted)
+static int no_section(const session_log *log, const char *wanted)
 {
     const char *names[IMK_LOG_COLUMNS_MAX];
     size_t labels = 0;
@@ -22,7 +22,7 @@ static int no_section(const bench_log *log, const char *wanted)
 }
 
 /* The log as a record of a test, and what was found in it. */
-static int make_record(const bench *b, bench_log *log)
+static int make_record(const session *b, session_log *log)
 {
     imk_error error;
     char text[600];
@@ -45,7 +45,7 @@ static int make_record(const bench *b, bench_log *log)
 }
 
 /* Long enough for what was asked. */
-static int check_length(const calibrate_options *o, const bench_log *log)
+static int check_length(const calibrate_options *o, const session_log *log)
 {
     const struct {
         const char *option;
@@ -63,7 +63,7 @@ static int check_length(const calibrate_options *o, const bench_log *log)
     return -1;
 }
 
-int bench_load(bench *b, bench_log *log)
+int session_load(session *b, session_log *log)
 {
     imk_error error;
     const imk_log_settings settings = log_input_settings(&b->options->log);

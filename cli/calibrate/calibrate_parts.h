@@ -28,17 +28,17 @@ typedef struct calibrate_options {
     bool no_earth, plan, anyway, poses, json, strict;
 } calibrate_options;
 
-typedef imk_calibrate_record bench_log;
-#define bench_log_free imk_calibrate_record_free
+typedef imk_calibrate_record session_log;
+#define session_log_free imk_calibrate_record_free
 
-typedef struct bench {
+typedef struct session {
     const calibrate_options *options;
     imk_calibrate_log *found;
     imk_geodetic place;
     imk_motion_file *motion;
     imk_document *document; /* of --into */
     imk_model before;       /* known before */
-} bench;
+} session;
 
 static const char *const sensor_keys[2] = {"gyro", "accel"};
 static const char *const sensor_titles[2] = {"gyro", "accelerometer"};
@@ -46,30 +46,30 @@ static const char *const sensor_titles[2] = {"gyro", "accelerometer"};
 /* All return -1 or the exit code, the message printed, where nothing else is said. */
 
 /* calibrate_input.c: a log with its columns as a record. */
-int bench_load(bench *b, bench_log *log);
+int session_load(session *b, session_log *log);
 /* calibrate_reference.c: what the unit was exposed to, from columns or from --motion. */
-int bench_reference(bench *b, bench_log *log);
+int session_reference(session *b, session_log *log);
 
 /* calibrate_problem.c: the options as a problem, and the logs loaded. */
-int bench_choose(bench *b); /* procedures, place and frame */
-int bench_known_before(bench *b);
-int bench_prepare(bench *b);
+int session_choose(session *b); /* procedures, place and frame */
+int session_known_before(session *b);
+int session_prepare(session *b);
 /* calibrate_terms.c: --estimate and --with, --without. */
-int bench_free_terms(bench *b);
+int session_free_terms(session *b);
 /* Append the numbers that a name means to a list; messages speak of the option. */
-int bench_list_terms(const bench *b, const char *option_name, const char *item, size_t capacity,
-                     imk_model_parameter *parameter, size_t *count);
-int bench_switch_terms(const calibrate_options *o, imk_procedure procedure,
-                       imk_procedure_settings *settings);
+int session_list_terms(const session *b, const char *option_name, const char *item, size_t capacity,
+                       imk_model_parameter *parameter, size_t *count);
+int session_switch_terms(const calibrate_options *o, imk_procedure procedure,
+                         imk_procedure_settings *settings);
 /* calibrate_runs.c: --procedure repeatability, of models, each the calibration of a run. */
-bool bench_has_run_models(const bench *b);
-int bench_compare_models(bench *b);
+bool session_has_run_models(const session *b);
+int session_compare_models(session *b);
 
 /* calibrate_plan.c: --plan, the operand being a model. @return the exit code */
-int bench_plan(bench *b);
+int session_plan(session *b);
 
 /* calibrate_ending.c: warnings, and why the job failed; then the model and what is shown. */
-int bench_done(const bench *b, imk_status status, const imk_error *error);
-int bench_show(bench *b);
+int session_done(const session *b, imk_status status, const imk_error *error);
+int session_show(session *b);
 
 #endif

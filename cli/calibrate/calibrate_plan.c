@@ -10,16 +10,17 @@
 #include <string.h>
 
 typedef struct plan {
-    bench *b;
+    session *b;
     imk_plan_settings settings;
-    imk_plan_wish wish[IMK_CORRELATED_MAX];
+    imk_sigma_requirement requirement[IMK_CORRELATED_MAX];
     imk_calibrate_plan *made;
 } plan;
 
-/* ---- wishes ---------------------------------------------------------------------------------- */
+/* ---- requirements
+ * ---------------------------------------------------------------------------------- */
 
 /* "accel.scale_factor 50 ppm": every number of the term. */
-static int parse_wish(plan *p, const char *text, size_t length)
+static int parse_requirement(plan *p, const char *text, size_t length)
 {
     char item[160];
     snprintf(item, sizeof item, "%.*s", (int)(length < 159 ? length : 159), text);
@@ -31,7 +32,7 @@ static int parse_wish(plan *p, const char *text, size_t length)
     *value++ = '\0';
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     size_t count = 0;
-    int code = bench_list_terms(p->b, "want", name, IMK_CORRELATED_MAX, parameter, &count);
+    int code = session_list_terms(p->b, "want", name, IMK_CORRELATED_MAX, parameter, &count);
     for (size_t k = 0; code < 0 && k < count; k++) {
         double sigma, unused;
         size_t numbers;
@@ -43,23 +44,23 @@ static int parse_wish(plan *p, const char *text, size_t length)
             return command_misused("--want \"%s %s\": expected a positive number with a unit such "
                                    "as %s",
                                    name, value, unit);
-        if (p->settings.wish_count == IMK_CORRELATED_MAX)
+        if (p->settings.requirement_count == IMK_CORRELATED_MAX)
             return command_misused("--want: these are more than %d numbers", IMK_CORRELATED_MAX);
-        p->wish[p->settings.wish_count++] =
-            (imk_plan_wish){.parameter = parameter[k], .sigma = sigma};
+        p->requirement[p->settings.requirement_count++] =
+            (imk_sigma_requirement){.parameter = parameter[k], .sigma = sigma};
     }
     return code;
 }
 
-static int parse_wishes(plan *p)
+static int parse_requirements(plan *p)
 {
     int code = -1;
     for (const char *text = p->b->options->want; code < 0 && text && *text;) {
         const size_t length = strcspn(text, ",");
-        code = parse_wish(p, text, length);
+        code = parse_requirement(p, text, length);
         text += length + (text[length] == ',');
     }
-    p->settings.wish = p->wish;
+    p->settings.requirement = p->requirement;
     return code;
 }
 
@@ -135,12 +136,12 @@ static int make(plan *p)
 
 static int set_up(plan *p)
 {
-    bench *b = p->b;
+    session *b = p->b;
     const calibrate_options *o = b->options;
     imk_document *unused = NULL;
     if (b->found->count != 1)
         return command_misused("--plan takes one MODEL, of the unit that will be tested");
-    int code = bench_choose(b);
+    int code = session_choose(b);
     if (code < 0 && b->found->settings.repeatability)
         code = command_misused("--plan: repeatability needs no programme: as many power cycles as "
                                "you can afford, ten or more");
@@ -162,10 +163,10 @@ static int set_up(plan *p)
         p->settings.temperature_order = (int)o->temperature_order.value;
     if (o->log.file.rate > 0)
         p->settings.rate = o->log.file.rate;
-    return parse_wishes(p);
+    return parse_requirements(p);
 }
 
-int bench_plan(bench *b)
+int session_plan(session *b)
 {
     plan *p = command_zeroed(sizeof *p);
     p->b = b;
@@ -175,7 +176,7 @@ int bench_plan(bench *b)
     if (code < 0 && b->options->output)
         code = write_programme(p, b->options->output);
     if (code < 0) {
-        const bool short_of = p->made->result.reached < p->settings.wish_count;
+        const bool short_of = p->made->result.reached < p->settings.requirement_count;
         code = b->options->strict && short_of ? EXIT_FAILED : EXIT_DONE;
         imk_result *result = show_begin("calibrate");
         imk_show_calibrate_plan(p->made, b->found->record[0].path, result);

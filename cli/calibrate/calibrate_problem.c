@@ -53,7 +53,7 @@ static int apply_counts(const calibrate_options *o, int sensor, imk_triad *triad
 }
 
 /* Counts per unit say nothing about readings that have a unit. */
-static int check_counts(const bench *b, int sensor, bool counts)
+static int check_counts(const session *b, int sensor, bool counts)
 {
     const calibrate_options *o = b->options;
     if (counts || (!o->sensitivity[sensor] && !o->zero_offset[sensor]))
@@ -64,7 +64,7 @@ static int check_counts(const bench *b, int sensor, bool counts)
 }
 
 /* Axes of the logs; a model that is given must have them. */
-static int match_axes(bench *b, imk_model *model, bool given)
+static int match_axes(session *b, imk_model *model, bool given)
 {
     imk_triad *triad[2] = {&model->gyro, &model->accel};
     for (int sensor = 0; sensor < 2; sensor++) {
@@ -102,7 +102,7 @@ static int match_axes(bench *b, imk_model *model, bool given)
     return -1;
 }
 
-int bench_known_before(bench *b)
+int session_known_before(session *b)
 {
     const calibrate_options *o = b->options;
     imk_model *model = &b->found->calibration->model;
@@ -122,7 +122,7 @@ int bench_known_before(bench *b)
 }
 
 /* Gravity and the Earth's rotation. */
-static int set_place(bench *b)
+static int set_place(session *b)
 {
     const calibrate_options *o = b->options;
     imk_calibration *c = b->found->calibration;
@@ -147,7 +147,7 @@ static int set_place(bench *b)
 }
 
 /* Where gravity is the reference, its amount is the scale of the accelerometers. */
-static void warn_of_gravity(const bench *b)
+static void warn_of_gravity(const session *b)
 {
     bool needed = false;
     for (size_t k = 0; k < b->found->count; k++)
@@ -164,7 +164,7 @@ static void warn_of_gravity(const bench *b)
 
 /* ---- procedures ------------------------------------------------------------------------------ */
 
-static int procedure_of(const char *name, size_t length, bench *b, size_t log)
+static int procedure_of(const char *name, size_t length, session *b, size_t log)
 {
     const char *names[IMK_PROCEDURES + 1];
     char given[40];
@@ -190,7 +190,7 @@ static int procedure_of(const char *name, size_t length, bench *b, size_t log)
 }
 
 /* One for all logs, or one for each. */
-static int assign_procedures(bench *b)
+static int assign_procedures(session *b)
 {
     const char *text = b->options->procedure;
     size_t count = 1;
@@ -224,7 +224,7 @@ static void set_if(double *target, double value)
         *target = value;
 }
 
-static int settle(const bench *b, bench_log *log)
+static int settle(const session *b, session_log *log)
 {
     const calibrate_options *o = b->options;
     imk_procedure_settings s = imk_procedure_default(log->procedure);
@@ -243,7 +243,7 @@ static int settle(const bench *b, bench_log *log)
     set_if(&s.reference_temperature, o->reference_temperature);
     s.temperature_order = (int)o->temperature_order.value;
     log->settings = s;
-    return bench_switch_terms(o, log->procedure, &log->settings);
+    return session_switch_terms(o, log->procedure, &log->settings);
 }
 
 /* Forces on the accelerometers are known, and with them how the triad stands in the housing. */
@@ -253,7 +253,7 @@ static bool knows_force(imk_procedure procedure)
            procedure != IMK_PROCEDURE_SPIN;
 }
 
-static int choose_frame(bench *b)
+static int choose_frame(session *b)
 {
     bool known = false, force = false, gravity = false;
     for (size_t k = 0; k < b->found->count; k++) {
@@ -275,7 +275,7 @@ static int choose_frame(bench *b)
 }
 
 /* An option that no procedure looks at was meant for another one. */
-static int check_used(const bench *b)
+static int check_used(const session *b)
 {
     const calibrate_options *o = b->options;
     bool referenced = false, ferraris = false, thermal = false;
@@ -303,7 +303,7 @@ static int check_used(const bench *b)
     return -1;
 }
 
-int bench_choose(bench *b)
+int session_choose(session *b)
 {
     imk_calibration_default(b->found->calibration);
     b->found->calibration->robust = b->options->robust == 0;
@@ -319,9 +319,9 @@ int bench_choose(bench *b)
     return code;
 }
 
-int bench_prepare(bench *b)
+int session_prepare(session *b)
 {
-    int code = bench_choose(b);
+    int code = session_choose(b);
     if (code < 0 && b->options->motion) {
         imk_error error;
         const imk_geodetic *place = b->found->settings.place_known ? &b->place : NULL;
@@ -329,15 +329,15 @@ int bench_prepare(bench *b)
             code = command_error(&error, b->options->motion);
     }
     for (size_t k = 0; code < 0 && k < b->found->count; k++) {
-        code = bench_load(b, &b->found->record[k]);
+        code = session_load(b, &b->found->record[k]);
         if (code < 0)
-            code = bench_reference(b, &b->found->record[k]);
+            code = session_reference(b, &b->found->record[k]);
     }
     if (code < 0)
-        code = bench_known_before(b);
+        code = session_known_before(b);
     if (code < 0 && !b->found->settings.repeatability)
         warn_of_gravity(b);
     if (code < 0 && b->options->estimate)
-        code = bench_free_terms(b);
+        code = session_free_terms(b);
     return code;
 }

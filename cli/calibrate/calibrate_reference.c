@@ -12,7 +12,7 @@ static const double largest_shift = 10.0;
 static const double followed = 0.5;
 
 /* A column of zeros. */
-static const double *nothing(bench_log *log)
+static const double *nothing(session_log *log)
 {
     const double *zeros = imk_calibrate_record_column(log, 0);
     (void)command_unless_memory(zeros ? IMK_OK : IMK_ERROR_MEMORY);
@@ -22,7 +22,7 @@ static const double *nothing(bench_log *log)
 /* ---- columns --------------------------------------------------------------------------------- */
 
 /* Index of the column of this name with the dimension of a unit; -1: there is none. */
-static int find_column(const bench_log *log, const char *name, const char *unit, int *found)
+static int find_column(const session_log *log, const char *name, const char *unit, int *found)
 {
     *found = -1;
     for (size_t c = 0; c < log->log.column_count; c++) {
@@ -42,7 +42,8 @@ static int find_column(const bench_log *log, const char *name, const char *unit,
 }
 
 /* reference_rate_x … of one vector: the components that are not there are zero. */
-static int take_vector(bench_log *log, const char *name, const char *unit, const double *target[3])
+static int take_vector(session_log *log, const char *name, const char *unit,
+                       const double *target[3])
 {
     int column[3];
     for (int k = 0; k < 3; k++) {
@@ -59,7 +60,7 @@ static int take_vector(bench_log *log, const char *name, const char *unit, const
     return -1;
 }
 
-static int take_table(const bench *b, bench_log *log)
+static int take_table(const session *b, session_log *log)
 {
     int column;
     int code = find_column(log, "table_rate", "deg/s", &column);
@@ -79,14 +80,14 @@ static int take_table(const bench *b, bench_log *log)
     return -1;
 }
 
-static bool has_reference(const bench_log *log)
+static bool has_reference(const session_log *log)
 {
     return log->record.reference_rate[0] || log->record.reference_force[0];
 }
 
 /* ---- programme ------------------------------------------------------------------------------ */
 
-static int find_offset(bench_log *log)
+static int find_offset(session_log *log)
 {
     imk_error error;
     imk_reference_shift shift;
@@ -109,7 +110,7 @@ static int find_offset(bench_log *log)
 }
 
 /* A log that begins at another time than the programme looks like a bad sensor. */
-static void check_offset(const bench_log *log)
+static void check_offset(const session_log *log)
 {
     imk_error error;
     imk_reference_shift shift;
@@ -124,13 +125,13 @@ static void check_offset(const bench_log *log)
                  log->motion_offset + shift.offset);
 }
 
-static void expose(const bench *b, bench_log *log)
+static void expose(const session *b, session_log *log)
 {
     (void)command_unless_memory(
         imk_calibrate_record_expose(log, imk_motion_file_motion(b->motion), NULL));
 }
 
-static int take_motion(const bench *b, bench_log *log)
+static int take_motion(const session *b, session_log *log)
 {
     const char *text = b->options->motion_offset;
     const bool search = text && strcmp(text, "auto") == 0;
@@ -155,7 +156,7 @@ static int take_motion(const bench *b, bench_log *log)
     return code;
 }
 
-int bench_reference(bench *b, bench_log *log)
+int session_reference(session *b, session_log *log)
 {
     imk_test_record *record = &log->record;
     int code = take_vector(log, "reference_rate", "deg/s", record->reference_rate);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool bench_has_run_models(const bench *b)
+bool session_has_run_models(const session *b)
 {
     if (!b->options->procedure || strcmp(b->options->procedure, "repeatability") != 0)
         return false;
@@ -44,9 +44,9 @@ static int check_alike(const char *path, const imk_model *model, const char *fir
     return -1;
 }
 
-static int load_model(bench *b, size_t index, imk_model *first, imk_calibration_result *r)
+static int load_model(session *b, size_t index, imk_model *first, imk_calibration_result *r)
 {
-    bench_log *log = &b->found->record[index];
+    session_log *log = &b->found->record[index];
     imk_model *model = index == 0 ? first : &r->model;
     if (!imk_is_script_name(log->path))
         return command_misused("--procedure repeatability: %s is a log and others are models: "
@@ -66,7 +66,7 @@ static int load_model(bench *b, size_t index, imk_model *first, imk_calibration_
 }
 
 /* The axes of the first model, as those of a log: what --into is checked against. */
-static void take_axes(bench *b, const imk_model *first)
+static void take_axes(session *b, const imk_model *first)
 {
     for (size_t k = 0; k < b->found->count; k++) {
         imk_test_record *record = &b->found->record[k].record;
@@ -75,23 +75,23 @@ static void take_axes(bench *b, const imk_model *first)
     }
 }
 
-int bench_compare_models(bench *b)
+int session_compare_models(session *b)
 {
     imk_error error;
     imk_calibration_result *result = command_zeroed(b->found->count * sizeof *result);
     const imk_calibration_result *run[IMK_TEST_RECORDS_MAX];
     imk_model *first = command_zeroed(sizeof *first);
-    int code = bench_choose(b);
+    int code = session_choose(b);
     for (size_t k = 0; code < 0 && k < b->found->count; k++) {
         run[k] = &result[k];
         code = load_model(b, k, first, &result[k]);
     }
     if (code < 0) {
         take_axes(b, first);
-        code = bench_known_before(b);
+        code = session_known_before(b);
     }
     if (code < 0)
-        code = bench_done(b, imk_calibrate_log_compare(b->found, run, &error), &error);
+        code = session_done(b, imk_calibrate_log_compare(b->found, run, &error), &error);
     free(result);
     free(first);
     return code;

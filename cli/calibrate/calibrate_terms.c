@@ -44,8 +44,8 @@ static int switch_items(const char *option_name, const char *list, bool on,
     return -1;
 }
 
-int bench_switch_terms(const calibrate_options *o, imk_procedure procedure,
-                       imk_procedure_settings *settings)
+int session_switch_terms(const calibrate_options *o, imk_procedure procedure,
+                         imk_procedure_settings *settings)
 {
     (void)procedure;
     if (o->estimate && (o->with || o->without))
@@ -83,7 +83,7 @@ static bool names_term(const char *item, const char *path)
            (strcmp(path + length, ".fixed") == 0 || strcmp(item, "nonlinearity") == 0);
 }
 
-static bool frame_leaves(const bench *b, int axis, int element)
+static bool frame_leaves(const session *b, int axis, int element)
 {
     switch (b->found->calibration->frame) {
     case IMK_FRAME_UPPER:
@@ -112,7 +112,7 @@ static void collect(parameter_list *list, imk_model_parameter parameter)
 }
 
 /* All numbers of a term; polynomials as high as --temperature-order, or 3. */
-static void collect_term(const bench *b, int sensor, int term, parameter_list *list)
+static void collect_term(const session *b, int sensor, int term, parameter_list *list)
 {
     imk_model *model = &b->found->calibration->model;
     const imk_triad *triad = imk_model_triad(model, sensor);
@@ -144,7 +144,7 @@ static void name_powers(char *text, size_t size)
     }
 }
 
-static int collect_item(const bench *b, const char *option_name, const char *item,
+static int collect_item(const session *b, const char *option_name, const char *item,
                         parameter_list *list)
 {
     static const char *const sensors[2] = {"gyro.", "accel."};
@@ -182,8 +182,8 @@ static int collect_item(const bench *b, const char *option_name, const char *ite
                            option_name, item, powers);
 }
 
-int bench_list_terms(const bench *b, const char *option_name, const char *item, size_t capacity,
-                     imk_model_parameter *parameter, size_t *count)
+int session_list_terms(const session *b, const char *option_name, const char *item, size_t capacity,
+                       imk_model_parameter *parameter, size_t *count)
 {
     parameter_list list = {parameter, *count, capacity};
     const int code = collect_item(b, option_name, item, &list);
@@ -194,7 +194,7 @@ int bench_list_terms(const bench *b, const char *option_name, const char *item, 
 }
 
 /* What the logs saw of the temperature; false when none did. */
-static bool temperature_range(const bench *b, double *low, double *high)
+static bool temperature_range(const session *b, double *low, double *high)
 {
     *low = HUGE_VAL, *high = -HUGE_VAL;
     for (size_t k = 0; k < b->found->count; k++)
@@ -209,7 +209,7 @@ static bool temperature_range(const bench *b, double *low, double *high)
 }
 
 /* Room in the model for a power of the temperature. */
-static int make_room(bench *b, imk_model_parameter p)
+static int make_room(session *b, imk_model_parameter p)
 {
     imk_model *model = &b->found->calibration->model;
     imk_triad *triad = imk_model_triad_to_set(model, p.sensor);
@@ -236,7 +236,7 @@ static int make_room(bench *b, imk_model_parameter p)
     return -1;
 }
 
-int bench_free_terms(bench *b)
+int session_free_terms(session *b)
 {
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     const char *names = b->options->estimate;
@@ -244,7 +244,7 @@ int bench_free_terms(bench *b)
     char item[64];
     int code = -1;
     while (code < 0 && next_item(&names, item, sizeof item))
-        code = bench_list_terms(b, "estimate", item, IMK_CORRELATED_MAX, parameter, &count);
+        code = session_list_terms(b, "estimate", item, IMK_CORRELATED_MAX, parameter, &count);
     if (code < 0 && count == 0)
         code = command_misused("--estimate: no term is named");
     for (size_t k = 0; code < 0 && k < count; k++) {

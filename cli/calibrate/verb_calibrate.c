@@ -30,7 +30,7 @@ static const option result_options[] = {
     {"plan", OPTION_FLAG, AT(plan),
      .help = "print the programme of a test instead; the operand is a model of the unit, with its "
              "noise, and -o the motion file to write"},
-    {"want", OPTION_TEXT, AT(want), .value = "WISHES",
+    {"want", OPTION_TEXT, AT(want), .value = "REQUIREMENTS",
      .help =
          "with --plan: 1 sigma to reach, such as \"accel.scale_factor 50 ppm, gyro.bias 5 deg/h\""},
     {"soak", OPTION_QUANTITY, AT(soak), .value = "TIME", .unit = "s", .choices = "0..1e6",
@@ -81,7 +81,7 @@ static const option log_options[] = {
      .choices = "not negative",
      .help = "the log begins with so long a rest; default: the quietest part is searched for"},
     {"window", OPTION_QUANTITY, AT(window), .value = "TIME", .unit = "s", .choices = "not negative",
-     .help = "over which scatter is judged; default: chosen from the log"},
+     .help = "over which scatter is assessed; default: chosen from the log"},
     {"minimum", OPTION_QUANTITY, AT(minimum), .value = "TIME", .unit = "s", .choices = "positive",
      .help = "shortest rest, step or run that counts; default 1s at rest, 0.5s of a reference"},
     {"trim", OPTION_QUANTITY, AT(trim), .value = "TIME", .unit = "s", .choices = "not negative",
@@ -115,7 +115,7 @@ static const option log_options[] = {
 
 _Static_assert(IMK_TEMPERATURE_ORDER_MAX == 5, "as the range of --temperature-order says");
 
-static int check_closed_form(const bench *b)
+static int check_closed_form(const session *b)
 {
     const calibrate_options *o = b->options;
     if (b->found->count != 1 || b->found->settings.repeatability ||
@@ -130,15 +130,15 @@ static int check_closed_form(const bench *b)
 }
 
 /* Solve, or compare runs. */
-static int find_result(bench *b)
+static int find_result(session *b)
 {
     imk_error error;
-    if (bench_has_run_models(b))
-        return bench_compare_models(b);
-    int code = bench_prepare(b);
+    if (session_has_run_models(b))
+        return session_compare_models(b);
+    int code = session_prepare(b);
     if (code < 0 && b->options->estimator != 0 && !b->found->settings.repeatability)
         code = check_closed_form(b);
-    return code >= 0 ? code : bench_done(b, imk_calibrate_log_run(b->found, &error), &error);
+    return code >= 0 ? code : session_done(b, imk_calibrate_log_run(b->found, &error), &error);
 }
 
 static int check(const calibrate_options *o)
@@ -153,10 +153,10 @@ static int check(const calibrate_options *o)
     return command_check_plot(o->plot);
 }
 
-static void free_bench(bench *b)
+static void free_session(session *b)
 {
     for (size_t k = 0; k < b->found->count; k++)
-        bench_log_free(&b->found->record[k]);
+        session_log_free(&b->found->record[k]);
     imk_motion_file_free(b->motion);
     imk_document_free(b->document);
     imk_calibrate_log_free(b->found);
@@ -185,7 +185,7 @@ static int run(int count, char **words)
         code = check(&o);
     if (code >= 0)
         return code;
-    bench *b = command_zeroed(sizeof *b);
+    session *b = command_zeroed(sizeof *b);
     b->options = &o;
     imk_calibrate_log_settings settings = imk_calibrate_log_default();
     settings.gravity = o.gravity;
@@ -204,10 +204,10 @@ static int run(int count, char **words)
     for (size_t k = 0; k < b->found->count; k++)
         b->found->record[k].path = paths[k];
     if (o.plan)
-        code = bench_plan(b);
+        code = session_plan(b);
     else if ((code = find_result(b)) < 0)
-        code = bench_show(b);
-    free_bench(b);
+        code = session_show(b);
+    free_session(b);
     return code;
 }
 

@@ -38,7 +38,7 @@ static const option navigation_option_table[] = {
     {"compensated", OPTION_FLAG, AT(compensated),
      .help = "beside it the same after calibration: values that the model knows are taken out, "
              "their uncertainty stays"},
-    {"want", OPTION_TEXT, AT(want), .value = "WISH",
+    {"want", OPTION_TEXT, AT(want), .value = "REQUIREMENT",
      .help = "the inverse question, \"CEP 1 nmi @ 1h\": what each term must become, and which "
              "devices would do; also R95, DRMS, height, velocity, tilt, heading"},
 };
@@ -142,8 +142,8 @@ static int open_models(work *w)
     return code;
 }
 
-/* A wish that can be typed: half of what there is, at a time of the table. */
-static void show_wish(const imk_drift_models *r, imk_result *result)
+/* A requirement that can be typed: half of what there is, at a time of the table. */
+static void show_requirement(const imk_drift_models *r, imk_result *result)
 {
     char length[IMK_READABLE_SIZE];
     const imk_drift_case *one = &r->cases[r->case_count - 1];
@@ -153,7 +153,7 @@ static void show_wish(const imk_drift_models *r, imk_result *result)
     if (!(f->cep > 0) || imk_drift_validity_of(f) == IMK_DRIFT_LOST)
         return;
     imk_result_line(result, "\nNext: what would halve it?  %s --want \"CEP %s @ %.8g%s\"",
-                    command_line(), imk_readable_figure(IMK_WISH_CEP, 0.5 * f->cep, length),
+                    command_line(), imk_readable_figure(IMK_REQUIRED_CEP, 0.5 * f->cep, length),
                     whole_hours     ? hours
                     : whole_minutes ? minutes
                                     : time,
@@ -194,7 +194,7 @@ static int show(const work *w)
     imk_result_free(model);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (w->count == 1 && !r->answer && !r->found)
-        show_wish(r, result);
+        show_requirement(r, result);
     else if (w->count == 1 && !r->answer && !o->output)
         imk_result_line(result, "\nNext: keep the runs with -o RESULTS.h5");
     imk_result_for(result, IMK_FOR_PAGE);
@@ -212,7 +212,7 @@ static void show_shard(const work *w)
            w->o->output, (unsigned long long)w->r->run_count);
 }
 
-/* A sentence about the model names it; one about the settings does not. */
+/* A message about the model names it; one about the settings does not. */
 static int refuse(const work *w, const imk_error *error)
 {
     const bool of_model = strncmp(error->field, "gyro", 4) == 0 ||

@@ -23,22 +23,22 @@ static int tell(const evaluation *v, const char *path, imk_status status, const 
 static int load_log(evaluation *v, const char *path)
 {
     imk_error error;
-    bench *b = command_zeroed(sizeof *b); /* holds models: 157 kB */
-    bench_log log = {.path = path};
+    session *b = command_zeroed(sizeof *b); /* holds models: 157 kB */
+    session_log log = {.path = path};
     int code = -1;
     v->has_log = true;
-    b->options = &v->options->bench;
+    b->options = &v->options->session;
     b->motion = v->motion;
     if (b->options->motion && !b->motion &&
         imk_motion_read(b->options->motion, NULL, NULL, 1, &b->motion, &error) != IMK_OK)
         code = command_error(&error, b->options->motion);
     if (code < 0)
-        code = bench_load(b, &log);
+        code = session_load(b, &log);
     if (code < 0)
-        code = bench_reference(b, &log);
+        code = session_reference(b, &log);
     if (code < 0)
         code = tell(v, path, imk_evaluate_record(v->log, &log, &error), &error);
-    bench_log_free(&log);
+    session_log_free(&log);
     v->motion = b->motion;
     free(b);
     return code;
@@ -46,7 +46,7 @@ static int load_log(evaluation *v, const char *path)
 
 static imk_log_settings table_settings(const evaluation *v)
 {
-    imk_log_settings settings = log_input_settings(&v->options->bench.log);
+    imk_log_settings settings = log_input_settings(&v->options->session.log);
     if (!(settings.rate > 0))
         settings.rate = 1; /* a table has no time */
     settings.any_columns = true;
@@ -92,7 +92,7 @@ int evaluate_load_rest(evaluation *v)
     const char *path = v->options->rest;
     imk_error error;
     imk_even_record record;
-    int code = path ? log_input_load(&v->options->bench.log, path, &record) : -1;
+    int code = path ? log_input_load(&v->options->session.log, path, &record) : -1;
     if (!path || code >= 0)
         return code;
     code = tell(v, path, imk_evaluate_at_rest(v->log, &record, &error), &error);

@@ -54,7 +54,7 @@ int evaluate_read_limits(evaluation *v)
 /* Warn of figures that are beyond their limits. */
 static void check_row(evaluation *v, const char *name, imk_evaluate_row *row)
 {
-    imk_evaluate_judge(v->limit_count, v->limit, name, row);
+    imk_evaluate_assess(v->limit_count, v->limit, name, row);
     if (row->verdict == IMK_EVALUATE_NOT_MET || row->verdict == IMK_EVALUATE_UNKNOWN) {
         v->missed = true;
         command_warn("limit", "%s: %s %s (limit %s)", name, row->title,

@@ -10,8 +10,8 @@
 #include "imukit/show.h"
 
 typedef struct evaluate_options {
-    calibrate_options bench; /* how logs are read and what is said of their reference */
-    const char *rest;        /* --static */
+    calibrate_options session; /* how logs are read and what is said of their reference */
+    const char *rest;          /* --static */
     const char *full_scale, *level_width, *sensitivity, *zero, *limit;
     const char *unit, *serial, *operator_name, *laboratory, *date, *temperature;
     const char *plot, *report;
@@ -39,6 +39,6 @@ int evaluate_load_rest(evaluation *v);
 
 /* evaluate_limits.c */
 int evaluate_read_limits(evaluation *v);
-/* Judge the figures, warn of those beyond their limits, and refuse limits of nothing. */
+/* Assess the figures, warn of those beyond their limits, and refuse limits of nothing. */
 int evaluate_check_limits(evaluation *v);
 #endif

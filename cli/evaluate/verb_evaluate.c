@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define AT(field) offsetof(evaluate_options, field)
-#define BENCH(field) AT(bench.field)
+#define SESSION(field) AT(session.field)
 
 static const option result_options[] = {
     {"limit", OPTION_TEXT, AT(limit), .value = "LIMITS",
@@ -42,20 +42,20 @@ static const option test_options[] = {
     {"level-width", OPTION_TEXT, AT(level_width), .value = "QUANTITY",
      .help = "references not further apart are one level; default 1e-5 of full scale in logs, 0 in "
              "tables"},
-    {"motion", OPTION_FILE, BENCH(motion), .value = "PROGRAMME",
+    {"motion", OPTION_FILE, SESSION(motion), .value = "PROGRAMME",
      .help = "motion file that the table ran: the reference of a log"},
-    {"motion-offset", OPTION_TEXT, BENCH(motion_offset), .value = "TIME|auto",
+    {"motion-offset", OPTION_TEXT, SESSION(motion_offset), .value = "TIME|auto",
      .help = "time of the log at which the programme begins; auto finds it; default 0s"},
-    {"table-axis", OPTION_CHOICE, BENCH(table_axis), .value = "AXIS", .choices = "x|y|z",
+    {"table-axis", OPTION_CHOICE, SESSION(table_axis), .value = "AXIS", .choices = "x|y|z",
      .help = "of the unit, about which a column table_rate [deg/s] turns it"},
-    {"section", OPTION_TEXT, BENCH(section), .value = "COLUMN",
+    {"section", OPTION_TEXT, SESSION(section), .value = "COLUMN",
      .help = "column of texts that names the runs of a log"},
-    {"minimum", OPTION_QUANTITY, BENCH(minimum), .value = "TIME", .unit = "s",
+    {"minimum", OPTION_QUANTITY, SESSION(minimum), .value = "TIME", .unit = "s",
      .choices = "positive",
      .help = "shortest stretch of constant reference that counts; default 0.5s"},
-    {"trim", OPTION_QUANTITY, BENCH(trim), .value = "TIME", .unit = "s", .choices = "not negative",
-     .help = "left out at both ends of a stretch; default 0.2s"},
-    {"settle", OPTION_QUANTITY, BENCH(settle), .value = "TIME", .unit = "s",
+    {"trim", OPTION_QUANTITY, SESSION(trim), .value = "TIME", .unit = "s",
+     .choices = "not negative", .help = "left out at both ends of a stretch; default 0.2s"},
+    {"settle", OPTION_QUANTITY, SESSION(settle), .value = "TIME", .unit = "s",
      .choices = "not negative",
      .help = "left out at its beginning besides, until filters have settled; default 0s"},
 };
@@ -70,13 +70,13 @@ static int read_quantity(const char *name, const char *text, imk_dimension dimen
     imk_error error;
     double sigma, found;
     size_t count;
-    char sentence[400];
+    char message[400];
     if (!text)
         return -1;
     if (imk_quantity_parse(text, text + strlen(text), dimension, 1, &found, &sigma, &count, NULL,
                            &error) != IMK_OK) {
-        imk_error_text(&error, NULL, sentence, sizeof sentence);
-        return command_misused("--%s: %s", name, sentence);
+        imk_error_text(&error, NULL, message, sizeof message);
+        return command_misused("--%s: %s", name, message);
     }
     if (!(found > 0) && strcmp(name, "zero") != 0)
         return command_misused("--%s %s: expected a quantity above 0", name, text);
@@ -96,10 +96,10 @@ static int check_company(const evaluation *v)
     const struct {
         const char *name;
         bool given;
-    } of_logs[] = {{"motion", o->bench.motion != NULL},
-                   {"motion-offset", o->bench.motion_offset != NULL},
-                   {"table-axis", o->bench.table_axis >= 0},
-                   {"section", o->bench.section != NULL}};
+    } of_logs[] = {{"motion", o->session.motion != NULL},
+                   {"motion-offset", o->session.motion_offset != NULL},
+                   {"table-axis", o->session.table_axis >= 0},
+                   {"section", o->session.section != NULL}};
     bool counts = false;
     for (size_t k = 0; k < v->log->channel_count; k++)
         counts = counts || in_counts(&v->log->channel[k]);
@@ -107,7 +107,7 @@ static int check_company(const evaluation *v)
         return command_misused("--sensitivity is of readings in counts, and there are none");
     if (o->zero && !o->sensitivity)
         return command_misused("--zero is of --sensitivity: add it");
-    if (o->bench.motion_offset && !o->bench.motion)
+    if (o->session.motion_offset && !o->session.motion)
         return command_misused("--motion-offset is of --motion: add it");
     for (size_t k = 0; k < sizeof of_logs / sizeof of_logs[0]; k++)
         if (of_logs[k].given && !v->has_log)
@@ -187,7 +187,7 @@ static int show(const evaluation *v)
 
 static int evaluate(evaluation *v)
 {
-    const calibrate_options *logs = &v->options->bench;
+    const calibrate_options *logs = &v->options->session;
     imk_evaluate_log_settings settings = imk_evaluate_log_default();
     settings.confidence = v->options->confidence;
     settings.minimum = logs->minimum;
@@ -214,7 +214,7 @@ static int run(int count, char **words)
     const double none = (double)NAN;
     evaluate_options o = {
         .confidence = 0.95,
-        .bench = {.minimum = none, .trim = none, .settle = none, .table_axis = -1}};
+        .session = {.minimum = none, .trim = none, .settle = none, .table_axis = -1}};
     evaluation *v = command_zeroed(sizeof *v);
     v->options = &o;
     int code = options_parse(&evaluate_verb, count, words, &o, v->path);
@@ -259,5 +259,5 @@ const verb evaluate_verb = {
         "docs/evaluate.md has the definitions.",
     .groups = {{"Options", COUNT(result_options), result_options, 0},
                {"The test", COUNT(test_options), test_options, 0},
-               {"Reading logs", LOG_INPUT_OPTIONS, log_input_options, BENCH(log)}},
+               {"Reading logs", LOG_INPUT_OPTIONS, log_input_options, SESSION(log)}},
     .run = run};

@@ -90,7 +90,7 @@ static int tell(const imk_navigate_log *n, const navigate_options *o, const char
     static const struct {
         const char *code;
         bool named; /* begins with the path */
-    } sentences[] = {
+    } messages[] = {
         {"no_sensor_column", true}, {"align_whole", true}, {"pole", false}, {"rest_short", false}};
     const imk_findings none = {.count = 0}, *findings = n ? &n->findings : &none;
     const imk_finding *failure = status != IMK_OK ? imk_findings_failure(findings) : NULL;
@@ -103,10 +103,10 @@ static int tell(const imk_navigate_log *n, const navigate_options *o, const char
         return command_misused("--standard-gravity: no accelerometer column of %s is in g, mg or "
                                "ug",
                                path);
-    for (size_t i = 0; i < sizeof sentences / sizeof sentences[0]; i++)
-        if (strcmp(failure->code, sentences[i].code) == 0)
-            return sentences[i].named ? command_failed("%s %s", path, text)
-                                      : command_failed("%s", text);
+    for (size_t i = 0; i < sizeof messages / sizeof messages[0]; i++)
+        if (strcmp(failure->code, messages[i].code) == 0)
+            return messages[i].named ? command_failed("%s %s", path, text)
+                                     : command_failed("%s", text);
     const bool of_model = strcmp(failure->code, "model_axes") == 0;
     return command_failed("%s: %s", of_model ? o->model : path, text);
 }

@@ -40,10 +40,10 @@ void command_begin(const char *verb_name);
 void command_line_keep(int argument_count, char **arguments);
 const char *command_line(void);
 
-/* "imukit allan: <sentence>" on standard error. Return the exit code, for `return failed(…)`. */
+/* "imukit allan: <message>" on standard error. Return the exit code, for `return failed(…)`. */
 int command_failed(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int command_misused(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* The sentence of a library error; source is the file it is about, or NULL. */
+/* The message of a library error; source is the file it is about, or NULL. */
 int command_error(const imk_error *error, const char *source);
 /* End the command at once, from where there is no way back; unfinished output files are removed. */
 _Noreturn void command_end(int code);
@@ -67,14 +67,14 @@ int command_log_error(const imk_error *error, const char *path);
 int command_check_plot(const char *plot);
 
 /* Text of strangers on its way to a terminal: what could be taken for a command, and bytes that are
- * no text, become "?", as in the sentences of errors. Line feeds stay. */
+ * no text, become "?", as in the messages of errors. Line feeds stay. */
 void command_clean(char *text);
 
 /* Is it standard output, or a pipe or device that is there: nothing that has a format by its name?
  */
 bool command_is_stream(const char *path);
 
-/* "imukit drift: <sentence>" on standard error, without a label: what a person may want to know. */
+/* "imukit drift: <message>" on standard error, without a label: what a person may want to know. */
 void command_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* A warning goes to standard error and into the JSON. */
@@ -95,7 +95,7 @@ const char *command_color(FILE *stream, const char *sequence);
 #define COLOR_GREEN "\033[32m"
 #define COLOR_RESET "\033[0m"
 
-/* Flush standard output: EXIT_DONE, or EXIT_FAILED with the sentence (a full disk). */
+/* Flush standard output: EXIT_DONE, or EXIT_FAILED with the message (a full disk). */
 int command_finish(int code);
 
 /* The nearest candidate to a name, or NULL. */

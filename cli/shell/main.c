@@ -114,7 +114,7 @@ static void interrupted(int number)
 /* A second signal, which shells and timeout(1) send soon after the first, waits until the files are
  * gone. A signal that the parent has switched off, as nohup(1) does, stays off; but of gnuplot we
  * need to know how it ended. A file beyond the limit of its size is an error of write() like any
- * other, with a sentence. */
+ * other, with a message. */
 static void catch_signals(void)
 {
     signal(SIGXFSZ, SIG_IGN);

@@ -17,7 +17,7 @@
 
 IMK_BEGIN_C
 
-enum { IMK_CALIBRATE_DOUBTS_MAX = 16, IMK_CALIBRATE_REFERENCES = 9, IMK_CALIBRATE_POSES = 3 };
+enum { IMK_CALIBRATE_DIAGNOSTICS_MAX = 16, IMK_CALIBRATE_REFERENCES = 9, IMK_CALIBRATE_POSES = 3 };
 
 /** What is asked; NaN: not given. Start from imk_calibrate_log_default(). */
 typedef struct imk_calibrate_log_settings {
@@ -54,8 +54,8 @@ typedef struct imk_calibrate_record {
     size_t interval_count;
     imk_static_interval *interval;
     double *activity; /**< per sample; NULL: not asked for */
-    size_t doubt_count;
-    imk_doubt_finding doubt[IMK_CALIBRATE_DOUBTS_MAX];
+    size_t diagnostic_count;
+    imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX];
     imk_thermal_findings *thermal; /**< of that procedure */
 } imk_calibrate_record;
 
@@ -70,9 +70,9 @@ typedef struct imk_calibrate_log {
     imk_ferraris *ferraris; /**< of the closed form */
     imk_repeatability_result *runs;
     size_t run_count;
-    size_t doubt_count;
-    imk_doubt_finding doubt[IMK_CALIBRATE_DOUBTS_MAX]; /**< of the solution */
-    imk_model model;                                   /**< to be written; its name stays */
+    size_t diagnostic_count;
+    imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX]; /**< of the solution */
+    imk_model model; /**< to be written; its name stays */
     imk_findings findings;
     size_t failed; /**< number of the record that could not be used; count: all of them together */
     imk_job job;
@@ -85,15 +85,15 @@ typedef struct imk_calibrate_log {
  *  @return IMK_ERROR_RANGE (0 records, or more than IMK_TEST_RECORDS_MAX), _MEMORY */
 IMK_API imk_status imk_calibrate_log_create(size_t count,
                                             const imk_calibrate_log_settings *settings,
-                                            const imk_job *job, imk_calibrate_log **bench,
+                                            const imk_job *job, imk_calibrate_log **session,
                                             imk_error *error);
 /** Free it; what the caller filled in stays the caller's. */
-IMK_API void imk_calibrate_log_free(imk_calibrate_log *bench);
+IMK_API void imk_calibrate_log_free(imk_calibrate_log *session);
 
 /** Observe each record by its procedure, solve all together, make the model.
  *  @return as imk_procedure_observe(), imk_calibration_solve(), imk_ferraris_closed_form(),
- *          imk_repeatability_of_holds(); then bench->failed says of what */
-IMK_API imk_status imk_calibrate_log_run(imk_calibrate_log *bench, imk_error *error);
+ *          imk_repeatability_of_holds(); then session->failed says of what */
+IMK_API imk_status imk_calibrate_log_run(imk_calibrate_log *session, imk_error *error);
 
 /** Bias and scale factor of a model with their sigmas, as the calibration of a run; of counts by
  *  the sensitivities and zeros of the first one, since each may have found its own. */
@@ -101,7 +101,7 @@ IMK_API void imk_calibration_of_model(const imk_model *model, const imk_model *f
                                       imk_calibration_result *result);
 /** Compare runs, the calibration of each given, and make the model.
  *  @return with a finding, IMK_ERROR_TOO_SHORT, _EMPTY; as imk_repeatability_of_calibrations() */
-IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *bench,
+IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *session,
                                              const imk_calibration_result *const *run,
                                              imk_error *error);
 
@@ -109,18 +109,18 @@ IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *bench,
 IMK_API bool imk_procedure_is_known(imk_procedure procedure);
 
 /** Index of a parameter of the solution, or -1. */
-IMK_API int imk_calibrate_find(const imk_calibrate_log *bench, imk_model_parameter parameter);
+IMK_API int imk_calibrate_find(const imk_calibrate_log *session, imk_model_parameter parameter);
 
 /** The poses that would tell most about the accelerometers, given the rests that were found.
  *  @return false where they are not known, or memory is exhausted */
-IMK_API bool imk_calibrate_advise(const imk_calibrate_log *bench, const imk_calibrate_record *log,
+IMK_API bool imk_calibrate_advise(const imk_calibrate_log *session, const imk_calibrate_record *log,
                                   const imk_allocator *allocator,
                                   imk_pose_advice advice[IMK_CALIBRATE_POSES]);
 
 /** @name Programmes of tests
  *  @{ */
 typedef struct imk_calibrate_plan {
-    imk_plan_settings settings; /**< with wishes of its own, which say what is expected */
+    imk_plan_settings settings; /**< with requirements of its own, which say what is expected */
     imk_plan_step *step;
     imk_plan_result result;
     double duration;          /**< of all, with ramps of the temperature of 1 K/min [s] */

@@ -10,9 +10,10 @@
  *      sigma^2(T) = N^2/T + (2 ln 2/pi) B^2 + K^2 T/3 + 2 Q^2/T^2 + …
  *
  *  Steps are taken one by one, each the one that adds most: first to the determinant of the
- *  information (D-optimal), then to what is wished. Then the time of a step is chosen, as short as
- *  the wishes allow; where no time is enough, steps are added. Wishes that no programme reaches are
- *  said to be so, with what is attainable. Method: docs/theory/calibration.md. */
+ *  information (D-optimal), then to what is required. Then the time of a step is chosen, as short
+ * as the requirements allow; where no time is enough, steps are added. Requirements that no
+ * programme reaches are said to be so, with what is attainable. Method: docs/theory/calibration.md.
+ */
 #ifndef IMUKIT_CALIBRATION_PLAN_H
 #define IMUKIT_CALIBRATION_PLAN_H
 
@@ -22,7 +23,7 @@
 IMK_BEGIN_C
 
 /** A wanted uncertainty. */
-typedef struct imk_plan_wish {
+typedef struct imk_sigma_requirement {
     imk_model_parameter parameter;
     double sigma; /**< wanted, 1 sigma [unit of the parameter], > 0 */
     /* Filled by imk_plan_make(): */
@@ -30,18 +31,19 @@ typedef struct imk_plan_wish {
                           determined */
     double floor;    /**< of it what no programme can lower: see `lasting` */
     bool reached;
-} imk_plan_wish;
+} imk_sigma_requirement;
 
 /** What to plan. Start from imk_plan_default(procedure), then change fields. */
 typedef struct imk_plan_settings {
     uint32_t cookie;
     imk_procedure procedure;
-    size_t wish_count;   /**< 0: none; the programme is the shortest that determines everything */
-    imk_plan_wish *wish; /**< the caller's */
-    double rate;         /**< of samples [Hz]; 100, thermal 10: it takes hours */
-    bool lasting;        /**< wishes are about what stays true after the test: the bias instability
-                              (its Allan floor) and the repeatability of the model, which no test
-                              lowers, count. false: about the test's own figures. Default true */
+    size_t
+        requirement_count; /**< 0: none; the programme is the shortest that determines everything */
+    imk_sigma_requirement *requirement; /**< the caller's */
+    double rate;                        /**< of samples [Hz]; 100, thermal 10: it takes hours */
+    bool lasting; /**< requirements are about what stays true after the test: the bias instability
+                       (its Allan floor) and the repeatability of the model, which no test
+                       lowers, count. false: about the test's own figures. Default true */
     double hold_minimum, hold_maximum; /**< time of a step that is measured [s]; 2, 120 */
     double margin;                     /**< held longer, for detection and settling [s]; 2 */
     double turn_time;     /**< from pose to pose [s]; 2, longer where the range of the gyros needs
@@ -91,7 +93,7 @@ typedef struct imk_plan_result {
     size_t parameter_count;
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     double sigma[IMK_CORRELATED_MAX]; /**< that the calibration would state; NaN: not determined */
-    size_t reached;                   /**< wishes */
+    size_t reached;                   /**< requirements */
 } imk_plan_result;
 
 /** Bytes of workspace. @param calibration  as for imk_plan_make(); room behind its observations is
@@ -103,13 +105,13 @@ IMK_API size_t imk_plan_workspace_size(imk_calibration *calibration,
  *  @param calibration  gives the model with its noise, frame, gravity, latitude and priors; what is
  *                      observed already counts. Its room for observations and turns, as many as
  *                      steps_maximum, is scratch; it is left as it was. When it has free parameters
- *                      they are kept (wishes must be among them), else the procedure's are made
- *                      free
+ *                      they are kept (requirements must be among them), else the procedure's are
+ * made free
  *  @param step         settings->steps_maximum of them
  *  @return IMK_ERROR_UNINITIALISED, _RANGE (settings, field), _WORKSPACE (also: room for
- *          observations or turns), _KEY_MISSING (a wish for a parameter that the procedure does not
- *          estimate; or "noise": the model states none), errors of imk_calibration_information().
- *          A wish that is not reached is no error */
+ *          observations or turns), _KEY_MISSING (a requirement for a parameter that the procedure
+ * does not estimate; or "noise": the model states none), errors of imk_calibration_information().
+ *          A requirement that is not reached is no error */
 IMK_API imk_status imk_plan_make(imk_calibration *calibration, const imk_plan_settings *settings,
                                  imk_plan_step *step, imk_plan_result *result, void *workspace,
                                  size_t workspace_size, imk_error *error);

@@ -190,26 +190,27 @@ typedef enum imk_drift_validity {
 /** By tilt, heading and drms. */
 IMK_API imk_drift_validity imk_drift_validity_of(const imk_drift_figures *figures);
 
-/** A wish: a figure at a time of the analysis. */
-typedef enum imk_drift_wish {
-    IMK_WISH_CEP = 0,
-    IMK_WISH_R95,
-    IMK_WISH_DRMS,
-    IMK_WISH_HEIGHT,
-    IMK_WISH_VELOCITY,
-    IMK_WISH_TILT,
-    IMK_WISH_HEADING
-} imk_drift_wish;
+/** A requirement: a figure at a time of the analysis. */
+typedef enum imk_drift_requirement {
+    IMK_REQUIRED_CEP = 0,
+    IMK_REQUIRED_R95,
+    IMK_REQUIRED_DRMS,
+    IMK_REQUIRED_HEIGHT,
+    IMK_REQUIRED_VELOCITY,
+    IMK_REQUIRED_TILT,
+    IMK_REQUIRED_HEADING
+} imk_drift_requirement;
 
 /** "CEP", "R95", "DRMS", "height", "velocity", "tilt", "heading" */
-IMK_API const char *imk_drift_wish_name(imk_drift_wish wish);
+IMK_API const char *imk_drift_requirement_name(imk_drift_requirement requirement);
 /** The SI unit of its figure: "m", "m/s", "rad". */
-IMK_API const char *imk_drift_wish_unit(imk_drift_wish wish);
-/** Value of the figure a wish is about. */
-IMK_API double imk_drift_wished(const imk_drift_figures *figures, imk_drift_wish wish);
+IMK_API const char *imk_drift_requirement_unit(imk_drift_requirement requirement);
+/** Value of the figure a requirement is about. */
+IMK_API double imk_drift_required(const imk_drift_figures *figures,
+                                  imk_drift_requirement requirement);
 
-/** How good each source must become to meet a wish. */
-typedef struct imk_drift_requirement {
+/** How good each source must become to meet a requirement. */
+typedef struct imk_drift_allocation {
     double present;                       /**< the figure as it is */
     double all;                           /**< every source times this meets it (> 1: margin) */
     double source[IMK_DRIFT_SOURCES_MAX]; /**< the least work: only sources above a common ceiling
@@ -217,14 +218,14 @@ typedef struct imk_drift_requirement {
     double alone[IMK_DRIFT_SOURCES_MAX]; /**< this source alone made better by this factor would do;
                                               0: not even without it; 1 or more: it may be that
                                               much larger; infinite: it does not matter */
-} imk_drift_requirement;
+} imk_drift_allocation;
 
 /** @param time  index of the time
  *  @param goal  of the figure, SI, > 0
  *  @return IMK_ERROR_RANGE */
 IMK_API imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t time,
-                                     imk_drift_wish wish, double goal,
-                                     imk_drift_requirement *requirement, imk_error *error);
+                                     imk_drift_requirement requirement, double goal,
+                                     imk_drift_allocation *allocation, imk_error *error);
 
 IMK_END_C
 #endif

@@ -43,7 +43,7 @@ IMK_API void imk_drift_times_free(imk_drift_times *times);
 /** A figure that is to be no larger than so much at a time, which is one of the table. */
 typedef struct imk_drift_wanted {
     bool asked;
-    imk_drift_wish figure;
+    imk_drift_requirement figure;
     double goal;   /**< SI */
     imk_unit unit; /**< of the goal, as it was asked */
     double time;   /**< [s] */
@@ -99,7 +99,7 @@ typedef struct imk_drift_candidate {
 
 /** What would do what is wanted. */
 typedef struct imk_drift_answer {
-    imk_drift_requirement requirement;
+    imk_drift_allocation allocation;
     size_t order_count;                  /**< of the terms that must become better */
     size_t order[IMK_DRIFT_SOURCES_MAX]; /**< the one that needs most first */
     bool alone;                          /**< one of them would do alone */

@@ -98,7 +98,7 @@ typedef struct imk_evaluation {
                                                [reference]; lower: largest step that surely does not,
                                                0: none; upper: from where on all surely do, NaN: none */
     imk_evaluation_figure threshold;      /**< the same from readings at reference 0 */
-    double smallest_step, smallest_input; /**< tested, as far as noise lets them be judged; NaN */
+    double smallest_step, smallest_input; /**< tested, as far as noise lets them be assessed; NaN */
     imk_evaluation_line line, best; /**< by least squares of all readings; minimax of levels */
     int accuracy_level, linearity_level, hysteresis_level; /**< where the largest is; -1: none */
     int alternation[3]; /**< levels at which the minimax line has its largest deviation, with

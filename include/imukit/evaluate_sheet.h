@@ -87,8 +87,8 @@ IMK_API size_t imk_evaluate_limit_keys(const char *key[IMK_EVALUATE_ROWS]);
  * and accelerometers may have one each. A limit is surely met when the whole interval is within it,
  * as conformity is decided with measurement uncertainty [JCGM106]. Sets the verdict, and which
  * limits were used. */
-IMK_API void imk_evaluate_judge(size_t limit_count, imk_evaluate_limit *limits, const char *name,
-                                imk_evaluate_row *row);
+IMK_API void imk_evaluate_assess(size_t limit_count, imk_evaluate_limit *limits, const char *name,
+                                 imk_evaluate_row *row);
 /** "met", "not met"; "" without a limit. */
 IMK_API const char *imk_evaluate_verdict_text(imk_evaluate_verdict verdict);
 

@@ -20,10 +20,10 @@
 
 IMK_BEGIN_C
 
-/** A sentence that says what was found, what was expected and what to do:
+/** A message that says what was found, what was expected and what to do:
  *  `tactical.yaml:7:3: gyro.noise.angle_random_walk: "0.1 deg/h" is a rate; expected a unit like …`
  *
- *  How an author fills an imk_error so that the sentence is good:
+ *  How an author fills an imk_error so that the message is good:
  *  - found is the bare text that stood there for the statuses about a text (_SYNTAX, _UNIT_…,
  *    _DIMENSION, _KEY_…, _NAME_UNKNOWN, _VERSION, _RANGE, _NOT_FINITE): it is quoted and the clause
  *    added; or a whole clause that begins with its own quotation mark. For the others it is a

@@ -79,7 +79,7 @@ typedef struct imk_laboratory_result {
     imk_laboratory_point point[IMK_LABORATORY_POINTS_MAX];
     double line_deviation; /**< largest distance from the least-squares line, of full scale [1] */
     double threshold; /**< smallest input with at least half of its expected change; 0: all did */
-    double threshold_from; /**< smallest input that noise let be judged */
+    double threshold_from; /**< smallest input that noise let be assessed */
     int response_count;
     imk_laboratory_response response[IMK_LABORATORY_FREQUENCIES_MAX];
     double bandwidth; /**< -3 dB [Hz]; 0: beyond the frequencies tried */

@@ -42,7 +42,7 @@ IMK_API imk_status imk_parameter_format_detect(const char *path, imk_parameter_f
 
 enum { IMK_PARAMETER_NOTES_MAX = 64 };
 
-/** What was assumed or left out: one sentence each. */
+/** What was assumed or left out: one message each. */
 typedef struct imk_parameter_notes {
     size_t count;
     struct imk_parameter_note {
@@ -71,7 +71,7 @@ IMK_API imk_parameter_settings imk_parameter_default(void);
 
 /** Read. @return IMK_ERROR_FORMAT (none of the formats), _KEY_MISSING (error.expected: the option
  *  to add), _KEY_UNKNOWN, _SYNTAX, _RANGE (a value that cannot be in the unit of the format: the
- *  sentence says which unit it looks like), … with line */
+ *  message says which unit it looks like), … with line */
 IMK_API imk_status imk_parameters_read(const char *path, const imk_parameter_settings *settings,
                                        imk_model *model, imk_parameter_notes *notes,
                                        imk_error *error);

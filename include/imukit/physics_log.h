@@ -127,7 +127,7 @@ IMK_API void imk_physics_sweep_free(imk_physics_sweep *sweep);
 IMK_API const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t index);
 
 /** Put the numbers of an error that a validate or init filled in SI into the unit of the field it
- *  names, for the sentence: `"30 kHz" is outside its valid range (limit 10 kHz)`. Fields that are
+ *  names, for the message: `"30 kHz" is outside its valid range (limit 10 kHz)`. Fields that are
  *  not of the table, and values that do not stand in the design, are left as they are.
  *  @param design  what was refused */
 IMK_API void imk_design_error_in_units(const imk_instrument *instrument, const void *design,

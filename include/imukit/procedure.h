@@ -110,53 +110,54 @@ IMK_API imk_status imk_procedure_observe(imk_procedure procedure, imk_calibratio
 /* ---- what looks wrong ---------------------------------------------------------------------------
  */
 
-/** Doubts about a log or a solution, each with a sentence in the command. */
-typedef enum imk_doubt {
-    IMK_DOUBT_NEVER_STATIC = 0, /**< no stretch stands still */
-    IMK_DOUBT_NEVER_MOVES,      /**< one pose only */
-    IMK_DOUBT_FEW_POSES,        /**< value different ones found, limit needed */
-    IMK_DOUBT_ONE_PLANE,    /**< poses all in one plane or on a cone about `axis`: value is their
-                                 spread across it over gravity (0.58 at best), limit needed */
-    IMK_DOUBT_GRAVITY_UNIT, /**< |force| at rest is not gravity: value is |force| [m/s^2], limit
-                                 the factor that would mend it: 9.80665 (forces are in g),
+/** Diagnostics about a log or a solution, each with a message in the command. */
+typedef enum imk_diagnostic {
+    IMK_DIAGNOSTIC_NEVER_STATIC = 0, /**< no stretch stands still */
+    IMK_DIAGNOSTIC_NEVER_MOVES,      /**< one pose only */
+    IMK_DIAGNOSTIC_FEW_POSES,        /**< value different ones found, limit needed */
+    IMK_DIAGNOSTIC_ONE_PLANE, /**< poses all in one plane or on a cone about `axis`: value is their
+                              spread across it over gravity (0.58 at best), limit needed */
+    IMK_DIAGNOSTIC_GRAVITY_UNIT, /**< |force| at rest is not gravity: value is |force| [m/s^2],
+                                 limit the factor that would mend it: 9.80665 (forces are in g),
                                  9.80665e-3 (mg, or Gal), 9.80665e-6 (ug), 1/9.80665 (converted
                                  from g twice), 0.3048 (ft/s^2); 0: none of these */
-    IMK_DOUBT_RATE_UNIT,    /**< rates of the turns look like deg/s taken for rad/s, or the
+    IMK_DIAGNOSTIC_RATE_UNIT,    /**< rates of the turns look like deg/s taken for rad/s, or the
                                  reverse: value is the ratio, 57.3 or 1/57.3 */
-    IMK_DOUBT_SATURATED,    /**< an axis stays at the end of its range: value is the share of
+    IMK_DIAGNOSTIC_SATURATED,    /**< an axis stays at the end of its range: value is the share of
                                  samples, limit the reading there */
-    IMK_DOUBT_COUNTS,       /**< a sensor's readings are whole numbers and said to be SI: value
+    IMK_DIAGNOSTIC_COUNTS,       /**< a sensor's readings are whole numbers and said to be SI: value
                                  is the largest */
-    IMK_DOUBT_SWAPPED_AXES, /**< `axis` and `other` of `sensor` look exchanged, by the turns;
+    IMK_DIAGNOSTIC_SWAPPED_AXES, /**< `axis` and `other` of `sensor` look exchanged, by the turns;
                                  sensor -1: axes of the gyros and of the accelerometers differ
                                  otherwise. value: angle by which turns miss [rad] */
-    IMK_DOUBT_LEFT_HANDED,  /**< `axis` of `sensor` looks inverted; sensor -1: both sensors are
+    IMK_DIAGNOSTIC_LEFT_HANDED,  /**< `axis` of `sensor` looks inverted; sensor -1: both sensors are
                                  in left-handed axes */
-    IMK_DOUBT_TIME_UNIT,    /**< times look like ms or us taken for s: value is the factor, 1e3,
-                                 1e6, or 1e-3 for the reverse */
-    IMK_DOUBT_STUCK,        /**< an axis never changes */
-    IMK_DOUBT_RESIDUALS,    /**< chi-square per degree of freedom far above one: value */
-    IMK_DOUBT_CORRELATED,   /**< two parameters told apart by noise only: value correlation */
-    IMK_DOUBT_OUTLIERS,     /**< many observations refused: value share */
-    IMK_DOUBTS
-} imk_doubt;
+    IMK_DIAGNOSTIC_TIME_UNIT,  /**< times look like ms or us taken for s: value is the factor, 1e3,
+                               1e6, or 1e-3 for the reverse */
+    IMK_DIAGNOSTIC_STUCK,      /**< an axis never changes */
+    IMK_DIAGNOSTIC_RESIDUALS,  /**< chi-square per degree of freedom far above one: value */
+    IMK_DIAGNOSTIC_CORRELATED, /**< two parameters told apart by noise only: value correlation */
+    IMK_DIAGNOSTIC_OUTLIERS,   /**< many observations refused: value share */
+    IMK_DIAGNOSTICS
+} imk_diagnostic;
 
-typedef struct imk_doubt_finding {
-    imk_doubt kind;
+typedef struct imk_diagnostic_finding {
+    imk_diagnostic kind;
     int sensor, axis, other; /**< -1: none */
     double value, limit;
-} imk_doubt_finding;
+} imk_diagnostic_finding;
 
 /** Look a record over, with the static intervals found in it, before anything is solved.
- *  @return number of doubts written, at most `capacity`, the gravest first */
-IMK_API size_t imk_record_doubts(const imk_test_record *record, const imk_static_findings *findings,
-                                 size_t interval_count, const imk_static_interval *interval,
-                                 double gravity, const imk_model *model, size_t capacity,
-                                 imk_doubt_finding *doubt);
+ *  @return number of diagnostics written, at most `capacity`, the gravest first */
+IMK_API size_t imk_record_diagnostics(const imk_test_record *record,
+                                      const imk_static_findings *findings, size_t interval_count,
+                                      const imk_static_interval *interval, double gravity,
+                                      const imk_model *model, size_t capacity,
+                                      imk_diagnostic_finding *diagnostic);
 /** Look a solution over. */
-IMK_API size_t imk_solution_doubts(const imk_calibration *calibration,
-                                   const imk_calibration_result *result, size_t capacity,
-                                   imk_doubt_finding *doubt);
+IMK_API size_t imk_solution_diagnostics(const imk_calibration *calibration,
+                                        const imk_calibration_result *result, size_t capacity,
+                                        imk_diagnostic_finding *diagnostic);
 
 IMK_END_C
 #endif

@@ -23,9 +23,9 @@ IMK_API const char *imk_readable_number(double value, char text[IMK_READABLE_SIZ
 IMK_API const char *imk_readable_quantity(double value, const imk_unit *unit,
                                           char text[IMK_READABLE_SIZE]);
 /** The unit a person reads a figure of this size in: m, km, m/s, arcsec, arcmin, deg. */
-IMK_API imk_unit imk_readable_figure_unit(imk_drift_wish figure, double value);
+IMK_API imk_unit imk_readable_figure_unit(imk_drift_requirement figure, double value);
 /** "1.2 km": a figure in it. */
-IMK_API const char *imk_readable_figure(imk_drift_wish figure, double value,
+IMK_API const char *imk_readable_figure(imk_drift_requirement figure, double value,
                                         char text[IMK_READABLE_SIZE]);
 
 IMK_END_C

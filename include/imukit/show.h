@@ -100,14 +100,14 @@ IMK_API void imk_show_identify_several(const imk_identify_several *several,
 
 /** @name Calibrations
  *  @{ */
-/** Doubts, findings over temperature and warnings as sentences; FAILURE: of no use.
+/** Diagnostics, findings over temperature and warnings as messages; FAILURE: of no use.
  *  @param before  `count` messages on the way here */
-IMK_API imk_verdict imk_calibrate_verdict(const imk_calibrate_log *bench, size_t count,
+IMK_API imk_verdict imk_calibrate_verdict(const imk_calibrate_log *session, size_t count,
                                           const imk_message *before, imk_result *result);
 /** The worst there is; good when there is nothing. */
 IMK_API imk_finding_level imk_verdict_level(const imk_verdict *verdict);
 /** Parameters, fit, remarks, verdict and a figure. @param poses  also on the terminal */
-IMK_API void imk_show_calibrate_log(const imk_calibrate_log *bench, const imk_verdict *verdict,
+IMK_API void imk_show_calibrate_log(const imk_calibrate_log *session, const imk_verdict *verdict,
                                     bool poses, imk_result *result);
 /** The steps of a programme, and what is reached. @param model  what the unit's is called */
 IMK_API void imk_show_calibrate_plan(const imk_calibrate_plan *plan, const char *model,
@@ -116,9 +116,9 @@ IMK_API void imk_show_calibrate_plan(const imk_calibrate_plan *plan, const char 
  *  @param text  obtained from malloc(), the caller's @return IMK_ERROR_MEMORY */
 IMK_API imk_status imk_calibrate_plan_text(const imk_calibrate_plan *plan,
                                            const imk_geodetic *place, char **text, size_t *size);
-/** Why imk_calibrate_log_run() failed, with the name of the record: doubts about it say more than
- *  the error. @return length of the text; 0: nothing is to be said beyond the error */
-IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *bench, const imk_error *error,
+/** Why imk_calibrate_log_run() failed, with the name of the record: diagnostics about it say more
+ * than the error. @return length of the text; 0: nothing is to be said beyond the error */
+IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *session, const imk_error *error,
                                      char *text, size_t size);
 /** @} */
 

@@ -4,7 +4,7 @@
  *
  *  A function that can fail returns an imk_status; its outputs are untouched on error. Validators,
  *  parsers and solvers also fill a caller-owned imk_error, from which imk_error_text() (io.h)
- *  makes the sentence for a person. */
+ *  makes the message for a person. */
 #ifndef IMUKIT_STATUS_H
 #define IMUKIT_STATUS_H
 
@@ -87,7 +87,7 @@ typedef struct imk_error {
     size_t column;      /**< in that line, from 1 */
     char field[96];     /**< dotted path of the parameter, or name of the column or file */
     char found[96];     /**< what stood there, shortened */
-    char expected[160]; /**< what is due there, or what to do: the end of a sentence */
+    char expected[160]; /**< what is due there, or what to do: the end of a message */
 } imk_error;
 
 /** Name of a status ("IMK_ERROR_RANGE"); "unknown" for a value not in the list. */

@@ -48,12 +48,12 @@ void imk_readable_duration(double seconds, char *text, size_t size)
                                      part[i].count, part[i].unit);
 }
 
-imk_unit imk_readable_figure_unit(imk_drift_wish wish, double value)
+imk_unit imk_readable_figure_unit(imk_drift_requirement requirement, double value)
 {
     const double size = fabs(value), degree = 3.14159265358979323846 / 180;
-    if (wish == IMK_WISH_VELOCITY)
+    if (requirement == IMK_REQUIRED_VELOCITY)
         return imk_unit_of("m/s");
-    if (wish == IMK_WISH_TILT || wish == IMK_WISH_HEADING)
+    if (requirement == IMK_REQUIRED_TILT || requirement == IMK_REQUIRED_HEADING)
         return imk_unit_of(size >= degree ? "deg" : size >= degree / 60 ? "arcmin" : "arcsec");
     return imk_unit_of(size < 1000 ? "m" : "km");
 }
@@ -82,8 +82,9 @@ const char *imk_readable_quantity(double value, const imk_unit *unit, char text[
     return text;
 }
 
-const char *imk_readable_figure(imk_drift_wish wish, double value, char text[IMK_READABLE_SIZE])
+const char *imk_readable_figure(imk_drift_requirement requirement, double value,
+                                char text[IMK_READABLE_SIZE])
 {
-    const imk_unit unit = imk_readable_figure_unit(wish, value);
+    const imk_unit unit = imk_readable_figure_unit(requirement, value);
     return imk_readable_quantity(value, &unit, text);
 }

@@ -57,7 +57,7 @@ imki_step_run imki_step_begin(const imk_motion_step *step, double smoothing, imk
 /* Motion at a time since the beginning of the step. */
 imki_local_motion imki_step_motion(const imki_step_run *run, double time);
 
-/* Check every number of a script that can be judged by itself. */
+/* Check every number of a script that can be assessed by itself. */
 imk_status imki_script_check(const imk_motion_script *script, imk_error *error);
 /* Fill an error about a step: `field` such as "step.rate", with the number and its limit. */
 imk_status imki_step_refuse(imk_error *error, const char *field, size_t index, double value,

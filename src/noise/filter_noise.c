@@ -163,8 +163,8 @@ static void add_flicker(imk_filter_noise *noise, const imk_filter_noise_settings
 }
 
 /* Largest relative error of the Allan deviation that the approximation of flicker makes. */
-static void judge_flicker(imk_filter_noise *noise, const imk_filter_noise *rest,
-                          const imk_filter_noise_settings *settings, double instability)
+static void assess_flicker(imk_filter_noise *noise, const imk_filter_noise *rest,
+                           const imk_filter_noise_settings *settings, double instability)
 {
     const double range = imk_ln(settings->to / settings->from);
     for (int i = 0; i < POINTS; i++) {
@@ -248,7 +248,7 @@ imk_status imk_filter_noise_of(const imk_triad *triad, int axis,
     if (instability > 0) {
         const imk_filter_noise rest = made;
         add_flicker(&made, settings, instability);
-        judge_flicker(&made, &rest, settings, instability);
+        assess_flicker(&made, &rest, settings, instability);
     }
     add_constant(&made, triad->bias.repeatability.value[axis]);
     *noise = made;

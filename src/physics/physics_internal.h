@@ -121,7 +121,7 @@ static inline double imki_quantised(double x, double step)
 
 /* Divide a sample of 1/rate into equal internal steps no longer than settings.step, or than
  * `longest` when that is 0.
- *  @param limit  a step beyond this is refused (field "step") with `reason`, the end of a sentence:
+ *  @param limit  a step beyond this is refused (field "step") with `reason`, the end of a message:
  *                "at least 16 steps to a cycle of the drive"
  *  @param count  steps per sample, >= 1;  *step its length [s] */
 imk_status imki_divide_sample(const imk_physics_settings *settings, double longest, double limit,

@@ -106,7 +106,7 @@ static const struct message {
     {"requirement_chance",
      "--want \"{name}\": behind \"detected\" a chance below 100% is due, such "
      "as 95%"},
-    {"requirements", "--want: these are more than {0} wishes"},
+    {"requirements", "--want: these are more than {0} requirements"},
     {"no_such_noise", "--want \"{name}\": there is no such noise"},
     /* spectrum_log.c */
     {"too_few_for_spectrum", "{0} rows are too few for a spectrum; 64 are needed, and some "

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Logs for the tests of static detection and of doubts: a unit turned from pose to pose, simulated,
- * and the real ones of the shared folder. Include after check.h. */
+/* Logs for the tests of static detection and of diagnostics: a unit turned from pose to pose,
+ * simulated, and the real ones of the shared folder. Include after check.h. */
 #ifndef IMUKIT_TESTS_POSE_LOG_H
 #define IMUKIT_TESTS_POSE_LOG_H
 

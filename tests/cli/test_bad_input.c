@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Logs, models and outputs that are wrong: the sentence, the exit code, and nothing left behind. */
+/* Logs, models and outputs that are wrong: the message, the exit code, and nothing left behind. */
 #include "run_command.h"
 
 #include "imukit/utf8.h"
@@ -439,7 +439,7 @@ static void test_unwritable_outputs(void **state)
         check_contains(err, "No space left on device", line);
         const char *error = strstr(err, "error: ");
         assert_non_null(error);
-        assert_null(strstr(error + 1, "error: ")); /* one sentence */
+        assert_null(strstr(error + 1, "error: ")); /* one message */
     }
     sweep();
 }

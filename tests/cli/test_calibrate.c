@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* imukit calibrate: simulate -> calibrate -> compensate comes back to nothing within the stated
- * uncertainty; every kind of log that cannot be used is answered with the sentence that mends it;
+ * uncertainty; every kind of log that cannot be used is answered with the message that mends it;
  * a real log of a turntable-free calibration gives the published figures. */
 #include "run_command.h"
 
@@ -204,12 +204,12 @@ static void alter(const char *program)
     assert_int_equal(run(line), 0);
 }
 
-static void check_says(const char *line, int code, const char *sentence)
+static void check_says(const char *line, int code, const char *message)
 {
     const int actual = run(line);
     if (actual != code)
         fail_msg("%s: code %d, expected %d\n%s%s", line, actual, code, out, err);
-    check_contains(err, sentence, line);
+    check_contains(err, message, line);
 }
 
 static void bad_columns_are_explained(void **state)

@@ -49,10 +49,10 @@ static void follow_advice(const char *output)
         fail_msg("%s: %s", line, err);
 }
 
-/* What is stated of a term is no more than was wished, and holds: within 4.5 sigma of the truth
+/* What is stated of a term is no more than was required, and holds: within 4.5 sigma of the truth
  * (six axes of a fixed seed; others pass). The factor that the residuals give to sigma scatters by
  * a tenth where they have fifty degrees of freedom. */
-static void check_reached(const char *path, int sensor, int term, double wish)
+static void check_reached(const char *path, int sensor, int term, double requirement)
 {
     const imk_model found = read_model(path), truth = read_model("unit.yaml");
     int checked = 0;
@@ -61,8 +61,8 @@ static void check_reached(const char *path, int sensor, int term, double wish)
         imk_model copy = found;
         double *sigma;
         const double *value = imk_model_parameter_at(&copy, p, &sigma);
-        if (!(*sigma > 0 && *sigma <= 1.1 * wish))
-            fail_msg("%s: 1 sigma %.3g, wanted %.3g", path, *sigma, wish);
+        if (!(*sigma > 0 && *sigma <= 1.1 * requirement))
+            fail_msg("%s: 1 sigma %.3g, wanted %.3g", path, *sigma, requirement);
         CHECK_CLOSE(*value, imk_model_parameter_get(&truth, p), 4.5 * *sigma);
         checked++;
     }
@@ -73,7 +73,7 @@ static void programmes_reach_what_was_wanted(void **state)
 {
     (void)state;
     static const struct {
-        const char *procedure, *wish;
+        const char *procedure, *requirement;
         int sensor;
         double sigma;
     } cases[] = {{"multiposition", "accel.scale_factor 25 ppm", 1, 25e-6},
@@ -86,7 +86,7 @@ static void programmes_reach_what_was_wanted(void **state)
         char line[500];
         snprintf(line, sizeof line,
                  "$I calibrate --plan unit.yaml -p %s" PLACE "--want '%s' --strict -o p.yaml",
-                 cases[k].procedure, cases[k].wish);
+                 cases[k].procedure, cases[k].requirement);
         if (run(line) != 0)
             fail_msg("%s: %s %s", line, out, err);
         follow_advice("found.yaml");

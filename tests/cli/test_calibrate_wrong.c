@@ -6,12 +6,12 @@
 #define PLACE "--position '48.1 deg, 11.6 deg, 520 m'"
 #define POSES "-p multiposition " PLACE
 
-static void check_says(const char *line, int code, const char *sentence)
+static void check_says(const char *line, int code, const char *message)
 {
     const int actual = run(line);
     if (actual != code)
         fail_msg("%s: code %d, expected %d\n%s%s", line, actual, code, out, err);
-    check_contains(err, sentence, line);
+    check_contains(err, message, line);
 }
 
 static void put_unit(void)

@@ -249,7 +249,7 @@ static void test_given_is_no_value(void **state)
     }
 }
 
-/* Numbers beyond a range, in the unit in which the sentence says it. */
+/* Numbers beyond a range, in the unit in which the message says it. */
 static void test_ranges(void **state)
 {
     (void)state;
@@ -281,12 +281,12 @@ static void test_ranges(void **state)
          "--confidence 0.9999999999: expected a fraction from 0.001 to 0.999999999"},
         {"drift AHRS --roll 36001deg", "--roll 36001deg: expected -36000deg to 36000deg"},
     };
-    char line[200], sentence[200];
+    char line[200], message[200];
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         snprintf(line, sizeof line, "$I %s", cases[i].words);
-        snprintf(sentence, sizeof sentence, "error: %s\n", cases[i].says);
+        snprintf(message, sizeof message, "error: %s\n", cases[i].says);
         assert_int_equal(run(line), 2);
-        check_contains(err, sentence, line);
+        check_contains(err, message, line);
     }
     assert_int_equal(run("$I simulate AHRS --rate 1Hz --duration 2s --yaw=-36000deg"), 0);
 }

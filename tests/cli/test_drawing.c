@@ -318,7 +318,7 @@ static void test_cut_drawing(void **state)
     assert_int_equal(run("rm -r bad"), 0);
 }
 
-/* Of a full disk gnuplot says nothing: the sentence names the folder. */
+/* Of a full disk gnuplot says nothing: the message names the folder. */
 static void test_full_temporary_folder(void **state)
 {
     (void)state;

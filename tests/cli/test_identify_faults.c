@@ -106,9 +106,9 @@ static const char *message(json_t *root, const char *code)
 {
     json_t *verdict = json_object_get(json_object_get(root, "result"), "verdict");
     for (size_t k = 0; k < json_array_size(verdict); k++) {
-        json_t *sentence = json_array_get(verdict, k);
-        if (strcmp(json_string_value(json_object_get(sentence, "code")), code) == 0)
-            return json_string_value(json_object_get(sentence, "message"));
+        json_t *message = json_array_get(verdict, k);
+        if (strcmp(json_string_value(json_object_get(message, "code")), code) == 0)
+            return json_string_value(json_object_get(message, "message"));
     }
     return "";
 }

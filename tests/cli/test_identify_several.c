@@ -65,16 +65,16 @@ static double number(json_t *object, const char *name)
     return json_number_value(json_object_get(object, name));
 }
 
-/* Sentences of a code; the last of them in `text`. */
-static size_t sentences(json_t *verdict, const char *code, const char **text)
+/* Messages of a code; the last of them in `text`. */
+static size_t messages(json_t *verdict, const char *code, const char **text)
 {
     size_t count = 0;
     *text = "";
     for (size_t k = 0; k < json_array_size(verdict); k++) {
-        json_t *sentence = json_array_get(verdict, k);
-        if (strcmp(json_string_value(json_object_get(sentence, "code")), code) == 0) {
+        json_t *message = json_array_get(verdict, k);
+        if (strcmp(json_string_value(json_object_get(message, "code")), code) == 0) {
             count++;
-            *text = json_string_value(json_object_get(sentence, "message"));
+            *text = json_string_value(json_object_get(message, "message"));
         }
     }
     return count;
@@ -129,7 +129,7 @@ static void test_runs(void **state)
         assert_true(number(agreement, "probability") > 1e-7);
         assert_true(number(agreement, "degrees") >= 2);
     }
-    assert_int_equal(sentences(result_of(root, "verdict"), "runs_differ", &text), 0);
+    assert_int_equal(messages(result_of(root, "verdict"), "runs_differ", &text), 0);
     json_decref(root);
     char *serial = strdup(out);
     assert_int_equal(run("$I identify run1.npy run2.npy run3.npy --runs --json -o joint.yaml "
@@ -153,7 +153,7 @@ static void test_run_that_differs(void **state)
     (void)state;
     json_t *root = identify("run1.npy run2.npy noisy.npy --runs --strict", 1);
     const char *text;
-    assert_int_equal(sentences(result_of(root, "verdict"), "runs_differ", &text), 3);
+    assert_int_equal(messages(result_of(root, "verdict"), "runs_differ", &text), 3);
     check_contains(text, "most of all in angle random walk", "a run that differs");
     check_contains(text, "in noisy.npy", "a run that differs");
     check_contains(err, "do not have the same noise", "a run that differs");
@@ -165,14 +165,14 @@ static void test_devices(void **state)
     (void)state;
     const char *text;
     json_t *root = identify("run1.npy run2.npy run3.npy --devices --confidence 0.9999", 0);
-    assert_int_equal(sentences(result_of(root, "verdict"), "devices_differ", &text), 0);
-    assert_int_equal(sentences(result_of(root, "verdict"), "devices_agree", &text), 1);
+    assert_int_equal(messages(result_of(root, "verdict"), "devices_differ", &text), 0);
+    assert_int_equal(messages(result_of(root, "verdict"), "devices_agree", &text), 1);
     json_decref(root);
     root = identify("run1.npy noisy.npy --devices", 0);
-    assert_true(sentences(result_of(root, "verdict"), "devices_differ", &text) >= 3);
+    assert_true(messages(result_of(root, "verdict"), "devices_differ", &text) >= 3);
     check_contains(text, "gyro_z: angle random walk differs: 0.3", "two devices");
     check_contains(text, "in noisy.npy", "two devices");
-    assert_int_equal(sentences(result_of(root, "verdict"), "two_devices", &text), 1);
+    assert_int_equal(messages(result_of(root, "verdict"), "two_devices", &text), 1);
     for (size_t c = 0; c < 3; c++) {
         json_t *term = json_object_get(
             json_object_get(json_array_get(result_of(root, "channels"), c), "population"),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Long logs, identified without being held: the same sentences on what is missing as for short
+/* Long logs, identified without being held: the same messages on what is missing as for short
  * ones, the whole length told, and the truth found. */
 #include "run_command.h"
 

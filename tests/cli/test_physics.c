@@ -126,7 +126,7 @@ static void test_log(void **state)
     sweep();
 }
 
-/* One sample has no scatter: "-" and null; and a warning cannot be judged by it. */
+/* One sample has no scatter: "-" and null; and a warning cannot be assessed by it. */
 static void test_one_sample(void **state)
 {
     (void)state;

@@ -122,7 +122,7 @@ static void test_same_from_pipes(void **state)
     }
 }
 
-/* The copy that identify and evaluate need has no room: a sentence, and no result of a part. */
+/* The copy that identify and evaluate need has no room: a message, and no result of a part. */
 static void test_copy_that_fails(void **state)
 {
     (void)state;
@@ -255,7 +255,7 @@ static void test_without_end(void **state)
     check_contains(err, "the text is UTF-16; convert it: iconv -f UTF-16", "UTF-16");
 }
 
-/* A reader that goes away ends the command as other commands end, or with a sentence. */
+/* A reader that goes away ends the command as other commands end, or with a message. */
 static void test_closed_pipe(void **state)
 {
     (void)state;

@@ -351,9 +351,8 @@ static void test_selected_correction(void **state)
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
-#define REFUSED(options, sentence)                                                                 \
-    check_message("$I simulate " options, 2,                                                       \
-                  "imukit simulate: error: " sentence "\n" TRY("simulate"))
+#define REFUSED(options, step)                                                                     \
+    check_message("$I simulate " options, 2, "imukit simulate: error: " step "\n" TRY("simulate"))
 
 static void test_refusals(void **state)
 {

@@ -257,7 +257,7 @@ static void classes_agree_with_the_technology_column(void **state)
 {
     (void)state;
     imk_model *model = malloc(sizeof *model);
-    int judged = 0;
+    int assessed = 0;
     for (size_t i = 0; i < imk_instrument_count(); i++) {
         const imk_instrument *k = get(i);
         void *design = design_of(k);
@@ -273,11 +273,11 @@ static void classes_agree_with_the_technology_column(void **state)
             assert_non_null(
                 strstr(k->sensor == IMK_GYRO ? row->gyro_technology : row->accel_technology,
                        k->technology));
-            judged++;
+            assessed++;
         }
         free(design);
     }
-    assert_true(judged >= 8);
+    assert_true(assessed >= 8);
     free(model);
 }
 

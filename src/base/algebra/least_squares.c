@@ -8,7 +8,7 @@
  *
  * with D the largest column norms of J so far, which makes the method independent of the units of
  * the parameters [MORE1978]. A parameter is held when it stands at a bound and the gradient points
- * out of it; a step that leaves the box is cut back to it, and is judged, as cut, by the ratio of
+ * out of it; a step that leaves the box is cut back to it, and is assessed, as cut, by the ratio of
  * the actual to the predicted decrease, which also governs lambda [NIELSEN1999]. */
 #include "imukit/least_squares.h"
 

@@ -48,12 +48,12 @@ imk_random imk_random_seeded(uint64_t seed)
     static const imk_kernel kernels[] = {IMK_KERNEL_AVX512, IMK_KERNEL_AVX2, IMK_KERNEL_NEON,
                                          IMK_KERNEL_SCALAR};
     const size_t count = sizeof kernels / sizeof *kernels;
-    const char *wish = getenv("IMUKIT_ISA");
+    const char *requirement = getenv("IMUKIT_ISA");
     for (size_t i = count; i-- > 0;) {
         if (!machine_has(kernels[i]))
             continue;
         source.kernel = kernels[i];
-        if (wish && strcmp(wish, imk_kernel_name(kernels[i])) == 0)
+        if (requirement && strcmp(requirement, imk_kernel_name(kernels[i])) == 0)
             break;
     }
 #endif

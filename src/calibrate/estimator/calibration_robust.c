@@ -224,7 +224,7 @@ static void take_best(imki_estimator *e)
     memcpy(e->weight, e->best_weight, e->items * sizeof *e->weight);
 }
 
-/* A fit through few items leaves nothing to judge the others by: those that have weight must have
+/* A fit through few items leaves nothing to assess the others by: those that have weight must have
  * half of all redundant directions and of the parameters. */
 static bool is_majority(imki_estimator *e)
 {
@@ -436,7 +436,7 @@ imk_status imki_refuse_outliers(imki_estimator *e)
     set_weights(e);
     keep_best(e);
     status = find_majority(e, &all);
-    if (status == IMK_ERROR_SINGULAR) { /* no solution without the items in doubt */
+    if (status == IMK_ERROR_SINGULAR) { /* no solution without the items in diagnostic */
         take_best(e);
         refuse_nothing(e);
         return IMK_OK;

@@ -46,7 +46,7 @@ typedef struct summary {
     double failed;   /* largest that gave less than half, noise permitting */
     double bad;      /* largest that surely did */
     double doubtful; /* largest that may have done */
-    double smallest; /* that could be judged */
+    double smallest; /* that could be assessed */
     double passed;   /* smallest above `failed` that gave half */
     double sure;     /* smallest above `doubtful` */
 } summary;
@@ -61,10 +61,10 @@ static void count_step(summary *s, const change *step)
 
 static void find_failures(summary *s, const change *step)
 {
-    const bool judged = step->half < 0.5;
-    if (judged && step->part < 0.5)
+    const bool assessed = step->half < 0.5;
+    if (assessed && step->part < 0.5)
         s->failed = fmax(s->failed, step->amount);
-    if (judged)
+    if (assessed)
         s->smallest = fmin(s->smallest, step->amount);
     if (step->part + step->half < 0.5)
         s->bad = fmax(s->bad, step->amount);
@@ -74,8 +74,8 @@ static void find_failures(summary *s, const change *step)
 
 static void find_successes(summary *s, const change *step)
 {
-    const bool judged = step->half < 0.5;
-    if (judged && step->part >= 0.5 && step->amount > s->failed * (1.0 + equal))
+    const bool assessed = step->half < 0.5;
+    if (assessed && step->part >= 0.5 && step->amount > s->failed * (1.0 + equal))
         s->passed = fmin(s->passed, step->amount);
     if (step->part - step->half >= 0.5 && step->amount > s->doubtful * (1.0 + equal))
         s->sure = fmin(s->sure, step->amount);
@@ -154,7 +154,7 @@ static imk_evaluation_figure smallest_step(const imki_evaluation *e, const zeros
     visit_steps(e, zero, 0.0, count_step, &s);
     if (s.count == 0)
         return imki_unknown();
-    /* All steps together are judged with the confidence [BONFERRONI1936]. */
+    /* All steps together are assessed with the confidence [BONFERRONI1936]. */
     const double tail = 0.5 * (1.0 - e->settings->confidence) / (double)s.count;
     const double quantile = e->result->source == IMK_SCATTER_NONE
                                 ? 0.0

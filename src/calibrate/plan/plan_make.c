@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A programme that reaches what is wished.
+/* A programme that reaches what is required.
  *
  * Procedures with many possible poses take, step by step, the one that adds most to the determinant
  * of the information, as many as show misfits too; the others have a list of steps that is done
@@ -176,7 +176,8 @@ static imk_status evaluate(plan_job *job, double hold)
     return IMK_OK;
 }
 
-/* ---- wishes -----------------------------------------------------------------------------------
+/* ---- requirements
+ * -----------------------------------------------------------------------------------
  */
 
 static int parameter_of(const plan_job *job, imk_model_parameter wanted)
@@ -189,56 +190,57 @@ static int parameter_of(const plan_job *job, imk_model_parameter wanted)
 }
 
 /* (sigma/what is left for it of what is wanted)^2; 0: nothing can help it. */
-static double shortfall(const imk_plan_wish *wish, double sigma)
+static double shortfall(const imk_sigma_requirement *requirement, double sigma)
 {
-    const double left = wish->sigma * wish->sigma - wish->floor * wish->floor;
+    const double left =
+        requirement->sigma * requirement->sigma - requirement->floor * requirement->floor;
     if (!(left > 0.0))
         return 0.0;
     return isnan(sigma) ? (double)INFINITY : sigma * sigma / left;
 }
 
-/* The worst wish of those that can be reached: at most 1 is good. */
+/* The worst requirement of those that can be reached: at most 1 is good. */
 static double worst_shortfall(const plan_job *job)
 {
     double worst = 0.0;
-    for (size_t w = 0; w < job->settings->wish_count; w++) {
-        const imk_plan_wish *wish = &job->settings->wish[w];
-        const int p = parameter_of(job, wish->parameter);
-        worst = fmax(worst, shortfall(wish, job->sigma[p]));
+    for (size_t w = 0; w < job->settings->requirement_count; w++) {
+        const imk_sigma_requirement *requirement = &job->settings->requirement[w];
+        const int p = parameter_of(job, requirement->parameter);
+        worst = fmax(worst, shortfall(requirement, job->sigma[p]));
     }
     return worst;
 }
 
-static imk_status check_wishes(plan_job *job)
+static imk_status check_requirements(plan_job *job)
 {
     const imk_plan_settings *s = job->settings;
-    for (size_t w = 0; w < s->wish_count; w++) {
-        imk_plan_wish *wish = &s->wish[w];
+    for (size_t w = 0; w < s->requirement_count; w++) {
+        imk_sigma_requirement *requirement = &s->requirement[w];
         char name[IMK_MODEL_PARAMETER_NAME];
-        if (!(wish->sigma > 0.0 && isfinite(wish->sigma)))
-            return imk_error_set(job->error, IMK_ERROR_RANGE, "wish", NULL, "a sigma above 0");
-        if (parameter_of(job, wish->parameter) < 0)
-            return imk_error_set(job->error, IMK_ERROR_KEY_MISSING,
-                                 imk_model_parameter_name(wish->parameter, name) == IMK_OK ? name
-                                                                                           : "wish",
-                                 NULL, "a parameter that this procedure estimates");
-        wish->floor =
-            s->lasting
-                ? sqrt(imki_plan_floor_variance(&job->plan.calibration->model, wish->parameter))
-                : 0.0;
+        if (!(requirement->sigma > 0.0 && isfinite(requirement->sigma)))
+            return imk_error_set(job->error, IMK_ERROR_RANGE, "requirement", NULL, "a sigma above 0");
+        if (parameter_of(job, requirement->parameter) < 0)
+            return imk_error_set(
+                job->error, IMK_ERROR_KEY_MISSING,
+                imk_model_parameter_name(requirement->parameter, name) == IMK_OK ? name : "requirement",
+                NULL, "a parameter that this procedure estimates");
+        requirement->floor = s->lasting
+                                 ? sqrt(imki_plan_floor_variance(&job->plan.calibration->model,
+                                                                 requirement->parameter))
+                                 : 0.0;
     }
     return IMK_OK;
 }
 
-static size_t answer_wishes(const plan_job *job)
+static size_t answer_requirements(const plan_job *job)
 {
     size_t reached = 0;
-    for (size_t w = 0; w < job->settings->wish_count; w++) {
-        imk_plan_wish *wish = &job->settings->wish[w];
-        const double sigma = job->sigma[parameter_of(job, wish->parameter)];
-        wish->expected = sqrt(sigma * sigma + wish->floor * wish->floor);
-        wish->reached = wish->expected <= 1.0001 * wish->sigma;
-        reached += wish->reached;
+    for (size_t w = 0; w < job->settings->requirement_count; w++) {
+        imk_sigma_requirement *requirement = &job->settings->requirement[w];
+        const double sigma = job->sigma[parameter_of(job, requirement->parameter)];
+        requirement->expected = sqrt(sigma * sigma + requirement->floor * requirement->floor);
+        requirement->reached = requirement->expected <= 1.0001 * requirement->sigma;
+        reached += requirement->reached;
     }
     return reached;
 }
@@ -247,22 +249,22 @@ static size_t answer_wishes(const plan_job *job)
  */
 
 /* The larger the better: of the information in trial, everything counted. */
-static double score(plan_job *job, bool by_wishes)
+static double score(plan_job *job, bool by_requirements)
 {
     const size_t n = job->n;
-    if (!by_wishes)
+    if (!by_requirements)
         return imki_plan_log_determinant(n, job->trial, job->regular, job->work);
     double sum = 0.0;
     imki_plan_sigmas(n, job->trial, job->regular, job->work, job->sigma);
-    for (size_t w = 0; w < job->settings->wish_count; w++) {
-        const imk_plan_wish *wish = &job->settings->wish[w];
-        sum += shortfall(wish, job->sigma[parameter_of(job, wish->parameter)]);
+    for (size_t w = 0; w < job->settings->requirement_count; w++) {
+        const imk_sigma_requirement *requirement = &job->settings->requirement[w];
+        sum += shortfall(requirement, job->sigma[parameter_of(job, requirement->parameter)]);
     }
     return -sum;
 }
 
 /* Take the best candidate; job->sum holds the information of those taken. */
-static imk_status take_best(plan_job *job, size_t *last, bool by_wishes)
+static imk_status take_best(plan_job *job, size_t *last, bool by_requirements)
 {
     double best = -(double)INFINITY;
     size_t chosen = 0;
@@ -273,7 +275,7 @@ static imk_status take_best(plan_job *job, size_t *last, bool by_wishes)
         if (status != IMK_OK)
             return status;
         add(job->n, job->sum, 1.0, job->trial);
-        const double value = score(job, by_wishes);
+        const double value = score(job, by_requirements);
         if (value > best) {
             best = value;
             chosen = k;
@@ -288,7 +290,7 @@ static imk_status take_best(plan_job *job, size_t *last, bool by_wishes)
 }
 
 /* More steps: the best few, or the list once more. */
-static imk_status take_more(plan_job *job, size_t count, size_t *last, bool by_wishes)
+static imk_status take_more(plan_job *job, size_t count, size_t *last, bool by_requirements)
 {
     imk_status status = IMK_OK;
     if (imki_plan_is_list(job->settings->procedure)) {
@@ -297,7 +299,7 @@ static imk_status take_more(plan_job *job, size_t count, size_t *last, bool by_w
         return status;
     }
     for (size_t k = 0; k < count && status == IMK_OK; k++)
-        status = take_best(job, last, by_wishes);
+        status = take_best(job, last, by_requirements);
     return status;
 }
 
@@ -387,7 +389,7 @@ static imk_status check_settings(const imk_plan_settings *s, const imk_calibrati
         {"temperature_maximum", isfinite(s->temperature_maximum)},
         {"temperature_order",
          s->temperature_order >= 1 && s->temperature_order <= IMK_TEMPERATURE_ORDER_MAX},
-        {"wish", s->wish_count == 0 || s->wish},
+        {"requirement", s->requirement_count == 0 || s->requirement},
     };
     if (s->cookie != IMKI_PLAN_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "plan_settings", NULL,
@@ -466,7 +468,7 @@ static imk_status plan(plan_job *job, double *hold)
             job->plan.record.reading[sensor][i] = job->plan.reading[3 * sensor + i];
     }
     job->candidates = imki_plan_candidates(s, &c->model, c->gravity, job->candidate);
-    status = check_wishes(job);
+    status = check_requirements(job);
     if (status == IMK_OK)
         status = look_at_candidates(job);
     return status == IMK_OK ? choose(job, hold) : status;
@@ -492,7 +494,7 @@ static void fill_result(const plan_job *job, double hold, imk_plan_result *resul
         result->parameter[p] = c->parameter[p];
         result->sigma[p] = job->sigma[p];
     }
-    result->reached = answer_wishes(job);
+    result->reached = answer_requirements(job);
 }
 
 imk_status imk_plan_make(imk_calibration *calibration, const imk_plan_settings *settings,

@@ -29,7 +29,7 @@ imk_status imk_ferraris_stretches(const imk_test_record *record,
                                   size_t *count, void *workspace, size_t workspace_size,
                                   imk_error *error)
 {
-    imki_bench_stretches list;
+    imki_session_stretches list;
     imk_static_findings stationary;
     imk_status status = imki_stretches_find(record, settings, model, gravity, workspace,
                                             workspace_size, &list, &stationary, error);
@@ -48,7 +48,7 @@ imk_status imk_ferraris_stretches(const imk_test_record *record,
 /* ---- what the gyros' counts stand for ---------------------------------------------------------
  */
 
-static double rest_reading(const imki_bench_stretches *list, int axis)
+static double rest_reading(const imki_session_stretches *list, int axis)
 {
     double sum = 0.0, samples = 0.0;
     for (size_t k = 0; k < list->count; k++)
@@ -62,7 +62,7 @@ static double rest_reading(const imki_bench_stretches *list, int axis)
 
 /* Nominal sensitivity: one number for the three of a part, with the sign of each axis; a zero other
  * than 0 only where readings are plainly offset. */
-static void nominal_counts(const imk_test_record *record, const imki_bench_stretches *list,
+static void nominal_counts(const imk_test_record *record, const imki_session_stretches *list,
                            double turn_angle, imk_triad *gyro)
 {
     double per_unit[3] = {0.0}, turns[3] = {0.0}, rest[3], sum = 0.0;
@@ -99,12 +99,12 @@ typedef struct force_meter {
     double bias[3];
 } force_meter;
 
-static bool force_meter_of(const imki_bench_stretches *list, double gravity, force_meter *meter)
+static bool force_meter_of(const imki_session_stretches *list, double gravity, force_meter *meter)
 {
     double mean[3][2][3] = {{{0.0}}}, samples[3][2] = {{0.0}};
     imk_matrix3 response;
     for (size_t k = 0; k < list->count; k++) {
-        const imki_bench_stretch *hold = &list->stretch[k];
+        const imki_session_stretch *hold = &list->stretch[k];
         const int axis = hold->at.axis, down = hold->at.sense < 0;
         const double n = (double)(hold->at.end - hold->at.begin);
         if (hold->at.turn)
@@ -172,12 +172,12 @@ static void earth_in_turn(const imk_calibration *c, int axis, const double force
 }
 
 /* Density of the gyros' noise by the holds: sigma of a mean times the square root of its time. */
-static double noise_density(const imk_test_record *record, const imki_bench_stretches *list,
+static double noise_density(const imk_test_record *record, const imki_session_stretches *list,
                             int axis)
 {
     double sum = 0.0, holds = 0.0;
     for (size_t k = 0; k < list->count; k++) {
-        const imki_bench_stretch *hold = &list->stretch[k];
+        const imki_session_stretch *hold = &list->stretch[k];
         if (hold->at.turn)
             continue;
         const double sigma = hold->summary.sigma[IMK_GYRO][axis];
@@ -187,7 +187,7 @@ static double noise_density(const imk_test_record *record, const imki_bench_stre
     return sqrt(sum / holds);
 }
 
-static void observe_turn(const imki_procedure_call *call, const imki_bench_stretches *list,
+static void observe_turn(const imki_procedure_call *call, const imki_session_stretches *list,
                          const force_meter *meter, const imk_ferraris_stretch *at, int fixture)
 {
     imk_calibration *c = call->calibration;
@@ -242,7 +242,7 @@ imk_status imki_ferraris_observe(const imki_procedure_call *call)
 {
     imk_calibration *c = call->calibration;
     const imk_test_record *record = c->record[call->record];
-    imki_bench_stretches list;
+    imki_session_stretches list;
     int fixture;
     imk_status status =
         imki_stretches_find(record, call->settings, &c->model, c->gravity, call->workspace,

@@ -45,7 +45,7 @@ imki_turn_means imki_turn_mean(const imk_test_record *record, size_t begin, size
 }
 
 /* Readings of the gyros at rest: mean over the holds, by samples. */
-static void rest_readings(const imki_bench_stretches *list, double rest[3])
+static void rest_readings(const imki_session_stretches *list, double rest[3])
 {
     double samples = 0.0;
     rest[0] = rest[1] = rest[2] = 0.0;
@@ -101,7 +101,7 @@ static bool same_face(const imk_ferraris_stretch *a, const imk_ferraris_stretch 
 /* Turns between neighbouring holds on one face, behind the holds in the list. In known units the
  * reading says which way round; in counts positive readings are taken for turns by turn_angle. */
 static void detect_turns(const imk_test_record *record, const imk_procedure_settings *settings,
-                         const imk_model *model, const double rest[3], imki_bench_stretches *list)
+                         const imk_model *model, const double rest[3], imki_session_stretches *list)
 {
     const bool known = imki_unit_known(model, record, IMK_GYRO);
     const size_t holds = list->count;
@@ -128,7 +128,7 @@ static void detect_turns(const imk_test_record *record, const imk_procedure_sett
             turn.sense = angle[turn.axis] > 0.0 ? 1 : -1;
             if (known && settings->turn_angle < 0.0)
                 turn.sense = -turn.sense;
-            imki_bench_stretch *added = &list->stretch[list->count++];
+            imki_session_stretch *added = &list->stretch[list->count++];
             memset(added, 0, sizeof *added);
             added->at = turn;
             list->found++;
@@ -151,7 +151,7 @@ static imk_status turns_missing(int axes, const bool seen[3], imk_error *error)
 }
 
 imk_status imki_turns_find(const imk_test_record *record, const imk_procedure_settings *settings,
-                           const imk_model *model, imki_bench_stretches *list, imk_error *error)
+                           const imk_model *model, imki_session_stretches *list, imk_error *error)
 {
     double rest[3], angle[3];
     bool seen[3] = {false};
@@ -163,7 +163,7 @@ imk_status imki_turns_find(const imk_test_record *record, const imk_procedure_se
     if (list->detected)
         detect_turns(record, settings, model, rest, list);
     for (size_t k = 0; k < list->count; k++) {
-        imki_bench_stretch stretch = list->stretch[k];
+        imki_session_stretch stretch = list->stretch[k];
         if (stretch.at.turn) {
             if (!angles_of(record, model, &stretch.at, rest, angle)) {
                 list->left_out++;

@@ -97,7 +97,7 @@ static int add_fixture(const imki_procedure_call *call)
 
 /* Smallest eigenvalue of the mean outer product of the directions of holds: of axes, the smallest
  * share of the holds. */
-static double spread_of(const imki_bench_stretches *list)
+static double spread_of(const imki_session_stretches *list)
 {
     double holds[3] = {0.0};
     for (size_t k = 0; k < list->count; k++)
@@ -106,7 +106,7 @@ static double spread_of(const imki_bench_stretches *list)
     return fmin(fmin(holds[0], holds[1]), holds[2]) / (holds[0] + holds[1] + holds[2]);
 }
 
-imk_status imki_holds_observe(const imki_procedure_call *call, const imki_bench_stretches *list,
+imk_status imki_holds_observe(const imki_procedure_call *call, const imki_session_stretches *list,
                               size_t more, int *fixture)
 {
     imk_calibration *c = call->calibration;
@@ -127,7 +127,7 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_bench_
     }
     c->frame = IMK_FRAME_REFERENCE;
     for (size_t k = 0; k < list->count; k++) {
-        const imki_bench_stretch *stretch = &list->stretch[k];
+        const imki_session_stretch *stretch = &list->stretch[k];
         if (stretch->at.turn)
             continue;
         imk_observation observation = {
@@ -158,7 +158,7 @@ imk_status imki_six_position_observe(const imki_procedure_call *call)
 {
     imk_calibration *c = call->calibration;
     const imk_test_record *record = c->record[call->record];
-    imki_bench_stretches list;
+    imki_session_stretches list;
     int fixture;
     imk_status status =
         imki_stretches_find(record, call->settings, &c->model, c->gravity, call->workspace,

@@ -62,7 +62,7 @@ static size_t list_capacity(const imk_test_record *record)
 size_t imki_stretches_workspace(const imk_test_record *record,
                                 const imk_procedure_settings *settings)
 {
-    size_t size = IMKI_ALIGNMENT_SLACK + list_capacity(record) * sizeof(imki_bench_stretch);
+    size_t size = IMKI_ALIGNMENT_SLACK + list_capacity(record) * sizeof(imki_session_stretch);
     if (!sections_tell(record))
         size += DETECTED_MAX * sizeof(imk_static_interval) + IMKI_ALIGNMENT_SLACK +
                 imk_static_workspace_size(record, &settings->stationary);
@@ -71,7 +71,7 @@ size_t imki_stretches_workspace(const imk_test_record *record,
 
 /* A section as a stretch: holds without what is trimmed. @return false: left out */
 static bool section_stretch(const imk_test_record *record, const imk_procedure_settings *settings,
-                            size_t begin, size_t end, imki_bench_stretch *stretch)
+                            size_t begin, size_t end, imki_session_stretch *stretch)
 {
     const char *text = label_of(record, begin);
     const imki_label label = imki_label_parse(text ? text : "");
@@ -98,7 +98,7 @@ static bool section_stretch(const imk_test_record *record, const imk_procedure_s
 }
 
 static void list_sections(const imk_test_record *record, const imk_procedure_settings *settings,
-                          imki_bench_stretches *list)
+                          imki_session_stretches *list)
 {
     for (size_t k = 0; k < record->count;) {
         size_t end = k + 1;
@@ -117,7 +117,7 @@ static void list_sections(const imk_test_record *record, const imk_procedure_set
 
 static imk_status list_detected(const imk_test_record *record,
                                 const imk_procedure_settings *settings, const imk_model *model,
-                                char *workspace, size_t size, imki_bench_stretches *list,
+                                char *workspace, size_t size, imki_session_stretches *list,
                                 imk_static_findings *stationary, imk_error *error)
 {
     imk_static_interval *interval = (imk_static_interval *)(void *)workspace;
@@ -133,7 +133,7 @@ static imk_status list_detected(const imk_test_record *record,
     if (count > DETECTED_MAX)
         count = DETECTED_MAX;
     for (size_t i = 0; i < count; i++) {
-        imki_bench_stretch *stretch = &list->stretch[list->count++];
+        imki_session_stretch *stretch = &list->stretch[list->count++];
         memset(stretch, 0, sizeof *stretch);
         stretch->at = (imk_ferraris_stretch){false, interval[i].begin, interval[i].end, -1, 0};
         stretch->summary = interval[i];
@@ -155,7 +155,7 @@ typedef struct yardstick {
 
 /* Unit vector along the force. @return false: not a number, or, where an axis was not held both
  * ways, what is left without it */
-static bool direction_of(const yardstick *y, const imki_bench_stretch *hold, double u[3])
+static bool direction_of(const yardstick *y, const imki_session_stretch *hold, double u[3])
 {
     imk_vector3 sensed;
     for (int i = 0; i < 3; i++) {
@@ -172,7 +172,7 @@ static bool direction_of(const yardstick *y, const imki_bench_stretch *hold, dou
     return norm > (y->known ? 0.0 : face_share) && isfinite(norm);
 }
 
-static void measure_extremes(yardstick *y, const imki_bench_stretches *list)
+static void measure_extremes(yardstick *y, const imki_session_stretches *list)
 {
     double low[3], high[3], widest = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -194,7 +194,7 @@ static void measure_extremes(yardstick *y, const imki_bench_stretches *list)
 
 /* Nominal sensitivity and zero from the extremes. One number for three axes of a part; the zero
  * stays 0 unless readings are plainly offset, as those of unsigned converters are. */
-static void nominal_counts(const yardstick *y, double gravity, imki_bench_stretches *list)
+static void nominal_counts(const yardstick *y, double gravity, imki_session_stretches *list)
 {
     double sum = 0.0;
     bool offset = false;
@@ -210,7 +210,7 @@ static void nominal_counts(const yardstick *y, double gravity, imki_bench_stretc
     }
 }
 
-static bool saturated(const yardstick *y, const imki_bench_stretch *hold)
+static bool saturated(const yardstick *y, const imki_session_stretch *hold)
 {
     const double *range = y->model->accel.range.value;
     for (int i = 0; y->known && i < 3; i++)
@@ -223,7 +223,7 @@ static bool saturated(const yardstick *y, const imki_bench_stretch *hold)
 
 /* Give a hold its face. What the label says stands, unless the readings show another.
  * @return false: it shows none, or the label contradicts, which is counted */
-static bool settle_face(const yardstick *y, imki_bench_stretch *hold, size_t *contradictions)
+static bool settle_face(const yardstick *y, imki_session_stretch *hold, size_t *contradictions)
 {
     double u[3];
     const bool seen = direction_of(y, hold, u);
@@ -261,13 +261,13 @@ static imk_status contradicted(const char *label, imk_error *error)
                          "largest. Swapped or inverted axes are mapped with --axes");
 }
 
-static imk_status settle_faces(const yardstick *y, imki_bench_stretches *list, imk_error *error)
+static imk_status settle_faces(const yardstick *y, imki_session_stretches *list, imk_error *error)
 {
     size_t kept = 0, holds = 0, contradictions = 0;
     const char *first = NULL;
     for (size_t k = 0; k < list->count; k++) {
         const size_t before = contradictions;
-        imki_bench_stretch stretch = list->stretch[k];
+        imki_session_stretch stretch = list->stretch[k];
         holds += !stretch.at.turn;
         if (stretch.at.turn || settle_face(y, &stretch, &contradictions))
             list->stretch[kept++] = stretch;
@@ -307,7 +307,7 @@ static imk_status yardstick_of(yardstick *y, const imk_test_record *record, cons
 imk_status imki_stretches_find(const imk_test_record *record,
                                const imk_procedure_settings *settings, const imk_model *model,
                                double gravity, void *workspace, size_t workspace_size,
-                               imki_bench_stretches *list, imk_static_findings *stationary,
+                               imki_session_stretches *list, imk_static_findings *stationary,
                                imk_error *error)
 {
     yardstick y;
@@ -322,7 +322,7 @@ imk_status imki_stretches_find(const imk_test_record *record,
     char *aligned = (char *)imki_align(workspace);
     memset(list, 0, sizeof *list);
     list->capacity = list_capacity(record);
-    list->stretch = (imki_bench_stretch *)(void *)aligned;
+    list->stretch = (imki_session_stretch *)(void *)aligned;
     const size_t used = list->capacity * sizeof *list->stretch;
     if (sections_tell(record))
         list_sections(record, settings, list);
@@ -342,7 +342,7 @@ imk_status imki_stretches_find(const imk_test_record *record,
 /* ---- all six? ---------------------------------------------------------------------------------
  */
 
-imk_status imki_faces_complete(const imki_bench_stretches *list, imk_error *error)
+imk_status imki_faces_complete(const imki_session_stretches *list, imk_error *error)
 {
     static const char *const names[FACES] = {"x up", "x down", "y up", "y down", "z up", "z down"};
     bool seen[FACES] = {false};

@@ -25,20 +25,20 @@ imki_label imki_label_parse(const char *text);
 
 /* ---- six_position_holds.c ---- */
 
-typedef struct imki_bench_stretch {
+typedef struct imki_session_stretch {
     imk_ferraris_stretch at;
     const char *label; /* NULL: found by itself */
     imk_static_interval summary;
-} imki_bench_stretch;
+} imki_session_stretch;
 
-typedef struct imki_bench_stretches {
+typedef struct imki_session_stretches {
     size_t count, capacity;
-    imki_bench_stretch *stretch;
+    imki_session_stretch *stretch;
     bool detected;          /* by standing still, not by sections */
     size_t found, left_out; /* stretches */
     double sensitivity[3];  /* of accelerometers in counts, found from the holds; 0: was known */
     double zero_offset[3];
-} imki_bench_stretches;
+} imki_session_stretches;
 
 /* Bytes for the list and the detection. */
 size_t imki_stretches_workspace(const imk_test_record *record,
@@ -49,16 +49,16 @@ size_t imki_stretches_workspace(const imk_test_record *record,
 imk_status imki_stretches_find(const imk_test_record *record,
                                const imk_procedure_settings *settings, const imk_model *model,
                                double gravity, void *workspace, size_t workspace_size,
-                               imki_bench_stretches *list, imk_static_findings *stationary,
+                               imki_session_stretches *list, imk_static_findings *stationary,
                                imk_error *error);
 
 /* Every face seen? @return IMK_ERROR_TOO_SHORT, which names those that are missing */
-imk_status imki_faces_complete(const imki_bench_stretches *list, imk_error *error);
+imk_status imki_faces_complete(const imki_session_stretches *list, imk_error *error);
 
 /* ---- six_position.c: what both procedures add ---- */
 
 /* One observation a hold, and the nominal sensitivity of the accelerometers into the model. */
-imk_status imki_holds_observe(const imki_procedure_call *call, const imki_bench_stretches *list,
+imk_status imki_holds_observe(const imki_procedure_call *call, const imki_session_stretches *list,
                               size_t more, int *fixture);
 /* Standard deviations of the Earth's rate in body axes that the attitude does not tell, along the
  * vertical `up` (unit, body axes), and the part that it does tell. */
@@ -78,6 +78,6 @@ imki_turn_means imki_turn_mean(const imk_test_record *record, size_t begin, size
 /* Find the axes of turns that sections did not name, and, in a list that was detected, the turns
  * themselves. @return IMK_ERROR_TOO_SHORT (field "turn"), IMK_ERROR_KEY_MISSING ("gyro") */
 imk_status imki_turns_find(const imk_test_record *record, const imk_procedure_settings *settings,
-                           const imk_model *model, imki_bench_stretches *list, imk_error *error);
+                           const imk_model *model, imki_session_stretches *list, imk_error *error);
 
 #endif

@@ -10,7 +10,7 @@
  * which weighs the axes by how well they follow at all. The shifts are those of averages over some
  * samples, few enough for the work to stay small; from the best of them Newton's steps of
  * reference_fit.c go on with every sample. Readings at the ends, which some shifts would compare
- * with nothing, are left out throughout, so that all shifts are judged by the same readings. */
+ * with nothing, are left out throughout, so that all shifts are assessed by the same readings. */
 #include "reference_internal.h"
 
 #include "base/refuse_internal.h"
@@ -132,7 +132,7 @@ static double total(size_t count, const double *a)
 }
 
 /* Merit and best correlation of the readings when the reference is `late` averages older. */
-static void judge(const search *s, ptrdiff_t late, double *merit, double *correlation)
+static void assess(const search *s, ptrdiff_t late, double *merit, double *correlation)
 {
     const size_t count = s->points - 2 * s->shift;
     *merit = *correlation = 0.0;
@@ -234,7 +234,7 @@ imk_status imk_reference_offset(const imk_test_record *record, double max_shift,
         return status;
     size_t best = 0;
     for (size_t k = 0; k <= 2 * s.shift; k++) {
-        judge(&s, (ptrdiff_t)k - (ptrdiff_t)s.shift, &s.merit[k], &s.correlation[k]);
+        assess(&s, (ptrdiff_t)k - (ptrdiff_t)s.shift, &s.merit[k], &s.correlation[k]);
         best = s.merit[k] > s.merit[best] ? k : best;
     }
     imk_reference_shift found;

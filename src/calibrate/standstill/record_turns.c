@@ -13,7 +13,7 @@
  * accelerometers its negative (a rotation vector is mirrored with another sign than a force);
  * likewise one axis that is inverted gives one sign or the other two; and both sensors in
  * left-handed axes give -1 times the unit matrix. */
-#include "record_doubts_internal.h"
+#include "record_diagnostics_internal.h"
 
 #include "base/algebra/vector_internal.h"
 #include "imukit/attitude.h"
@@ -79,7 +79,7 @@ static signed_permutation permutation_of(int index)
     return p;
 }
 
-static bool unit_vertical(const imki_doubt_call *call, const imk_static_interval *interval,
+static bool unit_vertical(const imki_diagnostic_call *call, const imk_static_interval *interval,
                           double u[3])
 {
     double square = 0.0;
@@ -115,7 +115,7 @@ static bool is_complete(const imk_test_record *r, size_t begin, size_t end)
     return true;
 }
 
-static void collect_turns(const imki_doubt_call *call, turns *t)
+static void collect_turns(const imki_diagnostic_call *call, turns *t)
 {
     t->count = 0;
     for (size_t k = 0; k + 1 < call->interval_count && t->count < TURNS_MAX; k++) {
@@ -134,7 +134,7 @@ static void collect_turns(const imki_doubt_call *call, turns *t)
 }
 
 /* Both rotations of a turn, in at most TURN_STEPS steps of averaged rates. */
-static void integrate(const imki_doubt_call *call, const turn *t, double factor,
+static void integrate(const imki_diagnostic_call *call, const turn *t, double factor,
                       imk_quaternion *forward, imk_quaternion *backward)
 {
     const imk_test_record *r = call->record;
@@ -186,29 +186,29 @@ static double cost_of(const turns *t, int index)
     return sum;
 }
 
-static void integrate_all(const imki_doubt_call *call, turns *t, double factor)
+static void integrate_all(const imki_diagnostic_call *call, turns *t, double factor)
 {
     for (size_t k = 0; k < t->count; k++)
         integrate(call, &t->turn[k], factor, &t->forward[k], &t->backward[k]);
 }
 
 /* What a permutation other than the identity means. */
-static imk_doubt_finding axes_finding(int index, double missed)
+static imk_diagnostic_finding axes_finding(int index, double missed)
 {
     const signed_permutation p = permutation_of(index);
-    imk_doubt_finding f = {.kind = IMK_DOUBT_SWAPPED_AXES,
-                           .sensor = -1,
-                           .axis = -1,
-                           .other = -1,
-                           .value = missed,
-                           .limit = EXPLAINED};
+    imk_diagnostic_finding f = {.kind = IMK_DIAGNOSTIC_SWAPPED_AXES,
+                                .sensor = -1,
+                                .axis = -1,
+                                .other = -1,
+                                .value = missed,
+                                .limit = EXPLAINED};
     int negative = 0, fixed = 0;
     for (int i = 0; i < 3; i++) {
         negative += p.sign[i] < 0;
         fixed += p.column[i] == i;
     }
     if (fixed == 3) {
-        f.kind = IMK_DOUBT_LEFT_HANDED;
+        f.kind = IMK_DIAGNOSTIC_LEFT_HANDED;
         f.sensor = negative == 3 ? -1 : (negative == 1 ? IMK_GYRO : IMK_ACCEL);
         for (int i = 0; i < 3; i++)
             if ((negative == 1 && p.sign[i] < 0) || (negative == 2 && p.sign[i] > 0))
@@ -242,10 +242,10 @@ static double missed_as_is(const turns *t)
 /* An exchange or an inversion within one sensor comes before combinations of them. */
 static int complexity(int index)
 {
-    const imk_doubt_finding f = axes_finding(index, 0.0);
+    const imk_diagnostic_finding f = axes_finding(index, 0.0);
     if (index == 0)
         return 0;
-    return f.kind == IMK_DOUBT_LEFT_HANDED || (f.axis >= 0 && f.sensor >= 0) ? 1 : 2;
+    return f.kind == IMK_DIAGNOSTIC_LEFT_HANDED || (f.axis >= 0 && f.sensor >= 0) ? 1 : 2;
 }
 
 /* One way to read the log: rates times a factor, permuted. */
@@ -256,7 +256,7 @@ typedef struct explanation {
 
 /* The simplest explanation that is as good as the best, within MARGIN. `t` is left integrated with
  * another factor. */
-static explanation explain(const imki_doubt_call *call, turns *t, size_t factors,
+static explanation explain(const imki_diagnostic_call *call, turns *t, size_t factors,
                            const double *factor)
 {
     enum { FACTORS_MAX = 8 };
@@ -282,7 +282,7 @@ static explanation explain(const imki_doubt_call *call, turns *t, size_t factors
     return chosen;
 }
 
-void imki_doubt_turns(const imki_doubt_call *call, imki_doubt_list *list)
+void imki_diagnostic_turns(const imki_diagnostic_call *call, imki_diagnostic_list *list)
 {
     static const double degree = 0.017453292519943295;
     /* Rates in deg/s taken for rad/s, the reverse; times in ms or us taken for s, the reverse. */
@@ -306,17 +306,17 @@ void imki_doubt_turns(const imki_doubt_call *call, imki_doubt_list *list)
     if ((best.index == 0 && best.factor == 1.0) || as_is - best.cost < GAIN ||
         best.cost > LEFT_OF_BEFORE * as_is || best.cost > LEFT_OF_ALL * (double)t.count)
         return;
-    imk_doubt_finding unit = {.sensor = IMK_GYRO, .axis = -1, .other = -1};
+    imk_diagnostic_finding unit = {.sensor = IMK_GYRO, .axis = -1, .other = -1};
     if (best.factor == factor[1] || best.factor == factor[2]) {
-        unit.kind = IMK_DOUBT_RATE_UNIT;
+        unit.kind = IMK_DIAGNOSTIC_RATE_UNIT;
         unit.value = 1.0 / best.factor;
-        imki_doubt_add(list, unit);
+        imki_diagnostic_add(list, unit);
     } else if (best.factor != 1.0) {
-        unit.kind = IMK_DOUBT_TIME_UNIT;
+        unit.kind = IMK_DIAGNOSTIC_TIME_UNIT;
         unit.sensor = -1;
         unit.value = 1.0 / best.factor;
-        imki_doubt_add(list, unit);
+        imki_diagnostic_add(list, unit);
     }
     if (best.index != 0)
-        imki_doubt_add(list, axes_finding(best.index, missed));
+        imki_diagnostic_add(list, axes_finding(best.index, missed));
 }

@@ -136,7 +136,7 @@ static bool learn_again(imki_static_job *job)
     if (longest.begin == job->rest_begin && longest.end == job->rest_end)
         return false;
     imki_static_learn(job, longest.begin, longest.end);
-    imki_static_judge(job);
+    imki_static_assess(job);
     return true;
 }
 
@@ -177,12 +177,12 @@ static outcome detect_at(imki_static_job *job, const imk_static_settings *settin
     if (settings->initial_rest > 0.0) {
         if (!given_rest(job, settings->initial_rest))
             return found;
-        imki_static_judge(job);
+        imki_static_assess(job);
     } else {
         imki_static_find_rest(job);
         if (job->rest_end == 0)
             return found;
-        imki_static_judge(job);
+        imki_static_assess(job);
         if (job->rests && thorough && learn_again(job))
             learn_again(job);
     }
@@ -267,11 +267,11 @@ static void report(const imki_static_job *job, outcome found, imk_static_finding
     findings->standing = (double)found.standing / (double)job->record->count;
     for (int a = 0; a < job->axis_count; a++) {
         const int sensor = job->axis[a].sensor, axis = job->axis[a].axis;
-        const bool judged = job->rest_end > 0;
-        findings->noise[sensor][axis] = judged ? job->limit[a].noise : (double)NAN;
-        findings->effective[sensor][axis] = judged ? job->limit[a].effective : (double)NAN;
+        const bool assessed = job->rest_end > 0;
+        findings->noise[sensor][axis] = assessed ? job->limit[a].noise : (double)NAN;
+        findings->effective[sensor][axis] = assessed ? job->limit[a].effective : (double)NAN;
         findings->threshold[sensor][axis] =
-            judged ? sqrt(job->limit[a].scatter_squared) : (double)NAN;
+            assessed ? sqrt(job->limit[a].scatter_squared) : (double)NAN;
     }
     findings->quietest = (double)INFINITY;
     findings->loudest = 0.0;

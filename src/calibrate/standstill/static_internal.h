@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The parts of static detection (static_detection.h): moments of blocks of samples, what the rest
- * is like, and windows of four blocks judged by it. */
+ * is like, and windows of four blocks assessed by it. */
 #ifndef IMUKIT_STATIC_INTERNAL_H
 #define IMUKIT_STATIC_INTERNAL_H
 
@@ -12,7 +12,7 @@ enum {
     IMKI_REST_WINDOWS = 6   /* of the stretch that is searched for as the quietest, at first */
 };
 
-/* What is known of one axis before anything is judged. */
+/* What is known of one axis before anything is assessed. */
 typedef struct imki_static_axis {
     int sensor, axis;
     const double *reading;
@@ -38,9 +38,9 @@ typedef struct imki_static_limit {
     double effective;       /* independent samples in a window */
     double inefficiency;    /* variance of a mean, times samples, over that of a sample */
     double mean;            /* at rest */
-    double scatter_squared; /* limit on the variance within a window; 0: the axis is not judged */
+    double scatter_squared; /* limit on the variance within a window; 0: the axis is not assessed */
     double half;            /* on the difference of the means of its halves */
-    double mean_off;        /* on its mean less that of the rest before; infinite: not judged */
+    double mean_off;        /* on its mean less that of the rest before; infinite: not assessed */
 } imki_static_limit;
 
 typedef struct imki_static_job {
@@ -50,7 +50,7 @@ typedef struct imki_static_job {
     imki_static_blocks blocks;
     imki_static_limit limit[IMKI_STATIC_AXES];
     double false_alarm;
-    double *activity;            /* per window, by its first block; NaN: not judged */
+    double *activity;            /* per window, by its first block; NaN: not assessed */
     double *scratch;             /* as long */
     size_t rest_begin, rest_end; /* blocks */
     bool rests;                  /* a rest was found */
@@ -72,7 +72,7 @@ void imki_static_blocks_fill(imki_static_job *job, imk_static_findings *findings
 /* Join pairs of blocks into one of twice the length, in place. */
 void imki_static_blocks_join(imki_static_job *job);
 
-/* Windows that can be judged. */
+/* Windows that can be assessed. */
 static inline size_t imki_static_windows(const imki_static_blocks *b)
 {
     return b->count < IMKI_WINDOW_BLOCKS ? 0 : b->count - IMKI_WINDOW_BLOCKS + 1;
@@ -109,10 +109,10 @@ void imki_static_learn(imki_static_job *job, size_t begin, size_t end);
 /* False when no sensor at rest looks like this stretch. */
 bool imki_static_looks_at_rest(const imki_static_job *job, size_t begin, size_t end);
 
-/* ---- static_judge.c ---- */
+/* ---- static_assess.c ---- */
 
 /* Fill the activity of every window, by the limits. */
-void imki_static_judge(imki_static_job *job);
+void imki_static_assess(imki_static_job *job);
 /* A run of standing windows: blocks begin … end - 1. */
 typedef struct imki_static_run {
     size_t begin, end;

@@ -83,7 +83,7 @@ static double limit_of(size_t n, const double *residual)
     return sigma_of_median * fmax(6.0 * imki_median(step, n - 1), 4.0 * imki_median(size, n));
 }
 
-/* Every round judges all pieces anew, by the fit without those of the round before. */
+/* Every round assesses all pieces anew, by the fit without those of the round before. */
 static void screen_axis(imki_thermal_blocks *blocks, int axis)
 {
     const size_t n = blocks->count;

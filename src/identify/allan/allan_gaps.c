@@ -143,8 +143,9 @@ static imk_allan_gap_point finish(const imk_allan_gaps_settings *settings, size_
         return p;
     }
     const double of_all = e->share * imk_allan_edf_exact(IMK_ALLAN_OVERLAPPING, *type, n, e->m);
-    const double doubt = e->correction_error * e->correction_error / (e->variance * e->variance);
-    const double edf = 2 / (2 / fmax(of_all, 1) + doubt);
+    const double diagnostic =
+        e->correction_error * e->correction_error / (e->variance * e->variance);
+    const double edf = 2 / (2 / fmax(of_all, 1) + diagnostic);
     const double error = e->variance * sqrt(2 / edf), rest = e->variance - e->correction;
     double lower, upper;
     p.resolved = e->correction == 0 || rest >= error / 2;

@@ -60,7 +60,8 @@ static void compare(const imki_work *w, imki_fit *own, const imki_bands *bands, 
         a->value[record][term] = value / w->scale;
         a->sigma[record][term] =
             (value > 0 ? sqrt(variance) / (2 * value) : sqrt(sqrt(variance))) / w->scale;
-        /* Judged at the joint strength: a record's own small strength would claim to be well known.
+        /* Assessed at the joint strength: a record's own small strength would claim to be well
+         * known.
          */
         const double ratio = own->amount[term] > 0 ? w->fit->amount[term] / own->amount[term] : 1;
         const double spread = variance * fmax(1, ratio * ratio) - joint_covariance[term * t + term];

@@ -245,7 +245,7 @@ imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
     take_record(w, samples, &found); /* the lines may have been taken out */
     if (w->missing)
         imki_missing_draw(w->missing, w->samples);
-    imki_identify_judge(w, &found);
+    imki_identify_assess(w, &found);
     imki_identification_rescale(&found, 1 / w->scale);
     if (!imki_identification_is_finite(&found))
         return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, NULL, "no noise in the record",

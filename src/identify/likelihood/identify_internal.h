@@ -228,7 +228,7 @@ void imki_identify_lines(imki_work *w, imk_identification *result);
 void imki_identify_bands(imki_work *w, const imk_identification *result);
 void imki_identify_terms(imki_work *w, imk_identification *result);
 void imki_identify_intervals(imki_work *w, imk_identification *result);
-void imki_identify_judge(imki_work *w, imk_identification *result);
+void imki_identify_assess(imki_work *w, imk_identification *result);
 
 /* identify_lines.c: enter a line that is no subtracted tone as a resonance or, where it is not
  * shaped like one, as a sinusoid at `frequency`; true when it is to be left out of the fit.

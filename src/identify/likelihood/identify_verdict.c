@@ -92,7 +92,7 @@ static void compare_with_allan(imki_work *w, imk_identification *result)
     agreement(&five, dt, count, points, &result->five_terms_from, &five_terms_to);
 }
 
-void imki_identify_judge(imki_work *w, imk_identification *result)
+void imki_identify_assess(imki_work *w, imk_identification *result)
 {
     compare_with_allan(w, result);
     if (result->sinusoid_count > 0)

@@ -52,7 +52,7 @@ imki_penalties imki_penalties_of(const imki_bands *bands, double significance)
 
 /* Gain in log-likelihood that a ramp must bring to the fit without it. A ramp and a random walk
  * look much alike in one record, and a ramp that is not there takes the walk's place: it must be
- * ten times less likely by chance than the other terms. Its estimate is judged against slow
+ * ten times less likely by chance than the other terms. Its estimate is assessed against slow
  * noise that is itself known from a few coefficients, so that the ratio follows Student's t with v
  * degrees, where v = 2 S^2/var S for the fitted spectrum at the lowest frequency. With Wallace's
  * normal approximation of t [WALLACE1959], z ~ (8v + 1)/(8v + 3) sqrt(v log(1 + t^2/v)):

@@ -184,7 +184,7 @@ imk_status imk_identify_record_finish(imk_identify_record *r, const imk_identify
     imki_identify_terms(&work, &found);
     imki_summary_save(&work, settings->summary);
     imki_identify_intervals(&work, &found);
-    imki_identify_judge(&work, &found);
+    imki_identify_assess(&work, &found);
     imki_identification_rescale(&found, 1 / r->scale);
     rescale_points(r);
     if (!imki_identification_is_finite(&found))

@@ -32,13 +32,13 @@ typedef struct stretch {
     size_t n, next; /* next index of the record to read */
     const double *samples;
     size_t count;  /* of the buffer, left margin included */
-    size_t margin; /* samples before the ones to judge: 0 or REACH */
+    size_t margin; /* samples before the ones to assess: 0 or REACH */
     double value[CHUNK + 2 * REACH];
     size_t place[CHUNK + 2 * REACH];
 } stretch;
 
-/* Read on; false when nothing is left to judge. What is read is judged in the next call but for the
- * last REACH, which are its right margin. `last` tells that the record ends in the buffer. */
+/* Read on; false when nothing is left to assess. What is read is assessed in the next call but for
+ * the last REACH, which are its right margin. `last` tells that the record ends in the buffer. */
 static bool stretch_fill(stretch *s, bool *last)
 {
     while (s->count < CHUNK + 2 * REACH && s->next < s->n) {
@@ -51,16 +51,16 @@ static bool stretch_fill(stretch *s, bool *last)
     return s->count > s->margin;
 }
 
-/* Keep what the next judging needs: the right margin, and REACH before it. */
-static void stretch_advance(stretch *s, size_t judged_end)
+/* Keep what the next assessing needs: the right margin, and REACH before it. */
+static void stretch_advance(stretch *s, size_t assessed_end)
 {
-    const size_t keep_from = judged_end > REACH ? judged_end - REACH : 0;
+    const size_t keep_from = assessed_end > REACH ? assessed_end - REACH : 0;
     for (size_t i = keep_from; i < s->count; i++) {
         s->value[i - keep_from] = s->value[i];
         s->place[i - keep_from] = s->place[i];
     }
     s->count -= keep_from;
-    s->margin = judged_end - keep_from;
+    s->margin = assessed_end - keep_from;
 }
 
 static void insertion_sort(double *a, size_t count)
@@ -190,7 +190,7 @@ typedef struct tally {
     size_t last; /* place of the last outlier */
 } tally;
 
-static void judge(const stretch *s, size_t i, const imki_outlier_rule *rule, tally *t)
+static void assess(const stretch *s, size_t i, const imki_outlier_rule *rule, tally *t)
 {
     double spread;
     const double distance = fabs(s->value[i] - level_around(s, i, &spread));
@@ -229,10 +229,10 @@ imk_screen_count imki_outliers_find(size_t n, const double *samples, const imki_
             const double level = sorted[BLOCK / 2];
             for (size_t k = i; k < i + BLOCK; k++)
                 if (fabs(s.value[k] - level) > 0.5 * rule->threshold)
-                    judge(&s, k, rule, &t);
+                    assess(&s, k, rule, &t);
         }
         for (; i < end; i++)
-            judge(&s, i, rule, &t);
+            assess(&s, i, rule, &t);
         stretch_advance(&s, end);
         if (last)
             break;

@@ -3,7 +3,7 @@
 #ifndef IMUKI_DESIGN_FILE_INTERNAL_H
 #define IMUKI_DESIGN_FILE_INTERNAL_H
 
-#include "io/motion/step_sentence_internal.h"
+#include "io/motion/step_text_internal.h"
 
 #include "imukit/design_file.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The sentence for an error:
+/* The message for an error:
  *
  *     source:line:column: field, axis x: finding; remedy
  *
@@ -21,14 +21,14 @@
 
 /* ------------------------------------------------------------------------- text of limited size */
 
-typedef struct sentence {
+typedef struct message {
     char *text;
     size_t size, length;
     bool full; /* something did not fit; nothing is added after it */
-} sentence;
+} message;
 
 /* Add text. What a terminal could take for a command, and bytes that are no text, become "?". */
-static void add(sentence *s, const char *text)
+static void add(message *s, const char *text)
 {
     while (*text != '\0') {
         size_t length = imk_utf8_printable(text);
@@ -45,7 +45,7 @@ static void add(sentence *s, const char *text)
 
 /* ------------------------------------------------------------------------------------- numbers */
 
-static void add_count(sentence *s, size_t count)
+static void add_count(message *s, size_t count)
 {
     char text[24];
     size_t at = sizeof text;
@@ -57,7 +57,7 @@ static void add_count(sentence *s, size_t count)
 }
 
 /* Six digits are enough to read, unless the other number looks the same then. */
-static void add_number(sentence *s, double number, double other)
+static void add_number(message *s, double number, double other)
 {
     char text[IMK_DECIMAL_SIZE], other_text[IMK_DECIMAL_SIZE];
     imk_decimal_significant(number, 6, text);
@@ -114,7 +114,7 @@ static bool is_clause(const char *text)
     return false;
 }
 
-static void add_found(sentence *s, const imk_error *error, const wording *w)
+static void add_found(message *s, const imk_error *error, const wording *w)
 {
     if (w->quoted && error->found[0] != '"') {
         add(s, "\"");
@@ -131,7 +131,7 @@ static void add_found(sentence *s, const imk_error *error, const wording *w)
 }
 
 /* `3 is outside its valid range (limit 2)`; a limit of 0 may be none, and error.expected says. */
-static void add_numbers(sentence *s, const imk_error *error, const wording *w)
+static void add_numbers(message *s, const imk_error *error, const wording *w)
 {
     add_number(s, error->value, error->limit);
     add(s, " ");
@@ -144,7 +144,7 @@ static void add_numbers(sentence *s, const imk_error *error, const wording *w)
     add(s, ")");
 }
 
-static void add_finding(sentence *s, const imk_error *error)
+static void add_finding(message *s, const imk_error *error)
 {
     const wording *w = wording_of(error->status);
     const bool numbers = error->value != 0.0 || error->limit != 0.0; /* also when not a number */
@@ -185,7 +185,7 @@ static bool is_noun(const char *text)
     return text[0] >= '0' && text[0] <= '9';
 }
 
-static void add_remedy(sentence *s, const imk_error *error)
+static void add_remedy(message *s, const imk_error *error)
 {
     const char *expected = error->expected;
     const bool unknown = error->status == IMK_ERROR_UNIT_UNKNOWN ||
@@ -208,7 +208,7 @@ static void add_remedy(sentence *s, const imk_error *error)
 /* --------------------------------------------------------------------------------------- place */
 
 /* `source:line:column: `, or `line 7, column 3: ` without a source. */
-static void add_place(sentence *s, const imk_error *error, const char *source)
+static void add_place(message *s, const imk_error *error, const char *source)
 {
     if (!source && error->line == 0)
         return;
@@ -238,7 +238,7 @@ static bool is_source(const imk_error *error, const char *source)
 }
 
 /* `gyro.bias.fixed, axis x: `, `time, row 17: `, `gyro.noise.gauss_markov[2]: `. */
-static void add_field(sentence *s, const imk_error *error, const char *source)
+static void add_field(message *s, const imk_error *error, const char *source)
 {
     const char *field = is_source(error, source) ? "" : error->field;
     const bool triad = begins_with(field, "gyro") || begins_with(field, "accel");
@@ -266,7 +266,7 @@ size_t imk_error_text(const imk_error *error, const char *source, char *text, si
 {
     if (size == 0)
         return 0;
-    sentence s = {text, size, 0, false};
+    message s = {text, size, 0, false};
     add_place(&s, error, source);
     add_field(&s, error, source);
     add_finding(&s, error);

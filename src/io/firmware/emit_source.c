@@ -28,7 +28,7 @@ static bool is_fixed(const source *s)
 
 /* ---- constants ------------------------------------------------------------------------------- */
 
-/* What a constant of an operation is: `what` for the rest of the sentence. */
+/* What a constant of an operation is: `what` for the rest of the message. */
 static void describe(imki_text *out, const imk_firmware_operation *o,
                      const imk_firmware_operation *of, imk_firmware_role within)
 {

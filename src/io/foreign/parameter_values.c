@@ -188,7 +188,7 @@ void imki_accept(imki_parameters *p, imki_place place, int kind, imki_quantity q
         imk_decimal_significant(raw[i], 6, number);
         const double value = raw[i] * unit.scale;
         const bool signless = quantity != IMKI_BIAS && quantity != IMKI_PLAIN;
-        /* An infinite time is for the format to judge. */
+        /* An infinite time is for the format to assess. */
         if (!(fabs(raw[i]) <= DBL_MAX) && !(quantity == IMKI_TIME && raw[i] > 0))
             imki_refuse_at(p, place, IMK_ERROR_NOT_FINITE, number, "a finite number");
         else if (signless && raw[i] < 0)

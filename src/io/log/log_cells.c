@@ -155,8 +155,8 @@ size_t imki_log_cells_read_scalar(const imki_log_cells *cells, const char *base,
 
 imki_log_cells_reader *imki_log_cells_choose(void)
 {
-    const char *wish = getenv("IMUKIT_ISA");
-    if (imki_log_cells_avx2_runs() && !(wish && strcmp(wish, "scalar") == 0))
+    const char *requirement = getenv("IMUKIT_ISA");
+    if (imki_log_cells_avx2_runs() && !(requirement && strcmp(requirement, "scalar") == 0))
         return imki_log_cells_read_avx2;
     return imki_log_cells_read_scalar;
 }

@@ -84,7 +84,7 @@ KERNEL_TARGET static size_t read_cells(const imki_log_cells *cells, const char *
     uint16_t ends[CHUNK + INDEX_SLACK];
     size_t row = 0, chunk = 256 + 16 * cells->cell_count;
     while (row < max_rows && *text < end) {
-        /* Not more than the rows wanted will need, judging by those before. */
+        /* Not more than the rows wanted will need, assessing by those before. */
         if (chunk > CHUNK)
             chunk = CHUNK;
         const size_t at_hand = (size_t)(end - *text);

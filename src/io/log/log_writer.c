@@ -223,8 +223,8 @@ imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *cons
     if (rows <= PARALLEL_CELLS / cells)
         executor = NULL;
     const size_t threads = executor && executor->threads > 1 ? executor->threads : 0;
-    const size_t wished = 1 + threads * BLOCKS_PER_THREAD;
-    const size_t blocks_max = wished < BLOCKS_MAX ? wished : BLOCKS_MAX;
+    const size_t required = 1 + threads * BLOCKS_PER_THREAD;
+    const size_t blocks_max = required < BLOCKS_MAX ? required : BLOCKS_MAX;
     begin(writer);
     check_units(writer, rows, columns);
     for (size_t first = 0; first < rows && writer->status == IMK_OK;) {

@@ -3,7 +3,7 @@
 #ifndef IMUKI_MOTION_FILE_INTERNAL_H
 #define IMUKI_MOTION_FILE_INTERNAL_H
 
-#include "step_sentence_internal.h"
+#include "step_text_internal.h"
 
 #include "imukit/motion_file.h"
 
@@ -37,12 +37,12 @@ typedef struct imki_script_reader {
     imk_motion_step *step;    /* from malloc */
     int *step_node;           /* where each stands */
     size_t step_count, capacity;
-    size_t sentence_count;        /* read so far, each pass of a repeat anew */
+    size_t step_count_read;       /* read so far, each pass of a repeat anew */
     double speed, heading, climb; /* after the steps read so far */
 } imki_script_reader;
 
-/* motion_sentence.c: one step that is a sentence. */
-void imki_step_sentence_read(imki_script_reader *reader, int node);
+/* step_read.c: one step that is a step. */
+void imki_step_read(imki_script_reader *reader, int node);
 
 /* vibration_lines.c: the entries of `vibration`, added to file->line. */
 void imki_vibration_read(imki_reading *reading, int sequence, uint64_t seed, imk_motion_file *file);

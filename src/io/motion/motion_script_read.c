@@ -80,13 +80,13 @@ static void read_repeat(imki_script_reader *r, int node)
 static void read_step(imki_script_reader *r, int node)
 {
     imki_reading *reading = &r->reading;
-    if (r->sentence_count++ == IMKI_STEPS_MAX)
+    if (r->step_count_read++ == IMKI_STEPS_MAX)
         imki_value_refuse(reading, node, IMK_ERROR_UNSUPPORTED, "too many steps",
                           "at most 100000 steps, repeats written out");
     else if (reading->document->node[node].kind == IMKI_NODE_MAPPING)
         read_repeat(r, node);
     else if (imki_value_require(reading, node, IMKI_NODE_SCALAR, "a step such as hold 10 s"))
-        imki_step_sentence_read(r, node);
+        imki_step_read(r, node);
 }
 
 static void read_steps(imki_script_reader *r, int sequence)

@@ -26,7 +26,7 @@ typedef struct column_set {
     struct {
         const char *name[SPELLINGS]; /* in lower case */
         const char *si;
-        double limit; /* of its magnitude, in degrees or as `si` says; 0: judged otherwise */
+        double limit; /* of its magnitude, in degrees or as `si` says; 0: assessed otherwise */
     } column[SET_MAX];
 } column_set;
 

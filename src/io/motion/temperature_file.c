@@ -7,7 +7,7 @@
 
 #include "io/file/text_file_internal.h"
 #include "motion_file_internal.h"
-#include "step_sentence_internal.h"
+#include "step_text_internal.h"
 
 #include "imukit/units.h"
 
@@ -65,42 +65,42 @@ static imk_status add_point(imk_temperature_file *file, double time, double temp
 /* ---- scripts --------------------------------------------------------------------------------- */
 
 /* A temperature above absolute zero. */
-static double read_temperature(const imki_sentence *s, imki_part part)
+static double read_temperature(const imki_step_text *s, imki_part part)
 {
-    const double temperature = imki_sentence_number(s, part, "K");
+    const double temperature = imki_step_text_number(s, part, "K");
     if (!(temperature > 0.0))
-        imki_sentence_refuse(s, part, IMK_ERROR_RANGE, "a temperature above 0 K");
+        imki_step_text_refuse(s, part, IMK_ERROR_RANGE, "a temperature above 0 K");
     return temperature;
 }
 
 /* A straight line from the last point to a temperature: so long, or at a rate. */
-static double read_ramp_time(const imki_sentence *s, double change)
+static double read_ramp_time(const imki_step_text *s, double change)
 {
-    return imki_sentence_has(s, IMKI_PART_AT)
-               ? fabs(change) / imki_sentence_positive(s, IMKI_PART_AT, "K/s")
-               : imki_sentence_positive(s, IMKI_PART_IN, "s");
+    return imki_step_text_has(s, IMKI_PART_AT)
+               ? fabs(change) / imki_step_text_positive(s, IMKI_PART_AT, "K/s")
+               : imki_step_text_positive(s, IMKI_PART_IN, "s");
 }
 
 static void read_step(imki_reading *r, int node, imk_temperature_file *file)
 {
-    imki_sentence s;
+    imki_step_text s;
     if (!imki_value_require(r, node, IMKI_NODE_SCALAR,
                             "a step such as ramp to 60 degC at 1 degC/min") ||
-        !imki_sentence_read(r, node, "a step", sizeof verbs / sizeof verbs[0], verbs, &s))
+        !imki_step_text_read(r, node, "a step", sizeof verbs / sizeof verbs[0], verbs, &s))
         return;
     const size_t count = file->profile.point_count;
     const int kind = s.verb->kind;
     if ((count == 0) != (kind == START))
-        imki_sentence_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX,
-                             count == 0 ? "start with a step such as start 25 degC"
-                                        : "start is the first step only; write step to 25 degC");
+        imki_step_text_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX,
+                              count == 0 ? "start with a step such as start 25 degC"
+                                         : "start is the first step only; write step to 25 degC");
     if (r->status != IMK_OK)
         return;
     double time = count > 0 ? file->time[count - 1] : 0.0;
     double temperature = count > 0 ? file->temperature[count - 1] : 0.0;
     if (kind == SOAK) {
-        const bool words = imki_sentence_has(&s, IMKI_PART_FOR);
-        time += imki_sentence_positive(&s, words ? IMKI_PART_FOR : IMKI_PART_BARE, "s");
+        const bool words = imki_step_text_has(&s, IMKI_PART_FOR);
+        time += imki_step_text_positive(&s, words ? IMKI_PART_FOR : IMKI_PART_BARE, "s");
     } else {
         const double before = temperature;
         temperature = read_temperature(&s, kind == START ? IMKI_PART_BARE : IMKI_PART_TO);

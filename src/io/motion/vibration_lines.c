@@ -80,7 +80,7 @@ static void add_lines(vibration_reader *r, int node, size_t count)
 /* ---- one line -------------------------------------------------------------------------------- */
 
 /* Amplitude of displacement or rotation, stated as such, as a velocity or an acceleration. */
-static double read_amplitude(const imki_sentence *s, bool rotates, double frequency)
+static double read_amplitude(const imki_step_text *s, bool rotates, double frequency)
 {
     static const char *const units[2][3] = {{"m/s^2", "m", "m/s"}, {"rad", "rad/s", "rad/s^2"}};
     static const int orders[2][3] = {{2, 0, 1}, {0, 1, 2}}; /* of the derivative */
@@ -88,32 +88,32 @@ static double read_amplitude(const imki_sentence *s, bool rotates, double freque
     int which = 0;
     for (; which < 3; which++) {
         imki_reading trial = {.document = s->reading->document};
-        imki_sentence quiet = *s;
+        imki_step_text quiet = *s;
         quiet.reading = &trial;
-        (void)imki_sentence_number(&quiet, IMKI_PART_BARE, units[kind][which]);
+        (void)imki_step_text_number(&quiet, IMKI_PART_BARE, units[kind][which]);
         if (trial.status != IMK_ERROR_DIMENSION)
             break;
     }
     which = which == 3 ? 0 : which; /* none fits: the message speaks of the first */
-    double amplitude = imki_sentence_positive(s, IMKI_PART_BARE, units[kind][which]);
+    double amplitude = imki_step_text_positive(s, IMKI_PART_BARE, units[kind][which]);
     for (int i = 0; i < orders[kind][which]; i++)
         amplitude /= 2.0 * PI * frequency;
     if (rotates && !(amplitude < rotation_max))
-        imki_sentence_refuse(s, IMKI_PART_BARE, IMK_ERROR_RANGE,
-                             "a rotation below 0.1 rad; write a step swing for larger ones");
+        imki_step_text_refuse(s, IMKI_PART_BARE, IMK_ERROR_RANGE,
+                              "a rotation below 0.1 rad; write a step swing for larger ones");
     return amplitude;
 }
 
-static void read_sine(vibration_reader *r, const imki_sentence *s)
+static void read_sine(vibration_reader *r, const imki_step_text *s)
 {
-    imk_vibration_line line = {.axis = imki_sentence_axis(s),
-                               .frequency = imki_sentence_positive(s, IMKI_PART_AT, "Hz")};
+    imk_vibration_line line = {.axis = imki_step_text_axis(s),
+                               .frequency = imki_step_text_positive(s, IMKI_PART_AT, "Hz")};
     if (!(line.frequency >= IMK_VIBRATION_FREQUENCY_MIN &&
           line.frequency <= IMK_VIBRATION_FREQUENCY_MAX))
-        imki_sentence_refuse(s, IMKI_PART_AT, IMK_ERROR_RANGE,
-                             "a frequency from 1e-6 Hz to 1e9 Hz");
-    if (imki_sentence_has(s, IMKI_PART_PHASE))
-        line.phase = imki_sentence_number(s, IMKI_PART_PHASE, "rad") / (2.0 * PI);
+        imki_step_text_refuse(s, IMKI_PART_AT, IMK_ERROR_RANGE,
+                              "a frequency from 1e-6 Hz to 1e9 Hz");
+    if (imki_step_text_has(s, IMKI_PART_PHASE))
+        line.phase = imki_step_text_number(s, IMKI_PART_PHASE, "rad") / (2.0 * PI);
     line.amplitude = read_amplitude(s, line.axis >= 3, line.frequency);
     imk_vibration_line *place = room_for(r, s->node, 1);
     if (!place)
@@ -158,12 +158,12 @@ static void add_random(vibration_reader *r, int node, const density *d)
         place_error(reading, node);
 }
 
-static void read_flat(vibration_reader *r, const imki_sentence *s)
+static void read_flat(vibration_reader *r, const imki_step_text *s)
 {
-    density d = {.axis = imki_sentence_axis(s), .corners = 2, .lines = IMKI_VIBRATION_LINES};
-    d.value[0] = d.value[1] = imki_sentence_positive(s, IMKI_PART_BARE, density_unit);
-    d.frequency[0] = imki_sentence_positive(s, IMKI_PART_FROM, "Hz");
-    d.frequency[1] = imki_sentence_positive(s, IMKI_PART_TO, "Hz");
+    density d = {.axis = imki_step_text_axis(s), .corners = 2, .lines = IMKI_VIBRATION_LINES};
+    d.value[0] = d.value[1] = imki_step_text_positive(s, IMKI_PART_BARE, density_unit);
+    d.frequency[0] = imki_step_text_positive(s, IMKI_PART_FROM, "Hz");
+    d.frequency[1] = imki_step_text_positive(s, IMKI_PART_TO, "Hz");
     add_random(r, s->node, &d);
 }
 
@@ -240,11 +240,11 @@ static void read_random(vibration_reader *r, int node)
 
 static void read_vibration(vibration_reader *r, int node)
 {
-    imki_sentence s;
+    imki_step_text s;
     if (r->reading->document->node[node].kind == IMKI_NODE_MAPPING)
         read_random(r, node);
     else if (imki_value_require(r->reading, node, IMKI_NODE_SCALAR, verbs[SINE].usage) &&
-             imki_sentence_read(r->reading, node, "a vibration", 2, verbs, &s))
+             imki_step_text_read(r->reading, node, "a vibration", 2, verbs, &s))
         (s.verb->kind == SINE ? read_sine : read_flat)(r, &s);
 }
 

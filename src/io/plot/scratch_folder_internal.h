@@ -44,7 +44,7 @@ void imki_scratch_last_line(const imki_scratch *s, imki_scratch_file which, char
 /* Is the disk full, so that the output may be cut short? It is not to be used afterwards. */
 bool imki_scratch_is_full(const imki_scratch *s);
 
-/* The sentence for that. */
+/* The message for that. */
 imk_status imki_scratch_refuse_full(imk_error *error);
 
 #endif

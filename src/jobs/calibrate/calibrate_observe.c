@@ -18,21 +18,21 @@ bool imk_procedure_is_known(imk_procedure procedure)
     return procedure != IMK_PROCEDURE_MULTIPOSITION && procedure != IMK_PROCEDURE_THERMAL;
 }
 
-/* Take away the doubts whether holds can be found where sections name them: the procedure counts
- * the faces. */
-static void doubts_of_named_holds(imk_calibrate_record *log)
+/* Take away the diagnostics whether holds can be found where sections name them: the procedure
+ * counts the faces. */
+static void diagnostics_of_named_holds(imk_calibrate_record *log)
 {
     enum { FACES = 6 };
     if ((log->procedure != IMK_PROCEDURE_SIXPOSITION && log->procedure != IMK_PROCEDURE_FERRARIS) ||
         !log->record.section || log->record.section_count < FACES)
         return;
     size_t kept = 0;
-    for (size_t i = 0; i < log->doubt_count; i++)
-        if (log->doubt[i].kind != IMK_DOUBT_NEVER_STATIC &&
-            log->doubt[i].kind != IMK_DOUBT_NEVER_MOVES &&
-            log->doubt[i].kind != IMK_DOUBT_FEW_POSES)
-            log->doubt[kept++] = log->doubt[i];
-    log->doubt_count = kept;
+    for (size_t i = 0; i < log->diagnostic_count; i++)
+        if (log->diagnostic[i].kind != IMK_DIAGNOSTIC_NEVER_STATIC &&
+            log->diagnostic[i].kind != IMK_DIAGNOSTIC_NEVER_MOVES &&
+            log->diagnostic[i].kind != IMK_DIAGNOSTIC_FEW_POSES)
+            log->diagnostic[kept++] = log->diagnostic[i];
+    log->diagnostic_count = kept;
 }
 
 /* ---- logs ------------------------------------------------------------------------------------ */
@@ -54,7 +54,7 @@ static imk_status find_rests(imk_calibrate_log *b, imk_calibrate_record *log, vo
     }
 }
 
-/* Where it stands still: for the doubts, the table of poses and the plot. */
+/* Where it stands still: for the diagnostics, the table of poses and the plot. */
 static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_error *error)
 {
     const imk_model *model = &b->calibration->model;
@@ -69,10 +69,10 @@ static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_er
     const imk_status status = find_rests(b, log, workspace, size, error);
     imki_resize(&b->job.allocator, workspace, 0);
     if (status == IMK_OK) {
-        log->doubt_count =
-            imk_record_doubts(&log->record, &log->stationary, log->interval_count, log->interval,
-                              b->calibration->gravity, model, IMK_CALIBRATE_DOUBTS_MAX, log->doubt);
-        doubts_of_named_holds(log);
+        log->diagnostic_count = imk_record_diagnostics(
+            &log->record, &log->stationary, log->interval_count, log->interval,
+            b->calibration->gravity, model, IMK_CALIBRATE_DIAGNOSTICS_MAX, log->diagnostic);
+        diagnostics_of_named_holds(log);
         return IMK_OK;
     }
     /* A log too short for holds may still do for a table. */
@@ -186,7 +186,7 @@ imk_status imki_solve(imk_calibrate_log *b, imk_error *error)
     if (status != IMK_OK)
         return status;
     b->result = result;
-    b->doubt_count =
-        imk_solution_doubts(b->calibration, result, IMK_CALIBRATE_DOUBTS_MAX, b->doubt);
+    b->diagnostic_count = imk_solution_diagnostics(b->calibration, result,
+                                                   IMK_CALIBRATE_DIAGNOSTICS_MAX, b->diagnostic);
     return IMK_OK;
 }

@@ -70,16 +70,17 @@ imk_status imk_calibrate_plan_run(imk_calibration *calibration, const imk_plan_s
     *plan = NULL;
     imk_calibrate_plan *made = imki_arena_take(&arena, sizeof *made);
     imki_arena *memory = imki_arena_take(&arena, sizeof *memory);
-    imk_plan_wish *wish =
-        imki_arena_take(&arena, (settings->wish_count + 1) * sizeof *settings->wish);
+    imk_sigma_requirement *requirement =
+        imki_arena_take(&arena, (settings->requirement_count + 1) * sizeof *settings->requirement);
     if (arena.failed) {
         imki_arena_free(&arena);
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     }
-    if (settings->wish_count > 0)
-        memcpy(wish, settings->wish, settings->wish_count * sizeof *wish);
+    if (settings->requirement_count > 0)
+        memcpy(requirement, settings->requirement,
+               settings->requirement_count * sizeof *requirement);
     made->settings = *settings;
-    made->settings.wish = wish;
+    made->settings.requirement = requirement;
     *memory = arena;
     made->memory = memory;
     imk_status status = make(calibration, made, error);

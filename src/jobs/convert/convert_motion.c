@@ -22,7 +22,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static const char *wish(const imki_convert_motion *m)
+static const char *requirement(const imki_convert_motion *m)
 {
     return m->settings->to_point ? "to-point" : "gravity-free";
 }
@@ -34,11 +34,12 @@ static imk_status find_axis(const imki_convert_motion *m, const imk_record_sourc
     char name[96];
     *found = imk_record_find(
         source, sensor == 0 ? IMK_QUANTITY_ANGULAR_RATE : IMK_QUANTITY_SPECIFIC_FORCE, k);
-    snprintf(name, sizeof name, "%s_%c\t%s", sensor == 0 ? "gyro" : "accel", "xyz"[k], wish(m));
+    snprintf(name, sizeof name, "%s_%c\t%s", sensor == 0 ? "gyro" : "accel", "xyz"[k],
+             requirement(m));
     if (*found < 0)
         return imki_fail(m->findings, error, IMK_ERROR_COLUMN, "convert:no_axis", name, 0, NULL);
     const imk_log_column *column = &source->columns[*found];
-    snprintf(name, sizeof name, "%s\t%s", column->name, wish(m));
+    snprintf(name, sizeof name, "%s\t%s", column->name, requirement(m));
     if (imk_dimension_equal(column->unit.dimension, imk_unit_of("count").dimension))
         return imki_fail(m->findings, error, IMK_ERROR_DIMENSION, "convert:counts", name,
                          IMKI_NUMBERS(sensor));

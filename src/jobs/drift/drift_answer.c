@@ -8,7 +8,7 @@
 #include <string.h>
 
 typedef struct search {
-    imk_drift_wish figure;
+    imk_drift_requirement figure;
     const imk_allocator *allocator;
     imk_drift_settings settings; /* of the one time */
     imk_drift_candidate *candidate;
@@ -42,7 +42,7 @@ static void try_device(void *context, size_t item)
         if (memory && imk_drift_covariance(model, &s->settings, NULL, &analysis, memory, size,
                                            NULL) == IMK_OK) {
             c->figures = imk_drift_figures_of(&analysis->total[0]);
-            c->usable = isfinite(imk_drift_wished(&c->figures, s->figure));
+            c->usable = isfinite(imk_drift_required(&c->figures, s->figure));
         }
     }
     imki_arena_free(&scratch);
@@ -61,14 +61,16 @@ static int by_figure(const void *a, const void *b)
     return strcmp(x->candidate.device->name, y->candidate.device->name);
 }
 
-static bool sort_candidates(imk_drift_answer *answer, imk_drift_wish wish, imki_arena *arena)
+static bool sort_candidates(imk_drift_answer *answer, imk_drift_requirement requirement,
+                            imki_arena *arena)
 {
     ranked *list = imki_arena_take(arena, (answer->candidate_count + 1) * sizeof *list);
     if (!list)
         return false;
     for (size_t i = 0; i < answer->candidate_count; i++) {
         const imk_drift_candidate *c = &answer->candidate[i];
-        list[i] = (ranked){c->usable ? imk_drift_wished(&c->figures, wish) : (double)INFINITY, *c};
+        list[i] = (ranked){
+            c->usable ? imk_drift_required(&c->figures, requirement) : (double)INFINITY, *c};
     }
     qsort(list, answer->candidate_count, sizeof *list, by_figure);
     for (size_t i = 0; i < answer->candidate_count; i++)
@@ -79,7 +81,7 @@ static bool sort_candidates(imk_drift_answer *answer, imk_drift_wish wish, imki_
 /* Terms that must become better, the one that needs most first. */
 static void order_terms(const imk_drift_analysis *a, imk_drift_answer *answer)
 {
-    const imk_drift_requirement *need = &answer->requirement;
+    const imk_drift_allocation *need = &answer->allocation;
     size_t *order = answer->order;
     for (size_t k = 0; k < a->source_count; k++) {
         if (!(need->source[k] < IMK_DRIFT_SAME))
@@ -102,7 +104,7 @@ imk_status imki_drift_answer(imk_drift_models *r, imki_arena *arena, const imk_e
     if (!answer)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     const imk_status status = imk_drift_require(one->analysis, one->time, want->figure, want->goal,
-                                                &answer->requirement, error);
+                                                &answer->allocation, error);
     if (status != IMK_OK)
         return status;
     order_terms(one->analysis, answer);
@@ -124,5 +126,5 @@ bool imki_drift_would_do(const imk_drift_models *r, const imk_drift_candidate *c
 {
     const imk_drift_wanted *want = &r->settings.want;
     return c->device->is_preset == preset && c->usable &&
-           imk_drift_wished(&c->figures, want->figure) <= want->goal;
+           imk_drift_required(&c->figures, want->figure) <= want->goal;
 }

@@ -38,28 +38,28 @@ static size_t budget_time(const imk_drift_models *r, const imk_drift_case *one)
 }
 
 /* States whose squares make a figure. */
-static void states_of(imk_drift_wish wish, int *first, int *last)
+static void states_of(imk_drift_requirement requirement, int *first, int *last)
 {
     static const int of[][2] = {{0, 1}, {0, 1}, {0, 1}, {2, 2}, {3, 4}, {6, 7}, {8, 8}};
-    *first = of[wish][0];
-    *last = of[wish][1];
+    *first = of[requirement][0];
+    *last = of[requirement][1];
 }
 
-static double variance_of(const imk_drift_moments *m, imk_drift_wish wish)
+static double variance_of(const imk_drift_moments *m, imk_drift_requirement requirement)
 {
     int first, last;
     double sum = 0;
-    states_of(wish, &first, &last);
+    states_of(requirement, &first, &last);
     for (int i = first; i <= last; i++)
         sum += m->covariance[i][i];
     return sum;
 }
 
-static double shift_of(const imk_drift_moments *m, imk_drift_wish wish)
+static double shift_of(const imk_drift_moments *m, imk_drift_requirement requirement)
 {
     int first, last;
     double sum = 0;
-    states_of(wish, &first, &last);
+    states_of(requirement, &first, &last);
     for (int i = first; i <= last; i++)
         sum += m->mean[i] * m->mean[i];
     return sqrt(sum);
@@ -77,17 +77,17 @@ static int by_share(const void *a, const void *b)
 
 static bool find_budget(const imk_drift_models *r, imk_drift_case *one, imki_arena *arena)
 {
-    const imk_drift_wish wish = imki_drift_looked_at(r);
+    const imk_drift_requirement requirement = imki_drift_looked_at(r);
     const imk_drift_analysis *a = one->analysis;
     one->time = budget_time(r, one);
     one->share = imki_arena_take(arena, (a->source_count + 1) * sizeof *one->share);
     if (!one->share)
         return false;
-    const double total = variance_of(&a->total[one->time], wish);
+    const double total = variance_of(&a->total[one->time], requirement);
     for (size_t k = 0; k < a->source_count; k++) {
         imk_drift_moments m = a->contribution[k * a->time_count + one->time];
-        imk_drift_share s = {.source = k, .shift = shift_of(&m, wish)};
-        s.share = total > 0 ? variance_of(&m, wish) / total : 0;
+        imk_drift_share s = {.source = k, .shift = shift_of(&m, requirement)};
+        s.share = total > 0 ? variance_of(&m, requirement) / total : 0;
         if (!(s.share > 0) && !(s.shift > 0))
             continue;
         s.whole = imk_drift_figures_of(&m);

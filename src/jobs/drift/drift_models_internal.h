@@ -8,9 +8,9 @@
 #include "jobs/arena_internal.h"
 
 /* What budgets are of: the figure that is wanted, or CEP. */
-static inline imk_drift_wish imki_drift_looked_at(const imk_drift_models *r)
+static inline imk_drift_requirement imki_drift_looked_at(const imk_drift_models *r)
 {
-    return r->settings.want.asked ? r->settings.want.figure : IMK_WISH_CEP;
+    return r->settings.want.asked ? r->settings.want.figure : IMK_REQUIRED_CEP;
 }
 
 static inline const imk_drift_case *imki_drift_last_case(const imk_drift_models *r)
@@ -24,7 +24,7 @@ static inline double imki_drift_row_time(const imk_drift_models *r, size_t row)
     return r->times->time[r->times->row[row]];
 }
 
-/* Does it meet the wish, and is it a grade preset, or none? */
+/* Does it meet the requirement, and is it a grade preset, or none? */
 bool imki_drift_would_do(const imk_drift_models *r, const imk_drift_candidate *candidate,
                          bool preset);
 /* Fill r->answer. */

@@ -78,7 +78,7 @@ static void find_shares(imk_graded *one, const imk_drift_analysis *a)
 static imk_status find_needs(imk_graded *one, const imk_drift_analysis *a, imki_arena *scratch,
                              imk_error *error)
 {
-    imk_drift_requirement *need = imki_arena_take(scratch, sizeof *need);
+    imk_drift_allocation *need = imki_arena_take(scratch, sizeof *need);
     if (!need)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     const imk_grade present = one->way[IMK_GRADE_GIVEN].grade;
@@ -89,7 +89,7 @@ static imk_status find_needs(imk_graded *one, const imk_drift_analysis *a, imki_
     const bool open = row && isinf(row->position_limit);
     const size_t time = one->next == IMK_GRADE_STRATEGIC ? IMK_GRADE_DAY : IMK_GRADE_HOUR;
     /* A class whose claim has no upper end wants an error that is a position still. */
-    if (row && imk_drift_require(a, time, open ? IMK_WISH_DRMS : IMK_WISH_CEP,
+    if (row && imk_drift_require(a, time, open ? IMK_REQUIRED_DRMS : IMK_REQUIRED_CEP,
                                  open ? IMK_DRIFT_DISTANCE_MAX : row->position_limit, need,
                                  NULL) == IMK_OK) {
         size_t wanting = 0;

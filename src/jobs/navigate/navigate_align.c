@@ -116,10 +116,10 @@ static void check_rotation(imk_navigate_log *n)
         return;
     }
     /* Of the angle 3 deg are a bias of 0.8 deg/h, or an accelerometer's of 50 mg. */
-    const double doubt = 3.0 * degree + 3.0 * bias_size(n) / IMK_EARTH_RATE;
+    const double diagnostic = 3.0 * degree + 3.0 * bias_size(n) / IMK_EARTH_RATE;
     const double place = n->settings.place.latitude;
-    const bool opposite = fabs(latitude + place) < doubt && fabs(latitude) > doubt;
-    if (opposite || fabs(latitude - place) > doubt)
+    const bool opposite = fabs(latitude + place) < diagnostic && fabs(latitude) > diagnostic;
+    if (opposite || fabs(latitude - place) > diagnostic)
         imki_find(&n->findings, IMK_FINDING_WARNING, "axes", NULL,
                   IMKI_NUMBERS(latitude / degree, place / degree, opposite));
 }

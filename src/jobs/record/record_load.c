@@ -46,8 +46,8 @@ static void progress_of(const imk_record_source *source, uint64_t *done, uint64_
         source->progress(source->context, done, size);
 }
 
-/* Rows to make room for when all of `rows` is full: as many as the source seems to hold, judging by
- * the part read, and half as many again at least. */
+/* Rows to make room for when all of `rows` is full: as many as the source seems to hold, assessing
+ * by the part read, and half as many again at least. */
 static size_t next_capacity(const imk_record_source *source, size_t rows)
 {
     uint64_t done, size;

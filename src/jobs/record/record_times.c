@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the times of a log tell about it. Steps <= 0 are counted at once; positive ones in groups of
- * 4096, each judged with the interval known when it is full, so a log of any length takes the same
- * memory:
+ * 4096, each assessed with the interval known when it is full, so a log of any length takes the
+ * same memory:
  *
  *     interval = 1/rate, or the median of the first group; from the second group on the median of
  *                the groups' medians (of 4096 groups' medians each, beyond 4096 groups)
@@ -65,14 +65,14 @@ static double interval_now(const imki_record_times *times)
 }
 
 /* Sums over the regular steps, and the gaps. */
-typedef struct judgement {
+typedef struct assessment {
     size_t gaps, first_gap, missing, regular;
     double sum, square_sum;
-} judgement;
+} assessment;
 
-static judgement judge(const imki_record_times *times, double interval, double reference)
+static assessment assess(const imki_record_times *times, double interval, double reference)
 {
-    judgement j = {0};
+    assessment j = {0};
     for (size_t i = 0; i < times->pending; i++) {
         const imki_record_step step = times->step[i];
         const size_t intervals = imk_step_intervals(step.size, interval);
@@ -90,7 +90,7 @@ static judgement judge(const imki_record_times *times, double interval, double r
     return j;
 }
 
-static void add_judgement(imki_record_times *times, const judgement *j)
+static void add_assessment(imki_record_times *times, const assessment *j)
 {
     imk_log_findings *found = &times->findings;
     if (found->gaps == 0)
@@ -113,8 +113,8 @@ static void close_group(imki_record_times *times)
     times->findings.interval = interval_now(times);
     if (times->reference == 0.0)
         times->reference = times->findings.interval;
-    const judgement j = judge(times, times->findings.interval, times->reference);
-    add_judgement(times, &j);
+    const assessment j = assess(times, times->findings.interval, times->reference);
+    add_assessment(times, &j);
     times->pending = 0;
 }
 
@@ -151,7 +151,7 @@ imk_log_findings imki_record_times_findings(const imki_record_times *times)
     imk_log_findings found = times->findings;
     const double interval = interval_now(times);
     const double reference = times->reference > 0.0 ? times->reference : interval;
-    const judgement j = judge(times, interval, reference);
+    const assessment j = assess(times, interval, reference);
     if (found.gaps == 0)
         found.first_gap = j.first_gap;
     found.gaps += j.gaps;

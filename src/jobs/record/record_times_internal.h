@@ -5,7 +5,7 @@
 
 #include "imukit/record.h"
 
-/* Steps are judged in groups of this many. Median of the groups' medians is the remedian
+/* Steps are assessed in groups of this many. Median of the groups' medians is the remedian
  * [ROUSSEEUW1990]; with two levels of medians kept it covers 4096^2 groups. */
 enum { IMKI_STEP_GROUP = 4096 };
 

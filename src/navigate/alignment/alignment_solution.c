@@ -45,7 +45,7 @@ static bool invert(const imk_matrix3 *information, imk_matrix3 *inverse, double 
     return true;
 }
 
-static bool judge(const imk_alignment *a, const imki_whitener *whitener, candidate *c)
+static bool assess(const imk_alignment *a, const imki_whitener *whitener, candidate *c)
 {
     double log_determinant;
     c->whitener = whitener;
@@ -180,7 +180,7 @@ static bool mix(const imk_alignment *a, solution *s)
     imk_matrix3 p;
     candidate c;
     for (size_t i = 0; i < a->whitener_count; i++) {
-        score[i] = judge(a, &a->whitener[i], &c) ? c.score : -HUGE_VAL;
+        score[i] = assess(a, &a->whitener[i], &c) ? c.score : -HUGE_VAL;
         if (score[i] > highest) {
             highest = score[i];
             s->attitude = solve_with(a, &c, s, &p);
@@ -191,7 +191,7 @@ static bool mix(const imk_alignment *a, solution *s)
     imk_vector3 mean = {{0}};
     imk_matrix3 all = {{{0}}};
     for (size_t n = 0; n < a->whitener_count; n++) {
-        if (!(score[n] > highest - 20.0) || !judge(a, &a->whitener[n], &c))
+        if (!(score[n] > highest - 20.0) || !assess(a, &a->whitener[n], &c))
             continue;
         const double weight = imk_exp(score[n] - highest);
         const imk_quaternion attitude = solve_with(a, &c, s, &p);
@@ -269,7 +269,7 @@ imk_status imki_alignment_inertial_finish(const imk_alignment *alignment,
                              "at least a 32nd of the duration");
     const imk_vector3 gravity = imk_gravity_ecef(a->velocities.position);
     solution s = {.force = imki_alignment_to_reference(a, a->time, imki_scaled(-1.0, gravity))};
-    if (!judge(a, &a->equal, &s.equal) || !mix(a, &s))
+    if (!assess(a, &a->equal, &s.equal) || !mix(a, &s))
         return imk_error_set(error, IMK_ERROR_SINGULAR, "alignment", "",
                              "force and a turn of it that are finite and not zero");
     to_result(a, &s, result);

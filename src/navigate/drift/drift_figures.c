@@ -41,22 +41,22 @@ imk_drift_figures imk_drift_figures_of(const imk_drift_moments *m)
                                .heading = sqrt(square_of(m, HEADING))};
 }
 
-double imk_drift_wished(const imk_drift_figures *figures, imk_drift_wish wish)
+double imk_drift_required(const imk_drift_figures *figures, imk_drift_requirement requirement)
 {
-    switch (wish) {
-    case IMK_WISH_CEP:
+    switch (requirement) {
+    case IMK_REQUIRED_CEP:
         return figures->cep;
-    case IMK_WISH_R95:
+    case IMK_REQUIRED_R95:
         return figures->r95;
-    case IMK_WISH_DRMS:
+    case IMK_REQUIRED_DRMS:
         return figures->drms;
-    case IMK_WISH_HEIGHT:
+    case IMK_REQUIRED_HEIGHT:
         return figures->height;
-    case IMK_WISH_VELOCITY:
+    case IMK_REQUIRED_VELOCITY:
         return figures->velocity;
-    case IMK_WISH_TILT:
+    case IMK_REQUIRED_TILT:
         return figures->tilt;
-    case IMK_WISH_HEADING:
+    case IMK_REQUIRED_HEADING:
         return figures->heading;
     }
     return (double)NAN;
@@ -214,15 +214,15 @@ imk_drift_validity imk_drift_validity_of(const imk_drift_figures *f)
                                                                    : IMK_DRIFT_ROUGH;
 }
 
-const char *imk_drift_wish_name(imk_drift_wish wish)
+const char *imk_drift_requirement_name(imk_drift_requirement requirement)
 {
     static const char *const names[] = {"CEP",      "R95",  "DRMS",   "height",
                                         "velocity", "tilt", "heading"};
-    return names[wish];
+    return names[requirement];
 }
 
-const char *imk_drift_wish_unit(imk_drift_wish wish)
+const char *imk_drift_requirement_unit(imk_drift_requirement requirement)
 {
     static const char *const units[] = {"m", "m", "m", "m", "m/s", "rad", "rad"};
-    return units[wish];
+    return units[requirement];
 }

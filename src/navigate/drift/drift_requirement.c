@@ -27,27 +27,28 @@ static void add(imk_drift_moments *sum, const imk_drift_moments *m, double facto
     }
 }
 
-static double figure_of(const imk_drift_moments *m, imk_drift_wish wish)
+static double figure_of(const imk_drift_moments *m, imk_drift_requirement requirement)
 {
     const imk_drift_figures figures = imk_drift_figures_of(m);
-    return imk_drift_wished(&figures, wish);
+    return imk_drift_required(&figures, requirement);
 }
 
 /* True when the figure is at most the goal. Of a radius: when the circle holds as much as it
  * should, which is one integral instead of the search for the radius. */
-static bool meets(const imk_drift_moments *m, imk_drift_wish wish, double goal)
+static bool meets(const imk_drift_moments *m, imk_drift_requirement requirement, double goal)
 {
-    if (wish != IMK_WISH_CEP && wish != IMK_WISH_R95)
-        return figure_of(m, wish) <= goal;
+    if (requirement != IMK_REQUIRED_CEP && requirement != IMK_REQUIRED_R95)
+        return figure_of(m, requirement) <= goal;
     const imki_ellipse ellipse = imki_ellipse_of(m->mean[0], m->mean[1], m->covariance[0][0],
                                                  m->covariance[0][1], m->covariance[1][1]);
-    return imki_ellipse_probability(&ellipse, goal) >= (wish == IMK_WISH_CEP ? 0.5 : 0.95);
+    return imki_ellipse_probability(&ellipse, goal) >=
+           (requirement == IMK_REQUIRED_CEP ? 0.5 : 0.95);
 }
 
 typedef struct question {
     const imk_drift_analysis *analysis;
     size_t time;
-    imk_drift_wish wish;
+    imk_drift_requirement requirement;
     double goal;
 } question;
 
@@ -63,7 +64,7 @@ static bool meets_with(const question *q, const imk_drift_moments *rest,
 {
     imk_drift_moments sum = *rest;
     add(&sum, one, factor);
-    return meets(&sum, q->wish, q->goal);
+    return meets(&sum, q->requirement, q->goal);
 }
 
 /* Largest factor of one source with which the goal is met. */
@@ -109,7 +110,7 @@ static bool meets_under(const question *q, const double *figure, double ceiling)
     imk_drift_moments sum = {{0}, {{0}}};
     for (size_t k = 0; k < q->analysis->source_count; k++)
         add(&sum, source_of(q, k), under_ceiling(figure[k], ceiling));
-    return meets(&sum, q->wish, q->goal);
+    return meets(&sum, q->requirement, q->goal);
 }
 
 /* factor[k] from the figures of the sources alone. */
@@ -131,15 +132,16 @@ static void least_work(const question *q, const double *figure, double *factor)
         factor[k] = under_ceiling(figure[k], low);
 }
 
-imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t time, imk_drift_wish wish,
-                             double goal, imk_drift_requirement *requirement, imk_error *error)
+imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t time,
+                             imk_drift_requirement requirement, double goal,
+                             imk_drift_allocation *allocation, imk_error *error)
 {
-    const question q = {analysis, time, wish, goal};
+    const question q = {analysis, time, requirement, goal};
     double figure[IMK_DRIFT_SOURCES_MAX];
     if (time >= analysis->time_count)
         return imk_error_set(error, IMK_ERROR_RANGE, "time", "", "an index of the analysis' times");
-    if ((unsigned)wish > (unsigned)IMK_WISH_HEADING)
-        return imk_error_set(error, IMK_ERROR_RANGE, "wish", "", "one of imk_drift_wish");
+    if ((unsigned)requirement > (unsigned)IMK_REQUIRED_HEADING)
+        return imk_error_set(error, IMK_ERROR_RANGE, "requirement", "", "one of imk_drift_requirement");
     if (!(goal > 0.0 && goal < (double)INFINITY)) {
         const imk_status status =
             imk_error_set(error, IMK_ERROR_RANGE, "goal", "", "a positive number");
@@ -147,16 +149,16 @@ imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t time, im
             error->value = goal;
         return status;
     }
-    const double present = figure_of(&analysis->total[time], wish);
+    const double present = figure_of(&analysis->total[time], requirement);
     if (!(present < (double)INFINITY))
         return imk_error_set(error, IMK_ERROR_RANGE, "total", "", "finite moments");
-    requirement->present = present;
+    allocation->present = present;
     /* Every figure is of the first degree in the errors. */
-    requirement->all = goal / present;
+    allocation->all = goal / present;
     for (size_t k = 0; k < analysis->source_count; k++)
-        figure[k] = figure_of(source_of(&q, k), wish);
-    least_work(&q, figure, requirement->source);
+        figure[k] = figure_of(source_of(&q, k), requirement);
+    least_work(&q, figure, allocation->source);
     for (size_t k = 0; k < analysis->source_count; k++)
-        requirement->alone[k] = alone(&q, k);
+        allocation->alone[k] = alone(&q, k);
     return IMK_OK;
 }

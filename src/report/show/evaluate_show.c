@@ -255,10 +255,10 @@ static void show_unit(const imk_evaluate_shown *v, imk_result *result)
 static size_t show_limits(const char *name, const imk_evaluate_sheet *sheet, bool *met,
                           imk_result *result)
 {
-    size_t judged = 0;
+    size_t assessed = 0;
     for (const imk_evaluate_row *row = sheet->row; row < sheet->row + sheet->count; row++) {
         char line[300];
-        judged += row->verdict != IMK_EVALUATE_NONE;
+        assessed += row->verdict != IMK_EVALUATE_NONE;
         if (row->verdict <= IMK_EVALUATE_MET)
             continue;
         *met = false;
@@ -266,22 +266,22 @@ static size_t show_limits(const char *name, const imk_evaluate_sheet *sheet, boo
                  imk_evaluate_verdict_text(row->verdict), row->limit);
         imk_result_finding(result, row->verdict == IMK_EVALUATE_DOUBTFUL ? 1 : 2, line);
     }
-    return judged;
+    return assessed;
 }
 
 static void show_verdict(const imk_evaluate_shown *v, imk_result *result)
 {
-    size_t judged = 0;
+    size_t assessed = 0;
     bool met = true;
     char text[120];
     if (v->limit_count == 0)
         return;
     imk_result_heading(result, "Verdict");
     for (size_t k = 0; k < v->channel_count; k++)
-        judged += show_limits(v->channel[k].name, &v->channel[k].sheet, &met, result);
+        assessed += show_limits(v->channel[k].name, &v->channel[k].sheet, &met, result);
     for (size_t k = 0; k < v->rest_count; k++)
-        judged += show_limits(v->rest[k].name, &v->rest[k].sheet, &met, result);
-    snprintf(text, sizeof text, "All %zu limits are met, with their whole intervals.", judged);
+        assessed += show_limits(v->rest[k].name, &v->rest[k].sheet, &met, result);
+    snprintf(text, sizeof text, "All %zu limits are met, with their whole intervals.", assessed);
     if (met)
         imk_result_finding(result, 0, text);
 }

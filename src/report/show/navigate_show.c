@@ -114,7 +114,7 @@ static void show_data(const imk_navigate_log *n, const char *name, imk_result *r
     imk_result_end(result);
 }
 
-/* ---- sentences ---- */
+/* ---- messages ---- */
 
 /* Three angles to 0.1 mdeg, none of them -0. */
 static const char *angles_text(const double angle[3], char text[120])

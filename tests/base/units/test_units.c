@@ -383,7 +383,7 @@ static void quantities_are_read(void **state)
     }
 }
 
-static void bad_quantities_are_refused_with_a_sentence(void **state)
+static void bad_quantities_are_refused_with_a_message(void **state)
 {
     (void)state;
     static const struct {
@@ -426,7 +426,7 @@ static void bad_quantities_are_refused_with_a_sentence(void **state)
         {"1 inf 2 deg/h", "rad/s", 3, IMK_ERROR_NOT_FINITE, NULL, NULL},
         {"1 ± inf deg/h", "rad/s", 3, IMK_ERROR_NOT_FINITE, NULL, NULL},
         {"1e308 km", "m", 1, IMK_ERROR_NOT_FINITE, NULL, NULL},
-        /* Too long for the sentence: the unit alone is quoted. */
+        /* Too long for the message: the unit alone is quoted. */
         {"0.12345678901234567 0.12345678901234567 0.12345678901234567 0.12345678901234567 deg/h",
          "m", 4, IMK_ERROR_DIMENSION, "\"deg/h\" is an angular rate", NULL},
     };
@@ -722,7 +722,7 @@ int main(void)
         cmocka_unit_test(angle_and_frequency_are_not_mixed),
         cmocka_unit_test(unknown_units_are_refused_with_the_nearest),
         cmocka_unit_test(quantities_are_read),
-        cmocka_unit_test(bad_quantities_are_refused_with_a_sentence),
+        cmocka_unit_test(bad_quantities_are_refused_with_a_message),
         cmocka_unit_test(formatted_quantities_read_back_to_the_same_bits),
         cmocka_unit_test(short_decimals_are_written_as_they_were_read),
         cmocka_unit_test(quantities_are_written),

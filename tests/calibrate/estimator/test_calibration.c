@@ -6,7 +6,7 @@
 #include "calibrate/coverage.h"
 #include "calibrate/estimator/axis_reading_internal.h"
 #include "calibrate/estimator/calibration_internal.h"
-#include "calibrate/estimator_bench.h"
+#include "calibrate/estimator_session.h"
 
 #include "imukit/distributions.h"
 #include "imukit/linear_algebra.h"
@@ -16,7 +16,7 @@
  */
 
 /* Every term of a bench unit, all of like size in the reading. */
-static imk_model crowded_model(bench *b)
+static imk_model crowded_model(session *b)
 {
     static const double size[IMK_MODEL_TERMS] = {.1,   .01,  .01,  .01, 1e-3, 1e-3, 1e-4, .01,
                                                  1e-3, 1e-3, 1e-4, .05, 1e-3, 1e-4, .1};
@@ -43,7 +43,7 @@ static imk_model crowded_model(bench *b)
                     const bool power =
                         term == IMK_MODEL_BIAS_TEMPERATURE || term == IMK_MODEL_SCALE_TEMPERATURE;
                     if (value && !(power && k >= 3))
-                        *value = size[term] * bench_normal(b) / (power ? pow(30.0, k) : 1.0);
+                        *value = size[term] * session_normal(b) / (power ? pow(30.0, k) : 1.0);
                 }
     return m;
 }
@@ -66,16 +66,16 @@ static double reading_of(const imk_model *model, int sensor, int axis, const imk
     return value;
 }
 
-static imki_input random_input(bench *b)
+static imki_input random_input(session *b)
 {
     imki_input x;
     for (int j = 0; j < 3; j++) {
-        x.rate[j] = bench_normal(b);
-        x.force[j] = 8.0 * bench_normal(b);
-        x.angular_acceleration[j] = 3.0 * bench_normal(b);
+        x.rate[j] = session_normal(b);
+        x.force[j] = 8.0 * session_normal(b);
+        x.angular_acceleration[j] = 3.0 * session_normal(b);
     }
-    x.temperature = 298.15 + 25.0 * bench_normal(b); /* also beyond the valid range */
-    x.temperature_rate = 0.1 * bench_normal(b);
+    x.temperature = 298.15 + 25.0 * session_normal(b); /* also beyond the valid range */
+    x.temperature_rate = 0.1 * session_normal(b);
     return x;
 }
 
@@ -99,7 +99,7 @@ static double slope(const imk_model *model, int sensor, int axis, imki_input x, 
 static void readings_are_those_of_distort(void **state)
 {
     (void)state;
-    bench *b = bench_new(1, 1);
+    session *b = session_new(1, 1);
     for (int round = 0; round < 40; round++) {
         const imk_model m = crowded_model(b);
         imki_input x = random_input(b);
@@ -118,13 +118,13 @@ static void readings_are_those_of_distort(void **state)
                 }
             }
     }
-    bench_free(b);
+    session_free(b);
 }
 
 static void regressors_are_the_slopes_of_distort(void **state)
 {
     (void)state;
-    bench *b = bench_new(2, 1);
+    session *b = session_new(2, 1);
     for (int round = 0; round < 20; round++) {
         imk_model m = crowded_model(b);
         const imki_input x = random_input(b);
@@ -157,7 +157,7 @@ static void regressors_are_the_slopes_of_distort(void **state)
                     assert_true(row[1] == 0.0); /* of another axis */
                 }
     }
-    bench_free(b);
+    session_free(b);
 }
 
 /* ---- solutions --------------------------------------------------------------------------------
@@ -169,16 +169,16 @@ static void known_inputs_are_linear_least_squares(void **state)
 {
     (void)state;
     enum { ROWS = 20, COLUMNS = 7 };
-    bench *b = bench_new(3, 1);
+    session *b = session_new(3, 1);
     b->calibration.robust = false;
     b->calibration.frame = IMK_FRAME_REFERENCE;
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_BIAS, false);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_MISALIGNMENT, false);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_BIAS, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_MISALIGNMENT, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, false);
     for (int i = 0; i < ROWS; i++)
-        bench_known(b);
-    CHECK_OK(bench_solve(b));
+        session_known(b);
+    CHECK_OK(session_solve(b));
     double square = 0.0, x[3][COLUMNS], covariance[COLUMNS * COLUMNS];
     for (int axis = 0; axis < 3; axis++) {
         double a[ROWS * COLUMNS], beta[COLUMNS], y[ROWS];
@@ -212,48 +212,48 @@ static void known_inputs_are_linear_least_squares(void **state)
         CHECK_RELATIVE(imk_calibration_half_width(&b->result, (int)p, 0.95),
                        2.022690920036762 * b->result.sigma[p], 1e-6);
     }
-    bench_free(b);
+    session_free(b);
 }
 
 /* Without errors of the readings the truth comes back to the tolerance of the iteration. */
 static void exact_readings_give_the_truth(void **state)
 {
     (void)state;
-    bench *b = bench_new(4, 1);
+    session *b = session_new(4, 1);
     b->sigma[0] = b->sigma[1] = 1e-12;
     b->calibration.earth_rate = 0.0;
-    bench_free_static(b);
-    bench_know_the_rest(b);
+    session_free_static(b);
+    session_know_the_rest(b);
     for (int i = 0; i < 20; i++) {
-        bench_pose(b, 1.0);
+        session_pose(b, 1.0);
         for (int sensor = 0; sensor < 2; sensor++)
             for (int axis = 0; axis < 3; axis++)
                 b->observation[i].sigma[sensor][axis] = sensor == 0 ? 1e-6 : 1e-5;
     }
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     for (size_t p = 0; p < b->result.parameter_count; p++)
         CHECK_CLOSE(b->result.value[p], imk_model_parameter_get(&b->truth, b->result.parameter[p]),
                     1e-8);
-    bench_free(b);
+    session_free(b);
 }
 
 /* A mounting off by 1 deg, known to 1 deg, is found; placements of a tenth of it are too. */
 static void fixtures_and_placements_are_found(void **state)
 {
     (void)state;
-    bench *b = bench_new(5, 1);
+    session *b = session_new(5, 1);
     imk_calibration *c = &b->calibration;
     static const double mounting[3] = {.012, -.017, .009};
     c->frame = IMK_FRAME_REFERENCE;
     c->fixture_count = 1;
     c->fixture_sigma[0] = .0175;
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_BIAS, false);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
-    bench_free_term(b, IMK_ACCEL, IMK_MODEL_BIAS, false);
-    bench_free_term(b, IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, false);
-    bench_know_the_rest(b);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_BIAS, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
+    session_free_term(b, IMK_ACCEL, IMK_MODEL_BIAS, false);
+    session_free_term(b, IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, false);
+    session_know_the_rest(b);
     for (int i = 0; i < 24; i++) {
-        bench_known(b); /* what the unit sees; its nominal axes are turned back by the mounting */
+        session_known(b); /* what the unit sees; its nominal axes are turned back by the mounting */
         imk_observation *o = &b->observation[i];
         const imk_matrix3 turn = imk_quaternion_to_matrix(imk_quaternion_from_rotation_vector(
             (imk_vector3){{mounting[0], mounting[1], mounting[2]}}));
@@ -270,30 +270,30 @@ static void fixtures_and_placements_are_found(void **state)
         o->knowledge = i % 2 ? IMK_INPUT_PLACED : IMK_INPUT_KNOWN;
         o->placement_sigma = 1e-5;
     }
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     /* 24 forces of 8 m/s^2 an axis to 1e-3: 2e-5 rad; five times that. */
     for (int j = 0; j < 3; j++)
         CHECK_CLOSE(b->result.fixture[0][j], mounting[j], 1e-4);
     for (size_t p = 0; p < b->result.parameter_count; p++)
         CHECK_CLOSE(b->result.value[p], imk_model_parameter_get(&b->truth, b->result.parameter[p]),
                     6.0 * b->result.sigma[p]);
-    bench_free(b);
+    session_free(b);
 }
 
 /* Stated sigmas enter by their ratios only. */
 static void understated_sigmas_change_nothing(void **state)
 {
     (void)state;
-    bench *a = bench_new(6, 1), *b = bench_new(6, 1);
-    bench *both[2] = {a, b};
+    session *a = session_new(6, 1), *b = session_new(6, 1);
+    session *both[2] = {a, b};
     b->understated = 3.0;
     for (int k = 0; k < 2; k++) {
         both[k]->calibration.earth_rate = 0.0; /* whose part no factor multiplies */
-        bench_free_static(both[k]);
-        bench_know_the_rest(both[k]);
+        session_free_static(both[k]);
+        session_know_the_rest(both[k]);
         for (int i = 0; i < 24; i++)
-            bench_pose(both[k], 1.0);
-        CHECK_OK(bench_solve(both[k]));
+            session_pose(both[k], 1.0);
+        CHECK_OK(session_solve(both[k]));
     }
     for (size_t p = 0; p < a->result.parameter_count; p++) {
         CHECK_CLOSE(a->result.value[p], b->result.value[p], 0.01 * a->result.sigma[p]);
@@ -302,28 +302,28 @@ static void understated_sigmas_change_nothing(void **state)
     CHECK_RELATIVE(b->result.group[IMK_GROUP_ACCEL].factor,
                    3.0 * a->result.group[IMK_GROUP_ACCEL].factor, 3e-3);
     CHECK_RELATIVE(b->result.chi_square, 9.0 * a->result.chi_square, 0.01);
-    bench_free(a);
-    bench_free(b);
+    session_free(a);
+    session_free(b);
 }
 
 /* The information at the solution is the inverse of its covariance, factors 1. */
 static void information_is_the_inverse_covariance(void **state)
 {
     (void)state;
-    bench *b = bench_new(7, 1);
+    session *b = session_new(7, 1);
     imk_calibration *c = &b->calibration;
     c->fixture_count = 1;
     c->fixture_sigma[0] = 1e-3;
     c->frame = IMK_FRAME_REFERENCE;
-    bench_free_all(b);
-    bench_know_the_rest(b);
+    session_free_all(b);
+    session_know_the_rest(b);
     for (int i = 0; i < 8; i++)
-        bench_known(b);
+        session_known(b);
     for (int i = 0; i < 8; i++)
         b->observation[i].fixture = 0;
     for (int i = 0; i < 14; i++)
-        bench_pose(b, 1.0);
-    CHECK_OK(bench_solve(b));
+        session_pose(b, 1.0);
+    CHECK_OK(session_solve(b));
     const size_t count = c->parameter_count, size = imk_calibration_workspace_size(c);
     c->model = b->result.model;
     for (size_t i = 0; i < c->observation_count; i++) {
@@ -349,7 +349,7 @@ static void information_is_the_inverse_covariance(void **state)
         }
     free(workspace);
     free(information);
-    bench_free(b);
+    session_free(b);
 }
 
 /* ---- turns ------------------------------------------------------------------------------------
@@ -362,31 +362,31 @@ enum { TURN_POSES = 16, TURN_SAMPLES = 200, HOLD = 20 };
 static void turns_give_the_gyros(void **state)
 {
     (void)state;
-    bench *b = bench_new(8, 1);
+    session *b = session_new(8, 1);
     imk_calibration *c = &b->calibration;
     static double reading[2][3][TURN_POSES * (TURN_SAMPLES + HOLD)];
     const double dt = 0.01;
     c->earth_rate = 0.0;
     b->sigma[0] = b->sigma[1] = 1e-13;
     memset(&b->truth.gyro.g_sensitivity, 0, sizeof b->truth.gyro.g_sensitivity);
-    bench_free_static(b);
+    session_free_static(b);
     c->parameter_count -= 9; /* g-sensitivity is left out */
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_MISALIGNMENT, false);
-    bench_know_the_rest(b);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_MISALIGNMENT, false);
+    session_know_the_rest(b);
     imk_test_record record = {.name = "turns", .dt = dt, .axis_count = {3, 3}};
     for (int s = 0; s < 2; s++)
         for (int i = 0; i < 3; i++)
             record.reading[s][i] = reading[s][i];
     double vertical[3];
     size_t k = 0;
-    bench_unit_vector(b, vertical);
+    session_unit_vector(b, vertical);
     for (int pose = 0; pose < TURN_POSES; pose++) {
         static const double still[3] = {0.0, 0.0, 0.0};
         double force[3], axis[3];
         for (int j = 0; j < 3; j++)
             force[j] = c->gravity * vertical[j];
-        imk_observation o = bench_read(b, still, force, NULL, (double)NAN);
+        imk_observation o = session_read(b, still, force, NULL, (double)NAN);
         o.knowledge = IMK_INPUT_GRAVITY;
         o.record = 0;
         o.begin = k;
@@ -402,7 +402,7 @@ static void turns_give_the_gyros(void **state)
         assert_int_equal(imk_calibration_observe(c, &o), pose);
         if (pose + 1 == TURN_POSES)
             break;
-        bench_unit_vector(b, axis);
+        session_unit_vector(b, axis);
         const double rate = 0.8 + 0.1 * pose;
         double w[3], back[3];
         for (int j = 0; j < 3; j++) {
@@ -414,7 +414,7 @@ static void turns_give_the_gyros(void **state)
         c->turn[pose] = (imk_turn){
             .from = pose, .to = pose + 1, .begin = k, .end = k + TURN_SAMPLES, .sigma = 1e-5};
         for (int n = 0; n < TURN_SAMPLES; n++, k++) {
-            const imk_observation turning = bench_read(b, w, force, NULL, (double)NAN);
+            const imk_observation turning = session_read(b, w, force, NULL, (double)NAN);
             imk_vector3 v = {{vertical[0], vertical[1], vertical[2]}};
             v = imk_quaternion_rotate(step, v);
             memcpy(vertical, v.v, sizeof vertical);
@@ -426,7 +426,7 @@ static void turns_give_the_gyros(void **state)
     record.count = k;
     c->record[c->record_count++] = &record;
     c->turn_count = TURN_POSES - 1;
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     for (size_t p = 0; p < b->result.parameter_count; p++)
         CHECK_CLOSE(b->result.value[p], imk_model_parameter_get(&b->truth, b->result.parameter[p]),
                     1e-7);
@@ -437,11 +437,11 @@ static void turns_give_the_gyros(void **state)
     c->turn[5].begin += TURN_SAMPLES / 10;
     for (int t = 0; t < TURN_POSES - 1; t++)
         c->turn[t].sigma = 1e-4;
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     assert_int_equal(b->result.turns_refused, 1);
     assert_int_equal(b->result.observations_refused, 0);
     assert_true(c->turn[5].weight == 0.0);
-    bench_free(b);
+    session_free(b);
 }
 
 /* ---- statistics -------------------------------------------------------------------------------
@@ -466,25 +466,25 @@ static void run_benches(uint32_t benches, int poses, int bad, int known, double 
     size_t refused = 0;
     memset(&count, 0, sizeof count);
     for (uint32_t i = 0; i < benches; i++) {
-        bench *b = bench_new(11, i);
+        session *b = session_new(11, i);
         b->understated = understated;
         if (known > 0) {
             b->calibration.frame = IMK_FRAME_REFERENCE;
-            bench_free_all(b);
+            session_free_all(b);
         } else {
-            bench_free_static(b);
+            session_free_static(b);
         }
-        bench_know_the_rest(b);
+        session_know_the_rest(b);
         for (int k = 0; k < poses; k++)
-            bench_pose(b, k < bad ? 1.03 : 1.0);
+            session_pose(b, k < bad ? 1.03 : 1.0);
         for (int k = 0; k < known; k++)
-            bench_known(b);
-        if (bench_solve(b) == IMK_OK)
+            session_known(b);
+        if (session_solve(b) == IMK_OK)
             coverage_add(&count, &b->result, &b->truth, 0.95);
         else
             count.failed++;
         refused += b->result.observations_refused;
-        bench_free(b);
+        session_free(b);
     }
     check_coverage(&count);
     /* Clean: one in a hundred benches loses one, by two groups two: of n benches a Poisson number
@@ -524,10 +524,10 @@ static void intervals_hold_for_joint_logs(void **state)
  */
 
 /* The result is as before, and says so by its first byte. */
-static void expect_refusal(bench *b, imk_status status, const char *field)
+static void expect_refusal(session *b, imk_status status, const char *field)
 {
     memset(&b->result, 0x5a, sizeof b->result);
-    CHECK_STATUS(bench_solve(b), status);
+    CHECK_STATUS(session_solve(b), status);
     if (strstr(b->error.field, field) == NULL)
         fail_msg("field is %s, expected %s", b->error.field, field);
     for (size_t i = 0; i < sizeof b->result; i++)
@@ -538,86 +538,86 @@ static void one_pose_again_and_again(void **state)
 {
     (void)state;
     static const double up[3] = {0.0, 0.6, 0.8};
-    bench *b = bench_new(21, 1);
-    bench_free_static(b);
+    session *b = session_new(21, 1);
+    session_free_static(b);
     for (int i = 0; i < 24; i++)
-        bench_pose_along(b, up, 1.0);
+        session_pose_along(b, up, 1.0);
     expect_refusal(b, IMK_ERROR_SINGULAR, "accel.");
-    bench_free(b);
+    session_free(b);
 }
 
 /* All in the plane of x and y: what z does stays unknown. */
 static void poses_in_a_plane(void **state)
 {
     (void)state;
-    bench *b = bench_new(22, 1);
-    bench_free_static(b);
+    session *b = session_new(22, 1);
+    session_free_static(b);
     b->calibration.parameter_count -= 9; /* g-sensitivity */
     for (int i = 0; i < 24; i++) {
         const double v[3] = {cos(0.3 * i), sin(0.3 * i), 0.0};
-        bench_pose_along(b, v, 1.0);
+        session_pose_along(b, v, 1.0);
     }
     expect_refusal(b, IMK_ERROR_SINGULAR, "z");
-    bench_free(b);
+    session_free(b);
 }
 
 static void too_few_poses(void **state)
 {
     (void)state;
-    bench *b = bench_new(23, 1);
-    bench_free_static(b);
+    session *b = session_new(23, 1);
+    session_free_static(b);
     for (int i = 0; i < 8; i++)
-        bench_pose(b, 1.0);
+        session_pose(b, 1.0);
     expect_refusal(b, IMK_ERROR_TOO_SHORT, "accel");
     CHECK_CLOSE(b->error.value, 8.0, 0.0);
     CHECK_CLOSE(b->error.limit, 9.0, 0.0);
-    bench_free(b);
+    session_free(b);
 }
 
 static void readings_that_are_no_numbers(void **state)
 {
     (void)state;
-    bench *b = bench_new(24, 1);
-    bench_free_static(b);
+    session *b = session_new(24, 1);
+    session_free_static(b);
     for (int i = 0; i < 24; i++)
-        bench_pose(b, 1.0);
+        session_pose(b, 1.0);
     b->observation[7].reading[IMK_ACCEL][1] = (double)INFINITY;
     expect_refusal(b, IMK_ERROR_NOT_FINITE, "observation");
     assert_int_equal(b->error.index, 7);
     /* NaN is an axis that was not observed: the pose serves with the others. */
     b->observation[7].reading[IMK_ACCEL][1] = (double)NAN;
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     assert_int_equal(b->result.group[IMK_GROUP_ACCEL].count, 71);
     assert_true(isnan(b->observation[7].residual[IMK_ACCEL][1]));
     for (int i = 0; i < 24; i++)
         for (int axis = 0; axis < 3; axis++)
             b->observation[i].reading[IMK_ACCEL][axis] = (double)NAN;
     expect_refusal(b, IMK_ERROR_TOO_SHORT, "accel");
-    bench_free(b);
+    session_free(b);
 }
 
 static void frames_that_contradict(void **state)
 {
     (void)state;
-    bench *b = bench_new(25, 1);
+    session *b = session_new(25, 1);
     for (int i = 0; i < 24; i++)
-        bench_pose(b, 1.0);
+        session_pose(b, 1.0);
     b->calibration.frame = IMK_FRAME_REFERENCE; /* which no pose knows */
-    bench_free_static(b);
+    session_free_static(b);
     expect_refusal(b, IMK_ERROR_CONFLICT, "frame");
     b->calibration.frame = IMK_FRAME_UPPER; /* with all six free */
     expect_refusal(b, IMK_ERROR_CONFLICT, "frame");
-    bench_free(b);
+    session_free(b);
 }
 
 static void problems_that_are_none(void **state)
 {
     (void)state;
-    bench *b = bench_new(26, 1);
+    session *b = session_new(26, 1);
     for (int i = 0; i < 24; i++)
-        bench_pose(b, 1.0);
+        session_pose(b, 1.0);
     expect_refusal(b, IMK_ERROR_ARGUMENT, "parameters");
-    bench_free_static(b);
+    session_free_static(b);
     b->observation[3].record = 0;
     expect_refusal(b, IMK_ERROR_ARGUMENT, "observation");
     b->observation[3].record = -1;
@@ -628,20 +628,20 @@ static void problems_that_are_none(void **state)
     CHECK_STATUS(
         imk_calibration_solve(&b->calibration, result, b->workspace, b->workspace_size, NULL),
         IMK_ERROR_UNINITIALISED);
-    bench_free(b);
+    session_free(b);
 }
 
 /* Counts without a sensitivity cannot be forces. */
 static void counts_need_a_sensitivity(void **state)
 {
     (void)state;
-    bench *b = bench_new(27, 1);
+    session *b = session_new(27, 1);
     const imk_test_record record = {.count = 1, .dt = 0.01, .counts = {true, true}};
     b->calibration.record[0] = &record;
     b->calibration.record_count = 1;
-    bench_free_static(b);
+    session_free_static(b);
     for (int i = 0; i < 24; i++) {
-        bench_pose(b, 1.0);
+        session_pose(b, 1.0);
         b->observation[i].record = 0;
     }
     expect_refusal(b, IMK_ERROR_UNIT_MISSING, "gyro.sensitivity");
@@ -659,46 +659,47 @@ static void counts_need_a_sensitivity(void **state)
                 o->reading[s][axis] = 1000.0 + 400.0 * o->reading[s][axis];
                 o->sigma[s][axis] *= 400.0;
             }
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     for (size_t p = 0; p < b->result.parameter_count; p++)
         CHECK_CLOSE(b->result.value[p], imk_model_parameter_get(&b->truth, b->result.parameter[p]),
                     8.0 * b->result.sigma[p]);
-    bench_free(b);
+    session_free(b);
 }
 
-/* ---- doubts -----------------------------------------------------------------------------------
+/* ---- diagnostics
+ * -----------------------------------------------------------------------------------
  */
 
-static bool doubted(bench *b, imk_doubt kind)
+static bool doubted(session *b, imk_diagnostic kind)
 {
-    imk_doubt_finding found[32];
-    const size_t count = imk_solution_doubts(&b->calibration, &b->result, 32, found);
+    imk_diagnostic_finding found[32];
+    const size_t count = imk_solution_diagnostics(&b->calibration, &b->result, 32, found);
     for (size_t i = 0; i < count; i++)
         if (found[i].kind == kind)
             return true;
     return false;
 }
 
-static void doubts_about_solutions(void **state)
+static void diagnostics_about_solutions(void **state)
 {
     (void)state;
-    bench *b = bench_new(31, 1);
-    imk_doubt_finding found[4];
-    bench_free_static(b);
-    bench_know_the_rest(b);
+    session *b = session_new(31, 1);
+    imk_diagnostic_finding found[4];
+    session_free_static(b);
+    session_know_the_rest(b);
     for (int i = 0; i < 24; i++)
-        bench_pose(b, 1.0);
-    CHECK_OK(bench_solve(b));
-    assert_int_equal(imk_solution_doubts(&b->calibration, &b->result, 4, found), 0);
+        session_pose(b, 1.0);
+    CHECK_OK(session_solve(b));
+    assert_int_equal(imk_solution_diagnostics(&b->calibration, &b->result, 4, found), 0);
     for (int i = 0; i < 24; i++) /* sigmas ten times too small */
         for (int axis = 0; axis < 3; axis++)
             b->observation[i].sigma[IMK_ACCEL][axis] *= 0.1;
-    CHECK_OK(bench_solve(b));
-    assert_true(doubted(b, IMK_DOUBT_RESIDUALS));
+    CHECK_OK(session_solve(b));
+    assert_true(doubted(b, IMK_DIAGNOSTIC_RESIDUALS));
     b->calibration.gravity /= 9.80665; /* g taken for m/s^2, or the reverse */
-    CHECK_OK(bench_solve(b));
-    assert_true(doubted(b, IMK_DOUBT_GRAVITY_UNIT));
-    bench_free(b);
+    CHECK_OK(session_solve(b));
+    assert_true(doubted(b, IMK_DIAGNOSTIC_GRAVITY_UNIT));
+    session_free(b);
 }
 
 int main(void)
@@ -723,7 +724,7 @@ int main(void)
         cmocka_unit_test(frames_that_contradict),
         cmocka_unit_test(problems_that_are_none),
         cmocka_unit_test(counts_need_a_sensitivity),
-        cmocka_unit_test(doubts_about_solutions),
+        cmocka_unit_test(diagnostics_about_solutions),
     };
     return cmocka_run_group_tests_name("calibration", tests, NULL, NULL);
 }

@@ -3,7 +3,7 @@
  * tests/reference/calibration_oracle.py: one dense system of all unknowns, derivatives by
  * differences, the rates of turns multiplied up as exponentials. */
 #define _DEFAULT_SOURCE
-#include "calibrate/estimator_bench.h"
+#include "calibrate/estimator_session.h"
 #include "check.h"
 
 #include "imukit/attitude.h"
@@ -66,7 +66,7 @@ static void put_observation(FILE *file, const imk_observation *o, double weight)
 }
 
 /* As solved: with the factors and weights found. */
-static void put_problem(FILE *file, const bench *b)
+static void put_problem(FILE *file, const session *b)
 {
     const imk_calibration *c = &b->calibration;
     const imk_test_record *record = c->record_count > 0 ? c->record[0] : NULL;
@@ -122,7 +122,7 @@ static int numbers(FILE *pipe, int count, double *x)
 }
 
 /* Skips without Python and NumPy. */
-static void ask(const bench *b, answer *a)
+static void ask(const session *b, answer *a)
 {
     static bool is_there;
     if (!is_there && system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0) {
@@ -151,7 +151,7 @@ static void ask(const bench *b, answer *a)
 
 /* `in_sigmas` of the estimates; `relative` of covariances (to the product of the sigmas), of
  * chi-square and redundancy; of what is still to do to the factors squared. */
-static void compare(const char *what, const bench *b, double in_sigmas, double relative,
+static void compare(const char *what, const session *b, double in_sigmas, double relative,
                     double factors)
 {
     static answer a;
@@ -185,7 +185,7 @@ static void compare(const char *what, const bench *b, double in_sigmas, double r
 /* ---- every kind of term -----------------------------------------------------------------------
  */
 
-static imk_observation read_unit(bench *b, const double rate[3], const double force[3],
+static imk_observation read_unit(session *b, const double rate[3], const double force[3],
                                  const double acceleration[3], double temperature,
                                  double temperature_rate)
 {
@@ -215,7 +215,7 @@ static imk_observation read_unit(bench *b, const double rate[3], const double fo
                 continue;
             imk_distort(&distortion, sensor, axis, &stimulus, 1, &o.reading[sensor][axis]);
             o.sigma[sensor][axis] = b->sigma[sensor] / b->understated;
-            o.reading[sensor][axis] += b->sigma[sensor] * bench_normal(b);
+            o.reading[sensor][axis] += b->sigma[sensor] * session_normal(b);
         }
     return o;
 }
@@ -255,17 +255,17 @@ static void worsen(imk_model *m)
     }
 }
 
-static void free_one(bench *b, int sensor, int term, int axis, int element)
+static void free_one(session *b, int sensor, int term, int axis, int element)
 {
     CHECK_OK(imk_calibration_free(&b->calibration, sensor, term, axis, element));
 }
 
-static void free_every_kind(bench *b)
+static void free_every_kind(session *b)
 {
     for (int s = 0; s < 2; s++) {
-        bench_free_term(b, s, IMK_MODEL_BIAS, false);
-        bench_free_term(b, s, IMK_MODEL_SCALE_FACTOR, false);
-        bench_free_term(b, s, IMK_MODEL_MISALIGNMENT, false);
+        session_free_term(b, s, IMK_MODEL_BIAS, false);
+        session_free_term(b, s, IMK_MODEL_SCALE_FACTOR, false);
+        session_free_term(b, s, IMK_MODEL_MISALIGNMENT, false);
         free_one(b, s, IMK_MODEL_BIAS_TEMPERATURE, s, 0);
         free_one(b, s, IMK_MODEL_BIAS_TEMPERATURE, s, 1);
         free_one(b, s, IMK_MODEL_SCALE_TEMPERATURE, 2, 0);
@@ -283,24 +283,24 @@ static void free_every_kind(bench *b)
     }
     for (int k = 0; k < 6; k++)
         free_one(b, IMK_GYRO, IMK_MODEL_G2_SENSITIVITY, 1, k);
-    bench_know_the_rest(b);
+    session_know_the_rest(b);
     b->calibration.prior_sigma[0] = 1e-3; /* known before, not too well */
 }
 
 /* Known inputs on two fixtures, placed ones, and gravity. */
-static void expose_unit(bench *b, int count)
+static void expose_unit(session *b, int count)
 {
     static const double mounting[2][3] = {{2e-3, -1e-3, 1.5e-3}, {-4e-3, 3e-3, 1e-3}};
     for (int i = 0; i < count; i++) {
         const int fixture = i % 2;
         const bool rest = i % 4 == 3, placed = i % 4 == 1;
         double rate[3], force[3], acceleration[3], vertical[3];
-        bench_unit_vector(b, vertical);
+        session_unit_vector(b, vertical);
         for (int j = 0; j < 3; j++) {
             rate[j] = rest ? b->calibration.earth_rate * sin(b->place) * vertical[j]
-                           : fmax(-6.0, fmin(6.0, 3.0 * bench_normal(b)));
-            force[j] = rest ? b->calibration.gravity * vertical[j] : 10.0 * bench_normal(b);
-            acceleration[j] = rest ? 0.0 : 20.0 * bench_normal(b);
+                           : fmax(-6.0, fmin(6.0, 3.0 * session_normal(b)));
+            force[j] = rest ? b->calibration.gravity * vertical[j] : 10.0 * session_normal(b);
+            acceleration[j] = rest ? 0.0 : 20.0 * session_normal(b);
         }
         imk_vector3 nominal[3];
         memcpy(nominal[0].v, rate, sizeof rate);
@@ -336,7 +336,7 @@ static void expose_unit(bench *b, int count)
 static void every_kind_of_term(void **state)
 {
     (void)state;
-    bench *b = bench_new(41, 1);
+    session *b = session_new(41, 1);
     imk_calibration *c = &b->calibration;
     c->frame = IMK_FRAME_REFERENCE;
     c->robust = false;
@@ -349,12 +349,12 @@ static void every_kind_of_term(void **state)
     worsen(&b->truth);
     free_every_kind(b);
     expose_unit(b, 72);
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     compare("every kind of term", b, 1e-5, 1e-4, 4e-3);
     for (size_t p = 0; p < b->result.parameter_count; p++)
         CHECK_CLOSE(b->result.value[p], imk_model_parameter_get(&b->truth, b->result.parameter[p]),
                     6.0 * b->result.sigma[p]);
-    bench_free(b);
+    session_free(b);
 }
 
 /* ---- poses under gravity ----------------------------------------------------------------------
@@ -364,21 +364,21 @@ static void every_kind_of_term(void **state)
  * is found; near the vertical, where it is small, some per cent of it. At the pole it is none. */
 static void poses(const char *what, double latitude, int bad, double understated, double agree)
 {
-    bench *b = bench_new(42, 1);
+    session *b = session_new(42, 1);
     b->understated = understated;
     b->calibration.latitude = latitude;
     b->place = isnan(latitude) ? 0.8 : latitude;
     b->calibration.robust = bad > 0;
-    bench_free_static(b);
-    bench_know_the_rest(b);
+    session_free_static(b);
+    session_know_the_rest(b);
     for (int i = 0; i < 24; i++)
-        bench_pose(b, i < bad ? 1.03 : 1.0);
-    CHECK_OK(bench_solve(b));
+        session_pose(b, i < bad ? 1.03 : 1.0);
+    CHECK_OK(session_solve(b));
     assert_int_equal(b->result.observations_refused, bad);
     for (int g = 0; g < IMK_GROUP_TURN; g++)
         assert_int_equal(b->result.group[g].refused, 3 * bad);
     compare(what, b, agree, agree, fmax(3.0 * agree, 4e-3));
-    bench_free(b);
+    session_free(b);
 }
 
 static void poses_under_gravity(void **state)
@@ -400,17 +400,17 @@ enum { TURN_POSES = 16, TURN_SAMPLES = 100 };
 /* The unit turns by w against the Earth, whose rate has the part `horizontal` of its own. */
 static void turns(const char *what, double earth_rate, double gyro_sigma, double agree)
 {
-    bench *b = bench_new(43, 1);
+    session *b = session_new(43, 1);
     imk_calibration *c = &b->calibration;
     static double reading[2][3][TURN_POSES * TURN_SAMPLES];
     const double dt = 0.01;
     b->sigma[IMK_GYRO] = gyro_sigma;
     c->earth_rate = earth_rate;
     c->robust = false;
-    bench_free_static(b);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_MISALIGNMENT, false);
-    bench_know_the_rest(b);
+    session_free_static(b);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_MISALIGNMENT, false);
+    session_know_the_rest(b);
     imk_test_record record = {.name = "turns", .dt = dt, .axis_count = {3, 3}};
     for (int s = 0; s < 2; s++)
         for (int i = 0; i < 3; i++)
@@ -419,8 +419,8 @@ static void turns(const char *what, double earth_rate, double gyro_sigma, double
     const double earth_sigma = sqrt(0.5) * across * dt * TURN_SAMPLES;
     double vertical[3], horizontal[3], any[3];
     size_t k = 0;
-    bench_unit_vector(b, vertical);
-    bench_unit_vector(b, any);
+    session_unit_vector(b, vertical);
+    session_unit_vector(b, any);
     const imk_vector3 level =
         imk_vector3_cross((imk_vector3){{any[0], any[1], any[2]}},
                           (imk_vector3){{vertical[0], vertical[1], vertical[2]}});
@@ -432,14 +432,14 @@ static void turns(const char *what, double earth_rate, double gyro_sigma, double
             still[j] = up * vertical[j] + horizontal[j];
             force[j] = c->gravity * vertical[j];
         }
-        imk_observation o = bench_read(b, still, force, NULL, (double)NAN);
+        imk_observation o = session_read(b, still, force, NULL, (double)NAN);
         o.knowledge = IMK_INPUT_GRAVITY;
         o.record = 0;
         memset(o.force, 0, sizeof o.force);
         assert_int_equal(imk_calibration_observe(c, &o), pose);
         if (pose + 1 == TURN_POSES)
             break;
-        bench_unit_vector(b, axis);
+        session_unit_vector(b, axis);
         double w[3], back[3];
         for (int j = 0; j < 3; j++) {
             w[j] = (0.8 + 0.1 * pose) * axis[j];
@@ -459,7 +459,7 @@ static void turns(const char *what, double earth_rate, double gyro_sigma, double
                 rate[j] = w[j] + up * vertical[j] + horizontal[j];
                 force[j] = c->gravity * vertical[j];
             }
-            const imk_observation turning = bench_read(b, rate, force, NULL, (double)NAN);
+            const imk_observation turning = session_read(b, rate, force, NULL, (double)NAN);
             imk_vector3 v = {{vertical[0], vertical[1], vertical[2]}};
             imk_vector3 h = {{horizontal[0], horizontal[1], horizontal[2]}};
             v = imk_quaternion_rotate(step, v);
@@ -474,11 +474,11 @@ static void turns(const char *what, double earth_rate, double gyro_sigma, double
     record.count = k;
     c->record[c->record_count++] = &record;
     c->turn_count = TURN_POSES - 1;
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     compare(what, b, agree, agree, 4e-3);
     if (gyro_sigma < 1e-4)
         CHECK_CLOSE(b->result.group[IMK_GROUP_TURN].factor, 1.0, 0.0);
-    bench_free(b);
+    session_free(b);
 }
 
 /* Derivatives take a step's attitude as the mean of both ends: (w dt)^2/12, 4e-5, of what a

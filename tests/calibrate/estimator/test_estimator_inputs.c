@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Problems at the edge of what the estimator takes: a refusal that says why, or a finite result;
  * never a crash, never a number that is none. */
-#include "calibrate/estimator_bench.h"
+#include "calibrate/estimator_session.h"
 #include "check.h"
 
-static void expect_finite(const bench *b)
+static void expect_finite(const session *b)
 {
     const imk_calibration_result *r = &b->result;
     for (size_t p = 0; p < r->parameter_count; p++) {
@@ -14,13 +14,13 @@ static void expect_finite(const bench *b)
     assert_true(isfinite(r->chi_square) && isfinite(r->degrees_of_freedom));
 }
 
-static bench *poses(uint64_t seed, int count)
+static session *poses(uint64_t seed, int count)
 {
-    bench *b = bench_new(seed, 1);
-    bench_free_static(b);
-    bench_know_the_rest(b);
+    session *b = session_new(seed, 1);
+    session_free_static(b);
+    session_know_the_rest(b);
     for (int i = 0; i < count; i++)
-        bench_pose(b, 1.0);
+        session_pose(b, 1.0);
     return b;
 }
 
@@ -34,7 +34,7 @@ static void turns_of_no_record(void **state)
         for (int i = 0; i < 3; i++)
             record.reading[s][i] = still;
     const imk_test_record other = record;
-    bench *b = poses(51, 24);
+    session *b = poses(51, 24);
     imk_calibration *c = &b->calibration;
     c->record_count = 2;
     c->record[0] = &record;
@@ -42,21 +42,21 @@ static void turns_of_no_record(void **state)
     c->turn[0] = (imk_turn){.from = 0, .to = 1, .begin = 0, .end = 4, .sigma = 1e-3};
     c->turn_count = 1;
     b->observation[0].record = b->observation[1].record = 77;
-    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_ARGUMENT);
     assert_string_equal(b->error.field, "observation");
     b->observation[0].record = 0;
     b->observation[1].record = 1;
-    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_ARGUMENT);
     assert_string_equal(b->error.field, "turn");
     b->observation[1].record = 0;
     c->turn[0].end = 0; /* of no length */
-    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_ARGUMENT);
     c->turn[0].end = 5; /* beyond the record */
-    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_ARGUMENT);
     c->record[1] = NULL;
-    CHECK_STATUS(bench_solve(b), IMK_ERROR_ARGUMENT);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_ARGUMENT);
     assert_string_equal(b->error.field, "record");
-    bench_free(b);
+    session_free(b);
 }
 
 /* Samples that are missing: the turn says nothing, and counts as refused. */
@@ -69,7 +69,7 @@ static void turn_over_missing_samples(void **state)
     for (int s = 0; s < 2; s++)
         for (int i = 0; i < 3; i++)
             record.reading[s][i] = none;
-    bench *b = poses(52, 24);
+    session *b = poses(52, 24);
     imk_calibration *c = &b->calibration;
     c->record_count = 1;
     c->record[0] = &record;
@@ -80,74 +80,74 @@ static void turn_over_missing_samples(void **state)
         c->robust = robust;
         if (robust) /* a bad pose: weights are given anew */
             b->observation[5].reading[IMK_ACCEL][0] += 1.0;
-        CHECK_OK(bench_solve(b));
+        CHECK_OK(session_solve(b));
         expect_finite(b);
         assert_int_equal(b->result.turns_refused, 1);
         assert_true(c->turn[0].weight == 0.0 && isnan(c->turn[0].residual[0]));
         assert_int_equal(b->result.group[IMK_GROUP_TURN].count, 0);
     }
-    bench_free(b);
+    session_free(b);
 }
 
 static void numbers_beyond_reason(void **state)
 {
     (void)state;
     static const double gravities[] = {0.0, -9.8, (double)NAN, (double)INFINITY};
-    bench *b = poses(53, 24);
+    session *b = poses(53, 24);
     imk_calibration *c = &b->calibration;
     for (size_t i = 0; i < sizeof gravities / sizeof *gravities; i++) {
         c->gravity = gravities[i];
-        CHECK_STATUS(bench_solve(b), IMK_ERROR_RANGE);
+        CHECK_STATUS(session_solve(b), IMK_ERROR_RANGE);
         assert_string_equal(b->error.field, "gravity");
     }
     c->gravity = 9.8;
     c->latitude = 1.58;
-    CHECK_STATUS(bench_solve(b), IMK_ERROR_RANGE);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_RANGE);
     c->latitude = -1.5707963267948966; /* the pole */
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     expect_finite(b);
     c->prior_sigma[0] = (double)NAN;
-    CHECK_STATUS(bench_solve(b), IMK_ERROR_RANGE);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_RANGE);
     c->prior_sigma[0] = 0.0;
     c->fixture_count = 1;
     c->fixture_sigma[0] = -1.0;
-    CHECK_STATUS(bench_solve(b), IMK_ERROR_RANGE);
+    CHECK_STATUS(session_solve(b), IMK_ERROR_RANGE);
     c->fixture_sigma[0] = 1e6; /* nothing hangs on it */
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     expect_finite(b);
     /* Sigmas whose squares are no numbers. */
     for (int k = 0; k < 2; k++) {
-        bench *other = poses(53, 24);
+        session *other = poses(53, 24);
         for (int i = 0; i < 24; i++)
             for (int s = 0; s < 2; s++)
                 for (int axis = 0; axis < 3; axis++)
                     other->observation[i].sigma[s][axis] = k == 0 ? 1e-200 : 1e200;
-        assert_int_not_equal(bench_solve(other), IMK_OK);
-        bench_free(other);
+        assert_int_not_equal(session_solve(other), IMK_OK);
+        session_free(other);
     }
     /* All of one axis is missing: its bias has no observations. */
     for (int i = 0; i < 24; i++)
         b->observation[i].reading[IMK_ACCEL][2] = (double)NAN;
-    assert_int_not_equal(bench_solve(b), IMK_OK);
-    bench_free(b);
+    assert_int_not_equal(session_solve(b), IMK_OK);
+    session_free(b);
 }
 
 static void one_observation_more_than_there_is_room(void **state)
 {
     (void)state;
-    bench *b = poses(54, 24);
+    session *b = poses(54, 24);
     b->calibration.observation_capacity = 24;
     const imk_observation again = b->observation[0];
     assert_int_equal(imk_calibration_observe(&b->calibration, &again), -1);
     assert_int_equal(b->calibration.observation_count, 24);
-    bench_free(b);
+    session_free(b);
 }
 
 /* Readings in counts of 1e9. */
 static void large_counts(void **state)
 {
     (void)state;
-    bench *b = poses(55, 24);
+    session *b = poses(55, 24);
     const imk_test_record record = {.count = 1, .dt = 0.01, .counts = {true, true}};
     b->calibration.record[0] = &record;
     b->calibration.record_count = 1;
@@ -160,12 +160,12 @@ static void large_counts(void **state)
                 b->observation[i].reading[s][axis] *= 1e8;
                 b->observation[i].sigma[s][axis] *= 1e8;
             }
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     expect_finite(b);
     for (size_t p = 0; p < b->result.parameter_count; p++)
         CHECK_CLOSE(b->result.value[p], imk_model_parameter_get(&b->truth, b->result.parameter[p]),
                     8.0 * b->result.sigma[p]);
-    bench_free(b);
+    session_free(b);
 }
 
 int main(void)

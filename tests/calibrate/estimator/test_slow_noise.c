@@ -144,7 +144,7 @@ static double twice_integrated(kind which, double t)
     if (which == WALK)
         return -1e-6 * x * x * x / 12.0;
     if (which == FLICKER)
-        return x > 0.0 ? -4e-6 / bench_pi * x * x * (0.5 * log(x) - 0.75) : 0.0;
+        return x > 0.0 ? -4e-6 / session_pi * x * x * (0.5 * log(x) - 0.75) : 0.0;
     return 2.25e-6 * (30.0 * x + 900.0 * exp(-x / 30.0));
 }
 
@@ -341,7 +341,7 @@ static double binomial_below(size_t n, double p, size_t k)
 
 /* Each parameter is held in 93 % or more, false alarm 1e-6 over all; and all together in 93 to 97
  * %: they share a log and are not independent, their number counts as a tenth (4.9 sigma: 1e-6). */
-static void judge(const coverage_count *count)
+static void assess(const coverage_count *count)
 {
     double held = 0.0;
     for (size_t p = 0; p < count->parameter_count; p++) {
@@ -361,23 +361,23 @@ static void judge(const coverage_count *count)
 
 /* Raw logs; without the noise stated the same benches hold asymmetry and g-sensitivity in 60 to 80
  * %. */
-static void cover(imk_procedure procedure, void (*programme)(bench *), void (*slower)(imk_model *),
-                  uint32_t benches)
+static void cover(imk_procedure procedure, void (*programme)(session *),
+                  void (*slower)(imk_model *), uint32_t benches)
 {
-    bench *b = malloc(sizeof *b);
+    session *b = malloc(sizeof *b);
     coverage_count count = {0};
     imk_error error;
     assert_non_null(b);
-    bench_start(b, procedure, programme);
+    session_start(b, procedure, programme);
     b->settings.nonlinear = true;
     b->slower = slower;
     b->noise_known = true;
     for (uint32_t i = 0; i < check_runs(benches); i++) {
-        bench_log(b, 7000 + i, 0.0);
-        CHECK_OK(bench_solve(b, &error));
+        session_log(b, 7000 + i, 0.0);
+        CHECK_OK(session_solve(b, &error));
         coverage_add(&count, &b->result, &b->truth, 0.95);
     }
-    judge(&count);
+    assess(&count);
     free(b->workspace);
     free(b);
 }
@@ -385,13 +385,13 @@ static void cover(imk_procedure procedure, void (*programme)(bench *), void (*sl
 static void test_rate_table(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps, slow_flicker, 120);
+    cover(IMK_PROCEDURE_RATE_TABLE, session_rate_steps, slow_flicker, 120);
 }
 
 static void test_tumble(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_TUMBLE, bench_tumble, slow_all, 100);
+    cover(IMK_PROCEDURE_TUMBLE, session_tumble, slow_all, 100);
 }
 
 static void test_poses(void **state)
@@ -404,7 +404,7 @@ static void test_poses(void **state)
         solve(&shared);
         coverage_add(&count, &shared.result, &truth, 0.95);
     }
-    judge(&count);
+    assess(&count);
 }
 
 int main(void)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Laboratory figures: closed forms, a quantizer, runs, and coverage of the intervals. */
-#include "calibrate/evaluation_bench.h"
+#include "calibrate/evaluation_session.h"
 #include "check.h"
 
 #include "imukit/distributions.h"

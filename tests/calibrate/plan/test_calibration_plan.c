@@ -8,14 +8,14 @@
 
 enum { STEPS = 60 };
 
-typedef struct bench {
+typedef struct session {
     imk_calibration calibration;
     imk_observation observation[8 * STEPS];
     imk_turn turn[8 * STEPS];
     imk_plan_step step[STEPS];
     imk_plan_result result;
     imk_error error;
-} bench;
+} session;
 
 static imk_model noisy(void)
 {
@@ -30,9 +30,9 @@ static imk_model noisy(void)
     return model;
 }
 
-static bench *new_bench(const imk_model *model)
+static session *new_session(const imk_model *model)
 {
-    bench *b = calloc(1, sizeof *b);
+    session *b = calloc(1, sizeof *b);
     imk_calibration_default(&b->calibration);
     b->calibration.model = *model;
     b->calibration.latitude = 0.7853981633974483;
@@ -43,7 +43,7 @@ static bench *new_bench(const imk_model *model)
     return b;
 }
 
-static imk_status make(bench *b, const imk_plan_settings *settings)
+static imk_status make(session *b, const imk_plan_settings *settings)
 {
     const size_t size = imk_plan_workspace_size(&b->calibration, settings);
     void *workspace = malloc(size);
@@ -65,7 +65,7 @@ static imk_model_parameter parameter(int sensor, int term, int axis, int element
     return (imk_model_parameter){(uint8_t)sensor, (uint8_t)term, (uint8_t)axis, (uint8_t)element};
 }
 
-static double sigma_of(const bench *b, imk_model_parameter wanted)
+static double sigma_of(const session *b, imk_model_parameter wanted)
 {
     for (size_t p = 0; p < b->result.parameter_count; p++)
         if (memcmp(&b->result.parameter[p], &wanted, sizeof wanted) == 0)
@@ -79,7 +79,7 @@ static void six_faces_by_closed_form(void **state)
 {
     (void)state;
     const imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     imk_plan_settings settings = settings_of(IMK_PROCEDURE_SIXPOSITION);
     settings.placement_sigma = 0.0;
     settings.hold_minimum = 4.0;
@@ -103,27 +103,29 @@ static void six_faces_by_closed_form(void **state)
     free(b);
 }
 
-/* A wish sets the time: here sigma^2 of a scale factor is v(T)/(2 g^2), so that T follows. */
-static void time_follows_from_the_wish(void **state)
+/* A requirement sets the time: here sigma^2 of a scale factor is v(T)/(2 g^2), so that T follows.
+ */
+static void time_follows_from_the_requirement(void **state)
 {
     (void)state;
     const imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     imk_plan_settings settings = settings_of(IMK_PROCEDURE_SIXPOSITION);
     const double v = 1e-6 / 30.0 + 0.4412712003053032 * 1e-8;
-    imk_plan_wish wish = {.parameter = parameter(IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 1, 0),
-                          .sigma = sqrt(v / 2.0) / b->calibration.gravity};
+    imk_sigma_requirement requirement = {.parameter =
+                                             parameter(IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 1, 0),
+                                         .sigma = sqrt(v / 2.0) / b->calibration.gravity};
     settings.placement_sigma = 0.0;
-    settings.wish = &wish;
-    settings.wish_count = 1;
+    settings.requirement = &requirement;
+    settings.requirement_count = 1;
     CHECK_OK(make(b, &settings));
     CHECK_RELATIVE(b->result.hold, 30.0, 2e-3); /* 14 halvings of log 60 */
-    assert_true(wish.reached);
-    CHECK_RELATIVE(wish.expected, wish.sigma, 2e-3);
+    assert_true(requirement.reached);
+    CHECK_RELATIVE(requirement.expected, requirement.sigma, 2e-3);
     /* Below the instability no time is enough, but another round of faces is. */
-    wish.sigma = sqrt(0.4 * 1e-8 / 2.0) / b->calibration.gravity;
+    requirement.sigma = sqrt(0.4 * 1e-8 / 2.0) / b->calibration.gravity;
     CHECK_OK(make(b, &settings));
-    assert_true(wish.reached);
+    assert_true(requirement.reached);
     assert_true(b->result.step_count > 6 && b->result.step_count % 6 == 0);
     free(b);
 }
@@ -134,23 +136,23 @@ static void floors_are_told(void **state)
     (void)state;
     imk_model model = noisy();
     model.accel.scale_factor.repeatability.value[2] = 1e-4;
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     imk_plan_settings settings = settings_of(IMK_PROCEDURE_SIXPOSITION);
     settings.placement_sigma = 0.0;
-    imk_plan_wish wish[3] = {
+    imk_sigma_requirement requirement[3] = {
         {.parameter = parameter(IMK_ACCEL, IMK_MODEL_BIAS, 0, 0), .sigma = 5e-5},
         {.parameter = parameter(IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 2, 0), .sigma = 5e-5},
         {.parameter = parameter(IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 0, 0), .sigma = 5e-5}};
-    settings.wish = wish;
-    settings.wish_count = 3;
+    settings.requirement = requirement;
+    settings.requirement_count = 3;
     CHECK_OK(make(b, &settings));
-    assert_false(wish[0].reached);
-    assert_false(wish[1].reached);
-    assert_true(wish[2].reached);
+    assert_false(requirement[0].reached);
+    assert_false(requirement[1].reached);
+    assert_true(requirement[2].reached);
     assert_int_equal(b->result.reached, 1);
-    CHECK_RELATIVE(wish[0].floor, 0.6642824701161626 * 1e-4, 1e-6); /* sqrt(2 ln 2/pi) B */
-    CHECK_RELATIVE(wish[1].floor, 1e-4, 1e-12);
-    assert_true(wish[0].expected >= wish[0].floor && wish[1].expected >= 1e-4);
+    CHECK_RELATIVE(requirement[0].floor, 0.6642824701161626 * 1e-4, 1e-6); /* sqrt(2 ln 2/pi) B */
+    CHECK_RELATIVE(requirement[1].floor, 1e-4, 1e-12);
+    assert_true(requirement[0].expected >= requirement[0].floor && requirement[1].expected >= 1e-4);
     settings.lasting = false;
     CHECK_OK(make(b, &settings));
     assert_int_equal(b->result.reached, 3);
@@ -162,7 +164,7 @@ static void all_procedures_are_planned(void **state)
 {
     (void)state;
     const imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     static imk_motion_step motion[4 * STEPS + 1];
     for (int procedure = 0; procedure < IMK_PROCEDURES; procedure++) {
         const imk_plan_settings settings = settings_of((imk_procedure)procedure);
@@ -199,7 +201,7 @@ static void mounting_is_counted(void **state)
 {
     (void)state;
     const imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     imk_plan_settings settings = settings_of(IMK_PROCEDURE_SIXPOSITION);
     settings.placement_sigma = 1e-6;
     CHECK_OK(make(b, &settings));
@@ -225,7 +227,7 @@ static void whole_turns_of_ferraris(void **state)
     (void)state;
     const double turn = 6.283185307179586;
     const imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     static imk_motion_step motion[4 * STEPS + 1];
     imk_motion_script script;
     imk_plan_settings settings = settings_of(IMK_PROCEDURE_FERRARIS);
@@ -257,7 +259,7 @@ static void temperatures_are_soaked(void **state)
 {
     (void)state;
     const imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     imk_plan_settings settings = settings_of(IMK_PROCEDURE_THERMAL);
     CHECK_CLOSE(settings.soak, 600.0, 0.0);
     CHECK_OK(make(b, &settings));
@@ -272,25 +274,25 @@ static void temperatures_are_soaked(void **state)
 }
 
 /* Run a multi-position programme on simulated benches, calibrate, and compare with the promise. The
- * wish is met within 15 %, by the mean sigma the calibrations state; it may be beaten, because the
- * Earth's rate, which counts as unknown in each turn, is partly found. And by their errors, whose
- * rms over 24 benches and 3 axes has 1 sigma of 8 %, here with a limit of 45 %. */
+ * requirement is met within 15 %, by the mean sigma the calibrations state; it may be beaten,
+ * because the Earth's rate, which counts as unknown in each turn, is partly found. And by their
+ * errors, whose rms over 24 benches and 3 axes has 1 sigma of 8 %, here with a limit of 45 %. */
 static void programme_keeps_its_promise(void **state)
 {
     (void)state;
     enum { BENCHES = 24, WISHES = 6 };
     imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     imk_plan_settings settings = settings_of(IMK_PROCEDURE_MULTIPOSITION);
-    imk_plan_wish wish[WISHES];
+    imk_sigma_requirement requirement[WISHES];
     for (int i = 0; i < 3; i++) {
-        wish[i] = (imk_plan_wish){.parameter = parameter(IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, i, 0),
-                                  .sigma = 1.6e-5};
-        wish[3 + i] = (imk_plan_wish){
+        requirement[i] = (imk_sigma_requirement){
+            .parameter = parameter(IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, i, 0), .sigma = 1.6e-5};
+        requirement[3 + i] = (imk_sigma_requirement){
             .parameter = parameter(IMK_GYRO, IMK_MODEL_SCALE_FACTOR, i, 0), .sigma = 6e-5};
     }
-    settings.wish = wish;
-    settings.wish_count = WISHES;
+    settings.requirement = requirement;
+    settings.requirement_count = WISHES;
     CHECK_OK(make(b, &settings));
     assert_int_equal(b->result.reached, WISHES);
     static imk_motion_step motion[4 * STEPS + 1];
@@ -333,7 +335,7 @@ static void programme_keeps_its_promise(void **state)
         pose_log_free(log);
     }
     for (int sensor = 0; sensor < 2; sensor++) {
-        const imk_plan_wish *w = &wish[sensor == IMK_GYRO ? 3 : 0];
+        const imk_sigma_requirement *w = &requirement[sensor == IMK_GYRO ? 3 : 0];
         double promised = 0.0;
         for (int i = 0; i < 3; i++)
             promised += w[i].expected / 3.0;
@@ -353,7 +355,7 @@ static void missing_pose_is_advised(void **state)
 {
     (void)state;
     const imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     imk_calibration *c = &b->calibration;
     for (int i = 0; i < 3; i++)
         for (int term = IMK_MODEL_BIAS; term <= IMK_MODEL_SCALE_FACTOR; term++)
@@ -392,18 +394,18 @@ static void mistakes_are_refused(void **state)
 {
     (void)state;
     imk_model model = noisy();
-    bench *b = new_bench(&model);
+    session *b = new_session(&model);
     imk_plan_settings settings = settings_of(IMK_PROCEDURE_SIXPOSITION);
-    imk_plan_wish wish = {.parameter = parameter(IMK_GYRO, IMK_MODEL_SCALE_FACTOR, 0, 0),
-                          .sigma = 1e-4};
-    settings.wish = &wish;
-    settings.wish_count = 1;
+    imk_sigma_requirement requirement = {
+        .parameter = parameter(IMK_GYRO, IMK_MODEL_SCALE_FACTOR, 0, 0), .sigma = 1e-4};
+    settings.requirement = &requirement;
+    settings.requirement_count = 1;
     CHECK_STATUS(make(b, &settings), IMK_ERROR_KEY_MISSING);
     assert_string_equal(b->error.field, "gyro.scale_factor.fixed.x");
-    wish.sigma = -1.0;
-    wish.parameter = parameter(IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 0, 0);
+    requirement.sigma = -1.0;
+    requirement.parameter = parameter(IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, 0, 0);
     CHECK_STATUS(make(b, &settings), IMK_ERROR_RANGE);
-    settings.wish_count = 0;
+    settings.requirement_count = 0;
     settings.hold_minimum = (double)NAN;
     CHECK_STATUS(make(b, &settings), IMK_ERROR_RANGE);
     assert_string_equal(b->error.field, "hold_minimum");
@@ -424,11 +426,16 @@ static void mistakes_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(six_faces_by_closed_form), cmocka_unit_test(time_follows_from_the_wish),
-        cmocka_unit_test(floors_are_told),          cmocka_unit_test(all_procedures_are_planned),
-        cmocka_unit_test(mounting_is_counted),      cmocka_unit_test(whole_turns_of_ferraris),
-        cmocka_unit_test(temperatures_are_soaked),  cmocka_unit_test(programme_keeps_its_promise),
-        cmocka_unit_test(missing_pose_is_advised),  cmocka_unit_test(mistakes_are_refused),
+        cmocka_unit_test(six_faces_by_closed_form),
+        cmocka_unit_test(time_follows_from_the_requirement),
+        cmocka_unit_test(floors_are_told),
+        cmocka_unit_test(all_procedures_are_planned),
+        cmocka_unit_test(mounting_is_counted),
+        cmocka_unit_test(whole_turns_of_ferraris),
+        cmocka_unit_test(temperatures_are_soaked),
+        cmocka_unit_test(programme_keeps_its_promise),
+        cmocka_unit_test(missing_pose_is_advised),
+        cmocka_unit_test(mistakes_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,14 +21,14 @@ static const double turn = 6.283185307179586;
 /* ---- the real session -------------------------------------------------------------------------
  */
 
-typedef struct session {
+typedef struct real_session {
     imk_log log;
     int *section;
     const char *name[32];
     imk_test_record record;
-} session;
+} real_session;
 
-static bool load(session *s)
+static bool load(real_session *s)
 {
     imk_error error;
     imk_log_settings settings = imk_log_default();
@@ -67,7 +67,7 @@ static bool load(session *s)
     return true;
 }
 
-static void unload(session *s)
+static void unload(real_session *s)
 {
     imk_log_free(&s->log);
     free(s->section);
@@ -109,7 +109,7 @@ static const imk_ferraris expected = {
 static void test_published(void **state)
 {
     (void)state;
-    session s;
+    real_session s;
     if (!load(&s))
         skip();
     imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_FERRARIS);
@@ -143,7 +143,7 @@ static void test_published(void **state)
 static void test_unlabelled(void **state)
 {
     (void)state;
-    session s;
+    real_session s;
     if (!load(&s))
         skip();
     imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_FERRARIS);
@@ -169,23 +169,23 @@ static void test_unlabelled(void **state)
 /* ---- by maximum likelihood ----------------------------------------------------------------------
  */
 
-typedef struct bench {
+typedef struct session {
     imk_calibration calibration;
     imk_observation observation[CAPACITY];
     imk_calibration_result result;
     imk_procedure_findings findings;
-} bench;
+} session;
 
-static bench *bench_new(void)
+static session *session_new(void)
 {
-    bench *b = malloc(sizeof *b);
+    session *b = malloc(sizeof *b);
     imk_calibration_default(&b->calibration);
     b->calibration.observation = b->observation;
     b->calibration.observation_capacity = CAPACITY;
     return b;
 }
 
-static imk_status observe(bench *b, const imk_test_record *record,
+static imk_status observe(session *b, const imk_test_record *record,
                           const imk_procedure_settings *settings, imk_error *error)
 {
     const size_t size = imk_procedure_workspace_size(IMK_PROCEDURE_FERRARIS, record, settings);
@@ -197,7 +197,7 @@ static imk_status observe(bench *b, const imk_test_record *record,
     return status;
 }
 
-static void solve(bench *b)
+static void solve(session *b)
 {
     imk_error error;
     const size_t size = imk_calibration_workspace_size(&b->calibration);
@@ -213,12 +213,12 @@ static void solve(bench *b)
 static void test_both_estimators(void **state)
 {
     (void)state;
-    session s;
+    real_session s;
     if (!load(&s))
         skip();
     imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_FERRARIS);
     settings.placement_sigma = 0.5 * degree;
-    bench *b = bench_new();
+    session *b = session_new();
     imk_error error;
     b->calibration.gravity = 9.81;
     b->calibration.earth_rate = 0.0;
@@ -410,7 +410,7 @@ static void test_truth_recovered(void **state)
             settings.turn_angle = turned; /* the sign is what the settings say */
         else
             m->record.section = NULL; /* that of the reading */
-        bench *b = bench_new();
+        session *b = session_new();
         imk_error error;
         b->calibration.gravity = 9.81;
         b->calibration.latitude = 45.0 * degree;
@@ -437,7 +437,7 @@ static void test_counts(void **state)
     made *m = make(&truth, 45.0 * degree, turn, 1, 1.0, per_count);
     for (int labelled = 1; labelled >= 0; labelled--) {
         imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_FERRARIS);
-        bench *b = bench_new();
+        session *b = session_new();
         imk_error error;
         b->calibration.gravity = 9.81;
         b->calibration.latitude = 45.0 * degree;
@@ -526,7 +526,7 @@ static void test_refusals(void **state)
     const imk_model truth = imperfect();
     made *m = make(&truth, 45.0 * degree, turn, 1, 1.0, NULL);
     const imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_FERRARIS);
-    bench *b = bench_new();
+    session *b = session_new();
     imk_error error;
     for (size_t k = 0; k < m->count; k++)
         if (m->section[k] == 7)
@@ -549,7 +549,7 @@ static void test_refusals(void **state)
     free(m);
     made *other = make(&truth, 45.0 * degree, turn, 1, 1.0, NULL);
     other->record.axis_count[IMK_GYRO] = 0;
-    b = bench_new();
+    b = session_new();
     CHECK_STATUS(observe(b, &other->record, &settings, &error), IMK_ERROR_KEY_MISSING);
     assert_string_equal(error.field, "gyro");
     free(b);

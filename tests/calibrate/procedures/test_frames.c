@@ -4,7 +4,7 @@
 #include "check.h"
 
 #include "calibrate/estimator/calibration_internal.h"
-#include "calibrate/estimator_bench.h"
+#include "calibrate/estimator_session.h"
 
 static void response(const imk_triad *t, double r[3][3])
 {
@@ -15,19 +15,19 @@ static void response(const imk_triad *t, double r[3][3])
 }
 
 /* A unit with everything that has body axes, in no frame. */
-static imk_model turned_unit(bench *b)
+static imk_model turned_unit(session *b)
 {
-    imk_model m = bench_truth();
+    imk_model m = session_truth();
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             if (i != j) {
-                m.accel.misalignment.value[i][j] = 0.02 * bench_normal(b);
-                m.accel.cross_axis.value[i][j] = 0.005 * bench_normal(b);
+                m.accel.misalignment.value[i][j] = 0.02 * session_normal(b);
+                m.accel.cross_axis.value[i][j] = 0.005 * session_normal(b);
             }
-            m.gyro.g_sensitivity.value[i][j] = 1e-3 * bench_normal(b);
-            m.accel.lever_arm.value[i][j] = 0.02 * bench_normal(b);
-            m.gyro.g2_sensitivity.value[i][j] = 1e-4 * bench_normal(b);
-            m.gyro.g2_sensitivity.value[i][3 + j] = 1e-4 * bench_normal(b);
+            m.gyro.g_sensitivity.value[i][j] = 1e-3 * session_normal(b);
+            m.accel.lever_arm.value[i][j] = 0.02 * session_normal(b);
+            m.gyro.g2_sensitivity.value[i][j] = 1e-4 * session_normal(b);
+            m.gyro.g2_sensitivity.value[i][3 + j] = 1e-4 * session_normal(b);
         }
     return m;
 }
@@ -52,7 +52,7 @@ static double read_axis(const imk_model *m, int sensor, int axis, const double *
 static void readings_stay(void **state)
 {
     (void)state;
-    bench *b = bench_new(1, 2);
+    session *b = session_new(1, 2);
     for (int round = 0; round < 12; round++) {
         const imk_model old = turned_unit(b);
         imk_model new = old;
@@ -61,7 +61,7 @@ static void readings_stay(void **state)
         CHECK_OK(imk_triad_frame_convert(&new, (imk_triad_frame)(round % 3), 0, NULL, NULL, c));
         for (int k = 0; k < 3; k++)
             for (int j = 0; j < 3; j++)
-                v[k][j] = bench_normal(b) * (k == 1 ? 8.0 : 1.0);
+                v[k][j] = session_normal(b) * (k == 1 ? 8.0 : 1.0);
         for (int k = 0; k < 3; k++)
             for (int j = 0; j < 3; j++) {
                 turned[k][j] = c[3 * j] * v[k][0] + c[3 * j + 1] * v[k][1] + c[3 * j + 2] * v[k][2];
@@ -80,13 +80,13 @@ static void readings_stay(void **state)
                 CHECK_CLOSE(product, i == j ? 1.0 : 0.0, 1e-15 * 4.0);
             }
     }
-    bench_free(b);
+    session_free(b);
 }
 
 static void forms_are_as_named(void **state)
 {
     (void)state;
-    bench *b = bench_new(2, 2);
+    session *b = session_new(2, 2);
     for (int round = 0; round < 12; round++) {
         imk_model m = turned_unit(b);
         double r[3][3];
@@ -109,7 +109,7 @@ static void forms_are_as_named(void **state)
                 CHECK_CLOSE(again.gyro.misalignment.value[i][j], m.gyro.misalignment.value[i][j],
                             1e-15);
     }
-    bench_free(b);
+    session_free(b);
 }
 
 /* V' = T V T^T with T by central differences of the exact conversion, near the identity: the map is
@@ -118,7 +118,7 @@ static void covariances_follow(void **state)
 {
     (void)state;
     enum { N = 12 };
-    bench *b = bench_new(3, 2);
+    session *b = session_new(3, 2);
     imk_model_parameter parameter[N];
     size_t n = 0;
     for (int sensor = 0; sensor < 2; sensor++)
@@ -131,11 +131,11 @@ static void covariances_follow(void **state)
         imk_model m;
         imk_model_default(&m);
         for (int p = 0; p < N; p++)
-            *imk_model_parameter_at(&m, parameter[p], NULL) = 1e-4 * bench_normal(b);
+            *imk_model_parameter_at(&m, parameter[p], NULL) = 1e-4 * session_normal(b);
         double root[N][N], v[N * N], t[N][N];
         for (int p = 0; p < N; p++)
             for (int q = 0; q < N; q++)
-                root[p][q] = bench_normal(b);
+                root[p][q] = session_normal(b);
         for (int p = 0; p < N; p++)
             for (int q = 0; q < N; q++) {
                 v[p * N + q] = 0.0;
@@ -166,21 +166,21 @@ static void covariances_follow(void **state)
             for (int q = 0; q < N; q++) /* of elements up to 40 */
                 CHECK_CLOSE(v[p * N + q], expected[p][q], 0.03);
     }
-    bench_free(b);
+    session_free(b);
 }
 
 /* Solving in the symmetric frame is solving in the upper triangular one and converting. */
 static void symmetric_solution_is_the_same_unit(void **state)
 {
     (void)state;
-    bench *a = bench_new(4, 2), *b = bench_new(4, 2);
-    bench *both[2] = {a, b};
+    session *a = session_new(4, 2), *b = session_new(4, 2);
+    session *both[2] = {a, b};
     b->calibration.frame = IMK_FRAME_SYMMETRIC;
     for (int k = 0; k < 2; k++) {
-        bench_free_static(both[k]);
+        session_free_static(both[k]);
         for (int i = 0; i < 24; i++)
-            bench_pose(both[k], 1.0);
-        CHECK_OK(bench_solve(both[k]));
+            session_pose(both[k], 1.0);
+        CHECK_OK(session_solve(both[k]));
     }
     assert_string_equal(a->result.model.accel_evidence.frame, "upper-triangular");
     assert_string_equal(b->result.model.gyro_evidence.frame, "symmetric");
@@ -217,15 +217,15 @@ static void symmetric_solution_is_the_same_unit(void **state)
                                      NULL));
     for (size_t p = 0; p < a->result.parameter_count; p++)
         CHECK_CLOSE(difference[p], 0.0, 1e-6 * sigma[p]);
-    bench_free(a);
-    bench_free(b);
+    session_free(a);
+    session_free(b);
 }
 
 /* A unit turned by known angles: they are found, and nothing is left. */
 static void comparison_finds_the_rotation(void **state)
 {
     (void)state;
-    bench *b = bench_new(5, 2);
+    session *b = session_new(5, 2);
     const imk_model a = turned_unit(b);
     imk_model turned = a, back;
     static const double angles[3] = {.02, -.01, .03};
@@ -244,7 +244,7 @@ static void comparison_finds_the_rotation(void **state)
     for (int p = 0; p < 3; p++) /* fourth order of the angles is left after three rounds */
         CHECK_CLOSE(difference[p], 0.0, 1e-6);
     assert_true(isnan(difference[3]) && isnan(sigma[3])); /* gyros have no places */
-    bench_free(b);
+    session_free(b);
 }
 
 /* Two units of one convention that differ in nothing but a misalignment: no rotation may take it
@@ -256,7 +256,7 @@ static void comparison_keeps_real_differences(void **state)
                                                      {1, IMK_MODEL_MISALIGNMENT, 0, 2},
                                                      {1, IMK_MODEL_MISALIGNMENT, 1, 2},
                                                      {0, IMK_MODEL_MISALIGNMENT, 1, 0}};
-    imk_model a = bench_truth();
+    imk_model a = session_truth();
     imk_triad *triads[2] = {&a.gyro, &a.accel};
     for (int p = 0; p < 4; p++)
         triads[parameter[p].sensor]->misalignment.sigma[parameter[p].axis][parameter[p].element] =

@@ -4,20 +4,20 @@
  * experiments/coverage_multiposition.c. */
 #include "check.h"
 
-#include "calibrate/multiposition_bench.h"
+#include "calibrate/multiposition_session.h"
 #include "calibrate/procedures/multiposition_internal.h"
 
 #include <string.h>
 
-static multiposition_bench *start(void)
+static multiposition_session *start(void)
 {
-    multiposition_bench *b = bench_start();
+    multiposition_session *b = session_start();
     if (!b)
         fail_msg("no bench");
     return b;
 }
 
-static imk_status observe_record(multiposition_bench *b, const imk_procedure_settings *settings)
+static imk_status observe_record(multiposition_session *b, const imk_procedure_settings *settings)
 {
     imk_calibration *c = &b->calibration;
     imk_calibration_default(c);
@@ -75,14 +75,14 @@ static void test_first_accelerometers(void **state)
 static void test_counts_without_sensitivity(void **state)
 {
     (void)state;
-    multiposition_bench *b = start();
-    CHECK_OK(bench_simulate(b, 1, 0));
-    CHECK_OK(bench_observe(b));
-    CHECK_OK(bench_solve(b));
+    multiposition_session *b = start();
+    CHECK_OK(session_simulate(b, 1, 0));
+    CHECK_OK(session_observe(b));
+    CHECK_OK(session_solve(b));
     const imk_model known = b->result.model;
     const imk_model nominal = b->nominal;
     imk_model_default(&b->nominal);
-    CHECK_OK(bench_observe(b));
+    CHECK_OK(session_observe(b));
     for (int i = 0; i < 3; i++) {
         const imk_triad *gyro = &b->calibration.model.gyro, *accel = &b->calibration.model.accel;
         /* Scale factors of 0.6 % and what the start cannot see: misalignments, and the vertical
@@ -92,7 +92,7 @@ static void test_counts_without_sensitivity(void **state)
         CHECK_CLOSE(gyro->sensitivity.value[i], round(gyro->sensitivity.value[i]), 0.0);
         CHECK_CLOSE(accel->zero_offset.value[i], round(accel->zero_offset.value[i]), 0.0);
     }
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     const imk_model *found = &b->result.model;
     for (int i = 0; i < 3; i++) {
         /* The same optimum in other parameters, to what the variance factors, iterated to 1e-3,
@@ -106,7 +106,7 @@ static void test_counts_without_sensitivity(void **state)
             known.accel.sensitivity.value[i] * (1.0 + known.accel.scale_factor.fixed.value[i]),
             0.3 * known.accel.scale_factor.fixed.sigma[i]);
     }
-    bench_stop(b);
+    session_stop(b);
 }
 
 /* ---- what is taken from a log ------------------------------------------------------------------
@@ -120,12 +120,12 @@ static size_t free_of(const imk_calibration *c, int sensor, int term)
     return count;
 }
 
-static void test_whole_bench(void **state)
+static void test_whole_session(void **state)
 {
     (void)state;
-    multiposition_bench *b = start();
-    CHECK_OK(bench_simulate(b, 1, 0));
-    CHECK_OK(bench_observe(b));
+    multiposition_session *b = start();
+    CHECK_OK(session_simulate(b, 1, 0));
+    CHECK_OK(session_observe(b));
     const imk_calibration *c = &b->calibration;
     assert_int_equal(c->observation_count, BENCH_POSES);
     assert_int_equal(c->turn_count, BENCH_POSES - 1);
@@ -153,16 +153,16 @@ static void test_whole_bench(void **state)
         const double earth = 7.292115e-5 * duration;
         CHECK_RELATIVE(turn->sigma, sqrt(noise * noise * duration + 0.25 * earth * earth), 0.3);
     }
-    bench_stop(b);
+    session_stop(b);
 }
 
 /* Samples of some turns are missing, stuck out of range or not numbers; others stay. */
 static void test_turns_left_out(void **state)
 {
     (void)state;
-    multiposition_bench *b = start();
-    CHECK_OK(bench_simulate(b, 1, 0));
-    CHECK_OK(bench_observe(b));
+    multiposition_session *b = start();
+    CHECK_OK(session_simulate(b, 1, 0));
+    CHECK_OK(session_observe(b));
     const imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_MULTIPOSITION);
     double *time = malloc(b->rows * sizeof *time);
     size_t middle[3];
@@ -184,16 +184,16 @@ static void test_turns_left_out(void **state)
     assert_int_equal(b->calibration.turn_count, BENCH_POSES - 4);
     assert_int_equal(b->calibration.observation_count, BENCH_POSES);
     free(time);
-    bench_stop(b);
+    session_stop(b);
 }
 
 /* A long rest weighs like any other, not twelve times as much. */
 static void test_long_rest(void **state)
 {
     (void)state;
-    multiposition_bench *b = start();
-    CHECK_OK(bench_simulate(b, 1, 0));
-    CHECK_OK(bench_observe(b));
+    multiposition_session *b = start();
+    CHECK_OK(session_simulate(b, 1, 0));
+    CHECK_OK(session_observe(b));
     const double sigma = b->observation[0].sigma[IMK_ACCEL][0];
     const size_t more = 3000, middle = (BENCH_TURN * 2 + BENCH_HOLD) * BENCH_RATE / 2;
     /* Half a minute more of the first hold, by repeating its own samples. */
@@ -216,15 +216,15 @@ static void test_long_rest(void **state)
     CHECK_RELATIVE(b->observation[0].sigma[IMK_ACCEL][0], sigma, 0.25);
     for (int c = 0; c < 6; c++)
         free(longer[c]);
-    bench_stop(b);
+    session_stop(b);
 }
 
 static void test_what_is_missing(void **state)
 {
     (void)state;
-    multiposition_bench *b = start();
-    CHECK_OK(bench_simulate(b, 1, 0));
-    CHECK_OK(bench_observe(b));
+    multiposition_session *b = start();
+    CHECK_OK(session_simulate(b, 1, 0));
+    CHECK_OK(session_observe(b));
     imk_procedure_settings settings = imk_procedure_default(IMK_PROCEDURE_MULTIPOSITION);
     /* Seven poses, holds from 2 + 5 k to 5 + 5 k s. */
     b->record.count = 35 * BENCH_RATE;
@@ -254,7 +254,7 @@ static void test_what_is_missing(void **state)
     settings.gyro_turns = true;
     CHECK_OK(observe_record(b, &settings));
     assert_int_equal(b->calibration.parameter_count, 9);
-    CHECK_OK(bench_solve(b));
+    CHECK_OK(session_solve(b));
     b->record.axis_count[IMK_GYRO] = 3;
     b->record.axis_count[IMK_ACCEL] = 0;
     CHECK_STATUS(observe_record(b, &settings), IMK_ERROR_KEY_MISSING);
@@ -267,7 +267,7 @@ static void test_what_is_missing(void **state)
                  IMK_ERROR_WORKSPACE);
     CHECK_CLOSE(b->error.value, BENCH_POSES, 0.0);
     CHECK_CLOSE(b->error.limit, 20.0, 0.0);
-    bench_stop(b);
+    session_stop(b);
 }
 
 /* ---- intervals ---------------------------------------------------------------------------------
@@ -280,15 +280,15 @@ static void test_coverage(void **state)
 {
     (void)state;
     const uint32_t benches = check_runs(48);
-    multiposition_bench *b = start();
+    multiposition_session *b = start();
     coverage_count count = {0};
     for (uint32_t run = 0; run < benches; run++)
-        CHECK_OK(bench_run(b, 1, run, 0, &count));
+        CHECK_OK(session_run(b, 1, run, 0, &count));
     for (size_t p = 0; p < count.parameter_count; p++) {
         assert_true(count.held[p] >= coverage_least_held(benches, 0.93, 3e-8));
         CHECK_BELOW(fabs(coverage_bias(&count, p)), 0.2 + 5.6 * 1.1 / sqrt((double)benches));
     }
-    bench_stop(b);
+    session_stop(b);
 }
 
 /* Two poses of 24 spoilt: no parameter is moved by a sigma in the mean, but for the chance of the
@@ -297,13 +297,13 @@ static void test_bad_poses(void **state)
 {
     (void)state;
     const uint32_t benches = check_runs(24);
-    multiposition_bench *b = start();
+    multiposition_session *b = start();
     coverage_count count = {0};
     for (uint32_t run = 0; run < benches; run++)
-        CHECK_OK(bench_run(b, 1, run, 2, &count));
+        CHECK_OK(session_run(b, 1, run, 2, &count));
     for (size_t p = 0; p < count.parameter_count; p++)
         CHECK_BELOW(fabs(coverage_bias(&count, p)), 0.2 + 5.6 * 1.1 / sqrt((double)benches));
-    bench_stop(b);
+    session_stop(b);
 }
 
 int main(void)
@@ -311,7 +311,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_first_accelerometers),
         cmocka_unit_test(test_counts_without_sensitivity),
-        cmocka_unit_test(test_whole_bench),
+        cmocka_unit_test(test_whole_session),
         cmocka_unit_test(test_turns_left_out),
         cmocka_unit_test(test_long_rest),
         cmocka_unit_test(test_what_is_missing),

@@ -4,7 +4,7 @@
 #include "check.h"
 
 #include "calibrate/procedures/six_position_internal.h"
-#include "calibrate/six_position_bench.h"
+#include "calibrate/six_position_session.h"
 
 /* ---- labels ------------------------------------------------------------------------------------
  */
@@ -64,9 +64,9 @@ static void test_rounding(void **state)
 /* ---- holds and faces ---------------------------------------------------------------------------
  */
 
-static const bench_plan twice = {2, 8, 0, 1.7e-3, 0};
+static const session_plan twice = {2, 8, 0, 1.7e-3, 0};
 
-static imk_status look(bench *b, bool known, imk_procedure_findings *findings, imk_error *error)
+static imk_status look(session *b, bool known, imk_procedure_findings *findings, imk_error *error)
 {
     imk_calibration *c = &b->calibration;
     imk_calibration_default(c);
@@ -82,10 +82,10 @@ static imk_status look(bench *b, bool known, imk_procedure_findings *findings, i
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_SIXPOSITION, &b->record, &settings);
     return imk_procedure_observe(IMK_PROCEDURE_SIXPOSITION, c, &b->record, &settings, false,
-                                 findings, bench_workspace(b, size), size, error);
+                                 findings, session_workspace(b, size), size, error);
 }
 
-static void check_faces(const bench *b, size_t holds)
+static void check_faces(const session *b, size_t holds)
 {
     assert_int_equal(b->calibration.observation_count, holds);
     for (size_t k = 0; k < holds; k++) {
@@ -109,13 +109,13 @@ static void test_faces(void **state)
 {
     (void)state;
     static const char *const nothing[] = {"a1", "a2", "a3", "a4", "a5", "a6", "a7", "a8", "a9"};
-    bench *b = bench_new();
+    session *b = session_new();
     imk_procedure_findings findings;
     imk_error error;
-    assert_true(bench_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
+    assert_true(session_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
     check_faces(b, 12);
     for (int known = 0; known < 2; known++) {
-        b->record.section_name = bench_labels;
+        b->record.section_name = session_labels;
         CHECK_OK(look(b, known, &findings, &error));
         check_faces(b, 12);
         assert_int_equal(findings.intervals, 12);
@@ -137,17 +137,17 @@ static void test_faces(void **state)
     free(b->workspace);
     b->workspace = NULL;
     b->workspace_size = 0;
-    bench_free(b);
+    session_free(b);
 }
 
 /* Of an unsigned converter, whose zero is in the middle of its range. */
 static void test_offset_counts(void **state)
 {
     (void)state;
-    bench *b = bench_new();
+    session *b = session_new();
     imk_procedure_findings findings;
     imk_error error;
-    assert_true(bench_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
+    assert_true(session_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
     for (int i = 0; i < 3; i++)
         for (size_t k = 0; k < b->count; k++)
             b->reading[3 + i][k] += 32768.0;
@@ -159,14 +159,14 @@ static void test_offset_counts(void **state)
         CHECK_RELATIVE(b->calibration.model.accel.sensitivity.value[i], 1670.0, 0.02);
     }
     const size_t size = imk_calibration_workspace_size(&b->calibration);
-    CHECK_OK(
-        imk_calibration_solve(&b->calibration, &b->result, bench_workspace(b, size), size, &error));
+    CHECK_OK(imk_calibration_solve(&b->calibration, &b->result, session_workspace(b, size), size,
+                                   &error));
     const imk_triad *a = &b->result.model.accel;
     for (int i = 0; i < 3; i++) {
         CHECK_CLOSE(a->sensitivity.value[i] * (1.0 + a->scale_factor.fixed.value[i]),
                     1670.0 * (1.0 + b->unit.accel.scale_factor.fixed.value[i]), 1.0);
     }
-    bench_free(b);
+    session_free(b);
 }
 
 /* ---- what is refused ---------------------------------------------------------------------------
@@ -175,10 +175,10 @@ static void test_offset_counts(void **state)
 static void test_refusals(void **state)
 {
     (void)state;
-    bench *b = bench_new();
+    session *b = session_new();
     imk_procedure_findings findings;
     imk_error error;
-    assert_true(bench_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
+    assert_true(session_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
 
     /* A face that nobody held. */
     for (size_t k = 0; k < b->count; k++)
@@ -194,7 +194,7 @@ static void test_refusals(void **state)
     }
 
     /* Axes that are not what the labels say: swapped in the log. */
-    assert_true(bench_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
+    assert_true(session_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
     b->record.reading[IMK_ACCEL][0] = b->reading[4];
     b->record.reading[IMK_ACCEL][1] = b->reading[3];
     CHECK_STATUS(look(b, true, &findings, &error), IMK_ERROR_CONFLICT);
@@ -205,7 +205,7 @@ static void test_refusals(void **state)
     b->record.axis_count[IMK_ACCEL] = 0;
     CHECK_STATUS(look(b, true, &findings, &error), IMK_ERROR_KEY_MISSING);
     assert_string_equal(error.field, "accel");
-    assert_true(bench_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
+    assert_true(session_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
     imk_calibration *c = &b->calibration;
     c->observation_count = 0;
     c->observation_capacity = 11;
@@ -213,21 +213,21 @@ static void test_refusals(void **state)
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_SIXPOSITION, &b->record, &settings);
     CHECK_STATUS(imk_procedure_observe(IMK_PROCEDURE_SIXPOSITION, c, &b->record, &settings, false,
-                                       &findings, bench_workspace(b, size), size, &error),
+                                       &findings, session_workspace(b, size), size, &error),
                  IMK_ERROR_WORKSPACE);
     CHECK_CLOSE(error.value, 12.0, 0.0);
     CHECK_CLOSE(error.limit, 11.0, 0.0);
-    bench_free(b);
+    session_free(b);
 }
 
 /* One wrong label is left out, saturated holds too. */
 static void test_left_out(void **state)
 {
     (void)state;
-    bench *b = bench_new();
+    session *b = session_new();
     imk_procedure_findings findings;
     imk_error error;
-    assert_true(bench_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
+    assert_true(session_run(b, &twice, IMK_PROCEDURE_SIXPOSITION, 3, 0, &error));
     for (size_t k = 0; k < b->count / 12; k++)
         if (b->section[k] == 0)
             b->section[k] = 2;
@@ -247,10 +247,10 @@ static void test_left_out(void **state)
     const size_t size =
         imk_procedure_workspace_size(IMK_PROCEDURE_SIXPOSITION, &b->record, &settings);
     CHECK_STATUS(imk_procedure_observe(IMK_PROCEDURE_SIXPOSITION, c, &b->record, &settings, false,
-                                       &findings, bench_workspace(b, size), size, &error),
+                                       &findings, session_workspace(b, size), size, &error),
                  IMK_ERROR_TOO_SHORT);
     CHECK_CLOSE(error.value, 0.0, 0.0);
-    bench_free(b);
+    session_free(b);
 }
 
 /* ---- solutions ---------------------------------------------------------------------------------
@@ -278,22 +278,22 @@ static void check_coverage(const coverage_count *c, double rms_limit)
     }
 }
 
-static void run_benches(const bench_plan *plan, imk_procedure procedure, uint32_t benches,
+static void run_benches(const session_plan *plan, imk_procedure procedure, uint32_t benches,
                         size_t refused, double rms_limit)
 {
     static coverage_count count;
-    bench *b = bench_new();
+    session *b = session_new();
     memset(&count, 0, sizeof count);
     for (uint32_t n = 0; n < benches; n++) {
         imk_error error;
-        if (bench_run(b, plan, procedure, 1, n, &error))
+        if (session_run(b, plan, procedure, 1, n, &error))
             coverage_add(&count, &b->result, &b->truth, 0.95);
         else
             count.failed++;
     }
     assert_true(count.failed <= refused);
     check_coverage(&count, rms_limit);
-    bench_free(b);
+    session_free(b);
 }
 
 /* Student's distribution with few degrees of freedom has a large standard deviation: 1.5 for those
@@ -307,14 +307,14 @@ static void test_coverage_placed(void **state)
 static void test_coverage_exact(void **state)
 {
     (void)state;
-    static const bench_plan plan = {2, 8, 0, 0, 0};
+    static const session_plan plan = {2, 8, 0, 0, 0};
     run_benches(&plan, IMK_PROCEDURE_SIXPOSITION, check_runs(60), 0, 1.8);
 }
 
 static void test_coverage_ferraris(void **state)
 {
     (void)state;
-    static const bench_plan plan = {2, 8, 6, 1.7e-3, 0};
+    static const session_plan plan = {2, 8, 6, 1.7e-3, 0};
     run_benches(&plan, IMK_PROCEDURE_FERRARIS, check_runs(60), 0, 1.8);
 }
 
@@ -324,21 +324,21 @@ static void test_coverage_ferraris(void **state)
 static void test_bad_holds_refused(void **state)
 {
     (void)state;
-    static const bench_plan plan = {5, 8, 0, 1.7e-3, 0.1};
+    static const session_plan plan = {5, 8, 0, 1.7e-3, 0.1};
     static coverage_count count;
     const uint32_t benches = check_runs(16);
-    bench *b = bench_new();
+    session *b = session_new();
     memset(&count, 0, sizeof count);
     size_t refused = 0;
     imk_error error;
     for (uint32_t n = 0; n < benches; n++) {
-        assert_true(bench_run(b, &plan, IMK_PROCEDURE_SIXPOSITION, 1, n, &error));
+        assert_true(session_run(b, &plan, IMK_PROCEDURE_SIXPOSITION, 1, n, &error));
         coverage_add(&count, &b->result, &b->truth, 0.95);
         refused += b->result.observations_refused;
     }
     assert_in_range(refused, 3 * benches, 3 * benches + 4);
     check_coverage(&count, 1.6);
-    bench_free(b);
+    session_free(b);
 }
 
 /* Six holds, each of which is needed for some parameter: bad or not, none is refused when that
@@ -346,14 +346,14 @@ static void test_bad_holds_refused(void **state)
 static void test_needed_holds_kept(void **state)
 {
     (void)state;
-    static const bench_plan clean = {1, 8, 0, 0, 0}, spoilt = {1, 8, 0, 0, 0.34};
-    bench *b = bench_new();
+    static const session_plan clean = {1, 8, 0, 0, 0}, spoilt = {1, 8, 0, 0, 0.34};
+    session *b = session_new();
     imk_error error;
     for (uint32_t n = 30; n < 36; n++) {
-        assert_true(bench_run(b, &clean, IMK_PROCEDURE_SIXPOSITION, 1, n, &error));
-        assert_true(bench_run(b, &spoilt, IMK_PROCEDURE_SIXPOSITION, 1, n, &error));
+        assert_true(session_run(b, &clean, IMK_PROCEDURE_SIXPOSITION, 1, n, &error));
+        assert_true(session_run(b, &spoilt, IMK_PROCEDURE_SIXPOSITION, 1, n, &error));
     }
-    bench_free(b);
+    session_free(b);
 }
 
 int main(void)

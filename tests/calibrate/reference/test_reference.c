@@ -2,18 +2,18 @@
 /* Procedures with a reference: rate table, tumble, centrifuge, spin. Units are simulated, so the
  * truth is known; what is refused is refused with the field and numbers that help. */
 #include "calibrate/coverage.h"
-#include "calibrate/reference_bench.h"
+#include "calibrate/reference_session.h"
 #include "check.h"
 
 #include "imukit/motion_script.h"
 #include "imukit/reference_alignment.h"
 
-static bench *shared;
+static session *shared;
 
-static void start(imk_procedure procedure, void (*programme)(bench *))
+static void start(imk_procedure procedure, void (*programme)(session *))
 {
     free(shared->workspace);
-    bench_start(shared, procedure, programme);
+    session_start(shared, procedure, programme);
 }
 
 static int set_up(void **state)
@@ -31,7 +31,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-static double estimate(const bench *b, const char *name)
+static double estimate(const session *b, const char *name)
 {
     imk_model_parameter wanted;
     CHECK_OK(imk_model_parameter_parse(name, &wanted));
@@ -42,7 +42,7 @@ static double estimate(const bench *b, const char *name)
     return (double)NAN;
 }
 
-static bool was_left_out(const bench *b, const char *name)
+static bool was_left_out(const session *b, const char *name)
 {
     imk_model_parameter wanted;
     CHECK_OK(imk_model_parameter_parse(name, &wanted));
@@ -55,7 +55,7 @@ static bool was_left_out(const bench *b, const char *name)
 /* ---- stretches -------------------------------------------------------------------------------
  */
 
-static size_t stretches_of(bench *b, imk_reference_stretch *stretch, size_t capacity)
+static size_t stretches_of(session *b, imk_reference_stretch *stretch, size_t capacity)
 {
     size_t count = 0;
     const size_t size = imk_reference_stretches_workspace_size(&b->record);
@@ -72,11 +72,11 @@ static void test_stretches(void **state)
 {
     (void)state;
     static imk_reference_stretch stretch[BENCH_HOLDS];
-    start(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps);
-    bench_log(shared, 3, 0.0);
+    start(IMK_PROCEDURE_RATE_TABLE, session_rate_steps);
+    session_log(shared, 3, 0.0);
     const size_t count = stretches_of(shared, stretch, BENCH_HOLDS);
     assert_int_equal(count, shared->holds);
-    const size_t trim = (size_t)(shared->settings.trim * bench_rate);
+    const size_t trim = (size_t)(shared->settings.trim * session_rate);
     for (size_t i = 0; i < count; i++) {
         const size_t middle = (shared->hold_begin[i] + shared->hold_end[i]) / 2;
         /* The ramps' ends creep: 1e-4 rad/s of 3 are reached 0.02 s early. Before the first hold
@@ -101,20 +101,20 @@ static void test_broken_stretches(void **state)
     (void)state;
     static imk_reference_stretch stretch[BENCH_HOLDS];
     static double time[BENCH_SAMPLES];
-    start(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps);
-    bench_log(shared, 4, 0.0);
+    start(IMK_PROCEDURE_RATE_TABLE, session_rate_steps);
+    session_log(shared, 4, 0.0);
     const size_t holds = shared->holds;
     const size_t middle = (shared->hold_begin[2] + shared->hold_end[2]) / 2;
     for (size_t k = 0; k < shared->count; k++)
-        time[k] = (double)k / bench_rate + (k >= middle ? 0.1 : 0.0);
+        time[k] = (double)k / session_rate + (k >= middle ? 0.1 : 0.0);
     shared->record.time = time;
     assert_int_equal(stretches_of(shared, stretch, BENCH_HOLDS), holds + 1);
     shared->record.time = NULL;
     shared->encoder[1][middle] = (double)NAN;
     assert_int_equal(stretches_of(shared, stretch, BENCH_HOLDS), holds + 1);
 
-    start(IMK_PROCEDURE_RATE_TABLE, bench_rate_sine);
-    bench_log(shared, 5, 0.0);
+    start(IMK_PROCEDURE_RATE_TABLE, session_rate_sine);
+    session_log(shared, 5, 0.0);
     const size_t count = stretches_of(shared, stretch, BENCH_HOLDS);
     for (size_t i = 0; i < count; i++)
         for (int j = 0; j < 3; j++)
@@ -129,8 +129,8 @@ static void test_absurd_rates(void **state)
     static imk_reference_stretch stretch[4];
     static const double rates[] = {1e18, 1e20, 1e160, 1e300};
     for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-        start(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps);
-        bench_log(shared, 4, 0.0);
+        start(IMK_PROCEDURE_RATE_TABLE, session_rate_steps);
+        session_log(shared, 4, 0.0);
         shared->record.dt = 1.0 / rates[i];
         assert_int_equal(stretches_of(shared, stretch, 4), 0);
         assert_true(imk_procedure_workspace_size(IMK_PROCEDURE_RATE_TABLE, &shared->record,
@@ -145,14 +145,14 @@ static void test_without_reference(void **state)
     size_t count;
     double memory[8192];
     imk_error error;
-    start(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps);
-    bench_log(shared, 6, 0.0);
+    start(IMK_PROCEDURE_RATE_TABLE, session_rate_steps);
+    session_log(shared, 6, 0.0);
     for (int j = 0; j < 3; j++)
         shared->record.reference_rate[j] = shared->record.reference_force[j] = NULL;
     CHECK_STATUS(imk_reference_stretches(&shared->record, &shared->settings, stretch, 4, &count,
                                          memory, sizeof memory, &error),
                  IMK_ERROR_KEY_MISSING);
-    CHECK_STATUS(bench_solve(shared, &error), IMK_ERROR_KEY_MISSING);
+    CHECK_STATUS(session_solve(shared, &error), IMK_ERROR_KEY_MISSING);
     assert_string_equal(error.field, "reference_rate");
     assert_int_equal(shared->calibration.observation_count, 0);
     assert_int_equal(shared->calibration.record_count, 0);
@@ -163,7 +163,7 @@ static void test_without_reference(void **state)
 
 /* The log begins 12.4 samples before its reference: its rows are shifted by whole samples, its
  * signals by parts of one, made by a straight line between neighbours of a smooth motion. */
-static void shift_log(bench *b, double samples)
+static void shift_log(session *b, double samples)
 {
     static double copy[BENCH_SAMPLES];
     for (int c = 0; c < 6; c++) {
@@ -176,7 +176,7 @@ static void shift_log(bench *b, double samples)
     }
 }
 
-static imk_reference_shift offset_of(bench *b, double max_shift)
+static imk_reference_shift offset_of(session *b, double max_shift)
 {
     imk_reference_shift shift;
     const size_t size = imk_reference_offset_workspace_size(&b->record, max_shift);
@@ -191,12 +191,12 @@ static void test_offset(void **state)
     (void)state;
     static const double samples[] = {0.0, 12.4, -250.7, 77.0};
     for (size_t i = 0; i < 4; i++) {
-        start(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps);
-        bench_log(shared, 10 + i, 0.0);
+        start(IMK_PROCEDURE_RATE_TABLE, session_rate_steps);
+        session_log(shared, 10 + i, 0.0);
         shift_log(shared, samples[i]);
         imk_reference_shift shift = offset_of(shared, 5.0);
         /* Six sigmas (2e-9 two-sided), and what shifting by straight lines bends. */
-        CHECK_CLOSE(shift.offset, samples[i] / bench_rate, 6.0 * shift.sigma + 2e-5);
+        CHECK_CLOSE(shift.offset, samples[i] / session_rate, 6.0 * shift.sigma + 2e-5);
         CHECK_BELOW(shift.sigma, 1e-4);
         CHECK_BELOW(0.99, shift.correlation);
         /* Steps of different heights: no other shift comes near. */
@@ -215,8 +215,8 @@ static void test_offset(void **state)
 static void test_ambiguous_offset(void **state)
 {
     (void)state;
-    start(IMK_PROCEDURE_RATE_TABLE, bench_rate_sine);
-    bench_log(shared, 20, 0.0);
+    start(IMK_PROCEDURE_RATE_TABLE, session_rate_sine);
+    session_log(shared, 20, 0.0);
     for (int j = 0; j < 3; j++)
         shared->record.reference_force[j] = NULL;
     const imk_reference_shift shift = offset_of(shared, 3.0);
@@ -231,8 +231,8 @@ static void test_offset_refused(void **state)
     (void)state;
     imk_reference_shift shift;
     imk_error error;
-    start(IMK_PROCEDURE_TUMBLE, bench_tumble);
-    bench_log(shared, 21, 0.0);
+    start(IMK_PROCEDURE_TUMBLE, session_tumble);
+    session_log(shared, 21, 0.0);
     const size_t size = imk_reference_offset_workspace_size(&shared->record, 5.0);
     void *memory = malloc(size);
     CHECK_STATUS(imk_reference_offset(&shared->record, 60.0, &shift, memory, size, &error),
@@ -262,7 +262,7 @@ static void test_offset_refused(void **state)
  * are all parameters together, which share a log and are not independent of each other: their
  * number counts as a tenth. A false alarm has the probability 1e-6 for the share (normal quantile
  * 4.9) and for the bias of each parameter. */
-static void cover(imk_procedure procedure, void (*programme)(bench *), uint32_t full, double bad)
+static void cover(imk_procedure procedure, void (*programme)(session *), uint32_t full, double bad)
 {
     coverage_count count = {0};
     imk_error error;
@@ -272,8 +272,8 @@ static void cover(imk_procedure procedure, void (*programme)(bench *), uint32_t 
         shared->settings.nonlinear = true;
     shared->settings.sine_block = 0.05;
     for (size_t i = 0; i < benches; i++) {
-        bench_log(shared, 5000 + i, bad);
-        CHECK_OK(bench_solve(shared, &error));
+        session_log(shared, 5000 + i, bad);
+        CHECK_OK(session_solve(shared, &error));
         coverage_add(&count, &shared->result, &shared->truth, 0.95);
     }
     assert_int_equal(shared->findings.undetermined_count, 0);
@@ -292,17 +292,17 @@ static void cover(imk_procedure procedure, void (*programme)(bench *), uint32_t 
 static void test_rate_table(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps, 24, 0.0);
+    cover(IMK_PROCEDURE_RATE_TABLE, session_rate_steps, 24, 0.0);
     assert_int_equal(shared->result.parameter_count, 33);
     assert_int_equal(shared->findings.intervals, shared->holds);
     assert_int_equal(shared->calibration.frame, IMK_FRAME_REFERENCE);
-    cover(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps, 12, 0.1);
+    cover(IMK_PROCEDURE_RATE_TABLE, session_rate_steps, 12, 0.1);
 }
 
 static void test_sine(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_RATE_TABLE, bench_rate_sine, 2, 0.0);
+    cover(IMK_PROCEDURE_RATE_TABLE, session_rate_sine, 2, 0.0);
     assert_int_equal(shared->result.parameter_count, 33);
     CHECK_CLOSE(shared->findings.lag, 0.0, 6.0 * shared->findings.lag_sigma + 1e-7);
     CHECK_BELOW(1e-9, shared->findings.lag_sigma);
@@ -311,34 +311,34 @@ static void test_sine(void **state)
 static void test_tumble(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_TUMBLE, bench_tumble, 24, 0.0);
+    cover(IMK_PROCEDURE_TUMBLE, session_tumble, 24, 0.0);
     assert_int_equal(shared->result.parameter_count, 36 + 3);
-    cover(IMK_PROCEDURE_TUMBLE, bench_tumble, 12, 0.1);
+    cover(IMK_PROCEDURE_TUMBLE, session_tumble, 12, 0.1);
 }
 
 static void test_centrifuge(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_CENTRIFUGE, bench_centrifuge, 20, 0.0);
-    cover(IMK_PROCEDURE_CENTRIFUGE, bench_centrifuge, 10, 0.1);
+    cover(IMK_PROCEDURE_CENTRIFUGE, session_centrifuge, 20, 0.0);
+    cover(IMK_PROCEDURE_CENTRIFUGE, session_centrifuge, 10, 0.1);
 }
 
 static void test_spin(void **state)
 {
     (void)state;
-    cover(IMK_PROCEDURE_SPIN, bench_spin, 10, 0.0);
+    cover(IMK_PROCEDURE_SPIN, session_spin, 10, 0.0);
 }
 
 /* ---- what the log does not determine ---------------------------------------------------------
  */
 
-static void only_about_z(bench *b)
+static void only_about_z(session *b)
 {
     static const double level[] = {0.0, 1.0, -1.0, 2.0, -2.0};
-    const double force[3] = {0.0, 0.0, -bench_gravity};
+    const double force[3] = {0.0, 0.0, -session_gravity};
     for (int i = 0; i < 5; i++) {
         const double rate[3] = {0.0, 0.0, level[i]};
-        bench_go(b, rate, force, 0.5, 3.0);
+        session_go(b, rate, force, 0.5, 3.0);
     }
 }
 
@@ -349,8 +349,8 @@ static void test_undetermined(void **state)
     (void)state;
     imk_error error;
     start(IMK_PROCEDURE_RATE_TABLE, only_about_z);
-    bench_log(shared, 30, 0.0);
-    CHECK_OK(bench_solve(shared, &error));
+    session_log(shared, 30, 0.0);
+    CHECK_OK(session_solve(shared, &error));
     estimate(shared, "gyro.bias.fixed.x");
     estimate(shared, "gyro.misalignment.x.z");
     estimate(shared, "gyro.misalignment.y.z");
@@ -383,14 +383,14 @@ static void test_undetermined(void **state)
     free(memory);
 }
 
-static void three_attitudes(bench *b)
+static void three_attitudes(session *b)
 {
     for (int axis = 0; axis < 3; axis++)
         for (int i = -2; i <= 2; i++) {
             double rate[3], force[3];
-            bench_along(axis, i, rate);
-            bench_along(axis, bench_gravity, force);
-            bench_go(b, rate, force, 0.5, 3.0);
+            session_along(axis, i, rate);
+            session_along(axis, session_gravity, force);
+            session_go(b, rate, force, 0.5, 3.0);
         }
 }
 
@@ -401,8 +401,8 @@ static void test_three_attitudes(void **state)
     (void)state;
     imk_error error;
     start(IMK_PROCEDURE_RATE_TABLE, three_attitudes);
-    bench_log(shared, 31, 0.0);
-    CHECK_OK(bench_solve(shared, &error));
+    session_log(shared, 31, 0.0);
+    CHECK_OK(session_solve(shared, &error));
     assert_true(was_left_out(shared, "gyro.g_sensitivity.x.x"));
     assert_true(was_left_out(shared, "gyro.g_sensitivity.x.y"));
     assert_true(was_left_out(shared, "gyro.g_sensitivity.x.z"));
@@ -417,14 +417,14 @@ static void test_counts(void **state)
     (void)state;
     imk_error error;
     for (int sine = 0; sine < 2; sine++) {
-        start(IMK_PROCEDURE_RATE_TABLE, sine ? bench_rate_sine : bench_rate_steps);
+        start(IMK_PROCEDURE_RATE_TABLE, sine ? session_rate_sine : session_rate_steps);
         shared->settings.sine_block = 0.1;
-        bench_log(shared, 32, 0.0);
+        session_log(shared, 32, 0.0);
         shared->record.counts[0] = true;
         for (int c = 0; c < 3; c++)
             for (size_t k = 0; k < shared->count; k++)
                 shared->log[c][k] = floor(32768.0 + 50.0 * c + 5000.0 * shared->log[c][k] + 0.5);
-        CHECK_OK(bench_solve(shared, &error));
+        CHECK_OK(session_solve(shared, &error));
         const imk_triad *nominal = &shared->calibration.model.gyro;
         const imk_triad *found = &shared->result.model.gyro;
         for (int i = 0; i < 3; i++) {
@@ -438,10 +438,10 @@ static void test_counts(void **state)
         }
     }
     /* Others refuse. */
-    start(IMK_PROCEDURE_TUMBLE, bench_tumble);
-    bench_log(shared, 33, 0.0);
+    start(IMK_PROCEDURE_TUMBLE, session_tumble);
+    session_log(shared, 33, 0.0);
     shared->record.counts[1] = true;
-    CHECK_STATUS(bench_solve(shared, &error), IMK_ERROR_UNIT_MISSING);
+    CHECK_STATUS(session_solve(shared, &error), IMK_ERROR_UNIT_MISSING);
     assert_string_equal(error.field, "accel.sensitivity");
 }
 
@@ -449,22 +449,22 @@ static void test_wrong_units(void **state)
 {
     (void)state;
     imk_error error;
-    start(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps);
-    bench_log(shared, 34, 0.0);
+    start(IMK_PROCEDURE_RATE_TABLE, session_rate_steps);
+    session_log(shared, 34, 0.0);
     for (size_t k = 0; k < shared->count; k++)
         shared->log[1][k] *= -1.0;
-    CHECK_STATUS(bench_solve(shared, &error), IMK_ERROR_CONFLICT);
+    CHECK_STATUS(session_solve(shared, &error), IMK_ERROR_CONFLICT);
     assert_string_equal(error.field, "gyro");
     assert_int_equal(error.index, 1);
     CHECK_CLOSE(error.value, -1.0, 0.02);
-    start(IMK_PROCEDURE_CENTRIFUGE, bench_centrifuge);
-    bench_log(shared, 35, 0.0);
+    start(IMK_PROCEDURE_CENTRIFUGE, session_centrifuge);
+    session_log(shared, 35, 0.0);
     for (int c = 3; c < 6; c++)
         for (size_t k = 0; k < shared->count; k++)
-            shared->log[c][k] /= bench_gravity;
-    CHECK_STATUS(bench_solve(shared, &error), IMK_ERROR_CONFLICT);
+            shared->log[c][k] /= session_gravity;
+    CHECK_STATUS(session_solve(shared, &error), IMK_ERROR_CONFLICT);
     assert_string_equal(error.field, "accel");
-    CHECK_CLOSE(error.value, 1.0 / bench_gravity, 0.02);
+    CHECK_CLOSE(error.value, 1.0 / session_gravity, 0.02);
 }
 
 /* Stretches in which a sensor is at its range, or that lack numbers, are left out and counted. */
@@ -472,8 +472,8 @@ static void test_saturated(void **state)
 {
     (void)state;
     imk_error error;
-    start(IMK_PROCEDURE_RATE_TABLE, bench_rate_steps);
-    bench_log(shared, 36, 0.0);
+    start(IMK_PROCEDURE_RATE_TABLE, session_rate_steps);
+    session_log(shared, 36, 0.0);
     shared->log[2][(shared->hold_begin[4] + shared->hold_end[4]) / 2] = (double)NAN;
     imk_calibration_default(&shared->calibration);
     shared->calibration.observation = shared->observation;
@@ -502,13 +502,13 @@ static void test_lag(void **state)
 {
     (void)state;
     imk_error error;
-    start(IMK_PROCEDURE_RATE_TABLE, bench_rate_sine);
+    start(IMK_PROCEDURE_RATE_TABLE, session_rate_sine);
     shared->settings.sine_block = 0.05;
-    bench_log(shared, 37, 0.0);
-    CHECK_OK(bench_solve(shared, &error));
+    session_log(shared, 37, 0.0);
+    CHECK_OK(session_solve(shared, &error));
     const double scale = estimate(shared, "gyro.scale_factor.fixed.y");
     shift_log(shared, 2.3);
-    CHECK_OK(bench_solve(shared, &error));
+    CHECK_OK(session_solve(shared, &error));
     CHECK_CLOSE(shared->findings.lag, 0.023, 6.0 * shared->findings.lag_sigma + 1e-6);
     /* A straight line between samples loses (pi/100)^2/8 of a sine of 0.5 Hz at most, 1.2e-4. */
     CHECK_CLOSE(estimate(shared, "gyro.scale_factor.fixed.y"), scale, 1.5e-4);
@@ -523,11 +523,11 @@ static void test_spin_alone(void **state)
 {
     (void)state;
     imk_error error;
-    start(IMK_PROCEDURE_SPIN, bench_spin);
-    bench_log(shared, 38, 0.0);
+    start(IMK_PROCEDURE_SPIN, session_spin);
+    session_log(shared, 38, 0.0);
     for (int j = 0; j < 3; j++)
         shared->record.reference_rate[j] = shared->record.reference_force[j] = NULL;
-    CHECK_OK(bench_solve(shared, &error));
+    CHECK_OK(session_solve(shared, &error));
     const char *const names[] = {"accel.lever_arm.x.x", "accel.lever_arm.y.y",
                                  "accel.lever_arm.z.z"};
     for (int i = 0; i < 3; i++) {
@@ -541,7 +541,7 @@ static void test_spin_alone(void **state)
     /* With the rates known but not the forces the rests stand for these. */
     for (int j = 0; j < 3; j++)
         shared->record.reference_rate[j] = shared->encoder[j];
-    CHECK_OK(bench_solve(shared, &error));
+    CHECK_OK(session_solve(shared, &error));
     for (int i = 0; i < 9; i++) {
         const imk_triad *found = &shared->result.model.accel;
         CHECK_CLOSE(found->lever_arm.value[i / 3][i % 3],
@@ -559,8 +559,8 @@ enum { STEPS = 64 };
 static size_t table_steps(imk_motion_step step[STEPS])
 {
     static const double level[] = {20.0, -20.0, 60.0, -60.0, 120.0, -120.0};
-    const double half = 0.5 * bench_pi, degree = bench_pi / 180.0;
-    const double roll[3][2] = {{0.0, 0.0}, {half, -half}, {0.0, bench_pi}};
+    const double half = 0.5 * session_pi, degree = session_pi / 180.0;
+    const double roll[3][2] = {{0.0, 0.0}, {half, -half}, {0.0, session_pi}};
     const double pitch[3][2] = {{-half, half}, {0.0, 0.0}, {0.0, 0.0}};
     size_t count = 0;
     for (int run = 0; run < 6; run++) {
@@ -579,7 +579,7 @@ static size_t table_steps(imk_motion_step step[STEPS])
 }
 
 /* Log and reference of unit 40 on the trajectory of a script. */
-static void record_script(bench *b, const imk_motion_script *script)
+static void record_script(session *b, const imk_motion_script *script)
 {
     size_t pieces;
     CHECK_OK(imk_motion_script_pieces(script, &pieces, NULL));
@@ -589,15 +589,15 @@ static void record_script(bench *b, const imk_motion_script *script)
     double length = 0.0;
     for (size_t i = 0; i < script->step_count; i++)
         length += imk_motion_step_duration(script, i);
-    b->record.count = b->count = (size_t)(length * bench_rate);
+    b->record.count = b->count = (size_t)(length * session_rate);
     assert_true(b->count < BENCH_SAMPLES);
     double *boundary = malloc((b->count + 1) * sizeof *boundary);
     for (size_t k = 0; k <= b->count; k++)
-        boundary[k] = ((double)k - 1.0) / bench_rate;
+        boundary[k] = ((double)k - 1.0) / session_rate;
     double *const rate[3] = {b->encoder[0], b->encoder[1], b->encoder[2]};
     double *const force[3] = {b->force[0], b->force[1], b->force[2]};
     imk_trajectory_means(&trajectory, IMK_KERNEL_SCALAR, b->count, boundary, rate, NULL, force);
-    b->truth = bench_unit(b->procedure, 40);
+    b->truth = session_unit(b->procedure, 40);
     imk_simulation simulation = imk_simulation_default();
     simulation.motion.trajectory = &trajectory;
     simulation.seed = 40;
@@ -624,19 +624,19 @@ static void test_script(void **state)
     script.step_count = table_steps(step);
     script.step = step;
     start(IMK_PROCEDURE_RATE_TABLE, only_about_z);
-    bench *b = shared;
+    session *b = shared;
     record_script(b, &script);
     free(b->workspace);
     b->workspace_size = imk_procedure_workspace_size(b->procedure, &b->record, &b->settings);
     b->workspace = malloc(b->workspace_size);
     imk_error error;
-    CHECK_OK(bench_solve(b, &error));
+    CHECK_OK(session_solve(b, &error));
     /* Six runs of a hold and six rates; the poses between turn and are none. */
     assert_int_equal(b->findings.observations, 42);
     assert_int_equal(b->result.parameter_count + b->findings.undetermined_count, 33);
     for (size_t p = 0; p < b->result.parameter_count; p++) {
         const imk_model_parameter place = b->result.parameter[p];
-        const double instability = 0.5 / 3600.0 * bench_pi / 180.0;
+        const double instability = 0.5 / 3600.0 * session_pi / 180.0;
         /* Seven sigmas: 3e-12 for the normal distribution, 1e-7 at 30 degrees of freedom; the bias
          * also has what its instability has come to since long ago, 2.7 of it. */
         const double slow = place.term == IMK_MODEL_BIAS ? 7.0 * 2.7 * instability : 0.0;

@@ -14,7 +14,7 @@
 
 enum { RATE = 100, SAMPLES = 400, BEGIN = 90, END = 360 };
 
-typedef struct bench {
+typedef struct session {
     imk_calibration calibration;
     imk_model model;
     imk_test_record record;
@@ -22,7 +22,7 @@ typedef struct bench {
     imk_turn turn;
     double truth[6][SAMPLES], reading[6][SAMPLES], temperature[SAMPLES], time[SAMPLES];
     double start[3], end[3]; /* up, body axes */
-} bench;
+} session;
 
 static void up(const imk_trajectory *trajectory, double time, double direction[3])
 {
@@ -33,7 +33,7 @@ static void up(const imk_trajectory *trajectory, double time, double direction[3
 }
 
 /* A second of rest, a turn about a skew axis, coning; no Earth. */
-static void move(bench *b)
+static void move(session *b)
 {
     const imk_motion_step steps[] = {
         {.kind = IMK_STEP_HOLD, .duration = 1.0},
@@ -71,7 +71,7 @@ static void move(bench *b)
 }
 
 /* Readings of the model, which has errors of every kind the turn knows. */
-static void read_errors(bench *b, const imk_model *truth)
+static void read_errors(session *b, const imk_model *truth)
 {
     imk_distortion distortion;
     CHECK_OK(imk_distortion_start(&distortion, truth, NULL, IMK_KERNEL_SCALAR, NULL));
@@ -87,9 +87,9 @@ static void read_errors(bench *b, const imk_model *truth)
             imk_distort(&distortion, sensor, i, &stimulus, SAMPLES, b->reading[3 * sensor + i]);
 }
 
-static bench *make_bench(const imk_model *truth)
+static session *make_session(const imk_model *truth)
 {
-    bench *b = calloc(1, sizeof *b);
+    session *b = calloc(1, sizeof *b);
     assert_non_null(b);
     move(b);
     read_errors(b, truth);
@@ -139,7 +139,7 @@ static void test_exact_motion(void **state)
 {
     (void)state;
     const imk_model truth = linear_errors();
-    bench *b = make_bench(&truth);
+    session *b = make_session(&truth);
     imki_turn_prediction prediction;
     imki_turn_predict(&b->calibration, &truth, &b->turn, b->start, &prediction, NULL);
     CHECK_BELOW(distance(prediction.end, b->end), 3e-6);
@@ -175,7 +175,7 @@ static void test_angle(void **state)
     (void)state;
     imk_model truth;
     imk_model_default(&truth);
-    bench *b = make_bench(&truth);
+    session *b = make_session(&truth);
     for (int k = 0; k < SAMPLES; k++) {
         b->reading[0][k] = b->reading[1][k] = 0.0;
         b->reading[2][k] = 0.7;
@@ -244,7 +244,7 @@ static double *value_at(imk_model *m, imk_model_parameter p)
  * middle of a step as the mean of its ends and the rates as constant within it, which is off by
  * (w dt)^2/12, 2e-4 at 5 rad/s, of sums part of which cancels; terms that are not linear change the
  * slope of the readings too, by 1 % here, which the jacobian leaves out. */
-static void compare_derivatives(bench *b, const imk_model *model, double relative)
+static void compare_derivatives(session *b, const imk_model *model, double relative)
 {
     imk_calibration *c = &b->calibration;
     double *jacobian = calloc(3 * c->parameter_count, sizeof *jacobian);
@@ -288,7 +288,7 @@ static void test_derivatives(void **state)
     truth.gyro.bias.temperature = (imk_temperature_polynomial){
         .order = 2, .reference = 299.0, .minimum = 290.0, .maximum = 310.0};
     truth.gyro.scale_factor.temperature = truth.gyro.bias.temperature;
-    bench *b = make_bench(&truth);
+    session *b = make_session(&truth);
     b->record.temperature = b->temperature;
     imk_calibration *c = &b->calibration;
     add_parameter(c, IMK_ACCEL, IMK_MODEL_BIAS, 0, 0);
@@ -322,7 +322,7 @@ static void test_nonlinear(void **state)
         for (int j = 0; j < 6; j++)
             truth.gyro.g2_sensitivity.value[i][j] = 1e-6 * (j - i);
     }
-    bench *b = make_bench(&truth);
+    session *b = make_session(&truth);
     imki_turn_prediction p;
     imki_turn_predict(&b->calibration, &truth, &b->turn, b->start, &p, NULL);
     /* As in test_exact_motion; the terms see the mean of a sample instead of each instant. */
@@ -354,7 +354,7 @@ static void test_redundant(void **state)
         truth.gyro.scale_factor.fixed.value[i] = 0.002 * i;
         truth.gyro.misalignment.value[i][0] = 0.003;
     }
-    bench *b = make_bench(&truth);
+    session *b = make_session(&truth);
     double fourth[SAMPLES];
     imk_distortion distortion;
     CHECK_OK(imk_distortion_start(&distortion, &truth, NULL, IMK_KERNEL_SCALAR, NULL));

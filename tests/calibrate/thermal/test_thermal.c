@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What temperature does, found in simulated sweeps, in readings made by formula, and in a real log.
  */
-#include "calibrate/thermal_bench.h"
+#include "calibrate/thermal_session.h"
 #include "check.h"
 
 #include "imukit/log.h"
@@ -205,9 +205,9 @@ static void findings_go_into_a_model(void **state)
 
 /* ---- simulated sweeps ------------------------------------------------------------------------ */
 
-static thermal_bench *open_bench(void)
+static thermal_session *open_session(void)
 {
-    thermal_bench *b = calloc(1, sizeof *b);
+    thermal_session *b = calloc(1, sizeof *b);
     assert_non_null(b);
     thermal_truth(b);
     assert_true(thermal_open(b));
@@ -224,7 +224,7 @@ static void intervals_hold_the_truth(void **state)
     enum { BENCHES = 40 };
     static thermal_count count;
     const imk_thermal_settings settings = imk_thermal_default();
-    thermal_bench *b = open_bench();
+    thermal_session *b = open_session();
     for (uint64_t k = 0; k < BENCHES; k++) {
         assert_true(thermal_run(b, 100 + k, false));
         CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings, b->workspace,
@@ -263,7 +263,7 @@ static void knocks_are_left_out(void **state)
     enum { BENCHES = 12 };
     static thermal_count count;
     const imk_thermal_settings settings = imk_thermal_default();
-    thermal_bench *b = open_bench();
+    thermal_session *b = open_session();
     for (uint64_t k = 0; k < BENCHES; k++) {
         assert_true(thermal_run(b, 500 + k, true));
         CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings, b->workspace,
@@ -291,7 +291,7 @@ static void an_absurd_sample_is_left_out(void **state)
     (void)state;
     static const double absurd[] = {1e12, -1e20, 1e59};
     const imk_thermal_settings settings = imk_thermal_default();
-    thermal_bench *b = open_bench();
+    thermal_session *b = open_session();
     assert_true(thermal_run(b, 7, false));
     const size_t rows[] = {0, b->record.count / 2, b->record.count - 1};
     CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings, b->workspace,
@@ -324,7 +324,7 @@ static void the_gap_is_reported(void **state)
 {
     (void)state;
     const imk_thermal_settings settings = imk_thermal_default();
-    thermal_bench *b = open_bench();
+    thermal_session *b = open_session();
     assert_true(thermal_run(b, 3, false));
     CHECK_OK(imk_thermal_analyse(&b->record, &settings, &b->nominal, &b->findings, b->workspace,
                                  imk_thermal_workspace_size(), &b->error));
@@ -355,7 +355,7 @@ static void the_gap_is_reported(void **state)
 static void the_procedure_agrees_with_the_analysis(void **state)
 {
     (void)state;
-    thermal_bench *b = open_bench();
+    thermal_session *b = open_session();
     imk_calibration *c = calloc(1, sizeof *c);
     imk_calibration_result *result = calloc(1, sizeof *result);
     imk_observation *observation = calloc(128, sizeof *observation);

@@ -13,17 +13,17 @@
 enum { RECORDS = 4, SAMPLES = 1 << 14 };
 static const double DT = 0.1, WHITE = 1, FLICKER = 0.1;
 
-typedef struct bench {
+typedef struct session {
     double *samples;
     void *workspace, *joint_workspace;
     size_t workspace_size;
     imk_spectral_summary *summary[RECORDS];
     imk_identification single[RECORDS];
-} bench;
+} session;
 
 static int set_up(void **state)
 {
-    bench *b = calloc(1, sizeof *b);
+    session *b = calloc(1, sizeof *b);
     b->workspace_size = imk_identify_workspace_size(SAMPLES);
     b->samples = malloc(SAMPLES * sizeof(double));
     b->workspace = malloc(b->workspace_size);
@@ -36,7 +36,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    bench *b = *state;
+    session *b = *state;
     for (size_t r = 0; r < RECORDS; r++)
         free(b->summary[r]);
     free(b->samples);
@@ -48,7 +48,7 @@ static int tear_down(void **state)
 
 /* White noise and flicker on a bias and, in record 1, a steep ramp; all strengths of record 2 times
  * `change`. */
-static void identify_records(bench *b, uint64_t run, double change)
+static void identify_records(session *b, uint64_t run, double change)
 {
     for (size_t r = 0; r < RECORDS; r++) {
         const imk_random random = imk_random_seeded(run * RECORDS + r);
@@ -72,7 +72,7 @@ static void identify_records(bench *b, uint64_t run, double change)
     }
 }
 
-static imk_status join(bench *b, size_t count, imk_identification *joint,
+static imk_status join(session *b, size_t count, imk_identification *joint,
                        imk_joint_agreement *agreement, imk_error *error)
 {
     imk_identify_settings settings = imk_identify_default();
@@ -87,7 +87,7 @@ static imk_status join(bench *b, size_t count, imk_identification *joint,
  * sigma of N is that of four times the samples. */
 static void test_gain_and_intervals(void **state)
 {
-    bench *b = *state;
+    session *b = *state;
     const size_t runs = check_runs(24);
     double square = 0;
     size_t covered = 0, alarms = 0;
@@ -117,7 +117,7 @@ static void test_gain_and_intervals(void **state)
 /* White noise is known to 0.55 % in each record: 8 % in one of them cannot be missed. */
 static void test_disagreement(void **state)
 {
-    bench *b = *state;
+    session *b = *state;
     imk_identification joint;
     imk_joint_agreement agreement;
     identify_records(b, 100, 1.08);
@@ -131,7 +131,7 @@ static void test_disagreement(void **state)
 
 static void test_refusals(void **state)
 {
-    bench *b = *state;
+    session *b = *state;
     imk_identification joint = {.mean = 77};
     imk_error error;
     identify_records(b, 200, 1);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Design files: what is read into the fields of a small instrument made here, what is refused and
- * with which sentence, that writing and reading keep every bit; and that the tables of all
+ * with which message, that writing and reading keep every bit; and that the tables of all
  * instruments of the library can be written and read. Values are the numbers of the texts times
  * the unit's definition. */
 #define _POSIX_C_SOURCE 200809L
@@ -152,13 +152,13 @@ static void fields_are_read_in_their_units(void **state)
     imk_design_file_free(&file);
 }
 
-static void bad_files_are_refused_with_a_sentence(void **state)
+static void bad_files_are_refused_with_a_message(void **state)
 {
     (void)state;
     static const struct {
         const char *text; /* behind the two lines of the head */
         imk_status status;
-        const char *sentence;
+        const char *message;
     } cases[] = {
         {"rotr: {inertia: 1 kg m^2}\n", IMK_ERROR_KEY_UNKNOWN,
          "w.yaml:3:1: rotr: \"rotr\" is not a known key; did you mean \"rotor\"?"},
@@ -230,13 +230,13 @@ static void bad_files_are_refused_with_a_sentence(void **state)
     for (size_t i = 0; i < COUNT(cases); i++) {
         imk_design_file file = {.design = &file};
         imk_error error;
-        char sentence[600];
+        char message[600];
         const imk_status status = read_wheel(cases[i].text, &file, &error);
-        imk_error_text(&error, "w.yaml", sentence, sizeof sentence);
+        imk_error_text(&error, "w.yaml", message, sizeof message);
         if (status != cases[i].status || error.status != status)
-            fail_msg("%s: %s: %s", cases[i].text, imk_status_name(status), sentence);
-        if (cases[i].sentence)
-            assert_string_equal(sentence, cases[i].sentence);
+            fail_msg("%s: %s: %s", cases[i].text, imk_status_name(status), message);
+        if (cases[i].message)
+            assert_string_equal(message, cases[i].message);
         assert_ptr_equal(file.design, &file); /* untouched */
         CHECK_STATUS(read_wheel(cases[i].text, &file, NULL), cases[i].status);
     }
@@ -248,7 +248,7 @@ static void heads_are_checked(void **state)
     static const struct {
         const char *text;
         imk_status status;
-        const char *sentence;
+        const char *message;
     } cases[] = {
         {"instrument: test_wheel\n", IMK_ERROR_KEY_MISSING,
          "w.yaml:1:1: a required key is missing; write imukit: 1, the version of the format"},
@@ -268,14 +268,14 @@ static void heads_are_checked(void **state)
     for (size_t i = 0; i < COUNT(cases); i++) {
         imk_design_file file = {.design = NULL};
         imk_error error;
-        char sentence[600];
+        char message[600];
         const imk_status status =
             imk_design_parse(cases[i].text, strlen(cases[i].text), &file, &error);
-        imk_error_text(&error, "w.yaml", sentence, sizeof sentence);
+        imk_error_text(&error, "w.yaml", message, sizeof message);
         if (status != cases[i].status)
-            fail_msg("%s: %s: %s", cases[i].text, imk_status_name(status), sentence);
-        if (cases[i].sentence)
-            assert_string_equal(sentence, cases[i].sentence);
+            fail_msg("%s: %s: %s", cases[i].text, imk_status_name(status), message);
+        if (cases[i].message)
+            assert_string_equal(message, cases[i].message);
         assert_null(file.design);
     }
     imk_design_file file = {.design = NULL};
@@ -455,7 +455,7 @@ static void every_instrument_has_a_table_that_works(void **state)
         const imk_instrument *instrument = imk_instrument_get(i);
         imk_design_file file = {.design = NULL}, back = {.design = NULL};
         imk_error error = {.status = IMK_OK};
-        char *text, sentence[600];
+        char *text, message[600];
         size_t size;
         check_table(instrument);
         assert_ptr_equal(imk_instrument_find(instrument->name), instrument);
@@ -464,9 +464,9 @@ static void every_instrument_has_a_table_that_works(void **state)
         imk_status status = imk_design_print(&file, &text, &size, &error);
         if (status == IMK_OK)
             status = imk_design_parse(text, size, &back, &error);
-        imk_error_text(&error, instrument->name, sentence, sizeof sentence);
+        imk_error_text(&error, instrument->name, message, sizeof message);
         if (status != IMK_OK)
-            fail_msg("%s", sentence);
+            fail_msg("%s", message);
         check_same_fields(instrument, file.design, back.design);
         free(text);
         imk_design_file_free(&file);
@@ -483,15 +483,15 @@ static void the_examples_are_valid(void **state)
     if (!listing)
         skip();
     for (struct dirent *entry = readdir(listing); entry; entry = readdir(listing)) {
-        char path[1024], sentence[600];
+        char path[1024], message[600];
         imk_design_file file;
         imk_error error;
         if (!strstr(entry->d_name, ".yaml"))
             continue;
         snprintf(path, sizeof path, "%s/%.200s", folder, entry->d_name);
         if (imk_design_read(path, &file, &error) != IMK_OK) {
-            imk_error_text(&error, path, sentence, sizeof sentence);
-            fail_msg("%s", sentence);
+            imk_error_text(&error, path, message, sizeof message);
+            fail_msg("%s", message);
         }
         imk_design_file_free(&file);
     }
@@ -503,7 +503,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(keys_not_given_keep_the_default),
         cmocka_unit_test(fields_are_read_in_their_units),
-        cmocka_unit_test(bad_files_are_refused_with_a_sentence),
+        cmocka_unit_test(bad_files_are_refused_with_a_message),
         cmocka_unit_test(heads_are_checked),
         cmocka_unit_test(designs_are_written_with_units_and_help),
         cmocka_unit_test(written_designs_are_read_back_to_the_bit),

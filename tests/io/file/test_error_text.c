@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The sentence of every status: with what was found, with numbers, and with nothing but the
+/* The message of every status: with what was found, with numbers, and with nothing but the
  * status. */
 #include "imukit/io.h"
 
@@ -25,12 +25,12 @@ static imk_error error_of(imk_status status, const char *field, const char *foun
 }
 
 /* One line per status, all of them: what it says about a found "X y", and about nothing. */
-typedef struct sentence_of_status {
+typedef struct message_of_status {
     imk_status status;
     const char *with_found, *alone;
-} sentence_of_status;
+} message_of_status;
 
-static const sentence_of_status sentences[] = {
+static const message_of_status messages[] = {
     {IMK_OK, "done: X y", "done"},
     {IMK_ERROR_ARGUMENT, "an argument is not valid: X y", "an argument is not valid"},
     {IMK_ERROR_NOT_FINITE, "\"X y\" is not finite", "a number is not finite"},
@@ -81,17 +81,17 @@ static void every_status(void **state)
         IMK_STATUS_LIST(STATUS)
 #undef STATUS
     };
-    const size_t count = sizeof sentences / sizeof sentences[0];
+    const size_t count = sizeof messages / sizeof messages[0];
     assert_int_equal(count, sizeof all / sizeof all[0]);
     for (size_t i = 0; i < count; i++) {
-        assert_int_equal(sentences[i].status, all[i]);
+        assert_int_equal(messages[i].status, all[i]);
         char expected[256];
         imk_error error = error_of(all[i], "gyro.bias", "X y", "a thing");
         snprintf(expected, sizeof expected, "a.yaml: gyro.bias: %s; expected a thing",
-                 sentences[i].with_found);
+                 messages[i].with_found);
         check_text(&error, "a.yaml", expected);
         error = error_of(all[i], "", NULL, NULL);
-        check_text(&error, NULL, sentences[i].alone);
+        check_text(&error, NULL, messages[i].alone);
     }
 }
 
@@ -291,17 +291,17 @@ static void shortened(void **state)
 static void long_path(void **state)
 {
     (void)state;
-    char path[200], sentence[500];
+    char path[200], message[500];
     imk_error error;
     memset(path, 'a', sizeof path);
     strcpy(path + sizeof path - 9, "/end.csv");
     imk_error_set(&error, IMK_ERROR_OPEN, path, "", "");
-    imk_error_text(&error, path, sentence, sizeof sentence);
-    assert_string_equal(sentence + strlen(path), ": the file cannot be opened");
-    imk_error_text(&error, NULL, sentence, sizeof sentence);
-    assert_non_null(strstr(sentence, "aaa\xE2\x80\xA6"
-                                     "aaa"));
-    assert_non_null(strstr(sentence, "aaa/end.csv: the file cannot be opened"));
+    imk_error_text(&error, path, message, sizeof message);
+    assert_string_equal(message + strlen(path), ": the file cannot be opened");
+    imk_error_text(&error, NULL, message, sizeof message);
+    assert_non_null(strstr(message, "aaa\xE2\x80\xA6"
+                                    "aaa"));
+    assert_non_null(strstr(message, "aaa/end.csv: the file cannot be opened"));
 }
 
 int main(void)

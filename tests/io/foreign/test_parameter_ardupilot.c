@@ -11,7 +11,7 @@
 
 static imk_model model, back;
 static imk_parameter_notes notes;
-static char sentence[1000];
+static char message[1000];
 
 static imk_status read_text(const char *text, const char *sensor)
 {
@@ -20,9 +20,9 @@ static imk_status read_text(const char *text, const char *sensor)
     settings.sensor = sensor;
     const imk_status status =
         imk_parameters_parse(text, strlen(text), &settings, &model, &notes, &error);
-    sentence[0] = '\0';
+    message[0] = '\0';
     if (status != IMK_OK)
-        imk_error_text(&error, "f", sentence, sizeof sentence);
+        imk_error_text(&error, "f", message, sizeof message);
     return status;
 }
 
@@ -101,13 +101,13 @@ static void test_refusals(void **state)
     (void)state;
     static const char two[] = "INS_ACCOFFS_X,0.1\nINS_ACC2OFFS_X,0.2\nINS_GYR2OFFS_X,0.01\n";
     CHECK_STATUS(read_text(two, NULL), IMK_ERROR_KEY_MISSING);
-    assert_non_null(strstr(sentence, "add --sensor NUMBER with one of 1, 2"));
+    assert_non_null(strstr(message, "add --sensor NUMBER with one of 1, 2"));
     CHECK_OK(read_text(two, "2"));
     CHECK_CLOSE(model.accel.bias.fixed.value[0], 0.2, 0);
     CHECK_CLOSE(model.gyro.bias.fixed.value[0], 0.01, 0);
     CHECK_STATUS(read_text(two, "3"), IMK_ERROR_NAME_UNKNOWN);
     CHECK_STATUS(read_text("INS_ACCOFFS_X,abc\n", NULL), IMK_ERROR_SYNTAX);
-    assert_string_equal(sentence,
+    assert_string_equal(message,
                         "f:1:15: INS_ACCOFFS_X: \"abc\" cannot be read; expected a finite number");
     CHECK_STATUS(read_text("INS_ACCSCAL_X,0\n", NULL), IMK_ERROR_RANGE);
     CHECK_STATUS(read_text("INS_TCAL1_ACC1_X,1\nINS_TCAL1_TMIN,80\n", NULL), IMK_ERROR_RANGE);

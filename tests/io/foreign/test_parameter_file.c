@@ -19,16 +19,16 @@ static const double degree = 0.017453292519943295; /* pi/180 */
 
 static imk_model model;
 static imk_parameter_notes notes;
-static char sentence[1000];
+static char message[1000];
 
 static imk_status read_with(const imk_parameter_settings *settings, const char *text)
 {
     imk_error error = {.status = IMK_OK};
     imk_status status = imk_parameters_parse(text, strlen(text), settings, &model, &notes, &error);
     assert_int_equal(status, error.status);
-    sentence[0] = '\0';
+    message[0] = '\0';
     if (status != IMK_OK)
-        imk_error_text(&error, "f", sentence, sizeof sentence);
+        imk_error_text(&error, "f", message, sizeof message);
     return status;
 }
 
@@ -40,8 +40,8 @@ static imk_status read(const char *text)
 
 static void check_says(const char *part)
 {
-    if (!strstr(sentence, part)) {
-        print_error("said: %s\nexpected in it: %s\n", sentence, part);
+    if (!strstr(message, part)) {
+        print_error("said: %s\nexpected in it: %s\n", message, part);
         fail();
     }
 }

@@ -134,13 +134,13 @@ static void test_refusals(void **state)
     (void)state;
     fill_model();
     imk_parameter_settings settings = settings_at(0);
-    char *text = NULL, sentence[500];
+    char *text = NULL, message[500];
     size_t size;
     imk_error error;
     CHECK_STATUS(imk_parameters_print("x.yaml", &settings, &model, &text, &size, &notes, &error),
                  IMK_ERROR_KEY_MISSING);
-    imk_error_text(&error, "m", sentence, sizeof sentence);
-    check_line(sentence, "add --rate 200Hz");
+    imk_error_text(&error, "m", message, sizeof message);
+    check_line(message, "add --rate 200Hz");
     static const struct {
         const char *text, *says;
     } wrong[] = {{"imukit_filter: 1\ngyro: 3\n", "a mapping with white_noise"},
@@ -153,8 +153,8 @@ static void test_refusals(void **state)
         assert_int_not_equal(imk_parameters_parse(wrong[i].text, strlen(wrong[i].text), &settings,
                                                   &back, &notes, &error),
                              IMK_OK);
-        imk_error_text(&error, "f", sentence, sizeof sentence);
-        check_line(sentence, wrong[i].says);
+        imk_error_text(&error, "f", message, sizeof message);
+        check_line(message, wrong[i].says);
     }
 }
 

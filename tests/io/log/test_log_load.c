@@ -41,12 +41,12 @@ static void test_memory_of_the_settings(void **state)
     imk_log_settings settings = imk_log_default();
     imk_log log = {.rows = 77};
     imk_error error;
-    char sentence[300];
+    char message[300];
     settings.memory = (ROWS - 1) * COLUMNS * sizeof(double);
     CHECK_STATUS(imk_log_load(path, &settings, NULL, &log, &error), IMK_ERROR_MEMORY);
     assert_int_equal(log.rows, 77);
-    imk_error_text(&error, "x.csv.gz", sentence, sizeof sentence);
-    assert_string_equal(sentence,
+    imk_error_text(&error, "x.csv.gz", message, sizeof message);
+    assert_string_equal(message,
                         "x.csv.gz: memory is full: 99999 rows of 2 columns take 1.6 MB; cut the "
                         "log into parts, or leave out columns (--columns with -)");
     CHECK_STATUS(imk_log_load(path, &settings, NULL, &log, NULL), IMK_ERROR_MEMORY);

@@ -111,25 +111,25 @@ static table read_text(const char *text, const imk_log_settings *settings)
     imk_error error = {0};
     const imk_status status = try_text(text, strlen(text), settings, &t, &error);
     if (status != IMK_OK) {
-        char sentence[512];
-        imk_error_text(&error, NULL, sentence, sizeof sentence);
-        print_error("%s: %s\n", imk_status_name(status), sentence);
+        char message[512];
+        imk_error_text(&error, NULL, message, sizeof message);
+        print_error("%s: %s\n", imk_status_name(status), message);
         fail();
     }
     return t;
 }
 
-/* A text is refused with this status, at this line, and the sentence holds these words. */
+/* A text is refused with this status, at this line, and the message holds these words. */
 static void check_refused(const char *text, size_t size, const imk_log_settings *settings,
                           imk_status status, size_t line, const char *words)
 {
     imk_error error = {0};
-    char sentence[512];
+    char message[512];
     CHECK_STATUS(try_text(text, size, settings, NULL, &error), status);
     assert_int_equal(error.status, status);
-    imk_error_text(&error, "log.csv", sentence, sizeof sentence);
-    if (!strstr(sentence, words)) {
-        print_error("\"%s\" does not say \"%s\"\n", sentence, words);
+    imk_error_text(&error, "log.csv", message, sizeof message);
+    if (!strstr(message, words)) {
+        print_error("\"%s\" does not say \"%s\"\n", message, words);
         fail();
     }
     assert_int_equal(error.line, line);
@@ -631,8 +631,8 @@ static void random_logs_read_the_same_every_way(void **state)
     char *text = malloc(ROWS * 8 * 32);
     assert_non_null(text);
     const char *path = temporary_path("random.csv.gz");
-    const char *wish = getenv("IMUKIT_ISA");
-    char *isa = wish ? strdup(wish) : NULL; /* as the test was started with */
+    const char *requirement = getenv("IMUKIT_ISA");
+    char *isa = requirement ? strdup(requirement) : NULL; /* as the test was started with */
     for (int turn = 0; turn < 24; turn++) {
         const size_t columns = 1 + (size_t)(random_bits() % 7);
         const char separator = separators[random_bits() % 4];

@@ -43,9 +43,9 @@ static imk_model parsed(const char *text)
     imk_model model;
     imk_error error;
     if (imk_model_parse(text, strlen(text), &model, NULL, &error) != IMK_OK) {
-        char sentence[512];
-        imk_error_text(&error, NULL, sentence, sizeof sentence);
-        fail_msg("%s", sentence);
+        char message[512];
+        imk_error_text(&error, NULL, message, sizeof message);
+        fail_msg("%s", message);
     }
     return model;
 }

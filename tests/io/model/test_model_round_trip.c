@@ -27,9 +27,9 @@ static void parse(const char *text, size_t size, imk_model *model, imk_document 
 {
     imk_error error;
     if (imk_model_parse(text, size, model, document, &error) != IMK_OK) {
-        char sentence[512];
-        imk_error_text(&error, NULL, sentence, sizeof sentence);
-        fail_msg("%s in\n%s", sentence, text);
+        char message[512];
+        imk_error_text(&error, NULL, message, sizeof message);
+        fail_msg("%s in\n%s", message, text);
     }
 }
 

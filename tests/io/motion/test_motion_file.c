@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Motion files: the steps that sentences become, the sentences that are refused, and the vibration.
+/* Motion files: the steps that steps become, the steps that are refused, and the vibration.
  * Converted values are computed here from the definitions of the units: deg = pi/180 rad,
  * g = 9.80665 m/s^2. */
 #define _POSIX_C_SOURCE 200809L
@@ -26,9 +26,9 @@ static const double rounding = 1e-15;
 
 static void fail_with(const imk_error *error)
 {
-    char sentence[512];
-    imk_error_text(error, NULL, sentence, sizeof sentence);
-    fail_msg("%s", sentence);
+    char step[512];
+    imk_error_text(error, NULL, step, sizeof step);
+    fail_msg("%s", step);
 }
 
 static imk_motion_file *parsed(const char *text)
@@ -65,7 +65,7 @@ static size_t steps_of(const char *list, imk_motion_step *steps, size_t capacity
 }
 
 typedef struct step_case {
-    const char *sentence;
+    const char *step;
     imk_step_kind kind;
     int axis;
     double amount, rate, duration, frequency; /* degrees where they are angles */
@@ -109,7 +109,7 @@ static const step_case step_cases[] = {
     {"coning z 1 deg at 10 Hz for 60 s", IMK_STEP_CONING, 2, 1, 0, 60, 10, 0, false},
 };
 
-static void sentences_become_steps(void **state)
+static void texts_become_steps(void **state)
 {
     (void)state;
     for (size_t i = 0; i < COUNT(step_cases); i++) {
@@ -118,12 +118,12 @@ static void sentences_become_steps(void **state)
         char list[128];
         imk_motion_step step[4];
         const bool nothing = c->kind == IMK_STEP_HOLD && c->duration == 0.0;
-        if (strstr(c->sentence, "km/h")) /* 36 km/h is 10 m/s up to rounding */
+        if (strstr(c->step, "km/h")) /* 36 km/h is 10 m/s up to rounding */
             continue;
-        snprintf(list, sizeof list, "[hold 1 s, %s]", c->sentence);
+        snprintf(list, sizeof list, "[hold 1 s, %s]", c->step);
         const size_t count = steps_of(list, step, COUNT(step));
         if (count != (nothing ? 1 : 2))
-            fail_msg("%s: %zu steps", c->sentence, count);
+            fail_msg("%s: %zu steps", c->step, count);
         if (nothing)
             continue;
         const imk_motion_step *s = &step[1];
@@ -133,8 +133,7 @@ static void sentences_become_steps(void **state)
         /* Angles are sums of some pi: rounded to 1e-15. */
         if (s->kind != c->kind || s->axis != c->axis || s->banked != c->banked || !(wrong < 1e-14))
             fail_msg("%s: kind %d axis %d amount %.17g rate %.17g duration %.17g frequency %.17g",
-                     c->sentence, (int)s->kind, s->axis, s->amount, s->rate, s->duration,
-                     s->frequency);
+                     c->step, (int)s->kind, s->axis, s->amount, s->rate, s->duration, s->frequency);
     }
 }
 
@@ -436,7 +435,7 @@ static void random_vibration_has_the_power_of_its_density(void **state)
 
 /* Below imukit_motion: 1, so the first line is line 2. */
 static const struct {
-    const char *text, *sentence;
+    const char *text, *step;
 } refusals[] = {
     {"steps: [trun 90 deg at 10 deg/s]",
      "m.yaml:2:9: steps[0]: \"trun\" is not a step; did you mean \"turn\"?"},
@@ -639,7 +638,7 @@ static void refusals_say_what_is_due(void **state)
 {
     (void)state;
     for (size_t i = 0; i < COUNT(refusals); i++) {
-        char text[512], sentence[512];
+        char text[512], step[512];
         imk_error error;
         imk_motion_file *file = NULL;
         snprintf(text, sizeof text, "imukit_motion: 1\n%s\n", refusals[i].text);
@@ -648,8 +647,8 @@ static void refusals_say_what_is_due(void **state)
         if (status == IMK_OK)
             fail_msg("%s is taken", refusals[i].text);
         assert_int_equal(error.status, status);
-        imk_error_text(&error, "m.yaml", sentence, sizeof sentence);
-        assert_string_equal(sentence, refusals[i].sentence);
+        imk_error_text(&error, "m.yaml", step, sizeof step);
+        assert_string_equal(step, refusals[i].step);
         CHECK_STATUS(imk_motion_parse(text, strlen(text), NULL, 0, &file, NULL), status);
     }
 }
@@ -658,7 +657,7 @@ static void what_is_no_script_is_refused(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *sentence;
+        const char *text, *step;
     } cases[] = {
         {"", "m.yaml: there is no data; expected a motion, beginning with imukit_motion: 1"},
         {"- hold 1 s\n", "m.yaml:1:1: the file format is not recognised; expected a motion file: "
@@ -673,11 +672,11 @@ static void what_is_no_script_is_refused(void **state)
     for (size_t i = 0; i < COUNT(cases); i++) {
         imk_motion_file *file = NULL;
         imk_error error;
-        char sentence[512];
+        char step[512];
         assert_true(imk_motion_parse(cases[i].text, strlen(cases[i].text), NULL, 0, &file,
                                      &error) != IMK_OK);
-        imk_error_text(&error, "m.yaml", sentence, sizeof sentence);
-        assert_string_equal(sentence, cases[i].sentence);
+        imk_error_text(&error, "m.yaml", step, sizeof step);
+        assert_string_equal(step, cases[i].step);
     }
 }
 
@@ -700,7 +699,7 @@ static void script_is_read_from_a_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sentences_become_steps),
+        cmocka_unit_test(texts_become_steps),
         cmocka_unit_test(pose_has_three_angles),
         cmocka_unit_test(repeats_are_written_out),
         cmocka_unit_test(script_is_compiled),

@@ -32,22 +32,22 @@ static imk_alignment_settings settings_for(imk_alignment_method method, imk_geod
 }
 
 /* Memory for one alignment, with what lies behind it watched. */
-typedef struct bench {
+typedef struct session {
     void *memory;
     size_t size;
     imk_alignment *alignment;
-} bench;
+} session;
 
-static bench begin(const imk_alignment_settings *settings)
+static session begin(const imk_alignment_settings *settings)
 {
-    bench b = {.size = imk_alignment_size(settings)};
+    session b = {.size = imk_alignment_size(settings)};
     b.memory = malloc(b.size);
     assert_non_null(b.memory);
     CHECK_OK(imk_alignment_start(settings, &b.alignment, b.memory, b.size, NULL));
     return b;
 }
 
-static imk_alignment_result end(bench b)
+static imk_alignment_result end(session b)
 {
     imk_alignment_result result;
     CHECK_OK(imk_alignment_finish(b.alignment, &result, NULL));
@@ -75,7 +75,7 @@ static imk_alignment_result at_rest(const imk_alignment_settings *settings, imk_
     const imk_vector3 force = imk_vector3_add(imk_matrix3_apply(c_bn, gravity), force_error);
     const imk_vector3 rate =
         imk_vector3_add(imk_matrix3_apply(c_bn, imk_earth_rate(place.latitude)), rate_error);
-    const bench b = begin(settings);
+    const session b = begin(settings);
     for (size_t k = 0; k < count; k++)
         imk_alignment_add(b.alignment, dt, imk_vector3_scale(rate, dt),
                           imk_vector3_scale(force, dt), NULL);
@@ -380,7 +380,7 @@ static void normalised_errors(const imk_model *model, double latitude, uint32_t 
                 settings_for((imk_alignment_method)method, (imk_geodetic){latitude, 0.3, 0.0},
                              (double)SAMPLES / RATE);
             settings.model = model;
-            const bench b = begin(&settings);
+            const session b = begin(&settings);
             for (size_t k = 0; k < SAMPLES; k++) {
                 imk_vector3 angle, velocity;
                 for (int i = 0; i < 3; i++) {
@@ -458,7 +458,7 @@ static void test_coarse_gyros(void **state)
                 imk_alignment_settings settings =
                     settings_for((imk_alignment_method)method, place, duration);
                 settings.model = &model;
-                const bench b = begin(&settings);
+                const session b = begin(&settings);
                 static double n[6 * 600 + 3];
                 imk_random_normals(random, imk_stream(run, 1, 0, 0), 0, 6 * 600 + 3, n);
                 for (int k = 0; k < 600; k++) {
@@ -499,7 +499,7 @@ static void test_short(void **state)
         imk_alignment_settings settings =
             settings_for((imk_alignment_method)(run % 3), place, 1.0 + run % 4);
         settings.model = run % 2 ? &model : NULL;
-        const bench b = begin(&settings);
+        const session b = begin(&settings);
         double n[6];
         for (uint32_t k = 0; k < 100 * (1 + run % 4); k++) {
             imk_vector3 angle, velocity = {{0.0, 0.0, -g / 100.0}};
@@ -532,7 +532,7 @@ static void test_covariance_from_scatter(void **state)
         for (uint32_t run = 0; run < FEW; run++) {
             const imk_alignment_settings settings =
                 settings_for((imk_alignment_method)method, place, (double)SAMPLES / RATE);
-            const bench b = begin(&settings);
+            const session b = begin(&settings);
             static double n[6 * SAMPLES];
             imk_random_normals(random, imk_stream(run, 1, 0, 0), 0, 6 * SAMPLES, n);
             for (size_t k = 0; k < SAMPLES; k++) {
@@ -625,7 +625,7 @@ static imk_vector3 align_on(const exact_motion *motion, imk_alignment_method met
                             bool moving, imk_alignment_result *result)
 {
     const imk_alignment_settings settings = settings_for(method, motion->origin, seconds);
-    const bench b = begin(&settings);
+    const session b = begin(&settings);
     const double dt = 0.01;
     const int count = (int)(seconds / dt + 0.5);
     for (int k = 0; k < count; k++) {
@@ -739,7 +739,7 @@ static imk_status finish_of(imk_alignment_method method, size_t count, imk_vecto
 {
     const imk_alignment_settings settings =
         settings_for(method, (imk_geodetic){0.7, 0.0, 0.0}, 10.0);
-    const bench b = begin(&settings);
+    const session b = begin(&settings);
     imk_alignment_result result = {.yaw = 7.0};
     for (size_t k = 0; k < count; k++)
         imk_alignment_add(b.alignment, 0.01, imk_vector3_scale(rate, 0.01),
@@ -802,7 +802,7 @@ static void test_result_on_the_way(void **state)
     const imk_alignment_settings settings = settings_for(IMK_ALIGNMENT_FINE, place, 20.0);
     const imk_vector3 rate = imk_vector3_scale(imk_earth_rate(place.latitude), 0.01);
     const imk_vector3 force = {{0.0, 0.0, -0.098}};
-    const bench one = begin(&settings), two = begin(&settings);
+    const session one = begin(&settings), two = begin(&settings);
     imk_alignment_result a, b, between;
     for (int k = 0; k < 3000; k++) {
         imk_alignment_add(one.alignment, 0.01, rate, force, NULL);
@@ -875,7 +875,7 @@ static void test_parked_log(void **state)
         for (size_t first = 0; first <= 120000; first += 30000) {
             const imk_alignment_settings settings =
                 settings_for((imk_alignment_method)method, place, 300.0);
-            const bench b = begin(&settings);
+            const session b = begin(&settings);
             for (size_t k = first; k < first + 30000; k++) {
                 imk_vector3 angle, velocity;
                 parked_sample(&p, k, &angle, &velocity);

@@ -168,9 +168,9 @@ static void root_mean_squares(void **state)
     CHECK_RELATIVE(f.climb, 2, 1e-15);
     CHECK_RELATIVE(f.tilt, 0.05, 1e-15);
     CHECK_RELATIVE(f.heading, 0.3, 1e-15);
-    const double wished[] = {f.cep, f.r95, f.drms, f.height, f.velocity, f.tilt, f.heading};
-    for (int w = IMK_WISH_CEP; w <= IMK_WISH_HEADING; w++)
-        CHECK_CLOSE(imk_drift_wished(&f, (imk_drift_wish)w), wished[w], 0.0);
+    const double required[] = {f.cep, f.r95, f.drms, f.height, f.velocity, f.tilt, f.heading};
+    for (int w = IMK_REQUIRED_CEP; w <= IMK_REQUIRED_HEADING; w++)
+        CHECK_CLOSE(imk_drift_required(&f, (imk_drift_requirement)w), required[w], 0.0);
 }
 
 /* ---- runs --------------------------------------------------------------------------------------
@@ -331,13 +331,13 @@ static void circles_have_a_closed_form(void **state)
 {
     (void)state;
     example e;
-    imk_drift_requirement r;
+    imk_drift_allocation r;
     circles(&e);
     const double unit = sqrt(2 * log(2)); /* CEP of 1 m */
     static const double goal[] = {3, 5, 8.5},
                         ceiling[] = {2, 3.46410161513775459, 7.433034373659252};
     for (int i = 0; i < 3; i++) {
-        CHECK_OK(imk_drift_require(&e.analysis, 0, IMK_WISH_CEP, goal[i] * unit, &r, NULL));
+        CHECK_OK(imk_drift_require(&e.analysis, 0, IMK_REQUIRED_CEP, goal[i] * unit, &r, NULL));
         CHECK_RELATIVE(r.present, 9 * unit, 1e-10);
         CHECK_RELATIVE(r.all, goal[i] / 9, 1e-10);
         CHECK_RELATIVE(r.source[0], ceiling[i] / 8, 1e-9);
@@ -349,7 +349,7 @@ static void circles_have_a_closed_form(void **state)
         CHECK_CLOSE(r.alone[2], 0.0, 0.0);
         assert_true(goal[i] < 8.9 ? r.alone[3] == 0 : 1);
     }
-    CHECK_OK(imk_drift_require(&e.analysis, 0, IMK_WISH_CEP, 10 * unit, &r, NULL)); /* margin */
+    CHECK_OK(imk_drift_require(&e.analysis, 0, IMK_REQUIRED_CEP, 10 * unit, &r, NULL)); /* margin */
     CHECK_RELATIVE(r.all, 10.0 / 9, 1e-10);
     for (int k = 0; k < SOURCES; k++)
         CHECK_CLOSE(r.source[k], 1.0, 0.0);
@@ -364,7 +364,7 @@ static void factors_meet_the_goal(void **state)
 {
     (void)state;
     example e;
-    imk_drift_requirement r;
+    imk_drift_allocation r;
     const imk_random source = imk_random_seeded(11);
     for (uint32_t draw = 0; draw < 8; draw++) {
         memset(&e, 0, sizeof e);
@@ -380,24 +380,25 @@ static void factors_meet_the_goal(void **state)
             }
         }
         finish(&e);
-        for (int w = IMK_WISH_CEP; w <= IMK_WISH_HEADING; w++) {
-            const imk_drift_wish wish = (imk_drift_wish)w;
+        for (int w = IMK_REQUIRED_CEP; w <= IMK_REQUIRED_HEADING; w++) {
+            const imk_drift_requirement requirement = (imk_drift_requirement)w;
             imk_drift_figures f = imk_drift_figures_of(&e.total);
-            const double goal = (0.1 + 0.1 * draw) * imk_drift_wished(&f, wish);
-            CHECK_OK(imk_drift_require(&e.analysis, 0, wish, goal, &r, NULL));
+            const double goal = (0.1 + 0.1 * draw) * imk_drift_required(&f, requirement);
+            CHECK_OK(imk_drift_require(&e.analysis, 0, requirement, goal, &r, NULL));
             imk_drift_moments sum = {{0}, {{0}}};
             double ceiling = 0;
             for (int k = 0; k < SOURCES; k++) {
                 add(&sum, &e.contribution[k], r.source[k]);
                 f = imk_drift_figures_of(&e.contribution[k]);
-                ceiling = fmax(ceiling, r.source[k] * imk_drift_wished(&f, wish));
+                ceiling = fmax(ceiling, r.source[k] * imk_drift_required(&f, requirement));
             }
             f = imk_drift_figures_of(&sum);
-            CHECK_RELATIVE(imk_drift_wished(&f, wish), goal, 1e-9);
+            CHECK_RELATIVE(imk_drift_required(&f, requirement), goal, 1e-9);
             for (int k = 0; k < SOURCES; k++) {
                 f = imk_drift_figures_of(&e.contribution[k]);
                 if (r.source[k] < 1)
-                    CHECK_RELATIVE(r.source[k] * imk_drift_wished(&f, wish), ceiling, 1e-8);
+                    CHECK_RELATIVE(r.source[k] * imk_drift_required(&f, requirement), ceiling,
+                                   1e-8);
                 if (!(r.alone[k] > 0))
                     continue;
                 sum = e.total;
@@ -407,7 +408,7 @@ static void factors_meet_the_goal(void **state)
                         sum.covariance[i][j] -= 2 * e.contribution[k].covariance[i][j];
                 add(&sum, &e.contribution[k], r.alone[k]);
                 f = imk_drift_figures_of(&sum);
-                CHECK_RELATIVE(imk_drift_wished(&f, wish), goal, 1e-8);
+                CHECK_RELATIVE(imk_drift_required(&f, requirement), goal, 1e-8);
             }
         }
     }
@@ -417,20 +418,22 @@ static void wrong_questions_are_refused(void **state)
 {
     (void)state;
     example e;
-    imk_drift_requirement r = {.present = -1};
+    imk_drift_allocation r = {.present = -1};
     imk_error error;
     circles(&e);
-    CHECK_STATUS(imk_drift_require(&e.analysis, 1, IMK_WISH_CEP, 1, &r, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_drift_require(&e.analysis, 1, IMK_REQUIRED_CEP, 1, &r, &error),
+                 IMK_ERROR_RANGE);
     assert_string_equal(error.field, "time");
-    CHECK_STATUS(imk_drift_require(&e.analysis, 0, IMK_WISH_CEP, 0, &r, &error), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_drift_require(&e.analysis, 0, IMK_REQUIRED_CEP, 0, &r, &error),
+                 IMK_ERROR_RANGE);
     assert_string_equal(error.field, "goal");
-    CHECK_STATUS(imk_drift_require(&e.analysis, 0, IMK_WISH_CEP, (double)NAN, &r, &error),
+    CHECK_STATUS(imk_drift_require(&e.analysis, 0, IMK_REQUIRED_CEP, (double)NAN, &r, &error),
                  IMK_ERROR_RANGE);
-    CHECK_STATUS(imk_drift_require(&e.analysis, 0, (imk_drift_wish)7, 1, &r, &error),
+    CHECK_STATUS(imk_drift_require(&e.analysis, 0, (imk_drift_requirement)7, 1, &r, &error),
                  IMK_ERROR_RANGE);
-    assert_string_equal(error.field, "wish");
+    assert_string_equal(error.field, "requirement");
     e.total.mean[0] = (double)NAN;
-    CHECK_STATUS(imk_drift_require(&e.analysis, 0, IMK_WISH_CEP, 1, &r, NULL), IMK_ERROR_RANGE);
+    CHECK_STATUS(imk_drift_require(&e.analysis, 0, IMK_REQUIRED_CEP, 1, &r, NULL), IMK_ERROR_RANGE);
     CHECK_CLOSE(r.present, -1.0, 0.0); /* untouched */
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Perfect sensors on a trajectory lead the mechanisation to where the trajectory ends: motion and
- * navigation judge each other, having nothing in common but gravity. */
+ * navigation assess each other, having nothing in common but gravity. */
 #include "car_profile.h"
 #include "check.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Why nothing came out: what was found in the log, what is needed, what to do. A doubt about the
- * log, where there is one that explains it, says more than the procedure that stumbled. */
+/* Why nothing came out: what was found in the log, what is needed, what to do. A diagnostic about
+ * the log, where there is one that explains it, says more than the procedure that stumbled. */
 #include "calibrate_show_internal.h"
 
 #include <math.h>
@@ -207,8 +207,7 @@ static size_t undetermined(const message *to, const imk_calibrate_log *b, const 
                    imki_sensor_keys[parameter.sensor]);
     const imk_calibrate_record *log = b->count == 1 ? b->record : NULL;
     if (log && log->procedure == IMK_PROCEDURE_MULTIPOSITION)
-        imki_calibrate_poses(b, log, "; of further poses most would tell ", poses,
-                             sizeof poses);
+        imki_calibrate_poses(b, log, "; of further poses most would tell ", poses, sizeof poses);
     return say(to, "the logs do not determine %s: %s%s", error->field, remedy_for(&parameter),
                poses);
 }

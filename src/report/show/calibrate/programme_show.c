@@ -85,14 +85,14 @@ static void show_steps(const imk_calibrate_plan *p, imk_result *result)
     imk_result_gap(result);
 }
 
-static void show_wishes(const imk_calibrate_plan *p, imk_result *result)
+static void show_requirements(const imk_calibrate_plan *p, imk_result *result)
 {
     imk_table *table = imk_result_table(result, 0);
-    if (p->settings.wish_count == 0)
+    if (p->settings.requirement_count == 0)
         return;
-    imk_table_row(table, "wanted (1 sigma)\tunit\twish\texpected\t");
-    for (const imk_plan_wish *w = p->settings.wish; w < p->settings.wish + p->settings.wish_count;
-         w++) {
+    imk_table_row(table, "wanted (1 sigma)\tunit\trequirement\texpected\t");
+    for (const imk_sigma_requirement *w = p->settings.requirement;
+         w < p->settings.requirement + p->settings.requirement_count; w++) {
         char name[IMK_MODEL_PARAMETER_NAME];
         const imk_unit unit = imk_unit_of(imk_parameter_file_unit(w->parameter));
         if (imk_model_parameter_name(w->parameter, name) != IMK_OK)
@@ -131,8 +131,8 @@ static void show_data(const imk_calibrate_plan *p, const char *model, imk_result
     }
     imk_result_end(result);
     imk_result_array(result, "wishes");
-    for (const imk_plan_wish *w = p->settings.wish; w < p->settings.wish + p->settings.wish_count;
-         w++) {
+    for (const imk_sigma_requirement *w = p->settings.requirement;
+         w < p->settings.requirement + p->settings.requirement_count; w++) {
         char name[IMK_MODEL_PARAMETER_NAME] = "";
         (void)imk_model_parameter_name(w->parameter, name);
         imk_result_object(result, NULL);
@@ -154,7 +154,7 @@ void imk_show_calibrate_plan(const imk_calibrate_plan *p, const char *model, imk
     char length[60];
     show_data(p, model, result);
     show_steps(p, result);
-    show_wishes(p, result);
+    show_requirements(p, result);
     imk_readable_duration(p->duration, length, sizeof length);
     imk_result_line(result, "%zu steps, %s.", p->result.step_count, length);
     if (p->settings.procedure == IMK_PROCEDURE_THERMAL)

@@ -47,26 +47,28 @@ static void begin_panel(const drawing *d, const char *title, const char *y_label
 
 /* ---- growth ---- */
 
-static void add_line(const drawing *d, const imk_drift_case *one, imk_drift_wish wish,
+static void add_line(const drawing *d, const imk_drift_case *one, imk_drift_requirement requirement,
                      const char *label, int color)
 {
     imki_begin_curve(d->figure, label, IMK_CURVE_LINE, color);
     for (size_t t = 0; t < d->count; t++) {
         const imk_drift_figures *f = &one->figures[t];
         imk_figure_point(d->figure, d->time[t],
-                         is_drawn(f) ? imk_drift_wished(f, wish) / d->length : (double)NAN);
+                         is_drawn(f) ? imk_drift_required(f, requirement) / d->length
+                                     : (double)NAN);
     }
 }
 
 /* Points with their intervals; too few runs have no upper limit. */
-static void add_runs(const drawing *d, imk_drift_wish wish, const char *label, int color)
+static void add_runs(const drawing *d, imk_drift_requirement requirement, const char *label,
+                     int color)
 {
     const imk_drift_models *r = d->of;
     imki_begin_curve(d->figure, label, IMK_CURVE_POINTS, color);
     for (size_t k = 0; k < r->times->row_count; k++) {
-        const double found = imk_drift_wished(&r->found[k], wish) / d->length,
-                     low = imk_drift_wished(&r->low[k], wish) / d->length,
-                     high = imk_drift_wished(&r->high[k], wish) / d->length;
+        const double found = imk_drift_required(&r->found[k], requirement) / d->length,
+                     low = imk_drift_required(&r->low[k], requirement) / d->length,
+                     high = imk_drift_required(&r->high[k], requirement) / d->length;
         imk_figure_bar(d->figure, d->time[r->times->row[k]], found, low,
                        isfinite(high) ? high : found);
     }
@@ -79,14 +81,14 @@ static void show_growth(const drawing *d)
     begin_panel(d, r->case_count > 1 ? "CEP: half of all outcomes are within" : "Horizontal error",
                 d->length > 1 ? "radius [km]" : "radius [m]", IMK_KEY_LOWER, true);
     for (size_t c = 0; c < r->case_count && r->case_count > 1; c++)
-        add_line(d, &r->cases[c], IMK_WISH_CEP, r->cases[c].label, (int)c);
+        add_line(d, &r->cases[c], IMK_REQUIRED_CEP, r->cases[c].label, (int)c);
     if (r->case_count == 1) {
-        add_line(d, &r->cases[0], IMK_WISH_CEP, "CEP: half are within", 0);
-        add_line(d, &r->cases[0], IMK_WISH_R95, "R95: 95 % are within", 1);
+        add_line(d, &r->cases[0], IMK_REQUIRED_CEP, "CEP: half are within", 0);
+        add_line(d, &r->cases[0], IMK_REQUIRED_R95, "R95: 95 % are within", 1);
     }
     if (r->found) {
-        add_runs(d, IMK_WISH_CEP, "CEP of the runs", 2);
-        add_runs(d, IMK_WISH_R95, "R95 of the runs", 4);
+        add_runs(d, IMK_REQUIRED_CEP, "CEP of the runs", 2);
+        add_runs(d, IMK_REQUIRED_R95, "R95 of the runs", 4);
     }
 }
 

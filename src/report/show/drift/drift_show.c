@@ -139,7 +139,7 @@ static void show_data(const imk_drift_models *r, const imk_drift_shown *shown, i
     imk_result_end(result);
 }
 
-/* ---- sentences ---- */
+/* ---- messages ---- */
 
 /* "At rest at 45 deg north; attitude true at the start, height held by other means." */
 static void conditions_of(const imk_drift_models *r, const char *motion, imki_text *text)

@@ -12,10 +12,10 @@ void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
     const imk_drift_answer *answer = r->answer;
     const imk_drift_wanted *want = &r->settings.want;
     const imk_drift_analysis *a = imki_drift_last_case(r)->analysis;
-    const imk_drift_requirement *need = &answer->requirement;
-    const char *unit = imk_drift_wish_unit(want->figure);
+    const imk_drift_allocation *need = &answer->allocation;
+    const char *unit = imk_drift_requirement_unit(want->figure);
     imk_result_object(result, "want");
-    imk_result_text(result, "figure", imk_drift_wish_name(want->figure));
+    imk_result_text(result, "figure", imk_drift_requirement_name(want->figure));
     imk_result_quantity(result, "goal", want->goal, unit);
     imk_result_quantity(result, "time", want->time, "s");
     imk_result_quantity(result, "present", need->present, unit);
@@ -37,7 +37,7 @@ void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
         imk_result_object(result, NULL);
         imk_result_text(result, "name", c->device->name);
         imk_result_flag(result, "preset", c->device->is_preset);
-        imk_result_quantity(result, "figure", imk_drift_wished(&c->figures, want->figure), unit);
+        imk_result_quantity(result, "figure", imk_drift_required(&c->figures, want->figure), unit);
         imk_result_flag(result, "meets", imki_drift_would_do(r, c, c->device->is_preset));
         imk_result_flag(result, "bias_stated", !c->no_bias);
         imk_result_end(result);
@@ -53,9 +53,9 @@ static void add_initial(const imk_drift_settings *s, const char *source, double 
                         imki_text *text)
 {
     const int group = strstr(source, "position") ? 0 : strstr(source, "velocity") ? 3 : 6;
-    const imk_drift_wish kind = group == 0   ? IMK_WISH_CEP
-                                : group == 3 ? IMK_WISH_VELOCITY
-                                             : IMK_WISH_HEADING;
+    const imk_drift_requirement kind = group == 0   ? IMK_REQUIRED_CEP
+                                       : group == 3 ? IMK_REQUIRED_VELOCITY
+                                                    : IMK_REQUIRED_HEADING;
     double largest = 0;
     char number[IMK_READABLE_SIZE];
     for (int i = group; i < group + 3; i++)
@@ -92,7 +92,7 @@ static void show_terms(const imk_drift_models *r, const imk_result *model, imk_r
 {
     const imk_drift_case *one = imki_drift_last_case(r);
     const imk_drift_answer *answer = r->answer;
-    const imk_drift_requirement *need = &answer->requirement;
+    const imk_drift_allocation *need = &answer->allocation;
     if (answer->order_count == 0)
         return;
     imk_result_gap(result);
@@ -141,7 +141,7 @@ static void show_devices(const imk_drift_models *r, const imk_drift_answer *answ
             imk_result_for(result, IMK_FOR_BOTH);
             table = imk_result_table(result, 2);
         }
-        const double figure = imk_drift_wished(&c->figures, r->settings.want.figure);
+        const double figure = imk_drift_required(&c->figures, r->settings.want.figure);
         imk_table_row(table, "%s%s\t%s\t%s", c->device->name, c->no_bias ? " *" : "",
                       imk_readable_quantity(figure, &r->settings.want.unit, text),
                       presets ? "grade preset" : c->device->grade);
@@ -176,11 +176,12 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
 {
     const imk_drift_answer *answer = r->answer;
     const imk_drift_wanted *want = &r->settings.want;
-    const imk_drift_requirement *need = &answer->requirement;
+    const imk_drift_allocation *need = &answer->allocation;
     const bool met = need->present <= want->goal;
     char title[160], factor[80] = "nothing makes it.";
     char now[IMK_READABLE_SIZE], goal[IMK_READABLE_SIZE], time[IMKI_DRIFT_TIME];
-    snprintf(title, sizeof title, "Wanted: %s %s after %s", imk_drift_wish_name(want->figure),
+    snprintf(title, sizeof title, "Wanted: %s %s after %s",
+             imk_drift_requirement_name(want->figure),
              imk_readable_quantity(want->goal, &want->unit, goal),
              imki_drift_time(want->time, IMK_DRIFT_LINEAR, time));
     if (!met)

@@ -26,10 +26,12 @@ static void begin_row(imk_table *table, double time, imk_drift_validity validity
     imk_table_row(table, "%s", imki_drift_time(time, validity, text));
 }
 
-static void add_figure(imk_table *table, const imk_drift_figures *f, imk_drift_wish wish)
+static void add_figure(imk_table *table, const imk_drift_figures *f,
+                       imk_drift_requirement requirement)
 {
     char text[IMK_READABLE_SIZE];
-    imk_table_add(table, "%s", imk_readable_figure(wish, imk_drift_wished(f, wish), text));
+    imk_table_add(table, "%s",
+                  imk_readable_figure(requirement, imk_drift_required(f, requirement), text));
 }
 
 static imk_table *begin_table(imk_result *result, unsigned right)
@@ -68,25 +70,25 @@ static void show_one(const imk_drift_models *r, const imk_drift_case *one, imk_r
             imk_table_add(table, "no position");
             continue;
         }
-        add_figure(table, f, IMK_WISH_CEP);
+        add_figure(table, f, IMK_REQUIRED_CEP);
         add_miles(table, f->cep);
-        add_figure(table, f, IMK_WISH_R95);
-        add_figure(table, f, IMK_WISH_DRMS);
+        add_figure(table, f, IMK_REQUIRED_R95);
+        add_figure(table, f, IMK_REQUIRED_DRMS);
         if (is_free)
-            add_figure(table, f, IMK_WISH_HEIGHT);
-        add_figure(table, f, IMK_WISH_VELOCITY);
+            add_figure(table, f, IMK_REQUIRED_HEIGHT);
+        add_figure(table, f, IMK_REQUIRED_VELOCITY);
         if (is_free)
-            imk_table_add(table, "%s", imk_readable_figure(IMK_WISH_VELOCITY, f->climb, text));
-        add_figure(table, f, IMK_WISH_TILT);
-        add_figure(table, f, IMK_WISH_HEADING);
+            imk_table_add(table, "%s", imk_readable_figure(IMK_REQUIRED_VELOCITY, f->climb, text));
+        add_figure(table, f, IMK_REQUIRED_TILT);
+        add_figure(table, f, IMK_REQUIRED_HEADING);
     }
 }
 
 /* Before and after calibration, side by side: the two cases of one model. */
 static void show_both(const imk_drift_models *r, imk_result *result)
 {
-    static const imk_drift_wish shown[] = {IMK_WISH_CEP, IMK_WISH_R95, IMK_WISH_VELOCITY,
-                                           IMK_WISH_HEADING};
+    static const imk_drift_requirement shown[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_R95,
+                                                  IMK_REQUIRED_VELOCITY, IMK_REQUIRED_HEADING};
     imk_table *table = begin_table(result, 0x1FEU);
     imk_table_row(table, "time\tCEP before\tafter\tR95 before\tafter\tvelocity before\tafter\t"
                          "heading before\tafter");
@@ -119,7 +121,7 @@ static void show_several(const imk_drift_models *r, imk_result *result)
             imk_table_add(table, "%s%s",
                           validity == IMK_DRIFT_LOST
                               ? "no position"
-                              : imk_readable_figure(IMK_WISH_CEP, f->cep, length),
+                              : imk_readable_figure(IMK_REQUIRED_CEP, f->cep, length),
                           validity == IMK_DRIFT_ROUGH ? " ~" : "");
         }
     }
@@ -139,13 +141,14 @@ void imki_drift_show_growth(const imk_drift_models *r, imk_result *result)
 
 static void show_shares(const imk_drift_models *r, const imk_drift_case *one, imk_result *result)
 {
-    const imk_drift_wish wish = imki_drift_looked_at(r);
-    const imk_drift_wish other = wish == IMK_WISH_HEADING ? IMK_WISH_CEP : IMK_WISH_HEADING;
+    const imk_drift_requirement requirement = imki_drift_looked_at(r);
+    const imk_drift_requirement other =
+        requirement == IMK_REQUIRED_HEADING ? IMK_REQUIRED_CEP : IMK_REQUIRED_HEADING;
     double rest = 0;
     size_t rest_count = 0;
     imk_table *table = begin_table(result, 0xEU);
-    imk_table_row(table, "term\tshare\t%s alone\t%s alone", imk_drift_wish_name(wish),
-                  imk_drift_wish_name(other));
+    imk_table_row(table, "term\tshare\t%s alone\t%s alone", imk_drift_requirement_name(requirement),
+                  imk_drift_requirement_name(other));
     for (size_t i = 0; i < one->share_count; i++) {
         const imk_drift_share *s = &one->share[i];
         if (s->share < least_share) {
@@ -154,7 +157,7 @@ static void show_shares(const imk_drift_models *r, const imk_drift_case *one, im
             continue;
         }
         imk_table_row(table, "%s\t%.1f %%", one->analysis->source[s->source].text, 100 * s->share);
-        add_figure(table, &s->random, wish);
+        add_figure(table, &s->random, requirement);
         add_figure(table, &s->random, other);
     }
     if (rest_count > 0)
@@ -193,9 +196,9 @@ static void show_shifts(const imk_drift_case *one, imk_result *result)
         if (!m || (total && imk_table_rows(table) < 3))
             continue;
         imk_table_row(table, "%s\t%s\t%s\t%s", total ? "together" : a->source[k].text,
-                      imk_readable_figure(IMK_WISH_CEP, m->mean[0], north),
-                      imk_readable_figure(IMK_WISH_CEP, m->mean[1], east),
-                      imk_readable_figure(IMK_WISH_HEADING, m->mean[8], heading));
+                      imk_readable_figure(IMK_REQUIRED_CEP, m->mean[0], north),
+                      imk_readable_figure(IMK_REQUIRED_CEP, m->mean[1], east),
+                      imk_readable_figure(IMK_REQUIRED_HEADING, m->mean[8], heading));
     }
 }
 
@@ -231,11 +234,11 @@ void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one
 /* ---- runs ---- */
 
 /* "12.3 m (11.9 to 12.8)" */
-static void add_interval(imk_table *table, imk_drift_wish wish, double value, double low,
-                         double high)
+static void add_interval(imk_table *table, imk_drift_requirement requirement, double value,
+                         double low, double high)
 {
     char a[IMK_READABLE_SIZE], b[IMK_READABLE_SIZE], c[IMK_READABLE_SIZE];
-    const imk_unit unit = imk_readable_figure_unit(wish, value);
+    const imk_unit unit = imk_readable_figure_unit(requirement, value);
     imk_table_add(table, "%s (%s to %s)", imk_readable_quantity(value, &unit, a),
                   imk_readable_number(low / unit.scale, b),
                   isinf(high) ? "?" : imk_readable_number(high / unit.scale, c));
@@ -243,23 +246,24 @@ static void add_interval(imk_table *table, imk_drift_wish wish, double value, do
 
 void imki_drift_show_runs(const imk_drift_models *r, imk_result *result)
 {
-    static const imk_drift_wish shown[] = {IMK_WISH_CEP, IMK_WISH_R95, IMK_WISH_VELOCITY,
-                                           IMK_WISH_HEADING};
+    static const imk_drift_requirement shown[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_R95,
+                                                  IMK_REQUIRED_VELOCITY, IMK_REQUIRED_HEADING};
     imk_table *table = begin_table(result, 0);
     imk_table_row(table, "time\truns\tCEP\tR95\tvelocity\theading");
     for (size_t k = 0; k < r->times->row_count; k++) {
         begin_row(table, imki_drift_row_time(r, k), IMK_DRIFT_LINEAR);
         imk_table_add(table, "%zu", r->used[k]);
         for (size_t c = 0; c < sizeof shown / sizeof shown[0]; c++)
-            add_interval(table, shown[c], imk_drift_wished(&r->found[k], shown[c]),
-                         imk_drift_wished(&r->low[k], shown[c]),
-                         imk_drift_wished(&r->high[k], shown[c]));
+            add_interval(table, shown[c], imk_drift_required(&r->found[k], shown[c]),
+                         imk_drift_required(&r->low[k], shown[c]),
+                         imk_drift_required(&r->high[k], shown[c]));
     }
 }
 
 void imki_drift_show_ratios(const imk_drift_models *r, imk_result *result)
 {
-    static const imk_drift_wish shown[] = {IMK_WISH_CEP, IMK_WISH_VELOCITY, IMK_WISH_HEADING};
+    static const imk_drift_requirement shown[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_VELOCITY,
+                                                  IMK_REQUIRED_HEADING};
     imk_table *table = begin_table(result, 0xEU);
     imk_table_row(table, "runs / covariance\tCEP\tvelocity\theading");
     for (size_t k = 0; k < r->times->row_count; k++) {
@@ -267,8 +271,8 @@ void imki_drift_show_ratios(const imk_drift_models *r, imk_result *result)
         const imk_drift_figures *f = &imki_drift_last_case(r)->figures[t];
         begin_row(table, r->times->time[t], imk_drift_validity_of(f));
         for (size_t c = 0; c < 3; c++) {
-            const double linear = imk_drift_wished(f, shown[c]),
-                         ratio = imk_drift_wished(&r->found[k], shown[c]) / linear;
+            const double linear = imk_drift_required(f, shown[c]),
+                         ratio = imk_drift_required(&r->found[k], shown[c]) / linear;
             if (linear > 0 && isfinite(ratio))
                 imk_table_add(table, "%.3f", ratio);
             else

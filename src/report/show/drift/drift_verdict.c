@@ -72,18 +72,19 @@ static void warn_of_range(const imk_drift_models *r, const imk_drift_case *one, 
 }
 
 /* First row where an interval of the runs leaves the linear figure out; -1: none. */
-static int disagreement(const imk_drift_models *r, imk_drift_wish *wish)
+static int disagreement(const imk_drift_models *r, imk_drift_requirement *requirement)
 {
-    static const imk_drift_wish looked_at[] = {IMK_WISH_CEP, IMK_WISH_DRMS, IMK_WISH_VELOCITY,
-                                               IMK_WISH_TILT, IMK_WISH_HEADING};
+    static const imk_drift_requirement looked_at[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_DRMS,
+                                                      IMK_REQUIRED_VELOCITY, IMK_REQUIRED_TILT,
+                                                      IMK_REQUIRED_HEADING};
     for (size_t k = 0; k < r->times->row_count; k++) {
         const imk_drift_figures *f = &imki_drift_last_case(r)->figures[r->times->row[k]];
         for (size_t c = 0; c < sizeof looked_at / sizeof looked_at[0]; c++) {
-            *wish = looked_at[c];
-            const double linear = imk_drift_wished(f, *wish),
-                         found = imk_drift_wished(&r->found[k], *wish);
-            const double low = imk_drift_wished(&r->low[k], *wish),
-                         high = imk_drift_wished(&r->high[k], *wish);
+            *requirement = looked_at[c];
+            const double linear = imk_drift_required(f, *requirement),
+                         found = imk_drift_required(&r->found[k], *requirement);
+            const double low = imk_drift_required(&r->low[k], *requirement),
+                         high = imk_drift_required(&r->high[k], *requirement);
             if (found * pow(low / found, widening) > (1 + tolerance) * linear ||
                 found * pow(high / found, widening) < (1 - tolerance) * linear)
                 return (int)k;
@@ -94,7 +95,7 @@ static int disagreement(const imk_drift_models *r, imk_drift_wish *wish)
 
 static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
 {
-    imk_drift_wish wish;
+    imk_drift_requirement requirement;
     char text[IMKI_DRIFT_TIME];
     const size_t last = r->times->row_count - 1;
     if (r->used[last] < r->run_count)
@@ -102,14 +103,14 @@ static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
              "%llu of %llu runs left the Earth or found no attitude; the figures are of "
              "the others",
              (unsigned long long)(r->run_count - r->used[last]), (unsigned long long)r->run_count);
-    const int row = disagreement(r, &wish);
+    const int row = disagreement(r, &requirement);
     if (row < 0)
         return;
     warn(v, "disagreement",
          "from %s on the runs differ from the covariance by more than %g %% (%s): the "
          "runs are right, the linear theory leaves something out",
          imki_drift_time(imki_drift_row_time(r, row), IMK_DRIFT_LINEAR, text), 100 * tolerance,
-         imk_drift_wish_name(wish));
+         imk_drift_requirement_name(requirement));
 }
 
 imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A grade as a result: classes, errors of position and what limits them, in figures, sentences and
+/* A grade as a result: classes, errors of position and what limits them, in figures, messages and
  * tables. */
 #include "grade_show_internal.h"
 
@@ -26,7 +26,7 @@ static const char *grade_length(double metres, char text[IMK_READABLE_SIZE])
     const imk_unit mile = imk_unit_of("nmi");
     if (isfinite(metres) && metres >= 0.1 * mile.scale)
         return imk_readable_quantity(metres, &mile, text);
-    return imk_readable_figure(IMK_WISH_CEP, metres, text);
+    return imk_readable_figure(IMK_REQUIRED_CEP, metres, text);
 }
 
 static const char *name_or(bool known, imk_grade grade, const char *otherwise)
@@ -109,7 +109,7 @@ static void show_data(const imk_graded *one, const char *name, imk_result *resul
     imk_result_end(result);
 }
 
-/* ---- sentences ---- */
+/* ---- messages ---- */
 
 static void show_bias(const imk_graded *one, bool gyro, imk_result *result)
 {
@@ -293,8 +293,8 @@ static void show_ways(const imk_graded *one, imk_result *result)
         for (size_t t = 0; t < IMK_GRADE_TIMES; t++)
             add_cep(table, p, t, " ~");
         if (p->validity[IMK_GRADE_HOUR] != IMK_DRIFT_LOST) {
-            imk_readable_figure(IMK_WISH_HEADING, p->figures[IMK_GRADE_HOUR].tilt, tilt);
-            imk_readable_figure(IMK_WISH_HEADING, p->figures[IMK_GRADE_HOUR].heading, heading);
+            imk_readable_figure(IMK_REQUIRED_HEADING, p->figures[IMK_GRADE_HOUR].tilt, tilt);
+            imk_readable_figure(IMK_REQUIRED_HEADING, p->figures[IMK_GRADE_HOUR].heading, heading);
         }
         imk_table_add(table, "%s\t%s\t%s", tilt, heading,
                       name_or(p->grade != IMK_GRADE_NONE, p->grade, "none claims it"));

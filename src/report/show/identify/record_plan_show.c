@@ -40,7 +40,7 @@ static void show_requirements(const imk_record_plan *p, imk_result *result)
     imk_result_gap(result);
 }
 
-/* "3.0 %", with the chance of being found where that is in doubt. */
+/* "3.0 %", with the chance of being found where that is in diagnostic. */
 static void show_cell(imk_table *table, const imk_plan_record *record, size_t parameter, bool time)
 {
     const double relative = record->relative[parameter], found = record->detection[parameter];

@@ -236,11 +236,11 @@ static const struct concern {
      "the readings follow the temperature; kept"},
     {0, find_steps, 0, IMK_FINDING_WARNING, "steps",
      "the level jumps: the sensor was touched, or its range or filter was changed; the slow terms "
-     "take it for noise",
+     "include the jump as noise",
      NULL},
     {0, find_missing, 0, IMK_FINDING_NOTE, "missing",
-     "samples that are not there; the estimate is that of what is there, and its intervals are as "
-     "wide as that makes them",
+     "samples are missing; the estimate uses those that are there, and its intervals allow for "
+     "the gaps",
      NULL},
     {IMK_VERDICT_SHORT, find_short, 0, IMK_FINDING_WARNING, "short",
      "the record is too short for the slowest terms: they are bounded, not measured; log for "
@@ -364,9 +364,9 @@ static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
     }
     imki_verdict_list(
         v, IMK_FINDING_NOTE, "five_terms",
-        "white noise, bias instability, random walk, ramp and quantization alone hold "
-        "only from some averaging time on; below it what is named shapes the log, "
-        "and is in the model: ",
+        "white noise, bias instability, random walk, ramp and quantization alone explain the log "
+        "only from some averaging time on. At shorter times other terms, which the model has too, "
+        "shape it: ",
         &list, ".");
 }
 

@@ -3,8 +3,8 @@
  * white noise, bias instability and quantization, on a plate that the unit is put on by hand: at
  * any heading, tilted by a placement error, on the turning Earth. Used by the tests (some hundred
  * benches) and by experiments/coverage_six_position.c (thousands). */
-#ifndef IMUKIT_TEST_SIX_POSITION_BENCH_H
-#define IMUKIT_TEST_SIX_POSITION_BENCH_H
+#ifndef IMUKIT_TEST_SIX_POSITION_SESSION_H
+#define IMUKIT_TEST_SIX_POSITION_SESSION_H
 
 #include "coverage.h"
 
@@ -25,14 +25,14 @@ enum {
     BENCH_SAMPLES_MAX = 40000
 };
 
-typedef struct bench_plan {
+typedef struct session_plan {
     int rounds;        /* through the six faces */
     double hold, turn; /* [s]; turn 0: sixposition, else ferraris, turns of so long */
     double placement;  /* of each hold and turn [rad] */
     double bad_share;  /* of the holds, disturbed: leaning by some degrees, or touched */
-} bench_plan;
+} session_plan;
 
-typedef struct bench {
+typedef struct session {
     double motion[6][BENCH_SAMPLES_MAX], reading[6][BENCH_SAMPLES_MAX];
     double steady[6][BENCH_SAMPLES_MAX]; /* the same without instability */
     int section[BENCH_SAMPLES_MAX];
@@ -47,13 +47,13 @@ typedef struct bench {
     void *simulator, *workspace;
     size_t simulator_size, workspace_size;
     double normal[BENCH_STRETCHES * 8];
-} bench;
+} session;
 
-static const char *const bench_labels[] = {"x up",   "x down", "y up",  "y down", "z up",
-                                           "z down", "x rot",  "y rot", "z rot"};
+static const char *const session_labels[] = {"x up",   "x down", "y up",  "y down", "z up",
+                                             "z down", "x rot",  "y rot", "z rot"};
 
 /* A consumer part: 16 bits over +-2 g and +-250 deg/s. */
-static inline imk_model bench_truth(void)
+static inline imk_model session_truth(void)
 {
     static const double bias[2][3] = {{0.02, -0.03, 0.01}, {0.3, -0.2, 0.25}};
     static const double scale[2][3] = {{0.01, -0.02, 0.015}, {0.006, -0.004, 0.008}};
@@ -78,21 +78,21 @@ static inline imk_model bench_truth(void)
     return model;
 }
 
-static inline bench *bench_new(void)
+static inline session *session_new(void)
 {
-    bench *b = calloc(1, sizeof *b);
-    b->unit = b->truth = bench_truth();
+    session *b = calloc(1, sizeof *b);
+    b->unit = b->truth = session_truth();
     return b;
 }
 
-static inline void bench_free(bench *b)
+static inline void session_free(session *b)
 {
     free(b->simulator);
     free(b->workspace);
     free(b);
 }
 
-static inline void bench_rotate(const double d[3], double v[3])
+static inline void session_rotate(const double d[3], double v[3])
 {
     const imk_vector3 rotation = {{d[0], d[1], d[2]}}, vector = {{v[0], v[1], v[2]}};
     const imk_vector3 out =
@@ -101,8 +101,8 @@ static inline void bench_rotate(const double d[3], double v[3])
 }
 
 /* Samples with axis a up (sense 1) or down; `turned` about it meanwhile. */
-static inline void bench_add(bench *b, size_t n, int section, int a, int sense, double turned,
-                             const double tilt[3], double heading, const double push[3])
+static inline void session_add(session *b, size_t n, int section, int a, int sense, double turned,
+                               const double tilt[3], double heading, const double push[3])
 {
     const double level = BENCH_EARTH_RATE * cos(BENCH_LATITUDE),
                  vertical = BENCH_EARTH_RATE * sin(BENCH_LATITUDE);
@@ -115,8 +115,8 @@ static inline void bench_add(bench *b, size_t n, int section, int a, int sense, 
         rate[(a + 1) % 3] = level * cos(heading - angle);
         rate[(a + 2) % 3] = level * sin(heading - angle);
         force[a] = sense * BENCH_GRAVITY;
-        bench_rotate(tilt, rate);
-        bench_rotate(tilt, force);
+        session_rotate(tilt, rate);
+        session_rotate(tilt, force);
         for (int i = 0; i < 3; i++) {
             b->motion[i][b->count] = rate[i];
             b->motion[3 + i][b->count] = force[i] + push[i];
@@ -125,7 +125,7 @@ static inline void bench_add(bench *b, size_t n, int section, int a, int sense, 
     }
 }
 
-static inline void bench_plan_motion(bench *b, const bench_plan *plan)
+static inline void session_plan_motion(session *b, const session_plan *plan)
 {
     static const double none[3] = {0.0};
     const size_t hold = (size_t)(plan->hold * BENCH_RATE), turn = (size_t)(plan->turn * BENCH_RATE);
@@ -145,21 +145,22 @@ static inline void bench_plan_motion(bench *b, const bench_plan *plan)
         else if (is_bad)
             push[a] = 0.3;
         z += 8;
-        bench_add(b, hold, face, a, sense, 0.0, tilt, heading, push);
+        session_add(b, hold, face, a, sense, 0.0, tilt, heading, push);
         if (turn > 0 && sense > 0) {
             for (int i = 0; i < 3; i++)
                 tilt[i] = i == a ? 0.0 : plan->placement * z[i];
-            bench_add(b, BENCH_MOVE, -1, a, sense, 0.0, tilt, heading, none);
-            bench_add(b, turn, 6 + a, a, sense, BENCH_TURN + plan->placement * z[a], tilt, heading,
-                      none);
+            session_add(b, BENCH_MOVE, -1, a, sense, 0.0, tilt, heading, none);
+            session_add(b, turn, 6 + a, a, sense, BENCH_TURN + plan->placement * z[a], tilt,
+                        heading, none);
             z += 8;
         }
-        bench_add(b, BENCH_MOVE, -1, a, sense, 0.0, none, heading, none);
+        session_add(b, BENCH_MOVE, -1, a, sense, 0.0, none, heading, none);
     }
 }
 
-static inline bool bench_simulate(bench *b, const imk_model *model, uint64_t seed, uint32_t number,
-                                  double reading[6][BENCH_SAMPLES_MAX], imk_error *error)
+static inline bool session_simulate(session *b, const imk_model *model, uint64_t seed,
+                                    uint32_t number, double reading[6][BENCH_SAMPLES_MAX],
+                                    imk_error *error)
 {
     imk_simulation simulation = imk_simulation_default();
     imk_recorded_motion recorded;
@@ -191,13 +192,13 @@ static inline bool bench_simulate(bench *b, const imk_model *model, uint64_t see
 /* The bias that a test of minutes can find is that of these minutes: the instability's mean over
  * the holds belongs to the truth, what it does between them to the errors. Streams of noise are
  * independent, so that the difference of two simulations is the instability. */
-static inline bool bench_readings(bench *b, uint64_t seed, uint32_t number, imk_error *error)
+static inline bool session_readings(session *b, uint64_t seed, uint32_t number, imk_error *error)
 {
     imk_model steady = b->unit;
     memset(&steady.gyro.noise.bias_instability, 0, sizeof steady.gyro.noise.bias_instability);
     memset(&steady.accel.noise.bias_instability, 0, sizeof steady.accel.noise.bias_instability);
-    if (!bench_simulate(b, &b->unit, seed, number, b->reading, error) ||
-        !bench_simulate(b, &steady, seed, number, b->steady, error))
+    if (!session_simulate(b, &b->unit, seed, number, b->reading, error) ||
+        !session_simulate(b, &steady, seed, number, b->steady, error))
         return false;
     b->truth = b->unit;
     for (int c = 0; c < 6; c++) {
@@ -213,7 +214,7 @@ static inline bool bench_readings(bench *b, uint64_t seed, uint32_t number, imk_
     return true;
 }
 
-static inline void *bench_workspace(bench *b, size_t needed)
+static inline void *session_workspace(session *b, size_t needed)
 {
     if (needed > b->workspace_size) {
         free(b->workspace);
@@ -224,13 +225,13 @@ static inline void *bench_workspace(bench *b, size_t needed)
 }
 
 /* Simulate bench number `number` and solve it. @return false: refused */
-static inline bool bench_run(bench *b, const bench_plan *plan, imk_procedure procedure,
-                             uint64_t seed, uint32_t number, imk_error *error)
+static inline bool session_run(session *b, const session_plan *plan, imk_procedure procedure,
+                               uint64_t seed, uint32_t number, imk_error *error)
 {
     imk_random_normals(imk_random_seeded(seed), 0xB000 + ((uint64_t)number << 32), 0,
                        BENCH_STRETCHES * 8, b->normal);
-    bench_plan_motion(b, plan);
-    if (!bench_readings(b, seed, number, error))
+    session_plan_motion(b, plan);
+    if (!session_readings(b, seed, number, error))
         return false;
     b->record = (imk_test_record){.name = "bench",
                                   .count = b->count,
@@ -239,7 +240,7 @@ static inline bool bench_run(bench *b, const bench_plan *plan, imk_procedure pro
                                   .counts = {true, true},
                                   .section = b->section,
                                   .section_count = 9,
-                                  .section_name = bench_labels};
+                                  .section_name = session_labels};
     for (int i = 0; i < 6; i++)
         b->record.reading[i / 3][i % 3] = b->reading[i];
     imk_calibration *c = &b->calibration;
@@ -254,10 +255,10 @@ static inline bool bench_run(bench *b, const bench_plan *plan, imk_procedure pro
     settings.placement_sigma = plan->placement;
     size_t needed = imk_procedure_workspace_size(procedure, &b->record, &settings);
     if (imk_procedure_observe(procedure, c, &b->record, &settings, false, &b->findings,
-                              bench_workspace(b, needed), needed, error) != IMK_OK)
+                              session_workspace(b, needed), needed, error) != IMK_OK)
         return false;
     needed = imk_calibration_workspace_size(c);
-    return imk_calibration_solve(c, &b->result, bench_workspace(b, needed), needed, error) ==
+    return imk_calibration_solve(c, &b->result, session_workspace(b, needed), needed, error) ==
            IMK_OK;
 }
 

@@ -29,7 +29,7 @@ static const imk_evaluate_limit *limit_of(size_t count, const imk_evaluate_limit
 }
 
 /* How a figure stands to its limit. */
-static void judge(size_t count, const imk_evaluate_limit *limits, imk_evaluate_row *row)
+static void assess(size_t count, const imk_evaluate_limit *limits, imk_evaluate_row *row)
 {
     double most;
     const imk_evaluate_limit *limit = limit_of(count, limits, row, &most);
@@ -53,8 +53,8 @@ const char *imk_evaluate_verdict_text(imk_evaluate_verdict verdict)
     return texts[verdict];
 }
 
-void imk_evaluate_judge(size_t count, imk_evaluate_limit *limits, const char *name,
-                        imk_evaluate_row *row)
+void imk_evaluate_assess(size_t count, imk_evaluate_limit *limits, const char *name,
+                         imk_evaluate_row *row)
 {
     double value;
     for (size_t k = 0; k < count; k++) {
@@ -66,5 +66,5 @@ void imk_evaluate_judge(size_t count, imk_evaluate_limit *limits, const char *na
         snprintf(limit->refused_by, sizeof limit->refused_by, "%s", limit->used ? "" : name);
         limit->why = error;
     }
-    judge(count, limits, row);
+    assess(count, limits, row);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Doubts as sentences: what was found, what is expected, and the option or the action that mends
- * it; and what doubts, the findings over temperature and the warnings add up to. */
+/* Diagnostics as messages: what was found, what is expected, and the option or the action that
+ * mends it; and what diagnostics, the findings over temperature and the warnings add up to. */
 #include "calibrate_show_internal.h"
 
 #include <math.h>
@@ -16,24 +16,24 @@ static const double factor_tolerance = 0.12;
 /* Residuals this far above the noise are not a trembling hand: the model is another one. */
 static const double residual_alarm = 100;
 
-/* A sentence of the verdict. */
-typedef struct calibrate_sentence {
+/* A message of the verdict. */
+typedef struct calibrate_message {
     imk_finding_level level;
     const char *code;
     char text[700];
-} calibrate_sentence;
+} calibrate_message;
 
-static calibrate_sentence say(imk_finding_level level, const char *code, const char *format, ...)
+static calibrate_message say(imk_finding_level level, const char *code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-static calibrate_sentence say(imk_finding_level level, const char *code, const char *format, ...)
+static calibrate_message say(imk_finding_level level, const char *code, const char *format, ...)
 {
-    calibrate_sentence sentence = {.level = level, .code = code};
+    calibrate_message message = {.level = level, .code = code};
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(sentence.text, sizeof sentence.text, format, arguments);
+    vsnprintf(message.text, sizeof message.text, format, arguments);
     va_end(arguments);
-    return sentence;
+    return message;
 }
 
 static bool is_near(double value, double due)
@@ -44,17 +44,18 @@ static bool is_near(double value, double due)
 /* ---- on a log -------------------------------------------------------------------------------- */
 
 /* Worth a look only where holds are looked for. */
-static bool doubt_matters(const imk_calibrate_record *log, const imk_doubt_finding *doubt)
+static bool diagnostic_matters(const imk_calibrate_record *log,
+                               const imk_diagnostic_finding *diagnostic)
 {
     const bool looks_for_holds = log->procedure == IMK_PROCEDURE_MULTIPOSITION;
     const bool takes_holds = looks_for_holds || log->procedure == IMK_PROCEDURE_SIXPOSITION;
-    switch (doubt->kind) {
-    case IMK_DOUBT_NEVER_STATIC:
+    switch (diagnostic->kind) {
+    case IMK_DIAGNOSTIC_NEVER_STATIC:
         return takes_holds || log->procedure == IMK_PROCEDURE_THERMAL;
-    case IMK_DOUBT_NEVER_MOVES:
+    case IMK_DIAGNOSTIC_NEVER_MOVES:
         return takes_holds;
-    case IMK_DOUBT_FEW_POSES:
-    case IMK_DOUBT_ONE_PLANE:
+    case IMK_DIAGNOSTIC_FEW_POSES:
+    case IMK_DIAGNOSTIC_ONE_PLANE:
         return looks_for_holds;
     default:
         return true;
@@ -69,8 +70,8 @@ static const char *unit_of_column(const imk_calibrate_record *log, int sensor)
     return column >= 0 ? log->log.column[column].unit.text : "";
 }
 
-static calibrate_sentence gravity_unit(const imk_calibrate_log *b, const imk_calibrate_record *log,
-                                       double force)
+static calibrate_message gravity_unit(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                      double force)
 {
     /* |force| as it comes out where the column is in the second unit and read in the first. */
     static const struct {
@@ -102,7 +103,7 @@ static calibrate_sentence gravity_unit(const imk_calibrate_log *b, const imk_cal
         force, b->calibration->gravity);
 }
 
-static calibrate_sentence rate_unit(const imk_calibrate_record *log, double ratio)
+static calibrate_message rate_unit(const imk_calibrate_record *log, double ratio)
 {
     const double degrees = 57.29577951308232;
     const char *unit = is_near(ratio, degrees)       ? "deg/s"
@@ -120,7 +121,7 @@ static calibrate_sentence rate_unit(const imk_calibrate_record *log, double rati
                unit);
 }
 
-static calibrate_sentence time_unit(const imk_calibrate_record *log, double factor)
+static calibrate_message time_unit(const imk_calibrate_record *log, double factor)
 {
     const char *unit = is_near(factor, 1e3)   ? "ms"
                        : is_near(factor, 1e6) ? "us"
@@ -138,8 +139,8 @@ static calibrate_sentence time_unit(const imk_calibrate_record *log, double fact
                log->record.dt, unit, unit, rate);
 }
 
-static calibrate_sentence few_poses(const imk_calibrate_log *b, const imk_calibrate_record *log,
-                                    const imk_doubt_finding *d)
+static calibrate_message few_poses(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                   const imk_diagnostic_finding *d)
 {
     char poses[160];
     imki_calibrate_poses(b, log, "; most would tell ", poses, sizeof poses);
@@ -149,8 +150,8 @@ static calibrate_sentence few_poses(const imk_calibrate_log *b, const imk_calibr
                d->value, d->limit, poses);
 }
 
-static calibrate_sentence one_plane(const imk_calibrate_log *b, const imk_calibrate_record *log,
-                                    const imk_doubt_finding *d)
+static calibrate_message one_plane(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                   const imk_diagnostic_finding *d)
 {
     char poses[160];
     imki_calibrate_poses(b, log, "; most would tell ", poses, sizeof poses);
@@ -185,7 +186,7 @@ static bool is_whole(const imk_calibrate_record *log, int sensor)
     return largest > 20;
 }
 
-static calibrate_sentence never_static(const imk_calibrate_log *b, const imk_calibrate_record *log)
+static calibrate_message never_static(const imk_calibrate_log *b, const imk_calibrate_record *log)
 {
     for (int sensor = 1; sensor >= 0; sensor--)
         if (!log->record.counts[sensor] && is_whole(log, sensor))
@@ -207,7 +208,7 @@ static calibrate_sentence never_static(const imk_calibrate_log *b, const imk_cal
         100 * log->stationary.standing, log->stationary.window);
 }
 
-static calibrate_sentence swapped(const imk_doubt_finding *d)
+static calibrate_message swapped(const imk_diagnostic_finding *d)
 {
     const char *sensor = d->sensor >= 0 ? imki_sensor_keys[d->sensor] : "gyro";
     if (d->axis < 0 || d->other < 0)
@@ -223,7 +224,7 @@ static calibrate_sentence swapped(const imk_doubt_finding *d)
                d->sensor >= 0 ? "" : " (or those of the accelerometers), and signs are changed");
 }
 
-static calibrate_sentence left_handed(const imk_doubt_finding *d)
+static calibrate_message left_handed(const imk_diagnostic_finding *d)
 {
     if (d->axis < 0)
         return say(IMK_FINDING_FAILURE, "left_handed",
@@ -237,43 +238,43 @@ static calibrate_sentence left_handed(const imk_doubt_finding *d)
                sensor, imk_axis_letter(d->axis));
 }
 
-static calibrate_sentence on_log(const imk_calibrate_log *b, const imk_calibrate_record *log,
-                                 const imk_doubt_finding *d)
+static calibrate_message on_log(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                const imk_diagnostic_finding *d)
 {
     const char *sensor = d->sensor >= 0 ? imki_sensor_titles[d->sensor] : "sensor";
     switch (d->kind) {
-    case IMK_DOUBT_NEVER_STATIC:
+    case IMK_DIAGNOSTIC_NEVER_STATIC:
         return never_static(b, log);
-    case IMK_DOUBT_NEVER_MOVES:
+    case IMK_DIAGNOSTIC_NEVER_MOVES:
         return say(IMK_FINDING_FAILURE, "never_moves",
                    "the unit stands still all the time, in one pose: turn it to others, each for "
                    "some seconds; a log at rest is for imukit identify");
-    case IMK_DOUBT_FEW_POSES:
+    case IMK_DIAGNOSTIC_FEW_POSES:
         return few_poses(b, log, d);
-    case IMK_DOUBT_ONE_PLANE:
+    case IMK_DIAGNOSTIC_ONE_PLANE:
         return one_plane(b, log, d);
-    case IMK_DOUBT_GRAVITY_UNIT:
+    case IMK_DIAGNOSTIC_GRAVITY_UNIT:
         return gravity_unit(b, log, d->value);
-    case IMK_DOUBT_RATE_UNIT:
+    case IMK_DIAGNOSTIC_RATE_UNIT:
         return rate_unit(log, d->value);
-    case IMK_DOUBT_SATURATED:
+    case IMK_DIAGNOSTIC_SATURATED:
         return say(IMK_FINDING_WARNING, "saturated",
                    "%s %c is at the end of its range in %.3g %% of the log; the %s it spoils are "
                    "left out: choose a larger range in the device, or %s",
                    sensor, imk_axis_letter(d->axis), 100 * d->value,
                    d->sensor == 0 ? "turns" : "poses",
                    d->sensor == 0 ? "turn more slowly" : "poses without this axis along gravity");
-    case IMK_DOUBT_COUNTS:
+    case IMK_DIAGNOSTIC_COUNTS:
         return say(IMK_FINDING_FAILURE, "counts",
                    "the %s readings are whole numbers, and at rest no usual unit makes gravity of "
                    "them: they look like counts; write [count] into the header (or add --%s-unit "
                    "count) and, if you know it, --%s-sensitivity",
                    sensor, imki_sensor_keys[d->sensor > 0], imki_sensor_keys[d->sensor > 0]);
-    case IMK_DOUBT_SWAPPED_AXES:
+    case IMK_DIAGNOSTIC_SWAPPED_AXES:
         return swapped(d);
-    case IMK_DOUBT_LEFT_HANDED:
+    case IMK_DIAGNOSTIC_LEFT_HANDED:
         return left_handed(d);
-    case IMK_DOUBT_TIME_UNIT:
+    case IMK_DIAGNOSTIC_TIME_UNIT:
         return time_unit(log, d->value);
     default:
         return say(IMK_FINDING_FAILURE, "stuck",
@@ -285,7 +286,7 @@ static calibrate_sentence on_log(const imk_calibrate_log *b, const imk_calibrate
 
 /* ---- on the solution ------------------------------------------------------------------------- */
 
-static calibrate_sentence correlated(const imk_calibrate_log *b, double correlation)
+static calibrate_message correlated(const imk_calibrate_log *b, double correlation)
 {
     char one[IMK_MODEL_PARAMETER_NAME] = "?", other[IMK_MODEL_PARAMETER_NAME] = "?";
     const imk_calibration_result *r = b->result;
@@ -300,10 +301,10 @@ static calibrate_sentence correlated(const imk_calibrate_log *b, double correlat
                one, other, correlation);
 }
 
-static calibrate_sentence on_solution(const imk_calibrate_log *b, const imk_doubt_finding *d)
+static calibrate_message on_solution(const imk_calibrate_log *b, const imk_diagnostic_finding *d)
 {
     switch (d->kind) {
-    case IMK_DOUBT_RESIDUALS:
+    case IMK_DIAGNOSTIC_RESIDUALS:
         if (sqrt(d->value) > residual_alarm)
             return say(IMK_FINDING_WARNING, "residuals",
                        "the residuals are %.3g times what the noise within the holds explains: the "
@@ -315,7 +316,7 @@ static calibrate_sentence on_solution(const imk_calibrate_log *b, const imk_doub
                    "(chi-square per degree of freedom %.3g): the table, the hand or the sensor "
                    "does more than the model says; all 1 sigma are widened by it",
                    sqrt(d->value), d->value);
-    case IMK_DOUBT_CORRELATED:
+    case IMK_DIAGNOSTIC_CORRELATED:
         return correlated(b, d->value);
     default:
         return say(IMK_FINDING_WARNING, "outliers",
@@ -326,20 +327,20 @@ static calibrate_sentence on_solution(const imk_calibrate_log *b, const imk_doub
     }
 }
 
-static calibrate_sentence doubt_sentence(const imk_calibrate_log *b,
-                                         const imk_calibrate_record *log,
-                                         const imk_doubt_finding *doubt)
+static calibrate_message diagnostic_message(const imk_calibrate_log *b,
+                                            const imk_calibrate_record *log,
+                                            const imk_diagnostic_finding *diagnostic)
 {
-    const bool of_solution = doubt->kind == IMK_DOUBT_RESIDUALS ||
-                             doubt->kind == IMK_DOUBT_CORRELATED ||
-                             doubt->kind == IMK_DOUBT_OUTLIERS;
+    const bool of_solution = diagnostic->kind == IMK_DIAGNOSTIC_RESIDUALS ||
+                             diagnostic->kind == IMK_DIAGNOSTIC_CORRELATED ||
+                             diagnostic->kind == IMK_DIAGNOSTIC_OUTLIERS;
     if (of_solution)
-        return on_solution(b, doubt);
+        return on_solution(b, diagnostic);
     if (log)
-        return on_log(b, log, doubt);
+        return on_log(b, log, diagnostic);
     /* Responses that were solved for: of a force, times what was read at rest. */
-    imk_doubt_finding found = *doubt;
-    if (found.kind == IMK_DOUBT_GRAVITY_UNIT)
+    imk_diagnostic_finding found = *diagnostic;
+    if (found.kind == IMK_DIAGNOSTIC_GRAVITY_UNIT)
         found.value *= b->calibration->gravity;
     return on_log(b, &b->record[0], &found);
 }
@@ -347,11 +348,11 @@ static calibrate_sentence doubt_sentence(const imk_calibrate_log *b,
 bool imki_calibrate_useless(const imk_calibrate_log *b, const imk_calibrate_record *log, char *text,
                             size_t size)
 {
-    for (size_t k = 0; k < log->doubt_count; k++) {
-        const calibrate_sentence sentence = doubt_sentence(b, log, &log->doubt[k]);
-        if (!doubt_matters(log, &log->doubt[k]) || sentence.level != IMK_FINDING_FAILURE)
+    for (size_t k = 0; k < log->diagnostic_count; k++) {
+        const calibrate_message message = diagnostic_message(b, log, &log->diagnostic[k]);
+        if (!diagnostic_matters(log, &log->diagnostic[k]) || message.level != IMK_FINDING_FAILURE)
             continue;
-        snprintf(text, size, "%s: %s", log->path, sentence.text);
+        snprintf(text, size, "%s: %s", log->path, message.text);
         return true;
     }
     return false;
@@ -359,9 +360,9 @@ bool imki_calibrate_useless(const imk_calibrate_log *b, const imk_calibrate_reco
 
 /* ---- all of them ----------------------------------------------------------------------------- */
 
-static void add(imk_verdict *v, calibrate_sentence sentence)
+static void add(imk_verdict *v, calibrate_message message)
 {
-    imki_verdict_add(v, sentence.level, sentence.code, "%s", sentence.text);
+    imki_verdict_add(v, message.level, message.code, "%s", message.text);
 }
 
 static void add_thermal(imk_verdict *v, const imk_calibrate_record *log)
@@ -445,19 +446,19 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
     for (size_t k = 0; k < count; k++)
         imki_verdict_add(&v, before[k].level, before[k].code, "%s", before[k].text);
     for (const imk_calibrate_record *log = b->record; log < b->record + b->count; log++) {
-        for (size_t d = 0; d < log->doubt_count; d++) {
-            if (!doubt_matters(log, &log->doubt[d]))
+        for (size_t d = 0; d < log->diagnostic_count; d++) {
+            if (!diagnostic_matters(log, &log->diagnostic[d]))
                 continue;
-            const calibrate_sentence plain = doubt_sentence(b, log, &log->doubt[d]);
+            const calibrate_message plain = diagnostic_message(b, log, &log->diagnostic[d]);
             add(&v, say(plain.level, plain.code, "%.150s: %.540s", log->path, plain.text));
         }
         add_undetermined(b, log, &v);
         add_thermal(&v, log);
     }
-    for (size_t d = 0; d < b->doubt_count; d++) {
-        const calibrate_sentence sentence = doubt_sentence(b, NULL, &b->doubt[d]);
-        if (!is_said(&v, sentence.code))
-            add(&v, sentence);
+    for (size_t d = 0; d < b->diagnostic_count; d++) {
+        const calibrate_message message = diagnostic_message(b, NULL, &b->diagnostic[d]);
+        if (!is_said(&v, message.code))
+            add(&v, message);
     }
     return v;
 }

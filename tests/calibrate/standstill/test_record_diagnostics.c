@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Doubts about logs: each mistake is named, sound logs raise none. */
+/* Diagnostics about logs: each mistake is named, sound logs raise none. */
 #include "check.h"
 
 #include "calibrate/pose_log.h"
@@ -16,22 +16,22 @@ static const char *const mpu9150[2] = {
 static const char ferraris[] =
     SHARED_DIRECTORY "/data/calibration/ferraris_session_204.8hz_counts.csv.gz";
 
-typedef struct doubts {
+typedef struct diagnostics {
     size_t count;
-    imk_doubt_finding finding[IMK_DOUBTS];
-} doubts;
+    imk_diagnostic_finding finding[IMK_DIAGNOSTICS];
+} diagnostics;
 
-static doubts look(pose_log *log, const imk_model *model)
+static diagnostics look(pose_log *log, const imk_model *model)
 {
     const imk_static_settings settings = imk_static_default();
-    doubts d;
+    diagnostics d;
     pose_log_detect(log, &settings, model);
-    d.count = imk_record_doubts(&log->record, &log->findings, log->count, log->interval, GRAVITY,
-                                model, IMK_DOUBTS, d.finding);
+    d.count = imk_record_diagnostics(&log->record, &log->findings, log->count, log->interval,
+                                     GRAVITY, model, IMK_DIAGNOSTICS, d.finding);
     return d;
 }
 
-static const imk_doubt_finding *find(const doubts *d, imk_doubt kind)
+static const imk_diagnostic_finding *find(const diagnostics *d, imk_diagnostic kind)
 {
     for (size_t i = 0; i < d->count; i++)
         if (d->finding[i].kind == kind)
@@ -39,33 +39,33 @@ static const imk_doubt_finding *find(const doubts *d, imk_doubt kind)
     return NULL;
 }
 
-static void print(const doubts *d)
+static void print(const diagnostics *d)
 {
     for (size_t i = 0; i < d->count; i++)
-        print_message("doubt %d sensor %d axis %d other %d value %g limit %g\n",
+        print_message("diagnostic %d sensor %d axis %d other %d value %g limit %g\n",
                       (int)d->finding[i].kind, d->finding[i].sensor, d->finding[i].axis,
                       d->finding[i].other, d->finding[i].value, d->finding[i].limit);
 }
 
-/* Exactly this doubt. */
-static imk_doubt_finding only(pose_log *log, const imk_model *model, imk_doubt kind)
+/* Exactly this diagnostic. */
+static imk_diagnostic_finding only(pose_log *log, const imk_model *model, imk_diagnostic kind)
 {
-    const doubts d = look(log, model);
+    const diagnostics d = look(log, model);
     if (d.count != 1 || d.finding[0].kind != kind) {
         print(&d);
-        fail_msg("%zu doubts, expected one of kind %d", d.count, (int)kind);
+        fail_msg("%zu diagnostics, expected one of kind %d", d.count, (int)kind);
     }
     return d.finding[0];
 }
 
 static void none(pose_log *log, const imk_model *model)
 {
-    const doubts d = look(log, model);
+    const diagnostics d = look(log, model);
     print(&d);
     assert_int_equal(d.count, 0);
 }
 
-/* Units with errors of some per cent and deg/s raise no doubt, SI or counts. */
+/* Units with errors of some per cent and deg/s raise no diagnostic, SI or counts. */
 static void sound_logs_raise_none(void **state)
 {
     (void)state;
@@ -120,7 +120,7 @@ static void real_logs_raise_none(void **state)
     /* Exchange two gyros there. */
     log->record.reading[0][0] = log->value[1];
     log->record.reading[0][1] = log->value[0];
-    const imk_doubt_finding f = only(log, &model, IMK_DOUBT_SWAPPED_AXES);
+    const imk_diagnostic_finding f = only(log, &model, IMK_DIAGNOSTIC_SWAPPED_AXES);
     assert_int_equal(f.sensor, IMK_GYRO);
     assert_int_equal(f.axis, 0);
     assert_int_equal(f.other, 1);
@@ -152,13 +152,13 @@ static void never_static_and_never_moves(void **state)
 {
     (void)state;
     pose_log *log = pose_log_noise(6000, 0.005, 0.05, 1);
-    only(log, NULL, IMK_DOUBT_NEVER_MOVES);
+    only(log, NULL, IMK_DIAGNOSTIC_NEVER_MOVES);
     /* Shaken throughout: tremor of 1 rad/s. */
     for (int c = 0; c < 6; c++)
         for (size_t k = 0; k < log->record.count; k++)
             log->value[c][k] += (c < 3 ? 1.0 : 3.0) * sin(0.07 * (double)k * (1.0 + 0.1 * c)) *
                                 sin(0.011 * (double)k + c);
-    only(log, NULL, IMK_DOUBT_NEVER_STATIC);
+    only(log, NULL, IMK_DIAGNOSTIC_NEVER_STATIC);
     pose_log_free(log);
 }
 
@@ -177,12 +177,12 @@ static void few_poses_and_one_plane(void **state)
     }
     script.step_count = 23;
     pose_log *log = pose_log_of(&model, &script, 58.0, 100.0, 1);
-    const imk_doubt_finding f = only(log, NULL, IMK_DOUBT_ONE_PLANE);
+    const imk_diagnostic_finding f = only(log, NULL, IMK_DIAGNOSTIC_ONE_PLANE);
     assert_int_equal(f.axis, 0);
     CHECK_BELOW(f.value, 0.03);
     pose_log_free(log);
     log = pose_log_simulate(&model, 5, 3.0, 2.0, 2);
-    const imk_doubt_finding few = only(log, NULL, IMK_DOUBT_FEW_POSES);
+    const imk_diagnostic_finding few = only(log, NULL, IMK_DIAGNOSTIC_FEW_POSES);
     CHECK_CLOSE(few.value, 5.0, 0.0);
     pose_log_free(log);
 }
@@ -195,7 +195,7 @@ static void units_of_force(void **state)
     for (int i = 0; i < 5; i++) {
         pose_log *log = sound(3);
         scale(log, IMK_ACCEL, factor[i] > 0.0 ? 1.0 / factor[i] : 3.0 / 2.0);
-        const imk_doubt_finding f = only(log, NULL, IMK_DOUBT_GRAVITY_UNIT);
+        const imk_diagnostic_finding f = only(log, NULL, IMK_DIAGNOSTIC_GRAVITY_UNIT);
         CHECK_CLOSE(f.limit, factor[i], 0.0);
         CHECK_RELATIVE(f.value, GRAVITY / (factor[i] > 0.0 ? factor[i] : 2.0 / 3.0), 0.03);
         pose_log_free(log);
@@ -208,15 +208,15 @@ static void units_of_rate_and_time(void **state)
     const double degree = 57.29577951308232;
     pose_log *log = sound(4);
     scale(log, IMK_GYRO, degree);
-    CHECK_RELATIVE(only(log, NULL, IMK_DOUBT_RATE_UNIT).value, degree, 1e-12);
+    CHECK_RELATIVE(only(log, NULL, IMK_DIAGNOSTIC_RATE_UNIT).value, degree, 1e-12);
     scale(log, IMK_GYRO, 1.0 / (degree * degree));
-    CHECK_RELATIVE(only(log, NULL, IMK_DOUBT_RATE_UNIT).value, 1.0 / degree, 1e-12);
+    CHECK_RELATIVE(only(log, NULL, IMK_DIAGNOSTIC_RATE_UNIT).value, 1.0 / degree, 1e-12);
     pose_log_free(log);
     log = sound(5);
     log->record.dt = 10.0;
-    CHECK_RELATIVE(only(log, NULL, IMK_DOUBT_TIME_UNIT).value, 1e3, 1e-12);
+    CHECK_RELATIVE(only(log, NULL, IMK_DIAGNOSTIC_TIME_UNIT).value, 1e3, 1e-12);
     log->record.dt = 1e4;
-    CHECK_RELATIVE(only(log, NULL, IMK_DOUBT_TIME_UNIT).value, 1e6, 1e-12);
+    CHECK_RELATIVE(only(log, NULL, IMK_DIAGNOSTIC_TIME_UNIT).value, 1e6, 1e-12);
     pose_log_free(log);
 }
 
@@ -231,7 +231,7 @@ static void axes_exchanged_and_inverted(void **state)
             const double *x = log->record.reading[sensor][i];
             log->record.reading[sensor][i] = log->record.reading[sensor][j];
             log->record.reading[sensor][j] = x;
-            imk_doubt_finding f = only(log, NULL, IMK_DOUBT_SWAPPED_AXES);
+            imk_diagnostic_finding f = only(log, NULL, IMK_DIAGNOSTIC_SWAPPED_AXES);
             assert_int_equal(f.sensor, sensor);
             assert_int_equal(f.axis, i < j ? i : j);
             assert_int_equal(f.other, i < j ? j : i);
@@ -239,7 +239,7 @@ static void axes_exchanged_and_inverted(void **state)
             log = sound(7);
             for (size_t k = 0; k < log->record.count; k++)
                 log->value[3 * sensor + i][k] = -log->value[3 * sensor + i][k];
-            f = only(log, NULL, IMK_DOUBT_LEFT_HANDED);
+            f = only(log, NULL, IMK_DIAGNOSTIC_LEFT_HANDED);
             assert_int_equal(f.sensor, sensor);
             assert_int_equal(f.axis, i);
             pose_log_free(log);
@@ -249,7 +249,7 @@ static void axes_exchanged_and_inverted(void **state)
     for (int sensor = 0; sensor < 2; sensor++)
         for (size_t k = 0; k < log->record.count; k++)
             log->value[3 * sensor + 2][k] = -log->value[3 * sensor + 2][k];
-    const imk_doubt_finding f = only(log, NULL, IMK_DOUBT_LEFT_HANDED);
+    const imk_diagnostic_finding f = only(log, NULL, IMK_DIAGNOSTIC_LEFT_HANDED);
     assert_int_equal(f.sensor, -1);
     assert_int_equal(f.axis, -1);
     pose_log_free(log);
@@ -284,7 +284,7 @@ static void axes_seldom_turned_about(void **state)
         const double *y = log->record.reading[0][1];
         log->record.reading[0][1] = log->record.reading[0][2];
         log->record.reading[0][2] = y;
-        imk_doubt_finding f = only(log, NULL, IMK_DOUBT_SWAPPED_AXES);
+        imk_diagnostic_finding f = only(log, NULL, IMK_DIAGNOSTIC_SWAPPED_AXES);
         assert_int_equal(f.sensor, IMK_GYRO);
         assert_int_equal(f.axis, 1);
         assert_int_equal(f.other, 2);
@@ -292,7 +292,7 @@ static void axes_seldom_turned_about(void **state)
         log->record.reading[0][1] = y;
         for (size_t k = 0; k < log->record.count; k++)
             log->value[1][k] = -log->value[1][k];
-        f = only(log, NULL, IMK_DOUBT_LEFT_HANDED);
+        f = only(log, NULL, IMK_DIAGNOSTIC_LEFT_HANDED);
         assert_int_equal(f.sensor, IMK_GYRO);
         assert_int_equal(f.axis, 1);
         pose_log_free(log);
@@ -312,12 +312,12 @@ static void bad_turns_are_no_bad_axes(void **state)
         for (size_t i = seed % 5; i + 1 < log->count; i += 5)
             for (size_t k = log->interval[i].end; k < log->interval[i + 1].begin; k++)
                 log->value[seed % 3][k] *= seed % 4 < 2 ? 0.0 : -1.0;
-        const doubts d = look(log, NULL);
-        if (find(&d, IMK_DOUBT_SWAPPED_AXES) || find(&d, IMK_DOUBT_LEFT_HANDED))
+        const diagnostics d = look(log, NULL);
+        if (find(&d, IMK_DIAGNOSTIC_SWAPPED_AXES) || find(&d, IMK_DIAGNOSTIC_LEFT_HANDED))
             print(&d);
-        assert_null(find(&d, IMK_DOUBT_SWAPPED_AXES));
-        assert_null(find(&d, IMK_DOUBT_LEFT_HANDED));
-        assert_null(find(&d, IMK_DOUBT_RATE_UNIT));
+        assert_null(find(&d, IMK_DIAGNOSTIC_SWAPPED_AXES));
+        assert_null(find(&d, IMK_DIAGNOSTIC_LEFT_HANDED));
+        assert_null(find(&d, IMK_DIAGNOSTIC_RATE_UNIT));
         pose_log_free(log);
     }
 }
@@ -330,14 +330,14 @@ static void saturated_poses(void **state)
     pose_log *log = sound(9);
     for (size_t k = 0; k < log->record.count; k++)
         log->value[5][k] = fmax(fmin(log->value[5][k], 8.0), -8.0);
-    doubts d = look(log, NULL);
-    const imk_doubt_finding *f = find(&d, IMK_DOUBT_SATURATED);
+    diagnostics d = look(log, NULL);
+    const imk_diagnostic_finding *f = find(&d, IMK_DIAGNOSTIC_SATURATED);
     assert_non_null(f);
     assert_int_equal(f->sensor, IMK_ACCEL);
     assert_int_equal(f->axis, 2);
     model.accel.range.value[2] = 8.0;
     d = look(log, &model);
-    f = find(&d, IMK_DOUBT_SATURATED);
+    f = find(&d, IMK_DIAGNOSTIC_SATURATED);
     assert_non_null(f);
     assert_int_equal(f->axis, 2);
     assert_true(f->value > 0.05 && f->value < 0.4);
@@ -354,17 +354,17 @@ static void counts_and_stuck_axis(void **state)
     }
     pose_log *log = pose_log_simulate(&model, 16, 3.0, 2.0, 10);
     log->record.counts[0] = log->record.counts[1] = false;
-    doubts d = look(log, NULL);
+    diagnostics d = look(log, NULL);
     assert_true(d.count >= 2);
-    assert_int_equal(d.finding[0].kind, IMK_DOUBT_COUNTS);
-    assert_int_equal(d.finding[1].kind, IMK_DOUBT_COUNTS);
-    assert_null(find(&d, IMK_DOUBT_GRAVITY_UNIT));
+    assert_int_equal(d.finding[0].kind, IMK_DIAGNOSTIC_COUNTS);
+    assert_int_equal(d.finding[1].kind, IMK_DIAGNOSTIC_COUNTS);
+    assert_null(find(&d, IMK_DIAGNOSTIC_GRAVITY_UNIT));
     pose_log_free(log);
     log = sound(11);
     for (size_t k = 0; k < log->record.count; k++)
         log->value[1][k] = 0.25;
     d = look(log, NULL);
-    const imk_doubt_finding *f = find(&d, IMK_DOUBT_STUCK);
+    const imk_diagnostic_finding *f = find(&d, IMK_DIAGNOSTIC_STUCK);
     assert_non_null(f);
     assert_int_equal(f->sensor, IMK_GYRO);
     assert_int_equal(f->axis, 1);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Bench tests drawn as observations: readings of a unit with known errors, by imk_distort(), with
  * normal errors of their means. */
-#ifndef IMUKIT_TEST_ESTIMATOR_BENCH_H
-#define IMUKIT_TEST_ESTIMATOR_BENCH_H
+#ifndef IMUKIT_TEST_ESTIMATOR_SESSION_H
+#define IMUKIT_TEST_ESTIMATOR_SESSION_H
 
 #include "imukit/calibration.h"
 #include "imukit/earth.h"
@@ -14,7 +14,7 @@
 
 enum { BENCH_OBSERVATIONS = 512, BENCH_NORMALS = 16384 };
 
-typedef struct bench {
+typedef struct session {
     imk_calibration calibration;
     imk_calibration_result result;
     imk_observation observation[BENCH_OBSERVATIONS];
@@ -28,15 +28,15 @@ typedef struct bench {
     void *workspace;
     size_t workspace_size;
     imk_error error;
-} bench;
+} session;
 
-static inline double bench_normal(bench *b)
+static inline double session_normal(session *b)
 {
     return b->normal[b->used++ % BENCH_NORMALS];
 }
 
 /* Errors of a MEMS unit in the upper triangular frame. */
-static inline imk_model bench_truth(void)
+static inline imk_model session_truth(void)
 {
     static const double scale[2][3] = {{.004, -.007, .002}, {.003, -.002, .004}};
     static const double bias[2][3] = {{.01, -.02, .005}, {.1, -.05, .2}};
@@ -56,9 +56,9 @@ static inline imk_model bench_truth(void)
     return m;
 }
 
-static inline bench *bench_new(uint64_t seed, uint32_t number)
+static inline session *session_new(uint64_t seed, uint32_t number)
 {
-    bench *b = calloc(1, sizeof *b);
+    session *b = calloc(1, sizeof *b);
     if (!b)
         abort();
     imk_calibration_default(&b->calibration);
@@ -66,7 +66,7 @@ static inline bench *bench_new(uint64_t seed, uint32_t number)
     b->calibration.observation = b->observation;
     b->calibration.turn = b->turn;
     b->calibration.observation_capacity = b->calibration.turn_capacity = BENCH_OBSERVATIONS;
-    b->truth = bench_truth();
+    b->truth = session_truth();
     b->sigma[IMK_GYRO] = 3e-5;
     b->sigma[IMK_ACCEL] = 1e-3;
     b->understated = 1.0;
@@ -75,19 +75,19 @@ static inline bench *bench_new(uint64_t seed, uint32_t number)
     return b;
 }
 
-static inline void bench_free(bench *b)
+static inline void session_free(session *b)
 {
     free(b->workspace);
     free(b);
 }
 
-static inline void bench_unit_vector(bench *b, double v[3])
+static inline void session_unit_vector(session *b, double v[3])
 {
     double norm;
     do {
         norm = 0.0;
         for (int j = 0; j < 3; j++) {
-            v[j] = bench_normal(b);
+            v[j] = session_normal(b);
             norm += v[j] * v[j];
         }
     } while (norm < 1e-6);
@@ -96,8 +96,8 @@ static inline void bench_unit_vector(bench *b, double v[3])
 }
 
 /* Readings of an exposure, with errors. */
-static inline imk_observation bench_read(bench *b, const double rate[3], const double force[3],
-                                         const double acceleration[3], double temperature)
+static inline imk_observation session_read(session *b, const double rate[3], const double force[3],
+                                           const double acceleration[3], double temperature)
 {
     imk_observation o;
     memset(&o, 0, sizeof o);
@@ -125,17 +125,17 @@ static inline imk_observation bench_read(bench *b, const double rate[3], const d
             double value;
             imk_distort(&distortion, sensor, axis, &stimulus, 1, &value);
             o.sigma[sensor][axis] = b->sigma[sensor] / b->understated;
-            o.reading[sensor][axis] = value + b->sigma[sensor] * bench_normal(b);
+            o.reading[sensor][axis] = value + b->sigma[sensor] * session_normal(b);
         }
     return o;
 }
 
 /* A pose at rest with any heading. `wrong`: |force| is so many times gravity. */
-static inline void bench_pose_along(bench *b, const double vertical[3], double wrong)
+static inline void session_pose_along(session *b, const double vertical[3], double wrong)
 {
     imk_calibration *c = &b->calibration;
     double other[3], rate[3], force[3], along = 0.0, norm = 0.0;
-    bench_unit_vector(b, other);
+    session_unit_vector(b, other);
     for (int j = 0; j < 3; j++)
         along += other[j] * vertical[j];
     for (int j = 0; j < 3; j++) {
@@ -147,34 +147,34 @@ static inline void bench_pose_along(bench *b, const double vertical[3], double w
         rate[j] =
             c->earth_rate * (sin(b->place) * vertical[j] + cos(b->place) * other[j] / sqrt(norm));
     }
-    imk_observation o = bench_read(b, rate, force, NULL, (double)NAN);
+    imk_observation o = session_read(b, rate, force, NULL, (double)NAN);
     o.knowledge = IMK_INPUT_GRAVITY;
     memset(o.force, 0, sizeof o.force);
     memset(o.rate, 0, sizeof o.rate);
     (void)imk_calibration_observe(c, &o);
 }
 
-static inline void bench_pose(bench *b, double wrong)
+static inline void session_pose(session *b, double wrong)
 {
     double vertical[3];
-    bench_unit_vector(b, vertical);
-    bench_pose_along(b, vertical, wrong);
+    session_unit_vector(b, vertical);
+    session_pose_along(b, vertical, wrong);
 }
 
 /* A table or centrifuge: rate up to 2 rad/s, force up to 20 m/s^2 on each axis. */
-static inline void bench_known(bench *b)
+static inline void session_known(session *b)
 {
     double rate[3], force[3];
     for (int j = 0; j < 3; j++) {
-        rate[j] = fmax(-2.0, fmin(2.0, bench_normal(b)));
-        force[j] = fmax(-20.0, fmin(20.0, 8.0 * bench_normal(b)));
+        rate[j] = fmax(-2.0, fmin(2.0, session_normal(b)));
+        force[j] = fmax(-20.0, fmin(20.0, 8.0 * session_normal(b)));
     }
-    const imk_observation o = bench_read(b, rate, force, NULL, (double)NAN);
+    const imk_observation o = session_read(b, rate, force, NULL, (double)NAN);
     (void)imk_calibration_observe(&b->calibration, &o);
 }
 
 /* Free a term on three axes; rows without their diagonal, `triangle`: its upper part only. */
-static inline void bench_free_term(bench *b, int sensor, int term, bool triangle)
+static inline void session_free_term(session *b, int sensor, int term, bool triangle)
 {
     const int elements = imk_model_term_elements(sensor, term);
     const bool rows = term == IMK_MODEL_MISALIGNMENT || term == IMK_MODEL_CROSS_AXIS;
@@ -185,31 +185,32 @@ static inline void bench_free_term(bench *b, int sensor, int term, bool triangle
 }
 
 /* What poses under gravity determine. */
-static inline void bench_free_static(bench *b)
+static inline void session_free_static(session *b)
 {
-    bench_free_term(b, IMK_ACCEL, IMK_MODEL_BIAS, false);
-    bench_free_term(b, IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, false);
-    bench_free_term(b, IMK_ACCEL, IMK_MODEL_MISALIGNMENT, b->calibration.frame == IMK_FRAME_UPPER);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_BIAS, false);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, false);
+    session_free_term(b, IMK_ACCEL, IMK_MODEL_BIAS, false);
+    session_free_term(b, IMK_ACCEL, IMK_MODEL_SCALE_FACTOR, false);
+    session_free_term(b, IMK_ACCEL, IMK_MODEL_MISALIGNMENT,
+                      b->calibration.frame == IMK_FRAME_UPPER);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_BIAS, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_G_SENSITIVITY, false);
 }
 
-static inline void bench_free_all(bench *b)
+static inline void session_free_all(session *b)
 {
-    bench_free_static(b);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
-    bench_free_term(b, IMK_GYRO, IMK_MODEL_MISALIGNMENT, false);
+    session_free_static(b);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_SCALE_FACTOR, false);
+    session_free_term(b, IMK_GYRO, IMK_MODEL_MISALIGNMENT, false);
 }
 
 /* Everything that is not estimated is known as it is. */
-static inline void bench_know_the_rest(bench *b)
+static inline void session_know_the_rest(session *b)
 {
     b->calibration.model = b->truth;
     for (size_t p = 0; p < b->calibration.parameter_count; p++)
         *imk_model_parameter_at(&b->calibration.model, b->calibration.parameter[p], NULL) = 0.0;
 }
 
-static inline imk_status bench_solve(bench *b)
+static inline imk_status session_solve(session *b)
 {
     const size_t size = imk_calibration_workspace_size(&b->calibration);
     if (size > b->workspace_size) {

@@ -22,15 +22,15 @@ static const double residual_probability = 1e-6;
 static const double residual_factor = 3.0;
 
 typedef struct list {
-    imk_doubt_finding *doubt;
+    imk_diagnostic_finding *diagnostic;
     size_t count, capacity;
 } list;
 
-static void add(list *l, imk_doubt kind, int sensor, int axis, int other, double value,
+static void add(list *l, imk_diagnostic kind, int sensor, int axis, int other, double value,
                 double limit)
 {
     if (l->count < l->capacity)
-        l->doubt[l->count] = (imk_doubt_finding){kind, sensor, axis, other, value, limit};
+        l->diagnostic[l->count] = (imk_diagnostic_finding){kind, sensor, axis, other, value, limit};
     l->count += l->count < l->capacity;
 }
 
@@ -45,14 +45,14 @@ static void look_at_responses(const imk_calibration_result *result, list *l)
         if (place.term == IMK_MODEL_SCALE_FACTOR) {
             const double factor = 1.0 + value;
             if (factor < 0.0 && sensor == IMK_GYRO)
-                add(l, IMK_DOUBT_LEFT_HANDED, sensor, axis, -1, factor, 0.0);
+                add(l, IMK_DIAGNOSTIC_LEFT_HANDED, sensor, axis, -1, factor, 0.0);
             else if (fabs(factor) > unit_factor || fabs(factor) < 1.0 / unit_factor)
-                add(l, sensor == IMK_GYRO ? IMK_DOUBT_RATE_UNIT : IMK_DOUBT_GRAVITY_UNIT, sensor,
-                    axis, -1, factor, unit_factor);
+                add(l, sensor == IMK_GYRO ? IMK_DIAGNOSTIC_RATE_UNIT : IMK_DIAGNOSTIC_GRAVITY_UNIT,
+                    sensor, axis, -1, factor, unit_factor);
         }
         if (place.term == IMK_MODEL_MISALIGNMENT && triads[sensor]->axis_count == 3 &&
             fabs(value) > exchanged)
-            add(l, IMK_DOUBT_SWAPPED_AXES, sensor, axis, place.element, value, exchanged);
+            add(l, IMK_DIAGNOSTIC_SWAPPED_AXES, sensor, axis, place.element, value, exchanged);
     }
 }
 
@@ -64,7 +64,7 @@ static void look_at_refusals(const imk_calibration *calibration,
     const size_t refused = result->observations_refused + result->turns_refused;
     const double share = items > 0 ? (double)refused / (double)items : 0.0;
     if (share > many_refused)
-        add(l, IMK_DOUBT_OUTLIERS, -1, -1, -1, share, many_refused);
+        add(l, IMK_DIAGNOSTIC_OUTLIERS, -1, -1, -1, share, many_refused);
 }
 
 /* Scatter far beyond the sigmas stated, by group. */
@@ -79,7 +79,8 @@ static void look_at_residuals(const imk_calibration_result *result, list *l)
         if (ratio > residual_factor * residual_factor &&
             imk_gamma_upper(0.5 * group->degrees_of_freedom, 0.5 * group->chi_square) <
                 residual_probability)
-            add(l, IMK_DOUBT_RESIDUALS, sensor, -1, g, ratio, residual_factor * residual_factor);
+            add(l, IMK_DIAGNOSTIC_RESIDUALS, sensor, -1, g, ratio,
+                residual_factor * residual_factor);
     }
 }
 
@@ -91,13 +92,14 @@ static void look_at_correlations(const imk_calibration_result *result, list *l)
     const double r = result->covariance[(size_t)p * result->parameter_count + (size_t)q] /
                      (result->sigma[p] * result->sigma[q]);
     if (fabs(r) > strong_correlation)
-        add(l, IMK_DOUBT_CORRELATED, result->parameter[p].sensor, p, q, r, strong_correlation);
+        add(l, IMK_DIAGNOSTIC_CORRELATED, result->parameter[p].sensor, p, q, r, strong_correlation);
 }
 
-size_t imk_solution_doubts(const imk_calibration *calibration, const imk_calibration_result *result,
-                           size_t capacity, imk_doubt_finding *doubt)
+size_t imk_solution_diagnostics(const imk_calibration *calibration,
+                                const imk_calibration_result *result, size_t capacity,
+                                imk_diagnostic_finding *diagnostic)
 {
-    list l = {doubt, 0, capacity};
+    list l = {diagnostic, 0, capacity};
     look_at_responses(result, &l);
     look_at_refusals(calibration, result, &l);
     look_at_residuals(result, &l);

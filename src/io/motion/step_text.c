@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Dividing the sentences of scripts, and the values of their keys. */
-#include "step_sentence_internal.h"
+/* Dividing the steps of scripts, and the values of their keys. */
+#include "step_text_internal.h"
 
 #include "imukit/names.h"
 #include "imukit/units.h"
@@ -36,8 +36,8 @@ static void copy_text(char text[TEXT_SIZE], const char *begin, const char *end)
     text[length] = '\0';
 }
 
-void imki_sentence_refuse(const imki_sentence *s, imki_part part, imk_status status,
-                          const char *expected)
+void imki_step_text_refuse(const imki_step_text *s, imki_part part, imk_status status,
+                           const char *expected)
 {
     imki_reading *r = s->reading;
     char found[TEXT_SIZE];
@@ -85,9 +85,9 @@ static int find_word(word w, size_t count, const char *const *names)
     return -1;
 }
 
-/* Everything behind the verb. False for a text that no sentence has: a word twice, or more text
+/* Everything behind the verb. False for a text that no step has: a word twice, or more text
  * behind a word that stands for itself. */
-static bool divide(imki_sentence *s, const char *at)
+static bool divide(imki_step_text *s, const char *at)
 {
     static const char *const parts[] = {"to", "at", "for", "in", "from", "phase"};
     static const char *const words[] = {"x",   "y",    "z",     "roll",  "pitch",
@@ -121,7 +121,7 @@ static bool divide(imki_sentence *s, const char *at)
     return true;
 }
 
-static bool has_form(const imki_sentence *s)
+static bool has_form(const imki_step_text *s)
 {
     const unsigned axes = s->words & s->verb->axes;
     if ((s->words & ~(s->verb->words | s->verb->axes)) != 0)
@@ -134,11 +134,11 @@ static bool has_form(const imki_sentence *s)
     return false;
 }
 
-bool imki_sentence_read(imki_reading *reading, int node, const char *what, size_t count,
-                        const imki_verb *verbs, imki_sentence *sentence)
+bool imki_step_text_read(imki_reading *reading, int node, const char *what, size_t count,
+                         const imki_verb *verbs, imki_step_text *step)
 {
     const char *names[VERBS_MAX];
-    imki_sentence s = {.reading = reading, .node = node};
+    imki_step_text s = {.reading = reading, .node = node};
     const char *at = reading->document->node[node].text;
     char name[64], found[128];
     word verb;
@@ -157,17 +157,17 @@ bool imki_sentence_read(imki_reading *reading, int node, const char *what, size_
     }
     s.verb = &verbs[index];
     if (!divide(&s, at) || !has_form(&s))
-        imki_sentence_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX, s.verb->usage);
-    *sentence = s;
+        imki_step_text_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX, s.verb->usage);
+    *step = s;
     return reading->status == IMK_OK;
 }
 
-bool imki_sentence_has(const imki_sentence *s, imki_part part)
+bool imki_step_text_has(const imki_step_text *s, imki_part part)
 {
     return (s->parts & 1u << part) != 0;
 }
 
-int imki_sentence_axis(const imki_sentence *s)
+int imki_step_text_axis(const imki_step_text *s)
 {
     for (int i = 0; i < 6; i++)
         if (s->words & 1u << i)
@@ -214,7 +214,7 @@ static void read_exactly(imki_reading *r, int node, const char *begin, const cha
 }
 
 /* The last word of a part when the part can be read without it, as "fast" in "10 deg/s fast". */
-static bool last_word_is_foreign(const imki_sentence *s, imki_part part, const char *si,
+static bool last_word_is_foreign(const imki_step_text *s, imki_part part, const char *si,
                                  size_t count, const char **last)
 {
     double unused[NUMBERS_MAX];
@@ -225,8 +225,8 @@ static bool last_word_is_foreign(const imki_sentence *s, imki_part part, const c
     return at > begin && parse_exactly(begin, at, si, count, unused, NULL) == IMK_OK;
 }
 
-void imki_sentence_numbers(const imki_sentence *s, imki_part part, const char *si, size_t count,
-                           double *values)
+void imki_step_text_numbers(const imki_step_text *s, imki_part part, const char *si, size_t count,
+                            double *values)
 {
     imki_reading *r = s->reading;
     const char *begin = s->part[part].begin, *last;
@@ -236,27 +236,27 @@ void imki_sentence_numbers(const imki_sentence *s, imki_part part, const char *s
     if (r->status == IMK_OK)
         return;
     if (last_word_is_foreign(s, part, si, count, &last)) {
-        imki_sentence foreign = *s;
+        imki_step_text foreign = *s;
         foreign.part[part].begin = last;
         r->status = IMK_OK;
-        imki_sentence_refuse(&foreign, part, IMK_ERROR_SYNTAX, s->verb->usage);
+        imki_step_text_refuse(&foreign, part, IMK_ERROR_SYNTAX, s->verb->usage);
     } else {
         point_at(r->document, s->node, begin, r->error);
     }
 }
 
-double imki_sentence_number(const imki_sentence *s, imki_part part, const char *si)
+double imki_step_text_number(const imki_step_text *s, imki_part part, const char *si)
 {
     double number = 0.0;
-    imki_sentence_numbers(s, part, si, 1, &number);
+    imki_step_text_numbers(s, part, si, 1, &number);
     return number;
 }
 
-double imki_sentence_positive(const imki_sentence *s, imki_part part, const char *si)
+double imki_step_text_positive(const imki_step_text *s, imki_part part, const char *si)
 {
-    const double number = imki_sentence_number(s, part, si);
+    const double number = imki_step_text_number(s, part, si);
     if (!(number > 0.0))
-        imki_sentence_refuse(s, part, IMK_ERROR_RANGE, "a number above 0");
+        imki_step_text_refuse(s, part, IMK_ERROR_RANGE, "a number above 0");
     return number;
 }
 

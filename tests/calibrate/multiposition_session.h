@@ -3,8 +3,8 @@
  * of 2 s, 100 Hz, counts, at 45 deg north. Raw samples come from the simulator, and go through
  * detection and the procedure. Used by test_multiposition.c (some hundred benches) and
  * experiments/coverage_multiposition.c (thousands). */
-#ifndef IMUKIT_TEST_MULTIPOSITION_BENCH_H
-#define IMUKIT_TEST_MULTIPOSITION_BENCH_H
+#ifndef IMUKIT_TEST_MULTIPOSITION_SESSION_H
+#define IMUKIT_TEST_MULTIPOSITION_SESSION_H
 
 #include "imukit/motion_script.h"
 #include "imukit/procedure.h"
@@ -16,7 +16,7 @@
 
 enum { BENCH_POSES = 24, BENCH_RATE = 100, BENCH_HOLD = 3, BENCH_TURN = 2, BENCH_STEPS = 48 };
 
-typedef struct multiposition_bench {
+typedef struct multiposition_session {
     imk_model truth;   /* what is simulated */
     imk_model drift;   /* its bias instability alone */
     imk_model nominal; /* what the solver is told */
@@ -36,11 +36,11 @@ typedef struct multiposition_bench {
     imk_calibration_result result;
     imk_procedure_findings findings;
     imk_error error;
-} multiposition_bench;
+} multiposition_session;
 
 /* A consumer-grade MEMS unit: 0.3 deg/sqrt(h) and 8 deg/h, 100 ug/sqrt(Hz) and 20 ug; 131 counts
  * per deg/s, 16384 per g. */
-static inline void bench_truth(multiposition_bench *b)
+static inline void session_truth(multiposition_session *b)
 {
     const double degree = 0.017453292519943295, g = 9.80665;
     imk_model_default(&b->nominal);
@@ -73,7 +73,7 @@ static inline void bench_truth(multiposition_bench *b)
 }
 
 /* Uniform number `index` of a stream. */
-static inline double bench_uniform(imk_random random, uint64_t stream, uint64_t index)
+static inline double session_uniform(imk_random random, uint64_t stream, uint64_t index)
 {
     uint32_t word;
     imk_random_words(random, stream, index, 1, &word);
@@ -81,14 +81,14 @@ static inline double bench_uniform(imk_random random, uint64_t stream, uint64_t 
 }
 
 /* Streams of a run that no noise term has. */
-static inline uint64_t bench_stream(uint32_t run, int use)
+static inline uint64_t session_stream(uint32_t run, int use)
 {
     return ((uint64_t)run << 32) + 0x7F000000u + (uint64_t)use;
 }
 
 /* Directions spread evenly over the sphere along a spiral, taken in an order that makes each turn a
  * large one about another axis; any headings. */
-static inline imk_status bench_motion(multiposition_bench *b, uint64_t seed, uint32_t run)
+static inline imk_status session_motion(multiposition_session *b, uint64_t seed, uint32_t run)
 {
     const double turn = 6.283185307179586;
     imk_motion_step step[BENCH_STEPS];
@@ -98,7 +98,7 @@ static inline imk_status bench_motion(multiposition_bench *b, uint64_t seed, uin
         const double pitch = asin(1.0 - (2.0 * k + 1.0) / BENCH_POSES);
         const double roll = remainder(2.399963229728653 * k, turn); /* by the golden angle */
         const double yaw =
-            turn * bench_uniform(imk_random_seeded(seed), bench_stream(run, 0), (uint64_t)i);
+            turn * session_uniform(imk_random_seeded(seed), session_stream(run, 0), (uint64_t)i);
         step[steps++] = (imk_motion_step){
             .kind = IMK_STEP_POSE, .duration = BENCH_TURN, .angle = {roll, pitch, yaw - turn / 2}};
         step[steps++] = (imk_motion_step){.kind = IMK_STEP_HOLD, .duration = BENCH_HOLD};
@@ -117,7 +117,7 @@ static inline imk_status bench_motion(multiposition_bench *b, uint64_t seed, uin
                                                         &b->trajectory, &b->error);
 }
 
-static inline imk_simulation bench_simulation(const multiposition_bench *b)
+static inline imk_simulation session_simulation(const multiposition_session *b)
 {
     imk_simulation simulation = imk_simulation_default();
     simulation.rate = BENCH_RATE;
@@ -126,12 +126,12 @@ static inline imk_simulation bench_simulation(const multiposition_bench *b)
 }
 
 /* NULL: something failed. */
-static inline multiposition_bench *bench_start(void)
+static inline multiposition_session *session_start(void)
 {
-    multiposition_bench *b = calloc(1, sizeof *b);
+    multiposition_session *b = calloc(1, sizeof *b);
     if (!b)
         return NULL;
-    bench_truth(b);
+    session_truth(b);
     b->rows = (size_t)BENCH_RATE * BENCH_POSES * (BENCH_HOLD + BENCH_TURN);
     for (int c = 0; c < 6; c++) {
         b->value[c] = malloc(b->rows * sizeof(double));
@@ -142,7 +142,7 @@ static inline multiposition_bench *bench_start(void)
     return b;
 }
 
-static inline void bench_stop(multiposition_bench *b)
+static inline void session_stop(multiposition_session *b)
 {
     for (int c = 0; c < 6; c++) {
         free(b->value[c]);
@@ -154,12 +154,12 @@ static inline void bench_stop(multiposition_bench *b)
     free(b);
 }
 
-static inline imk_status bench_simulate(multiposition_bench *b, uint64_t seed, uint32_t run)
+static inline imk_status session_simulate(multiposition_session *b, uint64_t seed, uint32_t run)
 {
-    imk_status status = bench_motion(b, seed, run);
+    imk_status status = session_motion(b, seed, run);
     if (status != IMK_OK)
         return status;
-    imk_simulation simulation = bench_simulation(b);
+    imk_simulation simulation = session_simulation(b);
     simulation.seed = seed;
     simulation.run = run;
     const size_t size = (imk_simulator_size(&b->truth, &simulation) + 63) / 64 * 64;
@@ -186,11 +186,12 @@ static inline imk_status bench_simulate(multiposition_bench *b, uint64_t seed, u
 
 /* A bad hold: the unit is pushed with 3 % of gravity all the time, or turns slowly, or is bumped.
  */
-static inline void bench_spoil(multiposition_bench *b, int pose, imk_random random, uint64_t stream)
+static inline void session_spoil(multiposition_session *b, int pose, imk_random random,
+                                 uint64_t stream)
 {
-    const int kind = (int)(3.0 * bench_uniform(random, stream, 0));
-    const int axis = (int)(3.0 * bench_uniform(random, stream, 1));
-    const double sign = bench_uniform(random, stream, 2) < 0.5 ? -1.0 : 1.0;
+    const int kind = (int)(3.0 * session_uniform(random, stream, 0));
+    const int axis = (int)(3.0 * session_uniform(random, stream, 1));
+    const double sign = session_uniform(random, stream, 2) < 0.5 ? -1.0 : 1.0;
     const size_t begin = ((size_t)pose * (BENCH_HOLD + BENCH_TURN) + BENCH_TURN) * BENCH_RATE;
     const size_t length = (size_t)BENCH_HOLD * BENCH_RATE;
     for (size_t k = 0; k < length; k++) {
@@ -210,7 +211,7 @@ static inline void bench_spoil(multiposition_bench *b, int pose, imk_random rand
     }
 }
 
-static inline imk_status bench_observe(multiposition_bench *b)
+static inline imk_status session_observe(multiposition_session *b)
 {
     b->record = (imk_test_record){.name = "bench",
                                   .count = b->rows,
@@ -231,14 +232,14 @@ static inline imk_status bench_observe(multiposition_bench *b)
                                  &b->findings, b->workspace, b->workspace_size, &b->error);
 }
 
-static inline imk_status bench_solve(multiposition_bench *b)
+static inline imk_status session_solve(multiposition_session *b)
 {
     return imk_calibration_solve(&b->calibration, &b->result, b->workspace, b->workspace_size,
                                  &b->error);
 }
 
 /* The bias that this log had: what the instability was on average is no error of the result. */
-static inline imk_model bench_true_model(const multiposition_bench *b)
+static inline imk_model session_true_model(const multiposition_session *b)
 {
     imk_model truth = b->truth;
     for (int c = 0; c < 6; c++) {
@@ -251,23 +252,23 @@ static inline imk_model bench_true_model(const multiposition_bench *b)
 }
 
 /* One bench from the samples to the count. @param bad poses to spoil */
-static inline imk_status bench_run(multiposition_bench *b, uint64_t seed, uint32_t run, int bad,
-                                   coverage_count *count)
+static inline imk_status session_run(multiposition_session *b, uint64_t seed, uint32_t run, int bad,
+                                     coverage_count *count)
 {
-    imk_status status = bench_simulate(b, seed, run);
+    imk_status status = session_simulate(b, seed, run);
     const imk_random random = imk_random_seeded(seed);
     for (int i = 0; status == IMK_OK && i < bad; i++) {
-        const uint64_t stream = bench_stream(run, 1 + i);
+        const uint64_t stream = session_stream(run, 1 + i);
         /* Spread over the log, so that no pose is taken twice. */
-        const int pose = (int)((i + bench_uniform(random, stream, 3)) * BENCH_POSES / bad);
-        bench_spoil(b, pose, random, stream);
+        const int pose = (int)((i + session_uniform(random, stream, 3)) * BENCH_POSES / bad);
+        session_spoil(b, pose, random, stream);
     }
     if (status == IMK_OK)
-        status = bench_observe(b);
+        status = session_observe(b);
     if (status == IMK_OK)
-        status = bench_solve(b);
+        status = session_solve(b);
     if (status == IMK_OK) {
-        const imk_model truth = bench_true_model(b);
+        const imk_model truth = session_true_model(b);
         coverage_add(count, &b->result, &truth, 0.95);
     } else {
         count->failed++;

@@ -4,8 +4,8 @@
  * samples come from the simulator: white noise, bias instability, counts, Earth rate. Axis x has
  * thermal hysteresis, y a bias in proportion to the rate of temperature, z neither. Used by
  * test_thermal.c (some hundred benches) and experiments/coverage_thermal.c (thousands). */
-#ifndef IMUKIT_TEST_THERMAL_BENCH_H
-#define IMUKIT_TEST_THERMAL_BENCH_H
+#ifndef IMUKIT_TEST_THERMAL_SESSION_H
+#define IMUKIT_TEST_THERMAL_SESSION_H
 
 #include "imukit/procedure.h"
 #include "imukit/simulate.h"
@@ -24,7 +24,7 @@ static const double thermal_point[] = {298.15, 253.15, 338.15, 298.15};
 static const imk_temperature_profile thermal_profile = {
     .point_count = 4, .time = thermal_time, .temperature = thermal_point, .time_constant = 100.0};
 
-typedef struct thermal_bench {
+typedef struct thermal_session {
     imk_model truth, nominal;
     double *value[6], *temperature, *clean;
     void *simulator, *workspace;
@@ -32,11 +32,11 @@ typedef struct thermal_bench {
     imk_test_record record;
     imk_thermal_findings findings;
     imk_error error;
-} thermal_bench;
+} thermal_session;
 
 /* 0.3 deg/sqrt(h), 8 deg/h; 100 ug/sqrt(Hz), 20 ug; 131 counts per deg/s, 16384 per g. What
  * temperature does is of the size data sheets of such units state, 0.02 deg/s/K and 0.5 mg/K. */
-static inline void thermal_truth(thermal_bench *b)
+static inline void thermal_truth(thermal_session *b)
 {
     const double degree = 0.017453292519943295, g = 9.80665;
     imk_model *m = &b->truth;
@@ -84,7 +84,7 @@ static inline imk_simulation thermal_simulation(uint64_t seed)
 }
 
 /* Memory for benches of `truth`; to be freed. */
-static inline bool thermal_open(thermal_bench *b)
+static inline bool thermal_open(thermal_session *b)
 {
     double time[THERMAL_RATE];
     const imk_simulation simulation = thermal_simulation(0);
@@ -124,7 +124,7 @@ static inline bool thermal_open(thermal_bench *b)
     return ok;
 }
 
-static inline void thermal_close(thermal_bench *b)
+static inline void thermal_close(thermal_session *b)
 {
     for (int i = 0; i < 6; i++)
         free(b->value[i]);
@@ -133,9 +133,9 @@ static inline void thermal_close(thermal_bench *b)
     free(b->workspace);
 }
 
-/* Simulate one bench. `knocks`: a tenth of the log, in stretches of 40 s, is off by a hundred times
- * the white noise of a sample. */
-static inline bool thermal_run(thermal_bench *b, uint64_t seed, bool knocks)
+/* Simulate one session. `knocks`: a tenth of the log, in stretches of 40 s, is off by a hundred
+ * times the white noise of a sample. */
+static inline bool thermal_run(thermal_session *b, uint64_t seed, bool knocks)
 {
     enum { STRETCH = 40 * THERMAL_RATE };
     const imk_random random = imk_random_seeded(seed);
@@ -190,7 +190,7 @@ static inline void thermal_add_one(thermal_count *c, int axis, int what, imk_sca
     c->square[axis][what] += error * error;
 }
 
-static inline void thermal_add(thermal_count *c, const thermal_bench *b)
+static inline void thermal_add(thermal_count *c, const thermal_session *b)
 {
     c->benches++;
     for (int i = 0; i < 6; i++) {

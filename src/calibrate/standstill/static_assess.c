@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Windows of four blocks judged by the limits (static_noise.c), and runs of those that stand. */
+/* Windows of four blocks assessed by the limits (static_noise.c), and runs of those that stand. */
 #include "static_internal.h"
 
 #include <math.h>
@@ -11,11 +11,12 @@ static const double BIAS_TIME = 10.0; /* the rate at rest is that of the last so
 static const double G_SENSITIVITY = 3e-4;
 static const double TWO_G = 19.6133; /* of force: how much it changes at most [m/s^2] */
 
-/* ---- judging windows ----------------------------------------------------------------------------
+/* ---- assessing windows
+ * ----------------------------------------------------------------------------
  */
 
 /* Scatter and halves of every window over their limits, the worst axis. */
-static void judge_windows(imki_static_job *job)
+static void assess_windows(imki_static_job *job)
 {
     const imki_static_blocks *b = &job->blocks;
     const size_t windows = imki_static_windows(b);
@@ -71,7 +72,7 @@ static double rate_off(const imki_static_job *job, int a, double off, double cha
 
 /* Rates less those at rest, from the rest to one end of the log; the rest follows in standing
  * windows, and so does its force. */
-static void judge_rates(imki_static_job *job, size_t first, size_t count, bool forward)
+static void assess_rates(imki_static_job *job, size_t first, size_t count, bool forward)
 {
     double rest[IMKI_STATIC_AXES];
     for (int a = 0; a < job->axis_count; a++)
@@ -96,14 +97,14 @@ static void judge_rates(imki_static_job *job, size_t first, size_t count, bool f
     }
 }
 
-void imki_static_judge(imki_static_job *job)
+void imki_static_assess(imki_static_job *job)
 {
-    judge_windows(job);
+    assess_windows(job);
     const size_t windows = imki_static_windows(&job->blocks);
     const size_t middle = job->rest_begin;
-    judge_rates(job, middle, windows - middle, true);
+    assess_rates(job, middle, windows - middle, true);
     if (middle > 0)
-        judge_rates(job, middle - 1, middle, false);
+        assess_rates(job, middle - 1, middle, false);
 }
 
 /* ---- runs ----------------------------------------------------------------------------------

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { FIGURES = IMK_WISH_HEADING + 1 };
+enum { FIGURES = IMK_REQUIRED_HEADING + 1 };
 
 /* Of any figure, SI: beyond what sensors do and what the Earth has room for. */
 static const double least_goal = 1e-9, largest_goal = 1e9;
@@ -33,9 +33,9 @@ static int find_figure(const char *text, size_t length, imk_drift_wanted *want)
     const char *names[FIGURES];
     snprintf(given, sizeof given, "%.*s", (int)(length < 30 ? length : 30), text);
     for (int w = 0; w < FIGURES; w++) {
-        names[w] = imk_drift_wish_name((imk_drift_wish)w);
+        names[w] = imk_drift_requirement_name((imk_drift_requirement)w);
         if (strcasecmp(names[w], given) == 0) {
-            want->figure = (imk_drift_wish)w;
+            want->figure = (imk_drift_requirement)w;
             return -1;
         }
     }
@@ -60,7 +60,7 @@ int drift_want_parse(const char *text, imk_drift_wanted *want)
         return refuse(text, "the time is missing");
     if (value >= at)
         return refuse(text, "how large it may be is missing");
-    const char *unit = imk_drift_wish_unit(want->figure);
+    const char *unit = imk_drift_requirement_unit(want->figure);
     if (!quantity(value, at, unit, &want->goal, &want->unit)) {
         snprintf(why, sizeof why, "\"%.*s\" is no positive number with a unit of %s, such as %s",
                  (int)(at - value < 40 ? at - value : 40), value,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What looks wrong in a log before anything is solved: each doubt is founded on something that a
- * sound log cannot show.
+/* What looks wrong in a log before anything is solved: each diagnostic is founded on something that
+ * a sound log cannot show.
  *
  *   - |force| at rest is gravity: within 20 %, which no bias or scale factor explains, or a unit
  *     was mistaken;
@@ -10,7 +10,7 @@
  *   - readings of a sensor are not all whole numbers unless they are counts;
  *   - an axis that keeps its largest reading for long while it scatters elsewhere is saturated;
  *   - turns: record_turns.c. */
-#include "record_doubts_internal.h"
+#include "record_diagnostics_internal.h"
 
 #include "imukit/linear_algebra.h"
 #include "static_internal.h"
@@ -29,9 +29,10 @@ static const double SAME_POSE = 0.1;
 /* Least standard deviation of poses along a principal axis, in units of gravity. */
 static const double FLAT = 0.1;
 
-static imk_doubt_finding finding(imk_doubt kind, int sensor, int axis, double value, double limit)
+static imk_diagnostic_finding finding(imk_diagnostic kind, int sensor, int axis, double value,
+                                      double limit)
 {
-    return (imk_doubt_finding){
+    return (imk_diagnostic_finding){
         .kind = kind, .sensor = sensor, .axis = axis, .other = -1, .value = value, .limit = limit};
 }
 
@@ -44,7 +45,7 @@ static bool is_whole(double x)
 }
 
 /* Whole numbers of some size that are said to be rad/s or m/s^2. */
-static void doubt_counts(const imki_doubt_call *call, imki_doubt_list *list)
+static void diagnostic_counts(const imki_diagnostic_call *call, imki_diagnostic_list *list)
 {
     const imk_test_record *r = call->record;
     const size_t count = r->count < WHOLE_SAMPLES ? r->count : WHOLE_SAMPLES;
@@ -61,11 +62,11 @@ static void doubt_counts(const imki_doubt_call *call, imki_doubt_list *list)
         }
         /* Zeros and ones are whole numbers too. */
         if (whole && largest > 20.0)
-            imki_doubt_add(list, finding(IMK_DOUBT_COUNTS, sensor, -1, largest, 0.0));
+            imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_COUNTS, sensor, -1, largest, 0.0));
     }
 }
 
-static void doubt_stuck(const imki_doubt_call *call, imki_doubt_list *list)
+static void diagnostic_stuck(const imki_diagnostic_call *call, imki_diagnostic_list *list)
 {
     const imk_test_record *r = call->record;
     for (int sensor = 0; sensor < 2; sensor++)
@@ -75,7 +76,7 @@ static void doubt_stuck(const imki_doubt_call *call, imki_doubt_list *list)
             while (x && k < r->count && !(x[k] != x[k - 1]))
                 k++;
             if (x && r->count > 1 && k == r->count)
-                imki_doubt_add(list, finding(IMK_DOUBT_STUCK, sensor, i, x[0], 0.0));
+                imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_STUCK, sensor, i, x[0], 0.0));
         }
 }
 
@@ -96,7 +97,8 @@ static size_t samples_at_end(const double *x, size_t count, double low, double h
 
 /* Readings at which an axis is saturated: the stated range, else the ends of what it reads, where
  * it scatters over more than a step. @return false: there is no telling */
-static bool saturation(const imki_doubt_call *call, int sensor, int axis, double *low, double *high)
+static bool saturation(const imki_diagnostic_call *call, int sensor, int axis, double *low,
+                       double *high)
 {
     const imk_test_record *r = call->record;
     const double *x = r->reading[sensor][axis];
@@ -123,7 +125,7 @@ static bool saturation(const imki_doubt_call *call, int sensor, int axis, double
 
 /* A knock may clip the accelerometers for some samples; a pose does for long. Of a turn every
  * clipped sample is lost. */
-static void doubt_saturated(const imki_doubt_call *call, imki_doubt_list *list)
+static void diagnostic_saturated(const imki_diagnostic_call *call, imki_diagnostic_list *list)
 {
     const imk_test_record *r = call->record;
     for (int sensor = 1; sensor >= 0; sensor--)
@@ -135,8 +137,8 @@ static void doubt_saturated(const imki_doubt_call *call, imki_doubt_list *list)
             const size_t least = sensor == IMK_GYRO ? 3 : (tenth > 8.0 ? (size_t)tenth : 8);
             const size_t at_end = samples_at_end(r->reading[sensor][i], r->count, low, high, least);
             if (at_end > 0)
-                imki_doubt_add(list, finding(IMK_DOUBT_SATURATED, sensor, i,
-                                             (double)at_end / (double)r->count, high));
+                imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_SATURATED, sensor, i,
+                                                  (double)at_end / (double)r->count, high));
         }
 }
 
@@ -159,7 +161,7 @@ static double distance(const double a[3], const double b[3])
     return sqrt(square);
 }
 
-static bool force_of(const imki_doubt_call *call, const imk_static_interval *interval,
+static bool force_of(const imki_diagnostic_call *call, const imk_static_interval *interval,
                      double force[3], bool *known)
 {
     for (int i = 0; i < 3; i++) {
@@ -174,7 +176,7 @@ static bool force_of(const imki_doubt_call *call, const imk_static_interval *int
 }
 
 /* Median amount of the forces; 0: none. */
-static double median_force(const imki_doubt_call *call)
+static double median_force(const imki_diagnostic_call *call)
 {
     double amount[INTERVALS_MAX];
     size_t count = 0;
@@ -192,7 +194,7 @@ static double median_force(const imki_doubt_call *call)
     return count > 0 ? amount[count / 2] : 0.0;
 }
 
-static void collect_poses(const imki_doubt_call *call, double radius, poses *p)
+static void collect_poses(const imki_diagnostic_call *call, double radius, poses *p)
 {
     p->count = 0;
     p->known = true;
@@ -210,7 +212,7 @@ static void collect_poses(const imki_doubt_call *call, double radius, poses *p)
 }
 
 /* Half the widest distance between any two of the forces. */
-static double half_width(const imki_doubt_call *call)
+static double half_width(const imki_diagnostic_call *call)
 {
     double widest = 0.0;
     const size_t count = call->interval_count < POSES_MAX ? call->interval_count : POSES_MAX;
@@ -228,7 +230,8 @@ static double half_width(const imki_doubt_call *call)
 }
 
 /* Factors by which a unit may have been mistaken: readings times one of them are m/s^2. */
-static void doubt_gravity(const imki_doubt_call *call, double force, imki_doubt_list *list)
+static void diagnostic_gravity(const imki_diagnostic_call *call, double force,
+                               imki_diagnostic_list *list)
 {
     static const double factor[] = {
         9.80665,       /* g */
@@ -244,7 +247,7 @@ static void doubt_gravity(const imki_doubt_call *call, double force, imki_doubt_
     for (size_t i = 0; i < sizeof factor / sizeof *factor; i++)
         if (fabs(ratio / factor[i] - 1.0) < 0.1)
             best = factor[i];
-    imki_doubt_add(list, finding(IMK_DOUBT_GRAVITY_UNIT, IMK_ACCEL, -1, force, best));
+    imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_GRAVITY_UNIT, IMK_ACCEL, -1, force, best));
 }
 
 /* Standard deviation of the poses along the direction in which they differ least, and the body axis
@@ -269,7 +272,8 @@ static double least_spread(const poses *p, int *axis)
     return sqrt(eigenvalue[0] > 0.0 ? eigenvalue[0] : 0.0);
 }
 
-static void doubt_poses(const imki_doubt_call *call, double force, imki_doubt_list *list)
+static void diagnostic_poses(const imki_diagnostic_call *call, double force,
+                             imki_diagnostic_list *list)
 {
     if (call->record->axis_count[IMK_ACCEL] != 3)
         return;
@@ -281,39 +285,42 @@ static void doubt_poses(const imki_doubt_call *call, double force, imki_doubt_li
     for (int i = 0; i < 3; i++)
         noise += call->findings->noise[IMK_ACCEL][i];
     if (p.count <= 1 || (force == 0.0 && !(p.radius > noise))) {
-        imki_doubt_add(list, finding(IMK_DOUBT_NEVER_MOVES, -1, -1, 1.0, POSES_NEEDED));
+        imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_NEVER_MOVES, -1, -1, 1.0, POSES_NEEDED));
         return;
     }
     int axis;
     const double spread = least_spread(&p, &axis) / p.radius;
     if (p.count >= 4 && spread < FLAT)
-        imki_doubt_add(list, finding(IMK_DOUBT_ONE_PLANE, IMK_ACCEL, axis, spread, FLAT));
+        imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_ONE_PLANE, IMK_ACCEL, axis, spread, FLAT));
     if (p.count < POSES_NEEDED)
-        imki_doubt_add(list, finding(IMK_DOUBT_FEW_POSES, -1, -1, (double)p.count, POSES_NEEDED));
+        imki_diagnostic_add(
+            list, finding(IMK_DIAGNOSTIC_FEW_POSES, -1, -1, (double)p.count, POSES_NEEDED));
 }
 
-size_t imk_record_doubts(const imk_test_record *record, const imk_static_findings *findings,
-                         size_t interval_count, const imk_static_interval *interval, double gravity,
-                         const imk_model *model, size_t capacity, imk_doubt_finding *doubt)
+size_t imk_record_diagnostics(const imk_test_record *record, const imk_static_findings *findings,
+                              size_t interval_count, const imk_static_interval *interval,
+                              double gravity, const imk_model *model, size_t capacity,
+                              imk_diagnostic_finding *diagnostic)
 {
-    if (!record || !findings || !doubt || (interval_count > 0 && !interval))
+    if (!record || !findings || !diagnostic || (interval_count > 0 && !interval))
         return 0;
-    const imki_doubt_call call = {record, findings, interval_count, interval, gravity, model};
-    imki_doubt_list list = {0, capacity, doubt};
-    doubt_counts(&call, &list);
-    doubt_stuck(&call, &list);
+    const imki_diagnostic_call call = {record, findings, interval_count, interval, gravity, model};
+    imki_diagnostic_list list = {0, capacity, diagnostic};
+    diagnostic_counts(&call, &list);
+    diagnostic_stuck(&call, &list);
     if (interval_count == 0)
-        imki_doubt_add(&list, finding(IMK_DOUBT_NEVER_STATIC, -1, -1, findings->standing, 0.0));
+        imki_diagnostic_add(&list,
+                            finding(IMK_DIAGNOSTIC_NEVER_STATIC, -1, -1, findings->standing, 0.0));
     const double force = median_force(&call);
     /* Forces that are said to be SI but are whole numbers have been named above. */
     bool whole = false;
     for (size_t i = 0; i < list.count; i++)
-        whole |= doubt[i].kind == IMK_DOUBT_COUNTS && doubt[i].sensor == IMK_ACCEL;
+        whole |= diagnostic[i].kind == IMK_DIAGNOSTIC_COUNTS && diagnostic[i].sensor == IMK_ACCEL;
     if (!whole)
-        doubt_gravity(&call, force, &list);
-    imki_doubt_turns(&call, &list);
-    doubt_saturated(&call, &list);
+        diagnostic_gravity(&call, force, &list);
+    imki_diagnostic_turns(&call, &list);
+    diagnostic_saturated(&call, &list);
     if (interval_count > 0)
-        doubt_poses(&call, force, &list);
+        diagnostic_poses(&call, force, &list);
     return list.count;
 }

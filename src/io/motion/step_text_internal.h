@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The sentences of scripts, "turn left 90 deg at 10 deg/s banked": a verb, quantities behind little
+/* The steps of scripts, "turn left 90 deg at 10 deg/s banked": a verb, quantities behind little
  * words, and words that stand for themselves. */
-#ifndef IMUKI_STEP_SENTENCE_INTERNAL_H
-#define IMUKI_STEP_SENTENCE_INTERNAL_H
+#ifndef IMUKI_STEP_TEXT_INTERNAL_H
+#define IMUKI_STEP_TEXT_INTERNAL_H
 
 #include "io/model/document_internal.h"
 
-/* The quantities of a sentence, by the word in front; `bare` has none. */
+/* The quantities of a step, by the word in front; `bare` has none. */
 typedef enum imki_part {
     IMKI_PART_BARE,
     IMKI_PART_TO,
@@ -46,17 +46,17 @@ enum {
 
 enum { IMKI_FORMS_MAX = 6 };
 
-/* A verb and the sentences that can be made with it. */
+/* A verb and the steps that can be made with it. */
 typedef struct imki_verb {
     const char *name;
-    int kind;                       /* for the reader of the sentence */
+    int kind;                       /* for the reader of the step */
     unsigned words;                 /* that may stand in it */
     unsigned axes;                  /* of which exactly one must; or 0 */
     unsigned forms[IMKI_FORMS_MAX]; /* sets of parts, up to the first 0 */
     const char *usage;              /* "write hold 10 s" */
 } imki_verb;
 
-typedef struct imki_sentence {
+typedef struct imki_step_text {
     imki_reading *reading;
     int node; /* a scalar */
     const imki_verb *verb;
@@ -64,28 +64,28 @@ typedef struct imki_sentence {
         const char *begin, *end; /* in the node's text */
     } part[IMKI_PARTS];
     unsigned parts, words;
-} imki_sentence;
+} imki_step_text;
 
 /* Divide the text of a node and find its verb among `count`. `what` is "a step", for messages.
  * @return false when that fails */
-bool imki_sentence_read(imki_reading *reading, int node, const char *what, size_t count,
-                        const imki_verb *verbs, imki_sentence *sentence);
+bool imki_step_text_read(imki_reading *reading, int node, const char *what, size_t count,
+                         const imki_verb *verbs, imki_step_text *step);
 
-bool imki_sentence_has(const imki_sentence *sentence, imki_part part);
+bool imki_step_text_has(const imki_step_text *step, imki_part part);
 
 /* Number of the axis word: 0 … 2 x y z, 3 … 5 roll pitch yaw; -1 when there is none. */
-int imki_sentence_axis(const imki_sentence *sentence);
+int imki_step_text_axis(const imki_step_text *step);
 
 /* Exactly `count` numbers of a part in the dimension of an SI unit. */
-void imki_sentence_numbers(const imki_sentence *sentence, imki_part part, const char *si,
-                           size_t count, double *values);
+void imki_step_text_numbers(const imki_step_text *step, imki_part part, const char *si,
+                            size_t count, double *values);
 /* One; one that is above 0. What is returned after a failure is finite. */
-double imki_sentence_number(const imki_sentence *sentence, imki_part part, const char *si);
-double imki_sentence_positive(const imki_sentence *sentence, imki_part part, const char *si);
+double imki_step_text_number(const imki_step_text *step, imki_part part, const char *si);
+double imki_step_text_positive(const imki_step_text *step, imki_part part, const char *si);
 
-/* A failure at a part, found being its text; IMKI_PARTS: at the whole sentence. */
-void imki_sentence_refuse(const imki_sentence *sentence, imki_part part, imk_status status,
-                          const char *expected);
+/* A failure at a part, found being its text; IMKI_PARTS: at the whole step. */
+void imki_step_text_refuse(const imki_step_text *step, imki_part part, imk_status status,
+                           const char *expected);
 
 /* A number, as the value of a key; the value stays as it is where there is none. */
 void imki_value_number(imki_reading *reading, int mapping, const char *key, const char *si,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Laboratory tables that are drawn, and how often the intervals of their figures hold the truth:
  * for the test and for the long experiment. */
-#ifndef IMUKIT_TESTS_EVALUATION_BENCH_H
-#define IMUKIT_TESTS_EVALUATION_BENCH_H
+#ifndef IMUKIT_TESTS_EVALUATION_SESSION_H
+#define IMUKIT_TESTS_EVALUATION_SESSION_H
 
 #include "imukit/evaluate.h"
 #include "imukit/random.h"

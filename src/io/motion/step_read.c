@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The steps of a motion script, each one a sentence.
+/* The steps of a motion script, each one a step.
  *
  * A rate r held for a time t changes by r t; it builds up and dies away over the smoothing time s,
  * so that the step lasts t + s. A change c that is to last t in all has the rate c/(t - s).
@@ -108,61 +108,62 @@ static void add_step(imki_script_reader *r, int node, const imk_motion_step *ste
 }
 
 /* Rate of a step that changes by `amount`, from its part `at` or `in`. */
-static double read_rate(const imki_script_reader *r, const imki_sentence *s, const char *si,
+static double read_rate(const imki_script_reader *r, const imki_step_text *s, const char *si,
                         double amount)
 {
-    if (imki_sentence_has(s, IMKI_PART_AT))
-        return imki_sentence_positive(s, IMKI_PART_AT, si);
-    const double duration = imki_sentence_positive(s, IMKI_PART_IN, "s");
+    if (imki_step_text_has(s, IMKI_PART_AT))
+        return imki_step_text_positive(s, IMKI_PART_AT, si);
+    const double duration = imki_step_text_positive(s, IMKI_PART_IN, "s");
     if (!(duration >= 2.0 * r->script.smoothing))
-        imki_sentence_refuse(s, IMKI_PART_IN, IMK_ERROR_RANGE, "at least twice the smoothing time");
+        imki_step_text_refuse(s, IMKI_PART_IN, IMK_ERROR_RANGE,
+                              "at least twice the smoothing time");
     return fabs(amount) / (duration - r->script.smoothing);
 }
 
 /* A step that changes something to or by an amount at a rate; one that changes nothing takes no
  * time, or rests for the time it should last. */
-static void add_change(imki_script_reader *r, const imki_sentence *s, const char *rate_si,
+static void add_change(imki_script_reader *r, const imki_step_text *s, const char *rate_si,
                        imk_motion_step step)
 {
     step.rate = read_rate(r, s, rate_si, step.amount);
-    if (step.amount == 0.0 && !imki_sentence_has(s, IMKI_PART_IN))
+    if (step.amount == 0.0 && !imki_step_text_has(s, IMKI_PART_IN))
         return;
     if (step.amount == 0.0)
         step = (imk_motion_step){.kind = IMK_STEP_HOLD,
-                                 .duration = imki_sentence_number(s, IMKI_PART_IN, "s")};
+                                 .duration = imki_step_text_number(s, IMKI_PART_IN, "s")};
     add_step(r, s->node, &step);
 }
 
 /* "2 m/s^2 for 10 s", "at 100 deg/s for 10 s": rate times time. */
-static void read_product(const imki_sentence *s, imki_part part, const char *si,
+static void read_product(const imki_step_text *s, imki_part part, const char *si,
                          imk_motion_step *step)
 {
-    const double rate = imki_sentence_number(s, part, si);
+    const double rate = imki_step_text_number(s, part, si);
     if (rate == 0.0)
-        imki_sentence_refuse(s, part, IMK_ERROR_RANGE,
-                             "a rate other than 0; write hold 10 s to go on as it is");
-    step->amount = rate * imki_sentence_positive(s, IMKI_PART_FOR, "s");
+        imki_step_text_refuse(s, part, IMK_ERROR_RANGE,
+                              "a rate other than 0; write hold 10 s to go on as it is");
+    step->amount = rate * imki_step_text_positive(s, IMKI_PART_FOR, "s");
     step->rate = fabs(rate);
 }
 
 /* A change by the bare amount, or to the amount behind "to", 0 without one. @return the target */
-static double read_change(const imki_sentence *s, const char *si, double from, double *amount)
+static double read_change(const imki_step_text *s, const char *si, double from, double *amount)
 {
-    if (imki_sentence_has(s, IMKI_PART_BARE)) {
-        *amount = imki_sentence_number(s, IMKI_PART_BARE, si);
+    if (imki_step_text_has(s, IMKI_PART_BARE)) {
+        *amount = imki_step_text_number(s, IMKI_PART_BARE, si);
         return from + *amount;
     }
     const double target =
-        imki_sentence_has(s, IMKI_PART_TO) ? imki_sentence_number(s, IMKI_PART_TO, si) : 0.0;
+        imki_step_text_has(s, IMKI_PART_TO) ? imki_step_text_number(s, IMKI_PART_TO, si) : 0.0;
     *amount = target - from;
     return target;
 }
 
-static void read_speed(imki_script_reader *r, const imki_sentence *s)
+static void read_speed(imki_script_reader *r, const imki_step_text *s)
 {
     const bool brakes = strcmp(s->verb->name, "brake") == 0;
-    const bool lasts = imki_sentence_has(s, IMKI_PART_FOR),
-               by = imki_sentence_has(s, IMKI_PART_BARE);
+    const bool lasts = imki_step_text_has(s, IMKI_PART_FOR),
+               by = imki_step_text_has(s, IMKI_PART_BARE);
     imk_motion_step step = {.kind = IMK_STEP_ACCELERATE};
     double target = 0.0;
     if (lasts)
@@ -171,12 +172,12 @@ static void read_speed(imki_script_reader *r, const imki_sentence *s)
         target = read_change(s, "m/s", r->speed, &step.amount);
     if (brakes && by) {
         if (!(step.amount > 0.0))
-            imki_sentence_refuse(s, IMKI_PART_BARE, IMK_ERROR_RANGE, "a number above 0");
+            imki_step_text_refuse(s, IMKI_PART_BARE, IMK_ERROR_RANGE, "a number above 0");
         step.amount = -step.amount;
     }
     if (brakes && step.amount > 0.0)
-        imki_sentence_refuse(s, IMKI_PART_TO, IMK_ERROR_RANGE,
-                             "a speed below the one the body has here; or write accelerate");
+        imki_step_text_refuse(s, IMKI_PART_TO, IMK_ERROR_RANGE,
+                              "a speed below the one the body has here; or write accelerate");
     r->speed = by ? r->speed + step.amount : target;
     if (lasts)
         add_step(r, s->node, &step);
@@ -200,80 +201,80 @@ static double turn_towards(double heading, double target, unsigned words)
     return turn;
 }
 
-static void read_turn(imki_script_reader *r, const imki_sentence *s)
+static void read_turn(imki_script_reader *r, const imki_step_text *s)
 {
     const unsigned sides = s->words & (IMKI_WORD_LEFT | IMKI_WORD_RIGHT);
     imk_motion_step step = {.kind = IMK_STEP_TURN, .banked = (s->words & IMKI_WORD_BANKED) != 0};
     if (sides == (IMKI_WORD_LEFT | IMKI_WORD_RIGHT))
-        imki_sentence_refuse(s, IMKI_PARTS, IMK_ERROR_SYNTAX, s->verb->usage);
-    if (imki_sentence_has(s, IMKI_PART_TO)) {
+        imki_step_text_refuse(s, IMKI_PARTS, IMK_ERROR_SYNTAX, s->verb->usage);
+    if (imki_step_text_has(s, IMKI_PART_TO)) {
         step.amount =
-            turn_towards(r->heading, imki_sentence_number(s, IMKI_PART_TO, "rad"), s->words);
+            turn_towards(r->heading, imki_step_text_number(s, IMKI_PART_TO, "rad"), s->words);
     } else if (sides == 0) {
-        step.amount = imki_sentence_number(s, IMKI_PART_BARE, "rad");
+        step.amount = imki_step_text_number(s, IMKI_PART_BARE, "rad");
     } else {
-        step.amount = imki_sentence_positive(s, IMKI_PART_BARE, "rad");
+        step.amount = imki_step_text_positive(s, IMKI_PART_BARE, "rad");
         step.amount = sides == IMKI_WORD_LEFT ? -step.amount : step.amount;
     }
     r->heading += step.amount;
     add_change(r, s, "rad/s", step);
 }
 
-static void read_climb(imki_script_reader *r, const imki_sentence *s)
+static void read_climb(imki_script_reader *r, const imki_step_text *s)
 {
     imk_motion_step step = {.kind = IMK_STEP_CLIMB};
     r->climb = read_change(s, "rad", r->climb, &step.amount);
     if (!(fabs(r->climb) < 0.5 * PI))
-        imki_sentence_refuse(s, IMKI_PARTS, IMK_ERROR_RANGE,
-                             "a climb angle between -90 deg and 90 deg");
+        imki_step_text_refuse(s, IMKI_PARTS, IMK_ERROR_RANGE,
+                              "a climb angle between -90 deg and 90 deg");
     add_change(r, s, "rad/s", step);
 }
 
-static void read_rotation(imki_script_reader *r, const imki_sentence *s)
+static void read_rotation(imki_script_reader *r, const imki_step_text *s)
 {
-    imk_motion_step step = {.kind = IMK_STEP_ROTATE, .axis = imki_sentence_axis(s)};
-    if (imki_sentence_has(s, IMKI_PART_FOR)) {
+    imk_motion_step step = {.kind = IMK_STEP_ROTATE, .axis = imki_step_text_axis(s)};
+    if (imki_step_text_has(s, IMKI_PART_FOR)) {
         read_product(s, IMKI_PART_AT, "rad/s", &step);
         add_step(r, s->node, &step);
     } else {
-        step.amount = imki_sentence_number(s, IMKI_PART_BARE, "rad");
+        step.amount = imki_step_text_number(s, IMKI_PART_BARE, "rad");
         add_change(r, s, "rad/s", step);
     }
 }
 
-static void read_oscillation(imki_script_reader *r, const imki_sentence *s)
+static void read_oscillation(imki_script_reader *r, const imki_step_text *s)
 {
-    imk_motion_step step = {.kind = (imk_step_kind)s->verb->kind, .axis = imki_sentence_axis(s)};
-    step.amount = imki_sentence_positive(s, IMKI_PART_BARE, "rad");
-    step.frequency = imki_sentence_positive(s, IMKI_PART_AT, "Hz");
-    step.duration = imki_sentence_positive(s, IMKI_PART_FOR, "s");
+    imk_motion_step step = {.kind = (imk_step_kind)s->verb->kind, .axis = imki_step_text_axis(s)};
+    step.amount = imki_step_text_positive(s, IMKI_PART_BARE, "rad");
+    step.frequency = imki_step_text_positive(s, IMKI_PART_AT, "Hz");
+    step.duration = imki_step_text_positive(s, IMKI_PART_FOR, "s");
     add_step(r, s->node, &step);
 }
 
-static void read_pose(imki_script_reader *r, const imki_sentence *s)
+static void read_pose(imki_script_reader *r, const imki_step_text *s)
 {
     imk_motion_step step = {.kind = IMK_STEP_POSE};
-    imki_sentence_numbers(s, IMKI_PART_BARE, "rad", 3, step.angle);
-    step.duration = imki_sentence_positive(s, IMKI_PART_IN, "s");
+    imki_step_text_numbers(s, IMKI_PART_BARE, "rad", 3, step.angle);
+    step.duration = imki_step_text_positive(s, IMKI_PART_IN, "s");
     add_step(r, s->node, &step);
 }
 
-static void read_hold(imki_script_reader *r, const imki_sentence *s)
+static void read_hold(imki_script_reader *r, const imki_step_text *s)
 {
-    const imki_part part = imki_sentence_has(s, IMKI_PART_FOR) ? IMKI_PART_FOR : IMKI_PART_BARE;
+    const imki_part part = imki_step_text_has(s, IMKI_PART_FOR) ? IMKI_PART_FOR : IMKI_PART_BARE;
     const imk_motion_step step = {.kind = IMK_STEP_HOLD,
-                                  .duration = imki_sentence_positive(s, part, "s")};
+                                  .duration = imki_step_text_positive(s, part, "s")};
     add_step(r, s->node, &step);
 }
 
-void imki_step_sentence_read(imki_script_reader *r, int node)
+void imki_step_read(imki_script_reader *r, int node)
 {
-    static void (*const readers[])(imki_script_reader *, const imki_sentence *) = {
+    static void (*const readers[])(imki_script_reader *, const imki_step_text *) = {
         [IMK_STEP_HOLD] = read_hold,         [IMK_STEP_ACCELERATE] = read_speed,
         [IMK_STEP_TURN] = read_turn,         [IMK_STEP_CLIMB] = read_climb,
         [IMK_STEP_ROTATE] = read_rotation,   [IMK_STEP_POSE] = read_pose,
         [IMK_STEP_SWING] = read_oscillation, [IMK_STEP_CONING] = read_oscillation};
-    imki_sentence s;
-    if (imki_sentence_read(&r->reading, node, "a step", VERBS, verbs, &s))
+    imki_step_text s;
+    if (imki_step_text_read(&r->reading, node, "a step", VERBS, verbs, &s))
         readers[s.verb->kind](r, &s);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Simulated benches of the procedures that have a reference: programmes of rates and forces, units
  * drawn at random, their logs by the simulator. Used by tests and by experiments/. */
-#ifndef IMUKIT_TEST_REFERENCE_BENCH_H
-#define IMUKIT_TEST_REFERENCE_BENCH_H
+#ifndef IMUKIT_TEST_REFERENCE_SESSION_H
+#define IMUKIT_TEST_REFERENCE_SESSION_H
 
 #include "imukit/procedure.h"
 #include "imukit/simulate.h"
@@ -12,10 +12,11 @@
 #include <string.h>
 
 enum { BENCH_SAMPLES = 40000, BENCH_OBSERVATIONS = 21000, BENCH_HOLDS = 200 };
-static const double bench_rate = 100.0, bench_gravity = 9.80665, bench_pi = 3.14159265358979323846;
+static const double session_rate = 100.0, session_gravity = 9.80665,
+                    session_pi = 3.14159265358979323846;
 
 /* A programme, and the log of one unit in it. */
-typedef struct bench {
+typedef struct session {
     imk_procedure procedure;
     size_t count, holds;
     size_t hold_begin[BENCH_HOLDS], hold_end[BENCH_HOLDS];
@@ -23,7 +24,7 @@ typedef struct bench {
     double encoder[3][BENCH_SAMPLES]; /* the rates as the table's encoder tells them */
     double log[6][BENCH_SAMPLES], slow[6][BENCH_SAMPLES];
     imk_model truth;             /* run constants and the mean of the slow noise included */
-    void (*slower)(imk_model *); /* makes the noise of a unit slower; NULL: as bench_unit() */
+    void (*slower)(imk_model *); /* makes the noise of a unit slower; NULL: as session_unit() */
     bool noise_known;            /* the calibration is told the noise */
     imk_test_record record;
     imk_procedure_settings settings;
@@ -33,16 +34,16 @@ typedef struct bench {
     imk_observation observation[BENCH_OBSERVATIONS];
     void *workspace;
     size_t workspace_size;
-} bench;
+} session;
 
 /* ---- programmes ------------------------------------------------------------------------------
  */
 
 /* Go smoothly to a rate and a force, 10 x^3 - 15 x^4 + 6 x^5, and stay there. */
-static inline void bench_go(bench *b, const double rate[3], const double force[3], double change,
-                            double hold)
+static inline void session_go(session *b, const double rate[3], const double force[3],
+                              double change, double hold)
 {
-    const size_t ramp = (size_t)(change * bench_rate), stay = (size_t)(hold * bench_rate);
+    const size_t ramp = (size_t)(change * session_rate), stay = (size_t)(hold * session_rate);
     const size_t from = b->count;
     if (from + ramp + stay > BENCH_SAMPLES || b->holds == BENCH_HOLDS)
         abort();
@@ -55,102 +56,103 @@ static inline void bench_go(bench *b, const double rate[3], const double force[3
             b->rate[j][from + k] = r0 + (rate[j] - r0) * s;
             b->force[j][from + k] = f0 + (force[j] - f0) * s;
             b->acceleration[j][from + k] = (rate[j] - r0) * 30.0 * x * x * (1.0 - x) * (1.0 - x) /
-                                           ((double)(ramp > 0 ? ramp : 1) / bench_rate);
+                                           ((double)(ramp > 0 ? ramp : 1) / session_rate);
         }
     }
     b->hold_begin[b->holds] = from + ramp;
     b->hold_end[b->holds++] = b->count = from + ramp + stay;
 }
 
-static inline void bench_along(int axis, double value, double out[3])
+static inline void session_along(int axis, double value, double out[3])
 {
     for (int j = 0; j < 3; j++)
         out[j] = j == axis ? value : 0.0;
 }
 
 /* Each axis upright, then upside down: rates of both signs in steps. */
-static inline void bench_rate_steps(bench *b)
+static inline void session_rate_steps(session *b)
 {
     static const double level[] = {0.0, 0.3, 0.8, 1.5, 2.2, 3.0};
     for (int axis = 0; axis < 3; axis++)
         for (int up = 0; up < 2; up++) {
             double rate[3], force[3];
-            bench_along(axis, up ? bench_gravity : -bench_gravity, force);
+            session_along(axis, up ? session_gravity : -session_gravity, force);
             for (int i = 0; i < 6; i++)
                 for (int sign = 1; sign >= (i > 0 ? -1 : 1); sign -= 2) {
-                    bench_along(axis, sign * level[i], rate);
-                    bench_go(b, rate, force, 0.5, 3.0);
+                    session_along(axis, sign * level[i], rate);
+                    session_go(b, rate, force, 0.5, 3.0);
                 }
         }
 }
 
 /* Each axis: rest, sines of two frequencies, rest. */
-static inline void bench_rate_sine(bench *b)
+static inline void session_rate_sine(session *b)
 {
     for (int axis = 0; axis < 3; axis++)
         for (int up = 0; up < 2; up++) {
             double rate[3] = {0.0, 0.0, 0.0}, force[3];
-            bench_along(axis, up ? bench_gravity : -bench_gravity, force);
-            bench_go(b, rate, force, 1.0, 2.0);
+            session_along(axis, up ? session_gravity : -session_gravity, force);
+            session_go(b, rate, force, 1.0, 2.0);
             for (int k = 0; k < 2000; k++, b->count++) {
-                const double t = (k + 0.5) / bench_rate, grow = fmin(fmin(t, 20.0 - t), 1.0);
+                const double t = (k + 0.5) / session_rate, grow = fmin(fmin(t, 20.0 - t), 1.0);
                 const double s = grow * grow * (3.0 - 2.0 * grow);
                 for (int j = 0; j < 3; j++) {
-                    b->rate[j][b->count] = j == axis ? 3.0 * s * sin(2.0 * bench_pi * 0.5 * t) : 0;
+                    b->rate[j][b->count] =
+                        j == axis ? 3.0 * s * sin(2.0 * session_pi * 0.5 * t) : 0;
                     b->force[j][b->count] = force[j];
                 }
             }
-            bench_go(b, rate, force, 0.0, 2.0);
+            session_go(b, rate, force, 0.0, 2.0);
         }
 }
 
 /* Each axis as the axis of a dividing head, level, in steps of 30 degrees. */
-static inline void bench_tumble(bench *b)
+static inline void session_tumble(session *b)
 {
     for (int axis = 0; axis < 3; axis++)
         for (int step = 0; step < 12; step++) {
-            const double angle = bench_pi * step / 6.0;
+            const double angle = session_pi * step / 6.0;
             const double rate[3] = {0.0, 0.0, 0.0};
             double force[3] = {0.0, 0.0, 0.0};
-            force[(axis + 1) % 3] = bench_gravity * cos(angle);
-            force[(axis + 2) % 3] = bench_gravity * sin(angle);
-            bench_go(b, rate, force, 1.0, 3.0);
+            force[(axis + 1) % 3] = session_gravity * cos(angle);
+            force[(axis + 2) % 3] = session_gravity * sin(angle);
+            session_go(b, rate, force, 1.0, 3.0);
         }
 }
 
 /* On an arm of 2 m that turns about the vertical, five levels to 10 g, in 12 mountings: along the
  * arm each axis outwards and inwards, upright each of the others. */
-static inline void bench_centrifuge(bench *b)
+static inline void session_centrifuge(session *b)
 {
     for (int mount = 0; mount < 12; mount++)
         for (int level = 0; level <= 5; level++) {
             const int along = mount / 4, up = (along + 1 + mount % 2) % 3;
-            const double f = 2.0 * level * bench_gravity;
+            const double f = 2.0 * level * session_gravity;
             double rate[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0};
             rate[up] = sqrt(f / 2.0);
-            force[up] = bench_gravity;
+            force[up] = session_gravity;
             force[along] = mount / 2 % 2 ? f : -f;
-            bench_go(b, rate, force, 1.0, 2.0);
+            session_go(b, rate, force, 1.0, 2.0);
         }
 }
 
 /* About each axis, upright, both ways, with rests between. */
-static inline void bench_spin(bench *b)
+static inline void session_spin(session *b)
 {
     for (int axis = 0; axis < 3; axis++) {
         double rate[3], force[3];
-        bench_along(axis, bench_gravity, force);
+        session_along(axis, session_gravity, force);
         for (int i = 0; i < 5; i++) {
-            bench_along(axis, i % 2 == 0 ? 0.0 : i == 1 ? 15.0 : -15.0, rate);
-            bench_go(b, rate, force, 0.5, 4.0);
+            session_along(axis, i % 2 == 0 ? 0.0 : i == 1 ? 15.0 : -15.0, rate);
+            session_go(b, rate, force, 0.5, 4.0);
         }
     }
 }
 
 /* ---- units ---------------------------------------------------------------------------------- */
 
-static inline void bench_draw(double *value, size_t count, double sigma, uint64_t seed,
-                              uint32_t which)
+static inline void session_draw(double *value, size_t count, double sigma, uint64_t seed,
+                                uint32_t which)
 {
     double normal[32];
     imk_random_normals(imk_random_seeded(seed), imk_stream(which, 900, 0, 0), 0, 32, normal);
@@ -158,11 +160,11 @@ static inline void bench_draw(double *value, size_t count, double sigma, uint64_
         value[i] = sigma * normal[i];
 }
 
-static inline void bench_rows(double row[IMK_AXES_MAX][3], bool diagonal, double sigma,
-                              uint64_t seed, uint32_t which)
+static inline void session_rows(double row[IMK_AXES_MAX][3], bool diagonal, double sigma,
+                                uint64_t seed, uint32_t which)
 {
     double value[9];
-    bench_draw(value, 9, sigma, seed, which);
+    session_draw(value, 9, sigma, seed, which);
     for (int i = 0; i < 9; i++)
         row[i / 3][i % 3] = i / 3 == i % 3 && !diagonal ? 0.0 : value[i];
 }
@@ -171,45 +173,45 @@ static inline void bench_rows(double row[IMK_AXES_MAX][3], bool diagonal, double
  * rounded increments. Its bias instability overtakes the white noise after some 10 minutes, longer
  * than these tests last. Errors drawn, of the terms that the procedure estimates; what it does not
  * estimate is not there. */
-static inline imk_model bench_unit(imk_procedure procedure, uint64_t seed)
+static inline imk_model session_unit(imk_procedure procedure, uint64_t seed)
 {
     imk_model m;
     imk_model_default(&m);
     const bool gyro = procedure != IMK_PROCEDURE_SPIN;
     const bool accel = procedure != IMK_PROCEDURE_RATE_TABLE && procedure != IMK_PROCEDURE_SPIN;
     for (int axis = 0; axis < 3; axis++) {
-        m.gyro.noise.white.value[axis] = 0.15 / 60.0 * bench_pi / 180.0;
-        m.gyro.noise.bias_instability.value[axis] = 0.5 / 3600.0 * bench_pi / 180.0;
+        m.gyro.noise.white.value[axis] = 0.15 / 60.0 * session_pi / 180.0;
+        m.gyro.noise.bias_instability.value[axis] = 0.5 / 3600.0 * session_pi / 180.0;
         m.gyro.noise.quantization.value[axis] = 1e-6;
-        m.accel.noise.white.value[axis] = 50e-6 * bench_gravity;
-        m.accel.noise.bias_instability.value[axis] = 3e-6 * bench_gravity;
+        m.accel.noise.white.value[axis] = 50e-6 * session_gravity;
+        m.accel.noise.bias_instability.value[axis] = 3e-6 * session_gravity;
         m.accel.noise.quantization.value[axis] = 1e-5;
     }
-    bench_draw(m.gyro.bias.fixed.value, 3, 0.005, seed, 1);
+    session_draw(m.gyro.bias.fixed.value, 3, 0.005, seed, 1);
     if (gyro)
-        bench_rows(m.gyro.g_sensitivity.value, true, 1e-5, seed, 4);
+        session_rows(m.gyro.g_sensitivity.value, true, 1e-5, seed, 4);
     if (procedure == IMK_PROCEDURE_RATE_TABLE || procedure == IMK_PROCEDURE_CENTRIFUGE) {
-        bench_draw(m.gyro.scale_factor.fixed.value, 3, 0.003, seed, 2);
-        bench_rows(m.gyro.misalignment.value, false, 0.003, seed, 3);
+        session_draw(m.gyro.scale_factor.fixed.value, 3, 0.003, seed, 2);
+        session_rows(m.gyro.misalignment.value, false, 0.003, seed, 3);
     }
     if (procedure == IMK_PROCEDURE_RATE_TABLE) {
-        bench_draw(m.gyro.nonlinearity.k2.value, 3, 1e-4, seed, 5);
-        bench_draw(m.gyro.nonlinearity.koq.value, 3, 1e-4, seed, 6);
-        bench_draw(m.gyro.nonlinearity.k3.value, 3, 3e-5, seed, 7);
-        bench_draw(m.gyro.nonlinearity.asymmetry.value, 3, 3e-4, seed, 8);
+        session_draw(m.gyro.nonlinearity.k2.value, 3, 1e-4, seed, 5);
+        session_draw(m.gyro.nonlinearity.koq.value, 3, 1e-4, seed, 6);
+        session_draw(m.gyro.nonlinearity.k3.value, 3, 3e-5, seed, 7);
+        session_draw(m.gyro.nonlinearity.asymmetry.value, 3, 3e-4, seed, 8);
     }
     if (procedure == IMK_PROCEDURE_SPIN)
-        bench_rows(m.accel.lever_arm.value, true, 0.02, seed, 9);
+        session_rows(m.accel.lever_arm.value, true, 0.02, seed, 9);
     if (!accel)
         return m;
-    bench_draw(m.accel.bias.fixed.value, 3, 0.05, seed, 10);
-    bench_draw(m.accel.scale_factor.fixed.value, 3, 0.003, seed, 11);
-    bench_rows(m.accel.misalignment.value, false, 0.003, seed, 12);
-    bench_draw(m.accel.nonlinearity.k2.value, 3, 1e-5, seed, 13);
-    bench_draw(m.accel.nonlinearity.k3.value, 3, 1e-7, seed, 14);
+    session_draw(m.accel.bias.fixed.value, 3, 0.05, seed, 10);
+    session_draw(m.accel.scale_factor.fixed.value, 3, 0.003, seed, 11);
+    session_rows(m.accel.misalignment.value, false, 0.003, seed, 12);
+    session_draw(m.accel.nonlinearity.k2.value, 3, 1e-5, seed, 13);
+    session_draw(m.accel.nonlinearity.k3.value, 3, 1e-7, seed, 14);
     if (procedure == IMK_PROCEDURE_CENTRIFUGE) {
-        bench_draw(m.accel.nonlinearity.koq.value, 3, 1e-5, seed, 15);
-        bench_draw(m.accel.nonlinearity.asymmetry.value, 3, 3e-4, seed, 16);
+        session_draw(m.accel.nonlinearity.koq.value, 3, 1e-5, seed, 15);
+        session_draw(m.accel.nonlinearity.asymmetry.value, 3, 3e-4, seed, 16);
     }
     return m;
 }
@@ -217,10 +219,10 @@ static inline imk_model bench_unit(imk_procedure procedure, uint64_t seed)
 /* ---- logs ------------------------------------------------------------------------------------
  */
 
-static inline void bench_run(const bench *b, const imk_model *model, uint64_t seed, uint32_t run,
-                             bool moving, double (*out)[BENCH_SAMPLES])
+static inline void session_run(const session *b, const imk_model *model, uint64_t seed,
+                               uint32_t run, bool moving, double (*out)[BENCH_SAMPLES])
 {
-    imk_recorded_motion motion = {.count = b->count, .rate = bench_rate};
+    imk_recorded_motion motion = {.count = b->count, .rate = session_rate};
     imk_simulation simulation = imk_simulation_default();
     double *columns[6];
     for (int j = 0; j < 3; j++) {
@@ -230,7 +232,7 @@ static inline void bench_run(const bench *b, const imk_model *model, uint64_t se
     }
     for (int c = 0; c < 6; c++)
         columns[c] = out[c];
-    simulation.rate = bench_rate;
+    simulation.rate = session_rate;
     simulation.seed = seed;
     simulation.run = run;
     simulation.earth = false;
@@ -247,7 +249,7 @@ static inline void bench_run(const bench *b, const imk_model *model, uint64_t se
 }
 
 /* The bias a unit has in this log: its own, and the mean of its slow noise. */
-static inline void bench_true_bias(bench *b, uint64_t seed, uint32_t run)
+static inline void session_true_bias(session *b, uint64_t seed, uint32_t run)
 {
     imk_model slow;
     imk_model_default(&slow);
@@ -259,7 +261,7 @@ static inline void bench_true_bias(bench *b, uint64_t seed, uint32_t run)
         memset(&noise->white, 0, sizeof noise->white);
         memset(&noise->quantization, 0, sizeof noise->quantization);
     }
-    bench_run(b, &slow, seed, run, false, b->slow);
+    session_run(b, &slow, seed, run, false, b->slow);
     for (int c = 0; c < 6; c++) {
         double sum = 0.0;
         for (size_t k = 0; k < b->count; k++)
@@ -270,14 +272,14 @@ static inline void bench_true_bias(bench *b, uint64_t seed, uint32_t run)
 }
 
 /* Programme, references, settings. */
-static inline void bench_start(bench *b, imk_procedure procedure, void (*programme)(bench *))
+static inline void session_start(session *b, imk_procedure procedure, void (*programme)(session *))
 {
     memset(b, 0, sizeof *b);
     b->procedure = procedure;
     programme(b);
     b->settings = imk_procedure_default(procedure);
     b->record = (imk_test_record){
-        .name = "bench", .count = b->count, .dt = 1.0 / bench_rate, .axis_count = {3, 3}};
+        .name = "bench", .count = b->count, .dt = 1.0 / session_rate, .axis_count = {3, 3}};
     for (int j = 0; j < 3; j++) {
         b->record.reading[0][j] = b->log[j];
         b->record.reading[1][j] = b->log[3 + j];
@@ -289,20 +291,20 @@ static inline void bench_start(bench *b, imk_procedure procedure, void (*program
 }
 
 /* The log of unit `seed`; `bad` of its holds are disturbed. */
-static inline void bench_log(bench *b, uint64_t seed, double bad)
+static inline void session_log(session *b, uint64_t seed, double bad)
 {
-    b->truth = bench_unit(b->procedure, seed);
+    b->truth = session_unit(b->procedure, seed);
     if (b->slower)
         b->slower(&b->truth);
-    bench_run(b, &b->truth, seed, (uint32_t)seed, true, b->log);
-    bench_true_bias(b, seed, (uint32_t)seed);
+    session_run(b, &b->truth, seed, (uint32_t)seed, true, b->log);
+    session_true_bias(b, seed, (uint32_t)seed);
     /* An encoder of 2e-7 rad: its rates are differences of rounded angles. */
     for (int j = 0; j < 3; j++) {
         double angle = 0.0, shown = 0.0;
         for (size_t k = 0; k < b->count; k++) {
-            angle += b->rate[j][k] / bench_rate;
+            angle += b->rate[j][k] / session_rate;
             const double next = 2e-7 * floor(angle / 2e-7 + 0.5);
-            b->encoder[j][k] = (next - shown) * bench_rate;
+            b->encoder[j][k] = (next - shown) * session_rate;
             shown = next;
         }
     }
@@ -317,7 +319,7 @@ static inline void bench_log(bench *b, uint64_t seed, double bad)
 }
 
 /* Observe and solve. */
-static inline imk_status bench_solve(bench *b, imk_error *error)
+static inline imk_status session_solve(session *b, imk_error *error)
 {
     imk_calibration_default(&b->calibration);
     b->calibration.observation = b->observation;
