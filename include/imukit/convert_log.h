@@ -10,9 +10,7 @@
 #include "imukit/job.h"
 #include "imukit/record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What is asked. Start from imk_convert_log_default(). */
 typedef struct imk_convert_log_settings {
@@ -28,6 +26,7 @@ typedef struct imk_convert_log_settings {
     double yaw;              /**< at first, from north to east [rad]; 0 */
 } imk_convert_log_settings;
 
+/** All columns as read. */
 IMK_API imk_convert_log_settings imk_convert_log_default(void);
 
 /** Convert a source into a sink.
@@ -46,7 +45,5 @@ IMK_API imk_status imk_convert_log_run(const imk_record_source *source,
                                        const imk_record_sink *sink, const imk_job *job,
                                        imk_findings *findings, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

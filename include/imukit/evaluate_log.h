@@ -9,9 +9,7 @@
 #include "imukit/evaluate_sheet.h"
 #include "imukit/even_record.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+IMK_BEGIN_C
 
 /** What is asked. Start from imk_evaluate_log_default(). */
 typedef struct imk_evaluate_log_settings {
@@ -22,6 +20,7 @@ typedef struct imk_evaluate_log_settings {
     bool sections;                /**< each section of a record is a run of its own; false */
 } imk_evaluate_log_settings;
 
+/** As the comments above say. */
 IMK_API imk_evaluate_log_settings imk_evaluate_log_default(void);
 
 typedef struct imk_evaluate_log {
@@ -38,6 +37,7 @@ typedef struct imk_evaluate_log {
 IMK_API imk_status imk_evaluate_log_create(const imk_evaluate_log_settings *settings,
                                            const imk_job *job, imk_evaluate_log **result,
                                            imk_error *error);
+/** Free it and its channels; NULL is allowed. */
 IMK_API void imk_evaluate_log_free(imk_evaluate_log *result);
 
 /** A table has the columns reference and reading, or reading_x and so on. */
@@ -67,7 +67,5 @@ IMK_API void imk_evaluate_channel_settings(const imk_evaluate_log *evaluation,
 IMK_API imk_status imk_evaluate_channel_run(imk_evaluate_log *evaluation,
                                             imk_evaluate_channel *channel, imk_error *error);
 
-#ifdef __cplusplus
-}
-#endif
+IMK_END_C
 #endif

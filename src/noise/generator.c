@@ -48,8 +48,10 @@ static void next_block(void *context, double *block)
     const generated *g = context;
     double normals[IMKI_FLICKER_NORMALS];
     imki_draw draws[IMKI_DRAWS_MAX];
-    if (g->generator->draws)
-        imki_random_draws(g->random, draws, g->generator->draws(g->state, normals, draws));
+    if (g->generator->draws) {
+        const size_t count = g->generator->draws(g->state, normals, draws);
+        imki_random_draws(g->random, draws, count);
+    }
     g->generator->blocks(g->state, 1, g->random.kernel, normals, block);
 }
 

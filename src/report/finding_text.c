@@ -201,7 +201,7 @@ static const struct message {
     {"left_the_earth", "by {0.3f} s the estimate has left the Earth's surroundings: a reading "
                        "before is absurd, or its unit wrong"},
     /* calibrate */
-    /* calibrate: bench_record.c */
+    /* calibrate: session_record.c */
     {"rows_dropped", "{0} rows whose time does not increase, or is no number, are left out"},
     {"readings_missing",
      "in {0} of {1} rows a reading or the temperature is no finite number, or beyond 1e60, first "

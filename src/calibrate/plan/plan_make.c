@@ -218,12 +218,14 @@ static imk_status check_requirements(plan_job *job)
         imk_sigma_requirement *requirement = &s->requirement[w];
         char name[IMK_MODEL_PARAMETER_NAME];
         if (!(requirement->sigma > 0.0 && isfinite(requirement->sigma)))
-            return imk_error_set(job->error, IMK_ERROR_RANGE, "requirement", NULL, "a sigma above 0");
+            return imk_error_set(job->error, IMK_ERROR_RANGE, "requirement", NULL,
+                                 "a sigma above 0");
         if (parameter_of(job, requirement->parameter) < 0)
-            return imk_error_set(
-                job->error, IMK_ERROR_KEY_MISSING,
-                imk_model_parameter_name(requirement->parameter, name) == IMK_OK ? name : "requirement",
-                NULL, "a parameter that this procedure estimates");
+            return imk_error_set(job->error, IMK_ERROR_KEY_MISSING,
+                                 imk_model_parameter_name(requirement->parameter, name) == IMK_OK
+                                     ? name
+                                     : "requirement",
+                                 NULL, "a parameter that this procedure estimates");
         requirement->floor = s->lasting
                                  ? sqrt(imki_plan_floor_variance(&job->plan.calibration->model,
                                                                  requirement->parameter))

@@ -160,8 +160,8 @@ static int choose(imki_parameters *p, const ardupilot_imu imus[IMUS])
         if (imus[i].any && (i == 0 || has_numbers(&imus[i])))
             imki_choice_add(p, &choice, (char[2]){(char)('1' + i), '\0'}, i);
     if (choice.count == 0)
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "INS_ACCOFFS_X", "INS_ACCOFFS_X",
-                    "calibration parameters INS_ACC…, INS_GYR… or INS_TCAL…");
+        imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "INS_ACCOFFS_X", "INS_ACCOFFS_X",
+                              "calibration parameters INS_ACC…, INS_GYR… or INS_TCAL…");
     imki_choice_end(p, choice.found, choice.names, "NUMBER", "the file has several IMUs");
     return choice.chosen;
 }
@@ -191,8 +191,9 @@ static void fill_thermal(imki_parameters *p, const ardupilot_imu *imu, const ard
                   "use",
                   number, number);
     if (!(imu->minimum < imu->maximum && imu->minimum >= -kelvin))
-        imki_refuse_at(p, (imki_place){"TMIN", s->line, 0}, IMK_ERROR_RANGE, "TMIN and TMAX",
-                       "temperatures from a lower to a higher one [degC]");
+        imki_parameter_refuse_at(p, (imki_place){"TMIN", s->line, 0}, IMK_ERROR_RANGE,
+                                 "TMIN and TMAX",
+                                 "temperatures from a lower to a higher one [degC]");
     const double calibrated = fmin(fmax(s->temperature, imu->minimum), imu->maximum);
     imk_temperature_polynomial about = {.order = order, .reference = thermal_reference + kelvin};
     for (int k = 0; k < order; k++)
@@ -223,8 +224,8 @@ static void fill(imki_parameters *p, const ardupilot_imu *imu, int number, int k
     for (int i = 0; i < 3; i++) {
         /* ArduPilot's own limits are 0.8 and 1.2, which files of raw sensors may pass. */
         if (!(s->scale[i] >= 0.1 && s->scale[i] <= 10))
-            imki_refuse_at(p, (imki_place){"SCAL", s->line, 0}, IMK_ERROR_RANGE, "",
-                           "a scale between 0.8 and 1.2");
+            imki_parameter_refuse_at(p, (imki_place){"SCAL", s->line, 0}, IMK_ERROR_RANGE, "",
+                                     "a scale between 0.8 and 1.2");
         triad->scale_factor.fixed.value[i] = s->scale[i] == 1 ? 0 : 1 / s->scale[i] - 1;
     }
 }
@@ -308,10 +309,11 @@ void imki_ardupilot_write(imki_parameters *p)
         any = true;
     }
     if (any && !(minimum < maximum))
-        imki_refuse(p, IMK_ERROR_UNSUPPORTED, "gyro.bias.temperature",
-                    "gyros and accelerometers have no temperature in common, and ArduPilot has one "
-                    "range for both",
-                    "leave one of the polynomials out");
+        imki_parameter_refuse(
+            p, IMK_ERROR_UNSUPPORTED, "gyro.bias.temperature",
+            "gyros and accelerometers have no temperature in common, and ArduPilot has one "
+            "range for both",
+            "leave one of the polynomials out");
     imki_text_add(
         &p->out, "# ArduPilot calibration of IMU 1: offsets [rad/s], [m/s^2], scale [1]; corrected "
                  "= (reading - thermal\n# - offset) scale; temperatures [degC], INS_TCAL1_…k [1e-6 "

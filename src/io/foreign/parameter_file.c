@@ -356,7 +356,7 @@ imk_status imk_parameters_print(const char *path, const imk_parameter_settings *
                          .is_json = imk_has_ending(path, ".json")};
     formats[settings->format].write(&p);
     if (p.out.failed)
-        imki_refuse(&p, IMK_ERROR_MEMORY, "", "", "");
+        imki_parameter_refuse(&p, IMK_ERROR_MEMORY, "", "", "");
     if (p.status == IMK_OK)
         imki_parameters_compare(&p, formats[settings->format].read, formats[settings->format].name);
     if (p.status != IMK_OK) {

@@ -322,9 +322,9 @@ static const char explanation[] =
 void imki_filter_write(imki_parameters *p)
 {
     if (!(p->settings->rate > 0))
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "rate",
-                    "\"Phi\" and \"Q_d\" depend on the sample rate, which is not known",
-                    "add --rate 200Hz (samples per second)");
+        imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "rate",
+                              "\"Phi\" and \"Q_d\" depend on the sample rate, which is not known",
+                              "add --rate 200Hz (samples per second)");
     tree_writer w = {.p = p};
     if (p->is_json)
         imki_text_add(&p->out, "{");

@@ -73,7 +73,7 @@ static imki_place place_of(const xml_reader *r, const char *name)
 static void fail(xml_reader *r, const char *name, imk_status status, const char *found,
                  const char *expected)
 {
-    imki_refuse_at(r->p, place_of(r, name), status, found, expected);
+    imki_parameter_refuse_at(r->p, place_of(r, name), status, found, expected);
     XML_StopParser(r->parser, XML_FALSE);
 }
 
@@ -212,7 +212,7 @@ static void parse(xml_reader *r, imki_parameters *p)
     r->p = p;
     r->parser = XML_ParserCreate(NULL);
     if (!r->parser) {
-        imki_refuse(p, IMK_ERROR_MEMORY, "", "", "");
+        imki_parameter_refuse(p, IMK_ERROR_MEMORY, "", "", "");
         return;
     }
     XML_SetUserData(r->parser, r);
@@ -221,8 +221,8 @@ static void parse(xml_reader *r, imki_parameters *p)
     XML_SetStartDoctypeDeclHandler(r->parser, refuse_doctype);
     enum XML_Status result = XML_Parse(r->parser, p->text, (int)p->size, XML_TRUE);
     if (result != XML_STATUS_OK)
-        imki_refuse_at(p, place_of(r, ""), IMK_ERROR_SYNTAX, "",
-                       XML_ErrorString(XML_GetErrorCode(r->parser)));
+        imki_parameter_refuse_at(p, place_of(r, ""), IMK_ERROR_SYNTAX, "",
+                                 XML_ErrorString(XML_GetErrorCode(r->parser)));
     XML_ParserFree(r->parser);
 }
 
@@ -232,8 +232,8 @@ static const sensor *choose(imki_parameters *p, const xml_reader *r)
     for (int i = 0; i < r->count; i++)
         imki_choice_add(p, &choice, r->sensor[i].name, i);
     if (r->count == 0)
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "sensor", "<sensor type=\"imu\">",
-                    "an IMU: <sensor name=\"imu\" type=\"imu\">");
+        imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "sensor", "<sensor type=\"imu\">",
+                              "an IMU: <sensor name=\"imu\" type=\"imu\">");
     imki_choice_end(p, choice.found, choice.names, "NAME", "the file has several IMUs");
     return &r->sensor[choice.chosen];
 }
@@ -249,10 +249,10 @@ static double find_rate(imki_parameters *p, const sensor *s)
                   "stddev is taken per sample at %g Hz, the option, not at update_rate %g", given,
                   s->rate);
     if (white && !(rate > 0))
-        imki_refuse_at(p, s->noise[s->noise[0].place[STDDEV].field ? 0 : 1].place[STDDEV],
-                       IMK_ERROR_KEY_MISSING,
-                       "\"stddev\" is per sample, and update_rate is missing",
-                       "add --rate 200Hz (samples per second)");
+        imki_parameter_refuse_at(p, s->noise[s->noise[0].place[STDDEV].field ? 0 : 1].place[STDDEV],
+                                 IMK_ERROR_KEY_MISSING,
+                                 "\"stddev\" is per sample, and update_rate is missing",
+                                 "add --rate 200Hz (samples per second)");
     return rate;
 }
 
@@ -307,8 +307,8 @@ void imki_gazebo_read(imki_parameters *p)
     for (int kind = 0; kind < 2; kind++)
         fill(p, &chosen->noise[kind], kind, rate);
     if (!p->model->gyro.present && !p->model->accel.present)
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "noise", "<noise>",
-                    "a noise in angular_velocity or linear_acceleration");
+        imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "noise", "<noise>",
+                              "a noise in angular_velocity or linear_acceleration");
     snprintf(p->model->name, sizeof p->model->name, "%s", chosen->name);
 }
 
@@ -346,9 +346,9 @@ void imki_gazebo_write(imki_parameters *p)
     static const char *const names[2] = {"angular_velocity", "linear_acceleration"};
     const double rate = p->settings->rate;
     if (!(rate > 0) && (has_white(p->origin[0]) || has_white(p->origin[1])))
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "stddev",
-                    "\"stddev\" is per sample, and the sample rate is not known",
-                    "add --rate 200Hz (samples per second)");
+        imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "stddev",
+                              "\"stddev\" is per sample, and the sample rate is not known",
+                              "add --rate 200Hz (samples per second)");
     imki_text_add(&p->out, "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model "
                            "name=\"imu\">\n    <link name=\"link\">\n      <sensor name=\"imu\" "
                            "type=\"imu\">\n        <always_on>true</always_on>\n");

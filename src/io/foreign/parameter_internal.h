@@ -64,8 +64,8 @@ void imki_note(imki_parameters *p, bool lost, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* A failure, unless there was one before. */
-void imki_refuse(imki_parameters *p, imk_status status, const char *field, const char *found,
-                 const char *expected);
+void imki_parameter_refuse(imki_parameters *p, imk_status status, const char *field,
+                           const char *found, const char *expected);
 
 /* Which of several sensors of a file is meant: that of settings->sensor, or the only one. */
 typedef struct imki_choice {
@@ -87,8 +87,8 @@ typedef struct imki_place {
     size_t line, column;
 } imki_place;
 
-void imki_refuse_at(imki_parameters *p, imki_place place, imk_status status, const char *found,
-                    const char *expected);
+void imki_parameter_refuse_at(imki_parameters *p, imki_place place, imk_status status,
+                              const char *found, const char *expected);
 
 /* What a number is, for the check whether it can be in the format's unit. */
 typedef enum imki_quantity {

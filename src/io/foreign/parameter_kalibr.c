@@ -210,8 +210,8 @@ static void write_gyroscopes(imki_parameters *p)
     double response[3][3], m[3][3], c[3][3], a[3][3], c_transposed[3][3];
     imki_response_of(&p->source->gyro, response);
     if (!imki_lower_and_rotation(response, m, c)) {
-        imki_refuse(p, IMK_ERROR_UNSUPPORTED, "gyro.direction",
-                    "the gyro axes are not a right-handed set", "");
+        imki_parameter_refuse(p, IMK_ERROR_UNSUPPORTED, "gyro.direction",
+                              "the gyro axes are not a right-handed set", "");
         return;
     }
     for (int i = 0; i < 3; i++)

@@ -201,8 +201,8 @@ static int find_part(imki_parameters *p)
         if (is_part(p, p->document->node[key].next))
             imki_choice_add(p, &choice, p->document->node[key].text, p->document->node[key].next);
     if (choice.count == 0)
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "sensor", "Gyroscope",
-                    "a part with a Gyroscope or an Accelerometer");
+        imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "sensor", "Gyroscope",
+                              "a part with a Gyroscope or an Accelerometer");
     imki_choice_end(p, choice.found, choice.names, "NAME", "the file has several parts");
     return choice.chosen;
 }

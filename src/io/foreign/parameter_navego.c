@@ -123,8 +123,8 @@ static void take_field(imki_parameters *p, script *s, const char *structure, con
         char found[64];
         snprintf(found, sizeof found, "%.*s", (int)(end - begin > 60 ? 60 : end - begin), begin);
         place.column += (size_t)(stop - begin);
-        imki_refuse_at(p, place, IMK_ERROR_SYNTAX, found,
-                       "a number or three: 2, [1 2 3], 2 .* ones(1,3)");
+        imki_parameter_refuse_at(p, place, IMK_ERROR_SYNTAX, found,
+                                 "a number or three: 2, [1 2 3], 2 .* ones(1,3)");
         return;
     }
     s->seen[kind][index] = true;
@@ -181,8 +181,8 @@ static void check_structure(imki_parameters *p, const script *s)
 {
     const bool named = p->settings->sensor != NULL;
     if (s->structure_count == 0 && !(s->structure[0] && named))
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "arw", "arw",
-                    "assignments such as imu.arw = 2 .* ones(1,3);");
+        imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "arw", "arw",
+                              "assignments such as imu.arw = 2 .* ones(1,3);");
     imki_choice_end(p, s->structure[0] && (named || s->structure_count == 1), s->others, "NAME",
                     "the file has several structures");
 }

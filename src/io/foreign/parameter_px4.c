@@ -144,8 +144,9 @@ static int choose(imki_parameters *p, const px4_file *file)
         if (in_use(file, 0, i) || in_use(file, 1, i))
             imki_choice_add(p, &choice, (char[2]){(char)('0' + i), '\0'}, i);
     if (choice.count == 0)
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "CAL_GYRO0_XOFF", "CAL_GYRO0_XOFF",
-                    "calibration parameters CAL_GYRO…, CAL_ACC…, TC_G… or TC_A… that are set");
+        imki_parameter_refuse(
+            p, IMK_ERROR_KEY_MISSING, "CAL_GYRO0_XOFF", "CAL_GYRO0_XOFF",
+            "calibration parameters CAL_GYRO…, CAL_ACC…, TC_G… or TC_A… that are set");
     imki_choice_end(p, choice.found, choice.names, "NUMBER", "the file has several IMUs");
     return choice.chosen;
 }
@@ -184,8 +185,9 @@ static void fill_thermal(imki_parameters *p, const px4_sensor *thermal, int kind
         imki_note(p, false, "TC_%c_ENABLE is not in the file: TC_%c… are taken to be in use",
                   thermal_letters[kind], thermal_letters[kind]);
     if (order > 0 && !(thermal->minimum < thermal->maximum && thermal->minimum >= -kelvin))
-        imki_refuse_at(p, (imki_place){"TMIN", thermal->line, 0}, IMK_ERROR_RANGE, "TMIN and TMAX",
-                       "temperatures from a lower to a higher one [degC]");
+        imki_parameter_refuse_at(p, (imki_place){"TMIN", thermal->line, 0}, IMK_ERROR_RANGE,
+                                 "TMIN and TMAX",
+                                 "temperatures from a lower to a higher one [degC]");
     for (int i = 0; i < 3; i++)
         offset[i] += thermal->coefficient[0][i];
     polynomial->order = order;
@@ -213,8 +215,8 @@ static void fill(imki_parameters *p, const px4_file *file, int kind, int chosen)
     for (int i = 0; i < 3; i++) {
         /* The limits of PX4's own parameter definition. */
         if (!(s->scale[i] >= 0.1 && s->scale[i] <= 3))
-            imki_refuse_at(p, (imki_place){"XSCALE", s->line, 0}, IMK_ERROR_RANGE, "",
-                           "a scale between 0.1 and 3");
+            imki_parameter_refuse_at(p, (imki_place){"XSCALE", s->line, 0}, IMK_ERROR_RANGE, "",
+                                     "a scale between 0.1 and 3");
         triad->scale_factor.fixed.value[i] = s->scale[i] == 1 ? 0 : 1 / s->scale[i] - 1;
     }
     if (s->rotation > 0)

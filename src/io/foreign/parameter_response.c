@@ -47,8 +47,8 @@ void imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad, d
     for (int i = 0; i < 3; i++) {
         double length = imki_norm3(matrix[i]);
         if (!(length >= 0.05 && length <= 20)) {
-            imki_refuse_at(p, place, IMK_ERROR_RANGE, "",
-                           "a matrix near a rotation: rows of a length near 1");
+            imki_parameter_refuse_at(p, place, IMK_ERROR_RANGE, "",
+                                     "a matrix near a rotation: rows of a length near 1");
             return;
         }
         for (int j = 0; j < 3; j++)
@@ -120,13 +120,15 @@ void imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *
 {
     for (int i = 0; i < 3; i++) {
         if (sigma[i] != 0 && time[i] == 0)
-            imki_refuse_at(p, place, IMK_ERROR_RANGE, "0", "a positive correlation time [s]");
+            imki_parameter_refuse_at(p, place, IMK_ERROR_RANGE, "0",
+                                     "a positive correlation time [s]");
         if (sigma[i] == 0 || !isinf(time[i]))
             continue;
         if (!(rate > 0)) {
-            imki_refuse_at(p, place, IMK_ERROR_KEY_MISSING,
-                           "\"inf\" is white noise per sample, and the sample rate is not known",
-                           "add --rate 100Hz (samples per second)");
+            imki_parameter_refuse_at(
+                p, place, IMK_ERROR_KEY_MISSING,
+                "\"inf\" is white noise per sample, and the sample rate is not known",
+                "add --rate 100Hz (samples per second)");
             return;
         }
         double n = triad->noise.white.value[i];

@@ -66,8 +66,8 @@ void imki_note(imki_parameters *p, bool lost, const char *format, ...)
     notes->note[notes->count++] = note;
 }
 
-void imki_refuse(imki_parameters *p, imk_status status, const char *field, const char *found,
-                 const char *expected)
+void imki_parameter_refuse(imki_parameters *p, imk_status status, const char *field,
+                           const char *found, const char *expected)
 {
     if (p->status == IMK_OK)
         p->status = imk_error_set(p->error, status, field, found, expected);
@@ -93,8 +93,8 @@ void imki_choice_end(imki_parameters *p, int found, const char *names, const cha
         return;
     snprintf(missing, sizeof missing, "\"sensor\" is missing: %s", several);
     snprintf(expected, sizeof expected, "add --sensor %s with one of %s", placeholder, names);
-    imki_refuse(p, wanted ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING, "sensor",
-                wanted ? wanted : missing, expected);
+    imki_parameter_refuse(p, wanted ? IMK_ERROR_NAME_UNKNOWN : IMK_ERROR_KEY_MISSING, "sensor",
+                          wanted ? wanted : missing, expected);
 }
 
 /* Room for six digits of a number with sign and exponent. */
@@ -102,11 +102,11 @@ enum { NUMBER_SIZE = 25 };
 
 /* ---- plausible values ------------------------------------------------------------------------ */
 
-void imki_refuse_at(imki_parameters *p, imki_place place, imk_status status, const char *found,
-                    const char *expected)
+void imki_parameter_refuse_at(imki_parameters *p, imki_place place, imk_status status,
+                              const char *found, const char *expected)
 {
     const bool first = p->status == IMK_OK;
-    imki_refuse(p, status, place.field, found, expected);
+    imki_parameter_refuse(p, status, place.field, found, expected);
     if (first && p->error) {
         p->error->line = place.line;
         p->error->column = place.column;
@@ -173,7 +173,7 @@ static void refuse_value(imki_parameters *p, imki_place place, int kind, imki_qu
         snprintf(expected, sizeof expected, "a value between %s and %s, or 0", number, right);
     }
     const bool first = p->status == IMK_OK;
-    imki_refuse_at(p, place, IMK_ERROR_RANGE, found, expected);
+    imki_parameter_refuse_at(p, place, IMK_ERROR_RANGE, found, expected);
     if (first && p->error) {
         p->error->value = raw;
         p->error->limit = limits[quantity][kind].maximum / unit.scale;
@@ -190,9 +190,10 @@ void imki_accept(imki_parameters *p, imki_place place, int kind, imki_quantity q
         const bool signless = quantity != IMKI_BIAS && quantity != IMKI_PLAIN;
         /* An infinite time is for the format to assess. */
         if (!(fabs(raw[i]) <= DBL_MAX) && !(quantity == IMKI_TIME && raw[i] > 0))
-            imki_refuse_at(p, place, IMK_ERROR_NOT_FINITE, number, "a finite number");
+            imki_parameter_refuse_at(p, place, IMK_ERROR_NOT_FINITE, number, "a finite number");
         else if (signless && raw[i] < 0)
-            imki_refuse_at(p, place, IMK_ERROR_RANGE, number, "a number that is not negative");
+            imki_parameter_refuse_at(p, place, IMK_ERROR_RANGE, number,
+                                     "a number that is not negative");
         else if (quantity < IMKI_TIME && raw[i] != 0 &&
                  !(fabs(value) >= limits[quantity][kind].minimum &&
                    fabs(value) <= limits[quantity][kind].maximum))
@@ -268,8 +269,8 @@ static void take_assignment(imki_parameters *p, void *context, const char *line,
     if (!target || (imki_number(word, stop, target) && isfinite(*target)))
         return;
     snprintf(found, sizeof found, "%.*s", (int)(stop - word > 30 ? 30 : stop - word), word);
-    imki_refuse_at(p, (imki_place){name, number, (size_t)(word - line) + 1}, IMK_ERROR_SYNTAX,
-                   found, "a finite number");
+    imki_parameter_refuse_at(p, (imki_place){name, number, (size_t)(word - line) + 1},
+                             IMK_ERROR_SYNTAX, found, "a finite number");
 }
 
 void imki_read_assignments(imki_parameters *p, imki_assignments *assignments)
@@ -296,7 +297,7 @@ bool imki_parameters_document(imki_parameters *p)
 {
     char *copy = malloc(p->size + 1);
     if (!copy) {
-        imki_refuse(p, IMK_ERROR_MEMORY, "", "", "");
+        imki_parameter_refuse(p, IMK_ERROR_MEMORY, "", "", "");
         return false;
     }
     memcpy(copy, p->text, p->size);

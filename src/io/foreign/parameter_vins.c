@@ -84,7 +84,7 @@ static void write_response(imki_parameters *p, const imk_triad *triad, const cha
     if (!imki_lower_and_rotation(response, lower, rotation)) {
         char found[64];
         snprintf(found, sizeof found, "the %s axes are not a right-handed set", name);
-        imki_refuse(p, IMK_ERROR_UNSUPPORTED, name, found, "");
+        imki_parameter_refuse(p, IMK_ERROR_UNSUPPORTED, name, found, "");
         return;
     }
     write_matrix(p, t, lower);
@@ -131,10 +131,11 @@ static double vins_scale(imki_parameters *p)
     const imk_parameter_settings *s = p->settings;
     const bool one_sided = s->density == IMK_DENSITY_ONE_SIDED;
     if (s->rate > 0 && s->density != IMK_DENSITY_UNSTATED)
-        imki_refuse(p, IMK_ERROR_CONFLICT, "density",
-                    "--rate and --density exclude each other: the first says that the numbers are "
-                    "per sample",
-                    "keep one of them");
+        imki_parameter_refuse(
+            p, IMK_ERROR_CONFLICT, "density",
+            "--rate and --density exclude each other: the first says that the numbers are "
+            "per sample",
+            "keep one of them");
     else if (s->rate > 0)
         imki_note(p, false, "acc_n, gyr_n, acc_w, gyr_w are taken as noise per sample at %g Hz",
                   s->rate);
@@ -142,10 +143,11 @@ static double vins_scale(imki_parameters *p)
         imki_note(p, false, "acc_n, gyr_n, acc_w, gyr_w are taken as %s densities per sqrt(Hz)",
                   one_sided ? "one-sided" : "two-sided");
     else
-        imki_refuse(p, IMK_ERROR_KEY_MISSING, "acc_n",
-                    "\"acc_n\" and the others are per sample or per sqrt(Hz), which is not known",
-                    "add --rate 200Hz (if per sample, as VINS itself takes them; or --density "
-                    "two-sided if they are densities)");
+        imki_parameter_refuse(
+            p, IMK_ERROR_KEY_MISSING, "acc_n",
+            "\"acc_n\" and the others are per sample or per sqrt(Hz), which is not known",
+            "add --rate 200Hz (if per sample, as VINS itself takes them; or --density "
+            "two-sided if they are densities)");
     return s->rate > 0 ? 1 / sqrt(s->rate) : one_sided ? sqrt(0.5) : 1;
 }
 

@@ -140,7 +140,7 @@ void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, 
 {
     imk_model *models = malloc(2 * sizeof *models);
     if (!models) {
-        imki_refuse(p, IMK_ERROR_MEMORY, "", "", "");
+        imki_parameter_refuse(p, IMK_ERROR_MEMORY, "", "", "");
         return;
     }
     imk_model *back = &models[0], *source = &models[1];
@@ -168,7 +168,8 @@ void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, 
         compare_timing(p, format, &source->timing);
     }
     if (had > 0 && kept == 0)
-        imki_refuse(p, IMK_ERROR_UNSUPPORTED, "model", "nothing of the model fits into the format",
-                    "choose another with --to");
+        imki_parameter_refuse(p, IMK_ERROR_UNSUPPORTED, "model",
+                              "nothing of the model fits into the format",
+                              "choose another with --to");
     free(models);
 }

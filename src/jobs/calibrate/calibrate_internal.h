@@ -12,13 +12,13 @@ static const char *const imki_sensor_titles[2] = {"gyro", "accelerometer"};
 static const char *const imki_sensor_units[2] = {"rad/s", "m/s^2"};
 
 /* calibrate_observe.c: where a log stands still, what its procedure observes; then the solution. */
-imk_status imki_observe(imk_calibrate_log *session, imk_calibrate_record *log, imk_error *error);
-imk_status imki_solve(imk_calibrate_log *session, imk_error *error);
+imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_error *error);
+imk_status imki_solve(imk_calibrate_log *b, imk_error *error);
 /* calibrate_closed_form.c: in the place of the last two. */
-imk_status imki_closed_form(imk_calibrate_log *session, imk_error *error);
+imk_status imki_closed_form(imk_calibrate_log *b, imk_error *error);
 /* power_cycles.c: the logs, or the sections of one, are runs. */
-imk_status imki_compare_runs(imk_calibrate_log *session, imk_error *error);
-/* calibrate_model.c: what was found as session->model. */
-void imki_calibrate_model(imk_calibrate_log *session);
+imk_status imki_compare_runs(imk_calibrate_log *b, imk_error *error);
+/* calibrate_model.c: what was found as b->model. */
+void imki_calibrate_model(imk_calibrate_log *b);
 
 #endif

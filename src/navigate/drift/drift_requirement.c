@@ -141,7 +141,8 @@ imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t time,
     if (time >= analysis->time_count)
         return imk_error_set(error, IMK_ERROR_RANGE, "time", "", "an index of the analysis' times");
     if ((unsigned)requirement > (unsigned)IMK_REQUIRED_HEADING)
-        return imk_error_set(error, IMK_ERROR_RANGE, "requirement", "", "one of imk_drift_requirement");
+        return imk_error_set(error, IMK_ERROR_RANGE, "requirement", "",
+                             "one of imk_drift_requirement");
     if (!(goal > 0.0 && goal < (double)INFINITY)) {
         const imk_status status =
             imk_error_set(error, IMK_ERROR_RANGE, "goal", "", "a positive number");

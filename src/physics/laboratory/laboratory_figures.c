@@ -67,20 +67,19 @@ static void add_term(list *l, const imk_triad *t, int kind, int term)
                                            "cross_products.kpo"};
     const imki_field *field = imki_term_field(term);
     const double *value = imki_field_values(field, t);
-    const imki_form form = imki_terms[term].form;
-    switch (form) {
+    switch (imki_terms[term].form) {
     case IMKI_FORM_SEEN:
         if (term == IMK_MODEL_MISALIGNMENT)
             add_cross_axis(l, t);
         break;
     case IMKI_FORM_FORCE:
+        add_row(l, t, kind, field, g, 3);
+        break;
     case IMKI_FORM_PRODUCT:
+        add_row(l, t, kind, field, g2, 6);
+        break;
     case IMKI_FORM_CROSS:
-        add_row(l, t, kind, field,
-                form == IMKI_FORM_FORCE     ? g
-                : form == IMKI_FORM_PRODUCT ? g2
-                                            : products,
-                imki_form_elements(form));
+        add_row(l, t, kind, field, products, 3);
         break;
     case IMKI_FORM_WARMTH:
     case IMKI_FORM_WARM_INPUT:

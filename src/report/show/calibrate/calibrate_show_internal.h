@@ -15,24 +15,24 @@
 
 /* calibrate_diagnostics.c: the first diagnostic that makes a record useless; false: there is none.
  */
-bool imki_calibrate_useless(const imk_calibrate_log *session, const imk_calibrate_record *log,
-                            char *text, size_t size);
+bool imki_calibrate_useless(const imk_calibrate_log *b, const imk_calibrate_record *log, char *text,
+                            size_t size);
 /* calibrate_words.c: the verdict in one message. */
-void imki_calibrate_summary(const imk_calibrate_log *session, const imk_verdict *verdict,
-                            char *text, size_t size);
+void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *verdict, char *text,
+                            size_t size);
 /* On frame and gravity, what was left out and what is correlated. */
-void imki_calibrate_remarks(const imk_calibrate_log *session, imk_result *result);
+void imki_calibrate_remarks(const imk_calibrate_log *b, imk_result *result);
 /* The poses that would tell most, as a list of angles behind `before`; "": they are not known. */
-void imki_calibrate_poses(const imk_calibrate_log *session, const imk_calibrate_record *log,
+void imki_calibrate_poses(const imk_calibrate_log *b, const imk_calibrate_record *log,
                           const char *before, char *text, size_t size);
 /* calibrate_tables.c */
-void imki_parameter_table(const imk_calibrate_log *session, int sensor, imk_result *result);
-void imki_runs_table(const imk_calibrate_log *session, int sensor, imk_result *result);
+void imki_parameter_table(const imk_calibrate_log *b, int sensor, imk_result *result);
+void imki_runs_table(const imk_calibrate_log *b, int sensor, imk_result *result);
 void imki_thermal_table(const imk_calibrate_record *log, int sensor, bool brief,
                         imk_result *result);
-void imki_fit_table(const imk_calibrate_log *session, imk_result *result);
-void imki_pose_table(const imk_calibrate_log *session, imk_result *result);
+void imki_fit_table(const imk_calibrate_log *b, imk_result *result);
+void imki_pose_table(const imk_calibrate_log *b, imk_result *result);
 /* calibrate_figure.c */
-void imki_calibrate_figure(const imk_calibrate_log *session, imk_result *result);
+void imki_calibrate_figure(const imk_calibrate_log *b, imk_result *result);
 
 #endif
