@@ -21,7 +21,7 @@ typedef struct drift_options {
     term_selection terms;
 } drift_options;
 
-/* ---- drift_requirement.c, drift_scene.c ---- */
+/* ---- drift_want.c, drift_scene.c ---- */
 
 /* What is navigated, and when to look. */
 typedef struct drift_scene {

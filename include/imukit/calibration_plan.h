@@ -11,9 +11,9 @@
  *
  *  Steps are taken one by one, each the one that adds most: first to the determinant of the
  *  information (D-optimal), then to what is required. Then the time of a step is chosen, as short
- * as the requirements allow; where no time is enough, steps are added. Requirements that no
- * programme reaches are said to be so, with what is attainable. Method: docs/theory/calibration.md.
- */
+ *  as the requirements allow; where no time is enough, steps are added. Requirements that no
+ *  programme reaches are said to be so, with what is attainable. Method:
+ *  docs/theory/calibration.md. */
 #ifndef IMUKIT_CALIBRATION_PLAN_H
 #define IMUKIT_CALIBRATION_PLAN_H
 
@@ -106,11 +106,12 @@ IMK_API size_t imk_plan_workspace_size(imk_calibration *calibration,
  *                      observed already counts. Its room for observations and turns, as many as
  *                      steps_maximum, is scratch; it is left as it was. When it has free parameters
  *                      they are kept (requirements must be among them), else the procedure's are
- * made free
+ *                      made free
  *  @param step         settings->steps_maximum of them
  *  @return IMK_ERROR_UNINITIALISED, _RANGE (settings, field), _WORKSPACE (also: room for
  *          observations or turns), _KEY_MISSING (a requirement for a parameter that the procedure
- * does not estimate; or "noise": the model states none), errors of imk_calibration_information().
+ *          does not estimate; or "noise": the model states none), errors of
+ *          imk_calibration_information().
  *          A requirement that is not reached is no error */
 IMK_API imk_status imk_plan_make(imk_calibration *calibration, const imk_plan_settings *settings,
                                  imk_plan_step *step, imk_plan_result *result, void *workspace,

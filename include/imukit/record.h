@@ -42,8 +42,8 @@ typedef struct imk_log_column {
  *  The interval is the median of the first 4096 positive time steps (of all, when there are fewer),
  *  afterwards the median of the medians of groups of 4096, or 1/rate where the settings say a rate.
  *  Gaps and jitter are assessed by the interval known when the group of the step was complete.
- * Jitter leaves gaps, repeats and reversals out. No step is formed with a time that is not finite.
- */
+ *  Jitter leaves gaps, repeats and reversals out. No step is formed with a time that is not
+ *  finite. */
 typedef struct imk_log_findings {
     size_t rows;
     size_t not_finite, first_not_finite; /**< rows with a NaN, an infinity or an empty cell */
