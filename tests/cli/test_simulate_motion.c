@@ -351,8 +351,9 @@ static void test_selected_correction(void **state)
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
-#define REFUSED(options, step)                                                                     \
-    check_message("$I simulate " options, 2, "imukit simulate: error: " step "\n" TRY("simulate"))
+#define REFUSED(options, message)                                                                  \
+    check_message("$I simulate " options, 2,                                                       \
+                  "imukit simulate: error: " message "\n" TRY("simulate"))
 
 static void test_refusals(void **state)
 {

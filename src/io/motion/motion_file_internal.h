@@ -37,11 +37,11 @@ typedef struct imki_script_reader {
     imk_motion_step *step;    /* from malloc */
     int *step_node;           /* where each stands */
     size_t step_count, capacity;
-    size_t step_count_read;       /* read so far, each pass of a repeat anew */
+    size_t steps_read;            /* so far, each pass of a repeat anew */
     double speed, heading, climb; /* after the steps read so far */
 } imki_script_reader;
 
-/* step_read.c: one step that is a step. */
+/* step_read.c: one step, written in words. */
 void imki_step_read(imki_script_reader *reader, int node);
 
 /* vibration_lines.c: the entries of `vibration`, added to file->line. */

@@ -80,7 +80,7 @@ static void read_repeat(imki_script_reader *r, int node)
 static void read_step(imki_script_reader *r, int node)
 {
     imki_reading *reading = &r->reading;
-    if (r->step_count_read++ == IMKI_STEPS_MAX)
+    if (r->steps_read++ == IMKI_STEPS_MAX)
         imki_value_refuse(reading, node, IMK_ERROR_UNSUPPORTED, "too many steps",
                           "at most 100000 steps, repeats written out");
     else if (reading->document->node[node].kind == IMKI_NODE_MAPPING)

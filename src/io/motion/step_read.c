@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The steps of a motion script, each one a step.
+/* The steps of a motion script, each written in words.
  *
  * A rate r held for a time t changes by r t; it builds up and dies away over the smoothing time s,
  * so that the step lasts t + s. A change c that is to last t in all has the rate c/(t - s).

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Motion files: the steps that steps become, the steps that are refused, and the vibration.
+/* Motion files: what words become steps, which are refused, and the vibration.
  * Converted values are computed here from the definitions of the units: deg = pi/180 rad,
  * g = 9.80665 m/s^2. */
 #define _POSIX_C_SOURCE 200809L
@@ -26,9 +26,9 @@ static const double rounding = 1e-15;
 
 static void fail_with(const imk_error *error)
 {
-    char step[512];
-    imk_error_text(error, NULL, step, sizeof step);
-    fail_msg("%s", step);
+    char message[512];
+    imk_error_text(error, NULL, message, sizeof message);
+    fail_msg("%s", message);
 }
 
 static imk_motion_file *parsed(const char *text)
@@ -109,7 +109,7 @@ static const step_case step_cases[] = {
     {"coning z 1 deg at 10 Hz for 60 s", IMK_STEP_CONING, 2, 1, 0, 60, 10, 0, false},
 };
 
-static void texts_become_steps(void **state)
+static void words_become_steps(void **state)
 {
     (void)state;
     for (size_t i = 0; i < COUNT(step_cases); i++) {
@@ -435,7 +435,7 @@ static void random_vibration_has_the_power_of_its_density(void **state)
 
 /* Below imukit_motion: 1, so the first line is line 2. */
 static const struct {
-    const char *text, *step;
+    const char *text, *message;
 } refusals[] = {
     {"steps: [trun 90 deg at 10 deg/s]",
      "m.yaml:2:9: steps[0]: \"trun\" is not a step; did you mean \"turn\"?"},
@@ -638,7 +638,7 @@ static void refusals_say_what_is_due(void **state)
 {
     (void)state;
     for (size_t i = 0; i < COUNT(refusals); i++) {
-        char text[512], step[512];
+        char text[512], message[512];
         imk_error error;
         imk_motion_file *file = NULL;
         snprintf(text, sizeof text, "imukit_motion: 1\n%s\n", refusals[i].text);
@@ -647,8 +647,8 @@ static void refusals_say_what_is_due(void **state)
         if (status == IMK_OK)
             fail_msg("%s is taken", refusals[i].text);
         assert_int_equal(error.status, status);
-        imk_error_text(&error, "m.yaml", step, sizeof step);
-        assert_string_equal(step, refusals[i].step);
+        imk_error_text(&error, "m.yaml", message, sizeof message);
+        assert_string_equal(message, refusals[i].message);
         CHECK_STATUS(imk_motion_parse(text, strlen(text), NULL, 0, &file, NULL), status);
     }
 }
@@ -657,7 +657,7 @@ static void what_is_no_script_is_refused(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *step;
+        const char *text, *message;
     } cases[] = {
         {"", "m.yaml: there is no data; expected a motion, beginning with imukit_motion: 1"},
         {"- hold 1 s\n", "m.yaml:1:1: the file format is not recognised; expected a motion file: "
@@ -672,11 +672,11 @@ static void what_is_no_script_is_refused(void **state)
     for (size_t i = 0; i < COUNT(cases); i++) {
         imk_motion_file *file = NULL;
         imk_error error;
-        char step[512];
+        char message[512];
         assert_true(imk_motion_parse(cases[i].text, strlen(cases[i].text), NULL, 0, &file,
                                      &error) != IMK_OK);
-        imk_error_text(&error, "m.yaml", step, sizeof step);
-        assert_string_equal(step, cases[i].step);
+        imk_error_text(&error, "m.yaml", message, sizeof message);
+        assert_string_equal(message, cases[i].message);
     }
 }
 
@@ -699,7 +699,7 @@ static void script_is_read_from_a_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(texts_become_steps),
+        cmocka_unit_test(words_become_steps),
         cmocka_unit_test(pose_has_three_angles),
         cmocka_unit_test(repeats_are_written_out),
         cmocka_unit_test(script_is_compiled),

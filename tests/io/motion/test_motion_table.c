@@ -23,9 +23,9 @@ static const double rounding = 1e-15;
 
 static void fail_with(const imk_error *error)
 {
-    char step[512];
-    imk_error_text(error, NULL, step, sizeof step);
-    fail_msg("%s", step);
+    char message[512];
+    imk_error_text(error, NULL, message, sizeof message);
+    fail_msg("%s", message);
 }
 
 static char table_path[64];
@@ -243,7 +243,7 @@ static void recorded_truth_is_kept(void **state)
 #define PLACES "latitude [deg],longitude [deg],height [m]"
 
 static const struct {
-    const char *text, *step;
+    const char *text, *message;
 } bad_tables[] = {
     {"time [s],a,b\n0,1,2\n1,1,2\n",
      "m.csv: no column of a motion has a known name; expected one of latitude, longitude, height, "
@@ -363,14 +363,14 @@ static void bad_tables_are_refused(void **state)
     for (size_t i = 0; i < COUNT(bad_tables); i++) {
         imk_motion_file *file = NULL;
         imk_error error;
-        char step[512];
+        char message[512];
         write_table(bad_tables[i].text);
         const imk_status status = imk_motion_read(table_path, NULL, NULL, 0, &file, &error);
         if (status == IMK_OK)
             fail_msg("%s is taken", bad_tables[i].text);
         assert_null(file);
-        imk_error_text(&error, "m.csv", step, sizeof step);
-        assert_string_equal(step, bad_tables[i].step);
+        imk_error_text(&error, "m.csv", message, sizeof message);
+        assert_string_equal(message, bad_tables[i].message);
         CHECK_STATUS(imk_motion_read(table_path, NULL, NULL, 0, &file, NULL), status);
     }
     imk_motion_file *file = NULL;

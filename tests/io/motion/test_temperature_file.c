@@ -28,9 +28,9 @@ static imk_temperature_file *read_file(const char *path)
     imk_temperature_file *file = NULL;
     imk_error error;
     if (imk_temperature_read(path, &file, &error) != IMK_OK) {
-        char step[512];
-        imk_error_text(&error, path, step, sizeof step);
-        fail_msg("%s", step);
+        char message[512];
+        imk_error_text(&error, path, message, sizeof message);
+        fail_msg("%s", message);
     }
     return file;
 }
@@ -120,7 +120,7 @@ static void quantity_is_a_constant(void **state)
 #define HEAD "imukit_temperature: 1\n"
 
 static const struct {
-    const char *text, *step;
+    const char *text, *message;
 } bad_scripts[] =
     {
         {HEAD "steps: [soak 30 min]\n", "t.yaml:2:9: steps[0]: \"soak 30 min\" cannot be read; "
@@ -200,11 +200,11 @@ static void check_refused(const char *path, const char *source, const char *due)
 {
     imk_temperature_file *file = NULL;
     imk_error error;
-    char step[512];
+    char message[512];
     const imk_status status = imk_temperature_read(path, &file, &error);
     assert_true(status != IMK_OK && error.status == status && !file);
-    imk_error_text(&error, source, step, sizeof step);
-    assert_string_equal(step, due);
+    imk_error_text(&error, source, message, sizeof message);
+    assert_string_equal(message, due);
     CHECK_STATUS(imk_temperature_read(path, &file, NULL), status);
 }
 
@@ -213,14 +213,14 @@ static void refusals_say_what_is_due(void **state)
     (void)state;
     for (size_t i = 0; i < COUNT(bad_scripts); i++) {
         write_file(script_path, bad_scripts[i].text);
-        check_refused(script_path, "t.yaml", bad_scripts[i].step);
+        check_refused(script_path, "t.yaml", bad_scripts[i].message);
     }
     for (size_t i = 0; i < COUNT(bad_tables); i++) {
         write_file(table_path, bad_tables[i].text);
-        check_refused(table_path, "t.csv", bad_tables[i].step);
+        check_refused(table_path, "t.csv", bad_tables[i].message);
     }
     for (size_t i = 0; i < COUNT(bad_quantities); i++)
-        check_refused(bad_quantities[i].text, "--temperature", bad_quantities[i].step);
+        check_refused(bad_quantities[i].text, "--temperature", bad_quantities[i].message);
 }
 
 static int make_paths(void **state)
