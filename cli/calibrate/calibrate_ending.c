@@ -5,21 +5,34 @@
 
 #include <stdlib.h>
 
+static const char *given_model(const calibrate_options *o)
+{
+    return o->into ? o->into : o->model ? o->model : "the model";
+}
+
 int session_done(const session *b, imk_status status, const imk_error *error)
 {
     const imk_calibrate_log *found = b->found;
+    const bool told = status != IMK_OK && imk_findings_failure(&found->findings);
+    const char *path = found->failed < found->count ? found->record[found->failed].path : NULL;
     char text[1000];
-    for (size_t k = 0; k < found->findings.count; k++)
-        if (found->findings.item[k].level == IMK_FINDING_WARNING) {
-            imk_finding_text(&found->findings.item[k], text, sizeof text);
-            command_warn(found->findings.item[k].code, "%s", text);
-        }
+    for (size_t k = 0; k < found->findings.count; k++) {
+        const imk_finding *f = &found->findings.item[k];
+        imk_finding_message(f, path, given_model(b->options), text, sizeof text);
+        if (f->level == IMK_FINDING_WARNING)
+            command_warn(imk_finding_code(f), "%s", text);
+    }
     if (command_unless_memory(status) == IMK_OK)
         return -1;
-    if (imk_calibrate_failure(found, error, text, sizeof text) > 0)
+    if (told && status == IMK_ERROR_ARGUMENT)
+        return command_misused("%s", text);
+    if (told || imk_calibrate_failure(found, error, text, sizeof text) > 0)
         return command_failed("%s", text);
-    return command_error(error,
-                         found->failed < found->count ? found->record[found->failed].path : NULL);
+    const bool of_name = status == IMK_ERROR_KEY_UNKNOWN || status == IMK_ERROR_RANGE ||
+                         status == IMK_ERROR_WORKSPACE;
+    if (b->options->estimate && !found->result && of_name && found->failed == found->count)
+        return session_terms_refused("estimate", error);
+    return command_error(error, path);
 }
 
 static void show_next(const session *b, bool useless, imk_result *result)
@@ -62,7 +75,7 @@ static int write_model(session *b)
     const calibrate_options *o = b->options;
     const imk_model *model = &b->found->model;
     if (o->into)
-        model_print_changes(o->into, &b->before, model, b->document);
+        model_print_changes(o->into, b->found->before, model, b->document);
     if (o->output && imk_model_write(o->output, model, b->document, &error) != IMK_OK)
         return command_error(&error, NULL);
     return -1;
@@ -73,7 +86,7 @@ int session_show(session *b)
     const calibrate_options *o = b->options;
     imk_model *model = &b->found->model;
     if (o->name || !model->name[0] || !o->into)
-        command_model_name(o->name, b->found->record[0].path, model->name, sizeof model->name);
+        command_model_name(o->name, b->path[0], model->name, sizeof model->name);
     imk_result *result = show_begin("calibrate");
     const imk_verdict verdict = assess(b, result);
     const bool useless = imk_verdict_level(&verdict) == IMK_FINDING_FAILURE;

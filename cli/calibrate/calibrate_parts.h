@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Parts of imukit calibrate: what was asked, the logs, the problem and its solution, and how it is
- * shown. */
+/* Parts of imukit calibrate: what was asked, the calibration, and how it is shown. */
 #ifndef IMUKIT_CALIBRATE_PARTS_H
 #define IMUKIT_CALIBRATE_PARTS_H
 
 #include "log/log_input.h"
 #include "shell/show.h"
 
-#include "imukit/earth.h"
 #include "imukit/model_file.h"
 #include "imukit/motion_file.h"
 #include "imukit/show.h"
@@ -28,39 +26,35 @@ typedef struct calibrate_options {
     bool no_earth, plan, anyway, poses, json, strict;
 } calibrate_options;
 
-typedef imk_calibrate_record session_log;
-#define session_log_free imk_calibrate_record_free
-
 typedef struct session {
     const calibrate_options *options;
+    const char *path[IMK_TEST_RECORDS_MAX];
+    size_t count;
+    imk_procedure procedure[IMK_TEST_RECORDS_MAX];
+    imk_calibrate_log_settings settings;
     imk_calibrate_log *found;
-    imk_geodetic place;
     imk_motion_file *motion;
+    imk_model *known;       /* of --model or --into; NULL: not given */
     imk_document *document; /* of --into */
-    imk_model before;       /* known before */
 } session;
-
-static const char *const sensor_keys[2] = {"gyro", "accel"};
-static const char *const sensor_titles[2] = {"gyro", "accelerometer"};
 
 /* All return -1 or the exit code, the message printed, where nothing else is said. */
 
-/* calibrate_input.c: a log with its columns as a record. */
-int session_load(session *b, session_log *log);
-/* calibrate_reference.c: what the unit was exposed to, from columns or from --motion. */
-int session_reference(session *b, session_log *log);
-
-/* calibrate_problem.c: the options as a problem, and the logs loaded. */
-int session_choose(session *b); /* procedures, place and frame */
+/* calibrate_settings.c: the options as settings, and an empty calibration. */
+int session_choose(session *b);
+/* The message of what imk_calibrate_terms() refused. @return the exit code */
+int session_terms_refused(const char *option_name, const imk_error *error);
+/* --motion, read where it is not yet, and --motion-offset. */
+int session_motion(const calibrate_options *o, const imk_geodetic *place, imk_motion_file **motion,
+                   imk_calibrate_log_settings *settings);
+/* --model or --into. */
 int session_known_before(session *b);
-int session_prepare(session *b);
-/* calibrate_terms.c: --estimate and --with, --without. */
-int session_free_terms(session *b);
-/* Append the numbers that a name means to a list; messages speak of the option. */
-int session_list_terms(const session *b, const char *option_name, const char *item, size_t capacity,
-                       imk_model_parameter *parameter, size_t *count);
-int session_switch_terms(const calibrate_options *o, imk_procedure procedure,
-                         imk_procedure_settings *settings);
+
+/* calibrate_input.c: a log as a record, with what the unit was exposed to; then all of them. */
+int session_read(const calibrate_options *o, const imk_calibrate_log_settings *settings,
+                 const char *path, imk_calibrate_record *record);
+int session_load(session *b);
+
 /* calibrate_runs.c: --procedure repeatability, of models, each the calibration of a run. */
 bool session_has_run_models(const session *b);
 int session_compare_models(session *b);

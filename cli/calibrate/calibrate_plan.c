@@ -16,8 +16,7 @@ typedef struct plan {
     imk_calibrate_plan *made;
 } plan;
 
-/* ---- requirements
- * ---------------------------------------------------------------------------------- */
+/* ---- requirements ---------------------------------------------------------------------------- */
 
 /* "accel.scale_factor 50 ppm": every number of the term. */
 static int parse_requirement(plan *p, const char *text, size_t length)
@@ -32,11 +31,13 @@ static int parse_requirement(plan *p, const char *text, size_t length)
     *value++ = '\0';
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     size_t count = 0;
-    int code = session_list_terms(p->b, "want", name, IMK_CORRELATED_MAX, parameter, &count);
-    for (size_t k = 0; code < 0 && k < count; k++) {
+    imk_error error;
+    if (imk_calibrate_terms(p->b->found->calibration, p->b->settings.temperature_order, name,
+                            IMK_CORRELATED_MAX, parameter, &count, &error) != IMK_OK)
+        return session_terms_refused("want", &error);
+    for (size_t k = 0; k < count; k++) {
         double sigma, unused;
         size_t numbers;
-        imk_error error;
         const char *unit = imk_parameter_file_unit(parameter[k]);
         if (imk_quantity_parse(value, value + strlen(value), imk_unit_of(unit).dimension, 1, &sigma,
                                &unused, &numbers, NULL, &error) != IMK_OK ||
@@ -49,7 +50,7 @@ static int parse_requirement(plan *p, const char *text, size_t length)
         p->requirement[p->settings.requirement_count++] =
             (imk_sigma_requirement){.parameter = parameter[k], .sigma = sigma};
     }
-    return code;
+    return -1;
 }
 
 static int parse_requirements(plan *p)
@@ -77,7 +78,7 @@ static int write_programme(const plan *p, const char *path)
                                "centrifuge from the table");
     if (p->made->unscripted.status != IMK_OK)
         return command_error(&p->made->unscripted, path);
-    const imk_geodetic *place = p->b->found->settings.place_known ? &p->b->place : NULL;
+    const imk_geodetic *place = p->b->settings.place_known ? &p->b->settings.place : NULL;
     (void)command_unless_memory(imk_calibrate_plan_text(p->made, place, &text, &size));
     imk_output_file *file = NULL;
     imk_status status = imk_output_file_open(path, &file, &error);
@@ -95,7 +96,7 @@ static void show_next(const plan *p, imk_result *result)
 {
     const calibrate_options *o = p->b->options;
     const imk_procedure procedure = p->settings.procedure;
-    const char *model = p->b->found->record[0].path;
+    const char *model = p->b->path[0];
     const bool wants_motion = procedure >= IMK_PROCEDURE_RATE_TABLE;
     if (procedure == IMK_PROCEDURE_CENTRIFUGE)
         imk_result_line(result, "These are the levels to set; a motion file has no arm to swing "
@@ -130,7 +131,7 @@ static int make(plan *p)
     if (status == IMK_ERROR_KEY_MISSING && strstr(error.field, "noise"))
         return command_failed("%s states no noise, from which to tell how long to measure: imukit "
                               "identify finds it in a log at rest",
-                              p->b->found->record[0].path);
+                              p->b->path[0]);
     return command_unless_memory(status) == IMK_OK ? -1 : command_error(&error, NULL);
 }
 
@@ -139,14 +140,12 @@ static int set_up(plan *p)
     session *b = p->b;
     const calibrate_options *o = b->options;
     imk_document *unused = NULL;
-    if (b->found->count != 1)
-        return command_misused("--plan takes one MODEL, of the unit that will be tested");
-    int code = session_choose(b);
-    if (code < 0 && b->found->settings.repeatability)
+    int code = -1;
+    if (b->settings.repeatability)
         code = command_misused("--plan: repeatability needs no programme: as many power cycles as "
                                "you can afford, ten or more");
     if (code < 0)
-        code = command_model(b->found->record[0].path, &b->found->calibration->model, &unused);
+        code = command_model(b->path[0], &b->found->calibration->model, &unused);
     imk_document_free(unused);
     if (code >= 0)
         return code;
@@ -179,7 +178,7 @@ int session_plan(session *b)
         const bool short_of = p->made->result.reached < p->settings.requirement_count;
         code = b->options->strict && short_of ? EXIT_FAILED : EXIT_DONE;
         imk_result *result = show_begin("calibrate");
-        imk_show_calibrate_plan(p->made, b->found->record[0].path, result);
+        imk_show_calibrate_plan(p->made, b->path[0], result);
         show_next(p, result);
         code = show_end(result, &(show_options){.json = b->options->json}, code);
     }

@@ -115,30 +115,18 @@ static const option log_options[] = {
 
 _Static_assert(IMK_TEMPERATURE_ORDER_MAX == 5, "as the range of --temperature-order says");
 
-static int check_closed_form(const session *b)
-{
-    const calibrate_options *o = b->options;
-    if (b->found->count != 1 || b->found->settings.repeatability ||
-        b->found->record[0].procedure != IMK_PROCEDURE_FERRARIS)
-        return command_misused("--estimator closed-form: this is for one log of --procedure "
-                               "ferraris; the others, and several logs together, are solved by "
-                               "maximum likelihood");
-    if (o->estimate || o->with || o->without)
-        return command_misused("--estimator closed-form: what it finds is fixed; leave --estimate, "
-                               "--with and --without out");
-    return -1;
-}
-
 /* Solve, or compare runs. */
 static int find_result(session *b)
 {
     imk_error error;
-    if (session_has_run_models(b))
-        return session_compare_models(b);
-    int code = session_prepare(b);
-    if (code < 0 && b->options->estimator != 0 && !b->found->settings.repeatability)
-        code = check_closed_form(b);
-    return code >= 0 ? code : session_done(b, imk_calibrate_log_run(b->found, &error), &error);
+    int code = session_choose(b);
+    if (code < 0 && b->options->plan)
+        return session_plan(b);
+    if (code < 0 && session_has_run_models(b))
+        code = session_compare_models(b);
+    else if (code < 0 && (code = session_load(b)) < 0)
+        code = session_done(b, imk_calibrate_log_run(b->found, &error), &error);
+    return code < 0 ? session_show(b) : code;
 }
 
 static int check(const calibrate_options *o)
@@ -155,11 +143,10 @@ static int check(const calibrate_options *o)
 
 static void free_session(session *b)
 {
-    for (size_t k = 0; k < b->found->count; k++)
-        session_log_free(&b->found->record[k]);
+    imk_calibrate_log_free(b->found);
     imk_motion_file_free(b->motion);
     imk_document_free(b->document);
-    imk_calibrate_log_free(b->found);
+    free(b->known);
     free(b);
 }
 
@@ -179,34 +166,17 @@ static int run(int count, char **words)
                            .soak = none,
                            .frame = -1,
                            .table_axis = -1};
-    const char *paths[IMK_TEST_RECORDS_MAX];
-    int code = options_parse(&calibrate_verb, count, words, &o, paths);
-    if (code < 0)
-        code = check(&o);
-    if (code >= 0)
-        return code;
     session *b = command_zeroed(sizeof *b);
     b->options = &o;
-    imk_calibrate_log_settings settings = imk_calibrate_log_default();
-    settings.gravity = o.gravity;
-    settings.placement = o.placement;
-    settings.minimum = o.minimum;
-    settings.trim = o.trim;
-    settings.settle = o.settle;
-    settings.model_given = o.model || o.into;
-    settings.terms_named = o.estimate != NULL;
-    settings.closed_form = o.estimator != 0;
-    settings.activity = o.plot || o.report;
-    size_t logs = 0;
-    while (logs < IMK_TEST_RECORDS_MAX && paths[logs])
-        logs++;
-    (void)command_unless_memory(imk_calibrate_log_create(logs, &settings, NULL, &b->found, NULL));
-    for (size_t k = 0; k < b->found->count; k++)
-        b->found->record[k].path = paths[k];
-    if (o.plan)
-        code = session_plan(b);
-    else if ((code = find_result(b)) < 0)
-        code = session_show(b);
+    int code = options_parse(&calibrate_verb, count, words, &o, b->path);
+    while (b->count < IMK_TEST_RECORDS_MAX && b->path[b->count])
+        b->count++;
+    if (code < 0)
+        code = check(&o);
+    if (code < 0 && o.plan && b->count != 1)
+        code = command_misused("--plan takes one MODEL, of the unit that will be tested");
+    if (code < 0)
+        code = find_result(b);
     free_session(b);
     return code;
 }

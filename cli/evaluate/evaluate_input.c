@@ -23,24 +23,20 @@ static int tell(const evaluation *v, const char *path, imk_status status, const 
 static int load_log(evaluation *v, const char *path)
 {
     imk_error error;
-    session *b = command_zeroed(sizeof *b); /* holds models: 157 kB */
-    session_log log = {.path = path};
-    int code = -1;
+    const calibrate_options *o = &v->options->session;
+    imk_calibrate_record *record = command_zeroed(sizeof *record);
+    imk_calibrate_log_settings settings = imk_calibrate_log_default();
+    settings.section = o->section;
+    settings.table_axis = o->table_axis;
+    settings.minimum = o->minimum;
     v->has_log = true;
-    b->options = &v->options->session;
-    b->motion = v->motion;
-    if (b->options->motion && !b->motion &&
-        imk_motion_read(b->options->motion, NULL, NULL, 1, &b->motion, &error) != IMK_OK)
-        code = command_error(&error, b->options->motion);
+    int code = session_motion(o, NULL, &v->motion, &settings);
     if (code < 0)
-        code = session_load(b, &log);
+        code = session_read(o, &settings, path, record);
     if (code < 0)
-        code = session_reference(b, &log);
-    if (code < 0)
-        code = tell(v, path, imk_evaluate_record(v->log, &log, &error), &error);
-    session_log_free(&log);
-    v->motion = b->motion;
-    free(b);
+        code = tell(v, path, imk_evaluate_record(v->log, record, &error), &error);
+    imk_calibrate_record_free(record);
+    free(record);
     return code;
 }
 

@@ -6,6 +6,7 @@
 #define IMUKIT_CALIBRATE_LOG_H
 
 #include "imukit/calibration_plan.h"
+#include "imukit/earth.h"
 #include "imukit/ferraris.h"
 #include "imukit/job.h"
 #include "imukit/motion.h"
@@ -19,34 +20,78 @@ IMK_BEGIN_C
 
 enum { IMK_CALIBRATE_DIAGNOSTICS_MAX = 16, IMK_CALIBRATE_REFERENCES = 9, IMK_CALIBRATE_POSES = 3 };
 
-/** What is asked; NaN: not given. Start from imk_calibrate_log_default(). */
+/** Numbers of a sensor's axes from a data sheet. */
+typedef struct imk_calibrate_counts {
+    int count; /**< 0: not given, 1: one number for all axes, else one for each axis */
+    double value[IMK_AXES_MAX];
+} imk_calibrate_counts;
+
+/** Terms that procedures look for or leave alone, as bits. */
+enum {
+    IMK_CALIBRATE_NONLINEARITY = 1,
+    IMK_CALIBRATE_CROSS_PRODUCTS = 2,
+    IMK_CALIBRATE_G_SENSITIVITY = 4,
+    IMK_CALIBRATE_G2_SENSITIVITY = 8,
+    IMK_CALIBRATE_GYRO_TURNS = 16
+};
+
+/** Settings of a calibration. Start from imk_calibrate_log_default(): in every double NaN, which
+ *  means "not given". What is pointed to must live as long as the calibration. */
 typedef struct imk_calibrate_log_settings {
     uint32_t cookie;
-    double gravity;      /**< [m/s^2] */
+    /* the place */
+    bool place_known;
+    imk_geodetic place; /**< of the test: gives gravity and the Earth's rotation */
+    double gravity;     /**< [m/s^2], 9.5 to 10.1; wins over that of the place. Default: that of
+                             45 deg at sea level */
+    bool no_earth;      /**< the references contain no rotation of the Earth */
+    int frame;          /**< imk_triad_frame; -1 (default): chosen by the procedures */
+    /* known before */
+    const imk_model *model; /**< sensitivities and terms that are not estimated; NULL: nothing */
+    imk_calibrate_counts
+        sensitivity[2]; /**< nominal, gyro [count/(rad/s)], accel [count/(m/s^2)] */
+    imk_calibrate_counts zero_offset[2]; /**< gyro, accel [count] */
+    /* what is estimated */
+    const char *estimate;   /**< names of terms with commas between, as imk_calibrate_terms() takes
+                                 them; NULL: what the procedures determine */
+    unsigned with, without; /**< procedures look for these terms besides, or not; not together with
+                                 estimate */
+    bool repeatability;     /**< compare the records, each a power cycle, instead of calibrating */
+    bool closed_form;       /**< solve one ferraris record without iteration */
+    bool least_squares;     /**< outliers count as much as the rest; default: robust */
+    /* how records are looked at; defaults of imk_procedure_default() */
+    const char *section; /**< column of texts that names holds, turns or runs */
     double placement;    /**< 1 sigma of a placement on a face [rad] */
+    double mounting;     /**< 1 sigma of the unit on its fixture or table [rad] */
+    double turn_angle;   /**< ferraris: of each turn about its axis, with sign [rad] */
+    double initial_rest; /**< at rest at the beginning [s] */
+    double window;       /**< within which rest is detected [s] */
     double minimum;      /**< shortest rest, step or run [s] */
-    double trim, settle; /**< left out at both ends; at the beginning besides [s] */
-    bool place_known;    /**< the calibration's gravity is that of a place */
-    bool model_given;    /**< known before are the axes of a model */
-    bool repeatability;  /**< the records are power cycles, nothing is solved */
-    bool terms_named;    /**< what is estimated is free in the calibration already */
-    bool closed_form;    /**< a ferraris session is solved without iteration */
-    bool activity;       /**< say of each sample whether it stands still */
+    double trim, settle; /**< left out at both ends of a stretch; at its beginning besides [s] */
+    double reference_temperature; /**< thermal: where the polynomials vanish [K] */
+    int temperature_order; /**< of the bias, 1 to IMK_TEMPERATURE_ORDER_MAX; 0 (default): chosen */
+    /* what the unit was exposed to */
+    const imk_motion *motion; /**< programme that the table ran; NULL: columns of the records */
+    double motion_offset;     /**< time of a record at which the programme begins [s]; 0 */
+    bool find_offset;         /**< find the motion_offset of each record instead */
+    int table_axis; /**< of the unit, about which a column table_rate turns it; -1 (default) */
+    bool activity;  /**< say of each sample whether it is at rest */
 } imk_calibrate_log_settings;
 
-/** Everything as the procedure has it; where a number is asked for, NaN. */
+/** The defaults named above. */
 IMK_API imk_calibrate_log_settings imk_calibrate_log_default(void);
 
-/** One log. */
+/** A record of a test, and what was found in it. */
 typedef struct imk_calibrate_record {
-    const char *path; /**< what it is called */
+    const char *path; /**< name of the record in findings and reports; the caller's */
     imk_log log;      /**< owns the columns */
     imk_test_record record;
-    size_t dropped; /**< rows without a time that increases */
+    size_t dropped; /**< rows left out because their time does not increase */
     int *section;
     const char **section_name;
     double *reference; /**< IMK_CALIBRATE_REFERENCES columns: rate, force, angular acceleration */
-    double motion_offset; /**< the log shows at t what the programme says at t less this [s] */
+    double motion_offset; /**< time of the record at which the programme begins [s] */
+    imk_findings loaded;  /**< what imk_calibrate_record_load() found */
     imk_procedure procedure;
     imk_procedure_settings settings;
     imk_procedure_findings findings;
@@ -56,54 +101,104 @@ typedef struct imk_calibrate_record {
     double *activity; /**< per sample; NULL: not asked for */
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX];
-    imk_thermal_findings *thermal; /**< of that procedure */
+    imk_thermal_findings *thermal; /**< of the procedure "thermal", else NULL */
 } imk_calibrate_record;
 
-/** What was found. */
+/** A calibration: its records, and what was found. */
 typedef struct imk_calibrate_log {
     imk_calibrate_log_settings settings;
     size_t count;
-    imk_calibrate_record *record;
-    bool nominal[2]; /**< sensitivities were found, not given: gyro, accel */
+    imk_calibrate_record *record; /**< `count` of them; settings may be changed before the run */
+    bool nominal[2];              /**< sensitivities were found, not given: gyro, accel */
     imk_calibration *calibration;
+    imk_model *before; /**< what was known before the run, with the axes of the records */
     imk_calibration_result *result;
-    imk_ferraris *ferraris; /**< of the closed form */
-    imk_repeatability_result *runs;
+    imk_ferraris *ferraris;         /**< of the closed form, else NULL */
+    imk_repeatability_result *runs; /**< of the repeatability, else NULL */
     size_t run_count;
     size_t diagnostic_count;
     imk_diagnostic_finding diagnostic[IMK_CALIBRATE_DIAGNOSTICS_MAX]; /**< of the solution */
-    imk_model model; /**< to be written; its name stays */
+    imk_model model; /**< the result, to be written; its name is that of the model known before */
     imk_findings findings;
     size_t failed; /**< number of the record that could not be used; count: all of them together */
     imk_job job;
     struct imki_arena *memory;
 } imk_calibrate_log;
 
-/** An empty one: the records, and the calibration with what is known before, are the caller's to
- *  fill.
- *  @param job  NULL: as if all zeros
- *  @return IMK_ERROR_RANGE (0 records, or more than IMK_TEST_RECORDS_MAX), _MEMORY */
-IMK_API imk_status imk_calibrate_log_create(size_t count,
+/** One record for imk_calibrate_logs(). */
+typedef struct imk_calibrate_input {
+    const char *name; /**< of the record in findings and reports */
+    imk_procedure procedure;
+    const imk_record_source *source;
+} imk_calibrate_input;
+
+/** Calibrate from records of bench tests: load each, observe it by its procedure, solve all
+ *  together, make the model.
+ *
+ *  The same as imk_calibrate_log_create(), then imk_calibrate_log_load() of each, then
+ *  imk_calibrate_log_run().
+ *  @param job      NULL: as if all zeros
+ *  @param session  NULL only if imk_calibrate_log_create() failed: else it tells, also after a
+ *                  failure, what was found, and is freed by imk_calibrate_log_free()
+ *  @return as these three */
+IMK_API imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *input,
+                                      const imk_calibrate_log_settings *settings,
+                                      const imk_job *job, imk_calibrate_log **session,
+                                      imk_error *error);
+
+/** A calibration whose records are to be loaded.
+ *  @param procedure  of each record
+ *  @param job        NULL: as if all zeros
+ *  @return IMK_ERROR_RANGE ("count": 0, or more than IMK_TEST_RECORDS_MAX; "procedure"; "gravity":
+ *          value), IMK_ERROR_CONFLICT ("frame": gravity alone does not tell the reference frame;
+ *          "closed_form": not one ferraris record; "estimate": with or without beside it), _MEMORY
+ */
+IMK_API imk_status imk_calibrate_log_create(size_t count, const imk_procedure *procedure,
                                             const imk_calibrate_log_settings *settings,
                                             const imk_job *job, imk_calibrate_log **session,
                                             imk_error *error);
-/** Free it; what the caller filled in stays the caller's. */
+/** Free it with its records; NULL is allowed. */
 IMK_API void imk_calibrate_log_free(imk_calibrate_log *session);
 
+/** Load record number `index`; what it showed is in its `loaded`.
+ *  @param name  what findings and reports call it; must live as long as the calibration
+ *  @return as imk_calibrate_record_load() */
+IMK_API imk_status imk_calibrate_log_load(imk_calibrate_log *session, size_t index,
+                                          const char *name, const imk_record_source *source,
+                                          imk_error *error);
+
 /** Observe each record by its procedure, solve all together, make the model.
- *  @return as imk_procedure_observe(), imk_calibration_solve(), imk_ferraris_closed_form(),
- *          imk_repeatability_of_holds(); then session->failed says of what */
+ *  @return with a finding in session->findings, IMK_ERROR_ARGUMENT (settings that do not fit the
+ *          records), _COLUMN, _CONFLICT, _TOO_SHORT, _EMPTY; as imk_calibrate_terms() with the name
+ *          in error->field, imk_procedure_observe(), imk_calibration_solve(),
+ *          imk_ferraris_closed_form(), imk_repeatability_of_holds(). session->failed tells whether
+ *          one record failed, or all together */
 IMK_API imk_status imk_calibrate_log_run(imk_calibrate_log *session, imk_error *error);
 
-/** Bias and scale factor of a model with their sigmas, as the calibration of a run; of counts by
- *  the sensitivities and zeros of the first one, since each may have found its own. */
-IMK_API void imk_calibration_of_model(const imk_model *model, const imk_model *first,
-                                      imk_calibration_result *result);
-/** Compare runs, the calibration of each given, and make the model.
- *  @return with a finding, IMK_ERROR_TOO_SHORT, _EMPTY; as imk_repeatability_of_calibrations() */
+/** Compare models, each the calibration of a power cycle of one unit, instead of records: how much
+ *  bias and scale factor differ.
+ *  @param model  one for each record that the calibration was created for, none of which is loaded
+ *  @param name   what findings and reports call them
+ *  @return with a finding, IMK_ERROR_TOO_SHORT, _EMPTY, _CONFLICT (not of one unit, or of several
+ *          frames); as imk_repeatability_of_calibrations() */
 IMK_API imk_status imk_calibrate_log_compare(imk_calibrate_log *session,
-                                             const imk_calibration_result *const *run,
+                                             const imk_model *const *model, const char *const *name,
                                              imk_error *error);
+
+/** The numbers of the model that a name of terms means, appended to a list: "bias",
+ *  "scale_factor", "nonlinearity", "nonlinearity.k2", "bias.temperature" and so on of both sensors,
+ *  with "gyro." or "accel." before it of one; or one number, such as "accel.bias.fixed.x".
+ *  @param temperature_order  of polynomials, 0: 3
+ *  @param parameter,count    room for `capacity`; `count` are there before
+ *  @return IMK_ERROR_KEY_UNKNOWN, IMK_ERROR_RANGE (no such axis), IMK_ERROR_WORKSPACE (more than
+ *          `capacity`); error->field is the name */
+IMK_API imk_status imk_calibrate_terms(const imk_calibration *calibration, int temperature_order,
+                                       const char *name, size_t capacity,
+                                       imk_model_parameter *parameter, size_t *count,
+                                       imk_error *error);
+
+/** Name of a term without sensor and axis: "nonlinearity.k2". @return false: it has none */
+IMK_API bool imk_calibrate_term_path(int sensor, int term, char path[IMK_MODEL_PARAMETER_NAME]);
 
 /** What the unit is exposed to is known. */
 IMK_API bool imk_procedure_is_known(imk_procedure procedure);
@@ -139,26 +234,24 @@ IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
 /** @} */
 
 /** @name Records of tests
- *  Memory is of the log's allocator.
+ *  Memory is of the job's allocator.
  *  @{ */
-/** Fill log->record from log->log, which is loaded, and log->path: rows whose time does not
- *  increase are left out, and numbers of sensors that are no readings become NaN.
- *  @param section  column of texts that names holds, turns or runs; NULL: the only one
- *  @return with a finding, IMK_ERROR_EMPTY, _COLUMN; IMK_ERROR_MEMORY */
-IMK_API imk_status imk_calibrate_record_make(imk_calibrate_record *log, const char *section,
-                                             imk_findings *findings, imk_error *error);
-/** One of its columns of references, zeros at first: rate, force, angular acceleration, x to z.
- *  @return NULL when memory is exhausted */
-IMK_API double *imk_calibrate_record_column(imk_calibrate_record *log, int column);
-/** References by a motion that begins at log->motion_offset; NaN outside a recorded one.
- *  @return IMK_ERROR_MEMORY */
-IMK_API imk_status imk_calibrate_record_expose(imk_calibrate_record *log, const imk_motion *motion,
-                                               imk_error *error);
-/** Where readings follow the references best. @param largest  looked at on both sides [s]; a
- *  quarter of the log at most @return as imk_reference_offset(); IMK_ERROR_MEMORY */
-IMK_API imk_status imk_calibrate_record_shift(const imk_calibrate_record *log, double largest,
-                                              imk_reference_shift *shift, imk_error *error);
-/** Free columns, sections and references. */
+/** Load a record of a test: rows whose time does not increase are left out, numbers of sensors that
+ *  are no readings become NaN, and the references are taken from its columns or the programme.
+ *  @param settings  section, motion, motion_offset, find_offset and table_axis are looked at, and
+ *                   whether the record is long enough for initial_rest, window and minimum
+ *  @param name      what it is called in findings; must live as long as the record
+ *  @param job       NULL: as if all zeros
+ *  @param record    zeroed, or one of a calibration; filled. Free it also after a failure;
+ *                   record->loaded says what was found
+ *  @return with a finding, IMK_ERROR_ARGUMENT (settings that do not fit it), _EMPTY, _TOO_SHORT,
+ *          _COLUMN, _UNIT_MISSING, _DIMENSION, _CONFLICT (does not follow the programme); else as
+ *          the source, as imk_reference_offset(), _MEMORY */
+IMK_API imk_status imk_calibrate_record_load(const imk_calibrate_log_settings *settings,
+                                             const char *name, const imk_record_source *source,
+                                             const imk_job *job, imk_calibrate_record *record,
+                                             imk_error *error);
+/** Free columns, sections and references of a record that is none of a calibration. */
 IMK_API void imk_calibrate_record_free(imk_calibrate_record *log);
 /** When a row was taken [s]. */
 IMK_API double imk_test_record_time(const imk_test_record *record, size_t row);

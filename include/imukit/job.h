@@ -63,7 +63,7 @@ IMK_API const imk_finding *imk_findings_failure(const imk_findings *findings);
  *  @return its length, as snprintf() */
 IMK_API size_t imk_finding_text(const imk_finding *finding, char *text, size_t size);
 /** The message with what the record and the model are called; that of a failure that tells of
- *  neither begins with the record. @return likewise */
+ *  neither begins with the record. @param record  NULL: it is about none. @return likewise */
 IMK_API size_t imk_finding_message(const imk_finding *finding, const char *record,
                                    const char *model, char *text, size_t size);
 /** The code without what tells it from one of that name in other jobs: "gaps". */

@@ -200,25 +200,82 @@ static const struct message {
                        "its predictions are too good"},
     {"left_the_earth", "by {0.3f} s the estimate has left the Earth's surroundings: a reading "
                        "before is absurd, or its unit wrong"},
-    /* calibrate */
     /* calibrate: session_record.c */
-    {"rows_dropped", "{0} rows whose time does not increase, or is no number, are left out"},
-    {"readings_missing",
-     "in {0} of {1} rows a reading or the temperature is no finite number, or beyond 1e60, first "
-     "in row {2}: such rows are left out, or the hold or step that they interrupt"},
-    {"axis_gap", "has {name}: calibration needs the axes one after the other; name the columns "
-                 "with --columns"},
+    {"calibrate:time_order",
+     "{record}: {0} rows whose time does not increase, or is no number, are left out"},
+    {"calibrate:not_finite",
+     "{record}: in {0} of {1} rows a reading or the temperature is no finite number, or beyond "
+     "1e60, first in row {2}: such rows are left out, or the hold or step that they interrupt"},
+    {"axis_gap",
+     "{record} has {name}: calibration needs the axes one after the other; name the columns "
+     "with --columns"},
     {"counts_mixed", "some {name} columns are in counts and some are not"},
-    {"no_sensor", "has no gyro and no accelerometer column; name them with --columns, such as "
-                  "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z"},
-    {"no_section", "has no column \"{name}\" of texts to divide it into sections"},
-    {"sections", "has {0} columns of texts: say which one divides it into sections, such as "
-                 "--section {name}"},
+    {"no_sensor",
+     "{record} has no gyro and no accelerometer column; name them with --columns, such as "
+     "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z"},
+    {"no_section", "{record} has no column \"{name}\" of texts to divide it into sections{0?}; did "
+                   "you mean \"{other}\"?{?}"},
+    {"one_row_of_test", "{record} has one row of data; a test takes thousands, some seconds of "
+                        "each pose or step"},
+    {"longer_than_record", "--{name} {0.6g}s is longer than {record}, which has {1.4g} s"},
+    {"sections",
+     "{record} has {0} columns of texts: say which one divides it into sections, such as "
+     "--section {name}"},
+    /* calibrate_exposure.c */
+    {"calibrate:no_unit",
+     "{record}: {name} has no unit; write it into the header, such as {name} [{other}]"},
+    {"wrong_unit", "{record}: {name} should be {other}"},
+    {"no_table_rate", "{record} has no column table_rate [deg/s], whose axis --table-axis names"},
+    {"no_table_axis",
+     "{record} has a column table_rate: say about which axis of the unit it turns, "
+     "such as --table-axis z"},
+    {"reference_twice", "{record} has reference columns and --motion says what they say: leave one "
+                        "out"},
+    {"programme_not_followed",
+     "{record} does not follow the programme at any offset within {0.3g} s (the best correlation "
+     "is {1.2f}): is it the programme that was run?"},
+    {"programme_begins", "{record}: the programme begins at {0.4f} s of the log (1 sigma {1.2g} s, "
+                         "correlation {2.4f})"},
+    {"rival:motion_offset", "{record}: at {0.4f} s the programme fits nearly as well; if that is "
+                            "right, add --motion-offset {0.4f}s"},
+    {"calibrate:motion_offset",
+     "{record} follows the programme best when that begins {0.4f} s {1?}later{1!}earlier{?} in the "
+     "log than it was told (1 sigma {2.2g} s): give --motion-offset {3.4f}s, or auto"},
+    /* calibrate_set_up.c */
+    {"counts_of_axes", "--{name}-sensitivity and --{name}-zero take one number, or one for each of "
+                       "{0} axes"},
+    {"no_sensitivity", "--{name}-sensitivity: a sensitivity of 0 makes no counts"},
+    {"zero_of_nothing", "--{name}-zero needs --{name}-sensitivity"},
+    {"not_in_counts", "--{name}-{0?}sensitivity{0!}zero{?} is for readings in counts, and those of "
+                      "{record} have a unit"},
+    {"axes_differ", "{record} has {0} {name} axes and the others have {1}"},
+    {"counts_differ", "{record}: its {name} readings are in counts and those of other logs are "
+                      "not, or the reverse"},
+    {"axes_of_model", "{model} has {0} {name} axes, the log has {1}: they cannot be matched"},
+    {"model_of_residuals",
+     "{model} is what is left after compensating with \"{name}\": to calibrate again, take the "
+     "log before it was compensated, and that model with --into"},
+    {"calibrate:gravity",
+     "the place is not known: gravity is taken as {0.5f} m/s^2, that of 45 deg and sea level, and "
+     "differs from it by up to 0.3 %, which goes into the scale factors; add --position \"48.1 "
+     "deg, 11.6 deg, 520 m\" or --gravity 9.80780m/s^2"},
+    /* calibrate_terms.c */
+    {"no_term", "--estimate: no term is named"},
+    {"no_change_of_temperature", "no log has a column temperature [degC] that changes, so that "
+                                 "nothing over temperature can be estimated"},
     /* calibrate_closed_form.c, power_cycles.c, calibrate_model.c */
     {"stretches", "these are more than {0} holds and turns"},
     {"many_runs", "these are more than {0} runs"},
     {"few_runs", "{0} run: at least two are needed, better ten; give a log for each power cycle, "
                  "or one log with a column of texts that names the runs (--section NAME)"},
+    {"models_of_units", "{other} and {record} have not the same {name} axes: they are not runs of "
+                        "one unit"},
+    {"models_of_counts", "{other} and {record}: the {name} readings are in counts in one and not "
+                         "in the other"},
+    {"models_of_frames", "{record} is in the frame \"{other}\", the first model in \"{name}\": "
+                         "calibrate all runs alike, with the same --frame"},
+    {"model_without_sigma", "{record} states no uncertainty of bias or scale factor: give the "
+                            "models that imukit calibrate wrote, one of each run"},
     {"one_model", "1 run: at least two are needed, better ten; give the model of each power cycle"},
     {"no_uncertainty", "no bias and no scale factor is stated with its uncertainty by all of these "
                        "models"},
@@ -409,8 +466,8 @@ size_t imk_finding_message(const imk_finding *finding, const char *record, const
                            char *text, size_t size)
 {
     const char *message = message_of(finding);
-    writing w = {text, size, 0, record, model};
-    if (finding->level == IMK_FINDING_FAILURE && !strstr(message, "{record}") &&
+    writing w = {text, size, 0, record ? record : "the record", model};
+    if (record && finding->level == IMK_FINDING_FAILURE && !strstr(message, "{record}") &&
         !strstr(message, "{model}")) {
         put(&w, record, strlen(record));
         put(&w, ": ", 2);

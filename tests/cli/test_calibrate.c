@@ -314,7 +314,7 @@ static void wrong_usage_is_explained(void **state)
     check_says("$I calibrate rest.csv " POSES " --estimate bais", 2,
                "--estimate bais: no such term; expected bias, scale_factor");
     check_says("$I calibrate rest.csv " POSES " --accel-sensitivity '415 count'", 2,
-               "--accel-sensitivity \"415 count\": expected one number, or one for each of 3 axes");
+               "--accel-sensitivity \"415 count\": expected one number, or one for each axis");
     sweep();
 }
 

@@ -200,12 +200,35 @@ static imk_status physics(const imk_job *job)
     return status;
 }
 
+/* Two power cycles of the same noise: the biases do not differ. */
+static imk_status calibrate(const imk_job *job)
+{
+    imk_calibrate_log_settings settings = imk_calibrate_log_default();
+    imk_array_source arrays;
+    imk_record_source again;
+    const double *data[COLUMNS];
+    for (int k = 0; k < COLUMNS; k++)
+        data[k] = column[k];
+    CHECK_OK(imk_array_source_make(COLUMNS, names, data, ROWS, RATE, &arrays, &again, NULL));
+    const imk_record_source once = source();
+    const imk_calibrate_input input[] = {{"first", IMK_PROCEDURE_MULTIPOSITION, &once},
+                                         {"second", IMK_PROCEDURE_MULTIPOSITION, &again}};
+    imk_calibrate_log *found;
+    settings.repeatability = true;
+    const imk_status status = imk_calibrate_logs(2, input, &settings, job, &found, NULL);
+    if (status == IMK_OK)
+        CHECK_CLOSE(found->model.gyro.bias.repeatability.value[0], 0, 1e-12);
+    imk_calibrate_log_free(found);
+    return status;
+}
+
 static const struct {
     const char *name;
     imk_status (*run)(const imk_job *job);
-} jobs[] = {{"simulate", simulate}, {"allan", allan},       {"spectrum", spectrum},
-            {"identify", identify}, {"navigate", navigate}, {"compensate", compensate},
-            {"drift", drift},       {"grade", grade},       {"physics", physics}};
+} jobs[] = {{"simulate", simulate},  {"allan", allan},       {"spectrum", spectrum},
+            {"identify", identify},  {"navigate", navigate}, {"compensate", compensate},
+            {"drift", drift},        {"grade", grade},       {"physics", physics},
+            {"calibrate", calibrate}};
 enum { JOBS = sizeof jobs / sizeof jobs[0] };
 
 static void test_results(void **state)

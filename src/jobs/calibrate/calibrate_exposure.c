@@ -1,15 +1,29 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a unit was exposed to by the programme that the table ran, as means over the log's
- * samples. */
+/* What the unit was exposed to: columns of the record beside the readings, or the programme that
+ * the table ran, as means over the record's samples. */
 #include "calibrate_internal.h"
+
+#include "jobs/job_internal.h"
 
 #include "imukit/random.h"
 #include "imukit/samples.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-double *imk_calibrate_record_column(imk_calibrate_record *log, int column)
+/* An offset is searched for so far on both sides, when the record is long enough [s]. */
+static const double largest_shift = 10.0;
+/* Correlation of readings and programme from which on they are taken to be of one motion. */
+static const double followed = 0.5;
+
+static imk_status no_memory(imk_error *error)
+{
+    return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+}
+
+/* One of the columns of references, zeros at first; NULL when memory is exhausted. */
+static double *reference_column(imk_calibrate_record *log, int column)
 {
     const size_t rows = log->record.count, size = IMK_CALIBRATE_REFERENCES * rows * sizeof(double);
     if (!log->reference) {
@@ -20,6 +34,76 @@ double *imk_calibrate_record_column(imk_calibrate_record *log, int column)
     }
     return log->reference + (size_t)column * rows;
 }
+
+/* ---- columns --------------------------------------------------------------------------------- */
+
+/* Index of the column of this name with the dimension of a unit; -1: there is none. */
+static imk_status find_column(imk_calibrate_record *log, const char *name, const char *unit,
+                              int *found, imk_error *error)
+{
+    *found = -1;
+    for (size_t c = 0; c < log->log.column_count; c++) {
+        char words[96];
+        const imk_log_column *column = &log->log.column[c];
+        const imk_dimension due = imk_unit_of(unit).dimension;
+        if (strcmp(column->name, name) != 0)
+            continue;
+        *found = (int)c;
+        snprintf(words, sizeof words, "%s\t%s", name, unit);
+        if (!column->unit.text[0])
+            return imki_fail(&log->loaded, error, IMK_ERROR_UNIT_MISSING, "calibrate:no_unit",
+                             words, 0, NULL);
+        snprintf(words, sizeof words, "%s [%.24s]\t%s, such as %s", name, column->unit.text,
+                 imk_dimension_name(due), unit);
+        if (!imk_dimension_equal(column->unit.dimension, due))
+            return imki_fail(&log->loaded, error, IMK_ERROR_DIMENSION, "wrong_unit", words, 0,
+                             NULL);
+    }
+    return IMK_OK;
+}
+
+/* reference_rate_x … of one vector: the components that are not there are zero. */
+static imk_status take_vector(imk_calibrate_record *log, const char *name, const char *unit,
+                              const double *target[3], imk_error *error)
+{
+    int column[3];
+    for (int k = 0; k < 3; k++) {
+        char full[48];
+        snprintf(full, sizeof full, "%s_%c", name, "xyz"[k]);
+        const imk_status status = find_column(log, full, unit, &column[k], error);
+        if (status != IMK_OK)
+            return status;
+    }
+    if (column[0] < 0 && column[1] < 0 && column[2] < 0)
+        return IMK_OK;
+    const double *zero = reference_column(log, 0);
+    for (int k = 0; k < 3; k++)
+        target[k] = column[k] < 0 ? zero : log->log.data[column[k]];
+    return zero ? IMK_OK : no_memory(error);
+}
+
+/* table_rate, about an axis of the unit that is named. */
+static imk_status take_table(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
+                             imk_error *error)
+{
+    int column;
+    const imk_status status = find_column(log, "table_rate", "deg/s", &column, error);
+    if (status != IMK_OK)
+        return status;
+    if (column < 0)
+        return s->table_axis >= 0 && log->procedure == IMK_PROCEDURE_RATE_TABLE
+                   ? imki_fail(&log->loaded, error, IMK_ERROR_COLUMN, "no_table_rate", NULL, 0,
+                               NULL)
+                   : IMK_OK;
+    if (s->table_axis < 0 || s->table_axis > 2)
+        return imki_fail(&log->loaded, error, IMK_ERROR_ARGUMENT, "no_table_axis", NULL, 0, NULL);
+    const double *zero = reference_column(log, 0);
+    for (int k = 0; k < 3; k++)
+        log->record.reference_rate[k] = k == s->table_axis ? log->log.data[column] : zero;
+    return zero ? IMK_OK : no_memory(error);
+}
+
+/* ---- programme ------------------------------------------------------------------------------- */
 
 static void fill_from_recorded(const imk_recorded_motion *motion, imk_calibrate_record *log,
                                double *const column[IMK_CALIBRATE_REFERENCES])
@@ -70,13 +154,13 @@ static imk_status fill_from_trajectory(const imk_trajectory *trajectory, imk_cal
     return IMK_OK;
 }
 
-imk_status imk_calibrate_record_expose(imk_calibrate_record *log, const imk_motion *motion,
-                                       imk_error *error)
+/* References by a motion that begins at log->motion_offset; NaN outside a recorded one. */
+static imk_status expose(imk_calibrate_record *log, const imk_motion *motion, imk_error *error)
 {
     double *column[IMK_CALIBRATE_REFERENCES];
     for (int i = 0; i < IMK_CALIBRATE_REFERENCES; i++)
-        if (!(column[i] = imk_calibrate_record_column(log, i)))
-            return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+        if (!(column[i] = reference_column(log, i)))
+            return no_memory(error);
     for (int i = 0; i < 3; i++) {
         log->record.reference_rate[i] = column[i];
         log->record.reference_force[i] = column[3 + i];
@@ -88,20 +172,84 @@ imk_status imk_calibrate_record_expose(imk_calibrate_record *log, const imk_moti
     }
     if (fill_from_trajectory(motion->trajectory, log, column) == IMK_OK)
         return IMK_OK;
-    return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    return no_memory(error);
 }
 
-imk_status imk_calibrate_record_shift(const imk_calibrate_record *log, double largest,
-                                      imk_reference_shift *shift, imk_error *error)
+/* Where readings follow the references best. */
+static imk_status find_shift(const imk_calibrate_record *log, imk_reference_shift *shift,
+                             imk_error *error)
 {
     const double length = (double)log->record.count * log->record.dt;
-    const double most = fmin(largest, length / 4);
+    const double most = fmin(largest_shift, length / 4);
     const size_t size = imk_reference_offset_workspace_size(&log->record, most);
     void *workspace = imki_resize(&log->log.allocator, NULL, size);
     if (!workspace)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+        return no_memory(error);
     const imk_status status =
         imk_reference_offset(&log->record, most, shift, workspace, size, error);
     imki_resize(&log->log.allocator, workspace, 0);
     return status;
+}
+
+static imk_status find_offset(imk_calibrate_record *log, imk_error *error)
+{
+    imk_reference_shift shift;
+    const imk_status status = find_shift(log, &shift, error);
+    if (status != IMK_OK)
+        return status;
+    if (!(shift.correlation > followed))
+        return imki_fail(&log->loaded, error, IMK_ERROR_CONFLICT, "programme_not_followed", NULL,
+                         IMKI_NUMBERS(largest_shift, shift.correlation));
+    log->motion_offset = shift.offset;
+    imki_find(&log->loaded, IMK_FINDING_NOTE, "programme_begins", NULL,
+              IMKI_NUMBERS(shift.offset, shift.sigma, shift.correlation));
+    if (shift.rival > 0.95 * shift.correlation)
+        imki_find(&log->loaded, IMK_FINDING_WARNING, "rival:motion_offset", NULL,
+                  IMKI_NUMBERS(shift.rival_offset));
+    return IMK_OK;
+}
+
+/* A record that begins at another time than the programme looks like a bad sensor. */
+static imk_status check_offset(imk_calibrate_record *log, imk_error *error)
+{
+    imk_reference_shift shift;
+    const imk_status status = find_shift(log, &shift, error);
+    if (status == IMK_OK && shift.correlation > followed &&
+        fabs(shift.offset) >= log->record.dt + 5 * shift.sigma)
+        imki_find(&log->loaded, IMK_FINDING_WARNING, "calibrate:motion_offset", NULL,
+                  IMKI_NUMBERS(fabs(shift.offset), shift.offset > 0, shift.sigma,
+                               log->motion_offset + shift.offset));
+    return status == IMK_ERROR_MEMORY ? status : IMK_OK;
+}
+
+static imk_status take_motion(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
+                              imk_error *error)
+{
+    log->motion_offset = s->find_offset ? 0 : s->motion_offset;
+    imk_status status = expose(log, s->motion, error);
+    if (status != IMK_OK || !s->find_offset)
+        return status == IMK_OK ? check_offset(log, error) : status;
+    status = find_offset(log, error);
+    return status == IMK_OK ? expose(log, s->motion, error) : status;
+}
+
+imk_status imki_take_reference(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
+                               imk_error *error)
+{
+    const struct {
+        const char *name, *unit;
+        const double **target;
+    } vectors[] = {{"reference_rate", "deg/s", log->record.reference_rate},
+                   {"reference_force", "g", log->record.reference_force},
+                   {"reference_acceleration", "deg/s^2", log->record.reference_acceleration}};
+    imk_status status = IMK_OK;
+    for (size_t k = 0; status == IMK_OK && k < sizeof vectors / sizeof *vectors; k++)
+        status = take_vector(log, vectors[k].name, vectors[k].unit, vectors[k].target, error);
+    if (status == IMK_OK && !log->record.reference_rate[0])
+        status = take_table(s, log, error);
+    if (status != IMK_OK || !s->motion)
+        return status;
+    if (log->record.reference_rate[0] || log->record.reference_force[0])
+        return imki_fail(&log->loaded, error, IMK_ERROR_ARGUMENT, "reference_twice", NULL, 0, NULL);
+    return take_motion(s, log, error);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Steps of a calibration, and the words of the two sensors, gyros first. */
+/* Steps of a calibration, and the names of the two sensors, gyros first. */
 #ifndef IMUKI_CALIBRATE_INTERNAL_H
 #define IMUKI_CALIBRATE_INTERNAL_H
 
@@ -10,6 +10,18 @@
 static const char *const imki_sensor_keys[2] = {"gyro", "accel"};
 static const char *const imki_sensor_titles[2] = {"gyro", "accelerometer"};
 static const char *const imki_sensor_units[2] = {"rad/s", "m/s^2"};
+
+/* session_record.c: the name of a record without its folders. */
+const char *imki_record_name(const char *path);
+/* calibrate_set_up.c: the problem, its records not loaded; then what is known before of them. */
+imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *procedure,
+                                 imk_error *error);
+imk_status imki_know_before(imk_calibrate_log *b, imk_error *error);
+/* calibrate_terms.c: estimate what is named. */
+imk_status imki_free_terms(imk_calibrate_log *b, imk_error *error);
+/* calibrate_exposure.c: what the unit was exposed to, from columns or the programme. */
+imk_status imki_take_reference(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
+                               imk_error *error);
 
 /* calibrate_observe.c: where a log stands still, what its procedure observes; then the solution. */
 imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_error *error);

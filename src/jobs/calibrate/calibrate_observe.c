@@ -142,9 +142,9 @@ imk_status imki_observe(imk_calibrate_log *b, imk_calibrate_record *log, imk_err
     if (!workspace)
         return no_memory(error);
     do
-        status =
-            imk_procedure_observe(log->procedure, c, &log->record, &log->settings,
-                                  b->settings.terms_named, &log->findings, workspace, size, error);
+        status = imk_procedure_observe(log->procedure, c, &log->record, &log->settings,
+                                       b->settings.estimate != NULL, &log->findings, workspace,
+                                       size, error);
     while (wants_room(status, error, c) && grow(b, error) == IMK_OK);
     imki_resize(&b->job.allocator, workspace, 0);
     if (status != IMK_OK)

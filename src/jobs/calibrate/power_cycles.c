@@ -9,6 +9,7 @@
 #include "imukit/distributions.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* What is left out at both ends of a run, and the shortest run, unless told [s]. */
@@ -110,8 +111,10 @@ static void state(imk_calibration_result *r, int sensor, int term, int axis, dou
     r->freedom[k] = freedom;
 }
 
-void imk_calibration_of_model(const imk_model *model, const imk_model *first,
-                              imk_calibration_result *r)
+/* Bias and scale factor of a model with their sigmas, as the calibration of a run; of counts by the
+ * sensitivities and zeros of the first one, since each may have found its own. */
+static void calibration_of(const imk_model *model, const imk_model *first,
+                           imk_calibration_result *r)
 {
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_triad *t = imk_model_triad(model, sensor);
@@ -136,13 +139,61 @@ void imk_calibration_of_model(const imk_model *model, const imk_model *first,
     }
 }
 
-imk_status imk_calibrate_log_compare(imk_calibrate_log *b, const imk_calibration_result *const *run,
-                                     imk_error *error)
+/* The same axes, counts where the first has counts, one frame. */
+static imk_status check_alike(imk_calibrate_log *b, const imk_model *model, const imk_model *first,
+                              const char *const names[2], imk_error *error)
+{
+    char words[96];
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const imk_triad *t = imk_model_triad(model, sensor);
+        const imk_triad *f = imk_model_triad(first, sensor);
+        const char *frame = (sensor == 0 ? &model->gyro_evidence : &model->accel_evidence)->frame;
+        const char *other = (sensor == 0 ? &first->gyro_evidence : &first->accel_evidence)->frame;
+        snprintf(words, sizeof words, "%s\t%.70s", imki_sensor_titles[sensor], names[0]);
+        if (t->present != f->present || (t->present && t->axis_count != f->axis_count))
+            return imki_fail(&b->findings, error, IMK_ERROR_CONFLICT, "models_of_units", words, 0,
+                             NULL);
+        if (t->present && (t->sensitivity.value[0] != 0) != (f->sensitivity.value[0] != 0))
+            return imki_fail(&b->findings, error, IMK_ERROR_CONFLICT, "models_of_counts", words, 0,
+                             NULL);
+        snprintf(words, sizeof words, "%s\t%s", other, frame);
+        if (strcmp(frame, other) != 0)
+            return imki_fail(&b->findings, error, IMK_ERROR_CONFLICT, "models_of_frames", words, 0,
+                             NULL);
+    }
+    return IMK_OK;
+}
+
+/* The axes of the first model, as those of a record: what a model known before is checked against.
+ */
+static void take_axes(imk_calibrate_log *b, const imk_model *first)
+{
+    for (size_t k = 0; k < b->count; k++) {
+        imk_test_record *record = &b->record[k].record;
+        record->axis_count[0] = first->gyro.present ? first->gyro.axis_count : 0;
+        record->axis_count[1] = first->accel.present ? first->accel.axis_count : 0;
+    }
+}
+
+static imk_status take_model(imk_calibrate_log *b, const imk_model *model, const imk_model *first,
+                             const char *name, const char *first_name,
+                             imk_calibration_result *result, imk_error *error)
+{
+    const char *const names[2] = {first_name, name};
+    imk_calibrate_record *record = &b->record[b->failed];
+    record->path = name;
+    record->record.name = imki_record_name(name);
+    calibration_of(model, first, result);
+    if (result->parameter_count == 0)
+        return imki_fail(&b->findings, error, IMK_ERROR_EMPTY, "model_without_sigma", NULL, 0,
+                         NULL);
+    return check_alike(b, model, first, names, error);
+}
+
+static imk_status compare(imk_calibrate_log *b, const imk_calibration_result *const *run,
+                          imk_error *error)
 {
     b->failed = b->count;
-    b->runs = imki_arena_take(b->memory, sizeof *b->runs);
-    if (!b->runs)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (b->count < 2)
         return imki_fail(&b->findings, error, IMK_ERROR_TOO_SHORT, "one_model", NULL, 0, NULL);
     const imk_status status =
@@ -154,4 +205,29 @@ imk_status imk_calibrate_log_compare(imk_calibrate_log *b, const imk_calibration
     b->run_count = b->count;
     imki_calibrate_model(b);
     return IMK_OK;
+}
+
+imk_status imk_calibrate_log_compare(imk_calibrate_log *b, const imk_model *const *model,
+                                     const char *const *name, imk_error *error)
+{
+    const imk_calibration_result *run[IMK_TEST_RECORDS_MAX];
+    imk_calibration_result *result =
+        imki_resize(&b->job.allocator, NULL, b->count * sizeof *result);
+    imk_status status = IMK_OK;
+    b->runs = imki_arena_take(b->memory, sizeof *b->runs);
+    if (!result || !b->runs)
+        status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    for (size_t k = 0; status == IMK_OK && k < b->count; k++) {
+        run[k] = memset(&result[k], 0, sizeof result[k]);
+        b->failed = k;
+        status = take_model(b, model[k], model[0], name[k], name[0], &result[k], error);
+    }
+    if (status == IMK_OK) {
+        take_axes(b, model[0]);
+        status = imki_know_before(b, error);
+    }
+    if (status == IMK_OK)
+        status = compare(b, run, error);
+    imki_resize(&b->job.allocator, result, 0);
+    return status;
 }

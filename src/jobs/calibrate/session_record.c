@@ -3,8 +3,11 @@
  * time does not increase are left out, because no sample interval belongs to them. */
 #include "calibrate_internal.h"
 
-#include "imukit/even_record.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/even_record_internal.h"
+
+#include "imukit/even_record.h"
+#include "imukit/names.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +31,7 @@ static void drop_rows(imk_calibrate_record *log, int time, imk_findings *finding
     log->dropped = columns->rows - kept;
     columns->rows = kept;
     if (log->dropped > 0)
-        imki_find(findings, IMK_FINDING_WARNING, "rows_dropped", NULL,
+        imki_find(findings, IMK_FINDING_WARNING, "calibrate:time_order", NULL,
                   IMKI_NUMBERS((double)log->dropped));
 }
 
@@ -65,21 +68,26 @@ static imk_status take_axes(imk_calibrate_record *log, int sensor, imk_findings 
 static imk_status find_section(const imk_calibrate_record *log, const char *wanted, int *found,
                                imk_findings *findings, imk_error *error)
 {
+    const char *names[IMK_LOG_COLUMNS_MAX] = {NULL};
     size_t labels = 0;
-    const char *first = NULL;
     *found = -1;
     for (size_t c = 0; c < log->log.column_count; c++) {
-        const char *name = log->log.column[c].name;
         if (!log->log.column[c].label)
             continue;
-        first = labels++ == 0 ? name : first;
-        if (!wanted || strcmp(wanted, name) == 0)
+        names[labels++] = log->log.column[c].name;
+        if (!wanted || strcmp(wanted, names[labels - 1]) == 0)
             *found = (int)c;
     }
-    if (wanted && *found < 0)
-        return imki_fail(findings, error, IMK_ERROR_COLUMN, "no_section", wanted, 0, NULL);
+    if (wanted && *found < 0) {
+        char words[96];
+        const size_t nearest = imk_nearest_name(wanted, labels, names);
+        const bool near = nearest < labels;
+        snprintf(words, sizeof words, "%.47s\t%s", wanted, near ? names[nearest] : "");
+        return imki_fail(findings, error, IMK_ERROR_COLUMN, "no_section", words,
+                         IMKI_NUMBERS(near));
+    }
     if (!wanted && labels > 1)
-        return imki_fail(findings, error, IMK_ERROR_COLUMN, "sections", first,
+        return imki_fail(findings, error, IMK_ERROR_COLUMN, "sections", names[0],
                          IMKI_NUMBERS((double)labels));
     return IMK_OK;
 }
@@ -112,12 +120,38 @@ static void tell_missing(const imk_test_record *record, imk_findings *findings)
     size_t first;
     const size_t rows = imk_test_record_missing(record, &first);
     if (rows > 0)
-        imki_find(findings, IMK_FINDING_WARNING, "readings_missing", NULL,
+        imki_find(findings, IMK_FINDING_WARNING, "calibrate:not_finite", NULL,
                   IMKI_NUMBERS((double)rows, (double)record->count, (double)first + 1));
 }
 
-imk_status imk_calibrate_record_make(imk_calibrate_record *log, const char *section,
-                                     imk_findings *findings, imk_error *error)
+/* Long enough for what is asked. */
+static imk_status check_length(const imk_calibrate_log_settings *s, imk_calibrate_record *log,
+                               imk_error *error)
+{
+    const struct {
+        const char *name;
+        double value;
+    } times[] = {{"initial-rest", s->initial_rest}, {"window", s->window}, {"minimum", s->minimum}};
+    const double length = (double)log->record.count * log->record.dt;
+    if (log->record.count < 2)
+        return imki_fail(&log->loaded, error, IMK_ERROR_TOO_SHORT, "one_row_of_test", NULL, 0,
+                         NULL);
+    for (size_t k = 0; k < sizeof times / sizeof times[0]; k++)
+        if (times[k].value > length)
+            return imki_fail(&log->loaded, error, IMK_ERROR_ARGUMENT, "longer_than_record",
+                             times[k].name, IMKI_NUMBERS(times[k].value, length));
+    return IMK_OK;
+}
+
+const char *imki_record_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The columns of a loaded record as those of a test. */
+static imk_status make_record(imk_calibrate_record *log, const char *section,
+                              imk_findings *findings, imk_error *error)
 {
     imk_log *columns = &log->log;
     imk_test_record *record = &log->record;
@@ -129,8 +163,7 @@ imk_status imk_calibrate_record_make(imk_calibrate_record *log, const char *sect
         drop_rows(log, time, findings);
     if (columns->rows == 0)
         return imki_fail(findings, error, IMK_ERROR_EMPTY, "no_rows", NULL, 0, NULL);
-    const char *slash = strrchr(log->path, '/');
-    record->name = slash ? slash + 1 : log->path;
+    record->name = imki_record_name(log->path);
     record->count = columns->rows;
     record->dt = columns->findings.interval;
     record->time = time >= 0 ? columns->data[time] : NULL;
@@ -146,6 +179,21 @@ imk_status imk_calibrate_record_make(imk_calibrate_record *log, const char *sect
         status = take_sections(log, column, error);
     if (status == IMK_OK)
         tell_missing(record, findings);
+    return status;
+}
+
+imk_status imk_calibrate_record_load(const imk_calibrate_log_settings *settings, const char *name,
+                                     const imk_record_source *source, const imk_job *job,
+                                     imk_calibrate_record *record, imk_error *error)
+{
+    record->path = name;
+    imk_status status = imki_record_load(source, imki_job_of(job), &record->log, error);
+    if (status == IMK_OK)
+        status = make_record(record, settings->section, &record->loaded, error);
+    if (status == IMK_OK)
+        status = check_length(settings, record, error);
+    if (status == IMK_OK)
+        status = imki_take_reference(settings, record, error);
     return status;
 }
 

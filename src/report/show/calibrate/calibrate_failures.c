@@ -199,7 +199,7 @@ static size_t undetermined(const message *to, const imk_calibrate_log *b, const 
     if (imk_model_parameter_parse(error->field, &parameter) != IMK_OK)
         return 0;
     const imk_triad *triad = imk_model_triad(&b->calibration->model, parameter.sensor);
-    if (triad->axis_count > 3 && !b->settings.model_given)
+    if (triad->axis_count > 3 && !b->settings.model)
         return say(to,
                    "the log has %d %s axes, and where they point is not known: add "
                    "--model MODEL that says so, as %s.direction",
@@ -253,13 +253,11 @@ size_t imk_calibrate_failure(const imk_calibrate_log *b, const imk_error *error,
     const message to = {text, size};
     const imk_finding *finding = imk_findings_failure(&b->findings);
     const imk_calibrate_record *log = b->failed < b->count ? &b->record[b->failed] : NULL;
-    char found[600];
-    if (finding) {
-        imk_finding_text(finding, found, sizeof found);
-        return say(&to, "%s%s%s", log && !b->runs ? log->path : "", log && !b->runs ? ": " : "",
-                   found);
-    }
+    if (!finding && log)
+        finding = imk_findings_failure(&log->loaded);
+    if (finding)
+        return imk_finding_message(finding, log ? log->path : NULL, "the model", text, size);
     if (b->settings.repeatability && error->status != IMK_ERROR_UNIT_MISSING)
         return 0;
-    return b->failed < b->count ? of_record(&to, b, log, error) : of_solution(&to, b, error);
+    return log ? of_record(&to, b, log, error) : of_solution(&to, b, error);
 }

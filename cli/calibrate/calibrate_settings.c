@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From the options to the settings of a calibration. */
+#include "calibrate_parts.h"
+#include "shell/place_text.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- quantities and terms -------------------------------------------------------------------- */
+
+/* "415 count/(m/s^2)": one number, or one for each axis. */
+static int parse_counts(const char *option_name, const char *text, const char *unit,
+                        imk_calibrate_counts *counts)
+{
+    double sigma[IMK_AXES_MAX];
+    size_t count = 0;
+    if (!text)
+        return -1;
+    if (imk_quantity_parse(text, text + strlen(text), imk_unit_of(unit).dimension, IMK_AXES_MAX,
+                           counts->value, sigma, &count, NULL, NULL) != IMK_OK)
+        return command_misused("--%s \"%s\": expected one number, or one for each axis, with a "
+                               "unit such as %s",
+                               option_name, text, unit);
+    counts->count = (int)count;
+    return -1;
+}
+
+static int take_counts(session *b)
+{
+    const calibrate_options *o = b->options;
+    imk_calibrate_log_settings *s = &b->settings;
+    const struct {
+        const char *option, *text, *unit;
+        imk_calibrate_counts *counts;
+    } given[] = {
+        {"gyro-sensitivity", o->sensitivity[0], "count/(rad/s)", &s->sensitivity[0]},
+        {"gyro-zero", o->zero_offset[0], "count", &s->zero_offset[0]},
+        {"accel-sensitivity", o->sensitivity[1], "count/(m/s^2)", &s->sensitivity[1]},
+        {"accel-zero", o->zero_offset[1], "count", &s->zero_offset[1]},
+    };
+    int code = -1;
+    for (size_t k = 0; code < 0 && k < sizeof given / sizeof *given; k++)
+        code = parse_counts(given[k].option, given[k].text, given[k].unit, given[k].counts);
+    return code;
+}
+
+/* --with and --without as bits. */
+static int take_switches(const char *option_name, const char *list, unsigned *terms)
+{
+    static const char *const names[] = {"nonlinearity", "cross_products", "g_sensitivity",
+                                        "g2_sensitivity", "gyro"};
+    static const char between[] = ", ";
+    enum { NAMES = sizeof names / sizeof names[0] };
+    for (list += list ? strspn(list, between) : 0; list && *list; list += strspn(list, between)) {
+        char item[48];
+        int which = 0;
+        const size_t length = strcspn(list, between);
+        snprintf(item, sizeof item, "%.*s", (int)(length < sizeof item ? length : sizeof item - 1),
+                 list);
+        while (which < NAMES && strcmp(names[which], item) != 0)
+            which++;
+        if (which == NAMES) {
+            const char *nearest = command_nearest(item, NAMES, names);
+            return command_misused("--%s %s: expected nonlinearity, cross_products, g_sensitivity, "
+                                   "g2_sensitivity or gyro%s%s%s",
+                                   option_name, item, nearest ? "; did you mean " : "",
+                                   nearest ? nearest : "", nearest ? "?" : "");
+        }
+        *terms |= 1u << which;
+        list += length;
+    }
+    return -1;
+}
+
+_Static_assert(IMK_CALIBRATE_NONLINEARITY == 1 << 0 && IMK_CALIBRATE_GYRO_TURNS == 1 << 4,
+               "in the order of the names");
+
+static int take_terms(session *b)
+{
+    const calibrate_options *o = b->options;
+    if (o->estimate && (o->with || o->without))
+        return command_misused("--estimate names all that is estimated: leave --with and --without "
+                               "out");
+    const int code = take_switches("with", o->with, &b->settings.with);
+    return code < 0 ? take_switches("without", o->without, &b->settings.without) : code;
+}
+
+/* "k2, koq, " and so on. */
+static void name_powers(char *text, size_t size)
+{
+    static const char group[] = "nonlinearity.";
+    size_t length = 0;
+    for (int term = 0; term < IMK_MODEL_TERMS && length < size; term++) {
+        char path[IMK_MODEL_PARAMETER_NAME];
+        if (imk_calibrate_term_path(0, term, path) && strncmp(path, group, sizeof group - 1) == 0)
+            length +=
+                (size_t)snprintf(text + length, size - length, "%s, ", path + sizeof group - 1);
+    }
+}
+
+int session_terms_refused(const char *option_name, const imk_error *error)
+{
+    const char *name = error->field;
+    if (error->status == IMK_ERROR_RANGE)
+        return command_misused("--%s %s: there is no such axis", option_name, name);
+    if (error->status == IMK_ERROR_WORKSPACE)
+        return command_misused("--%s: these are more than %d numbers", option_name,
+                               IMK_CORRELATED_MAX);
+    char powers[128];
+    name_powers(powers, sizeof powers);
+    return command_misused("--%s %s: no such term; expected bias, scale_factor, misalignment, "
+                           "nonlinearity, %scross_products, g_sensitivity, g2_sensitivity, "
+                           "lever_arm, bias.temperature, scale_factor.temperature or "
+                           "temperature_rate, with gyro. or accel. before it for one sensor only, "
+                           "or a single number such as accel.bias.fixed.x",
+                           option_name, name, powers);
+}
+
+/* ---- procedures ------------------------------------------------------------------------------ */
+
+static int procedure_of(const char *name, size_t length, session *b, size_t log)
+{
+    const char *names[IMK_PROCEDURES + 1];
+    char given[40];
+    snprintf(given, sizeof given, "%.*s", (int)(length < 39 ? length : 39), name);
+    for (int p = 0; p < IMK_PROCEDURES; p++) {
+        names[p] = imk_procedure_name((imk_procedure)p);
+        if (strcmp(names[p], given) == 0) {
+            b->procedure[log] = (imk_procedure)p;
+            return -1;
+        }
+    }
+    names[IMK_PROCEDURES] = "repeatability";
+    if (strcmp(given, "repeatability") == 0) {
+        b->settings.repeatability = true;
+        return -1;
+    }
+    const char *nearest = command_nearest(given, IMK_PROCEDURES + 1, names);
+    return command_misused("--procedure %s: there is no such procedure%s%s%s; there are "
+                           "multiposition, sixposition, ferraris, rate-table, tumble, centrifuge, "
+                           "spin, thermal and repeatability",
+                           given, nearest ? " (did you mean " : "", nearest ? nearest : "",
+                           nearest ? "?)" : "");
+}
+
+/* One for all logs, or one for each. */
+static int assign_procedures(session *b)
+{
+    const char *text = b->options->procedure;
+    size_t count = 1;
+    if (!text)
+        return command_misused("what was done is missing: add --procedure multiposition for a unit "
+                               "turned by hand from rest to rest; the others are in imukit "
+                               "calibrate --help");
+    for (const char *c = text; *c; c++)
+        count += *c == ',';
+    if (count != 1 && count != b->count)
+        return command_misused("--procedure %s: %zu procedures for %zu log%s; give one for all, or "
+                               "one for each",
+                               text, count, b->count, b->count == 1 ? "" : "s");
+    for (size_t k = 0; k < b->count; k++) {
+        const size_t length = strcspn(text, ",");
+        int code = procedure_of(text, length, b, k);
+        if (code >= 0)
+            return code;
+        if (count > 1)
+            text += length + 1;
+    }
+    if (b->settings.repeatability && count > 1)
+        return command_misused("--procedure: repeatability compares all logs, each of one power "
+                               "cycle; it cannot stand beside another procedure");
+    return -1;
+}
+
+/* An option that no procedure looks at was meant for another one. */
+static int check_used(const session *b)
+{
+    const calibrate_options *o = b->options;
+    bool referenced = false, ferraris = false, thermal = false;
+    for (size_t k = 0; k < b->count && !b->settings.repeatability; k++) {
+        const imk_procedure p = b->procedure[k];
+        ferraris = ferraris || p == IMK_PROCEDURE_FERRARIS;
+        thermal = thermal || p == IMK_PROCEDURE_THERMAL;
+        referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
+                     p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
+    }
+    const char *none = "--%s is not used by --procedure %s: it is of %s";
+    if (o->motion && !referenced && !thermal)
+        return command_misused(none, "motion", o->procedure,
+                               "rate-table, tumble, centrifuge, spin and thermal");
+    if (o->motion_offset && !o->motion)
+        return command_misused("--motion-offset is of --motion");
+    if (o->table_axis >= 0 && !referenced)
+        return command_misused(none, "table-axis", o->procedure, "rate-table");
+    if (!isnan(o->turn_angle) && !ferraris)
+        return command_misused(none, "turn-angle", o->procedure, "ferraris");
+    if (o->temperature_order.given && !thermal)
+        return command_misused(none, "temperature-order", o->procedure, "thermal");
+    if (!isnan(o->reference_temperature) && !thermal)
+        return command_misused(none, "reference-temperature", o->procedure, "thermal");
+    return -1;
+}
+
+static int check_closed_form(const session *b)
+{
+    const calibrate_options *o = b->options;
+    if (!b->settings.closed_form || b->settings.repeatability)
+        return -1;
+    if (b->count != 1 || b->procedure[0] != IMK_PROCEDURE_FERRARIS)
+        return command_misused("--estimator closed-form: this is for one log of --procedure "
+                               "ferraris; the others, and several logs together, are solved by "
+                               "maximum likelihood");
+    if (o->estimate || o->with || o->without)
+        return command_misused("--estimator closed-form: what it finds is fixed; leave --estimate, "
+                               "--with and --without out");
+    return -1;
+}
+
+/* ---- all of them ----------------------------------------------------------------------------- */
+
+static void take_numbers(session *b)
+{
+    const calibrate_options *o = b->options;
+    imk_calibrate_log_settings *s = &b->settings;
+    s->gravity = o->gravity;
+    s->no_earth = o->no_earth;
+    s->frame = o->frame;
+    s->estimate = o->estimate;
+    s->closed_form = o->estimator != 0;
+    s->least_squares = o->robust != 0;
+    s->section = o->section;
+    s->placement = o->placement;
+    s->mounting = o->mounting;
+    s->turn_angle = o->turn_angle;
+    s->initial_rest = o->initial_rest;
+    s->window = o->window;
+    s->minimum = o->minimum;
+    s->trim = o->trim;
+    s->settle = o->settle;
+    s->reference_temperature = o->reference_temperature;
+    s->temperature_order = (int)o->temperature_order.value;
+    s->table_axis = o->table_axis;
+    s->activity = o->plot || o->report;
+}
+
+/* Settings that exclude each other. */
+static int refused(const imk_error *error)
+{
+    if (strcmp(error->field, "gravity") == 0)
+        return command_misused("--gravity %.6g m/s^2: expected 9.5 to 10.1 m/s^2, which is what "
+                               "there is on Earth",
+                               error->value);
+    if (strcmp(error->field, "frame") == 0)
+        return command_misused("--frame reference: gravity alone does not tell how the triad "
+                               "stands in the housing; add a log of sixposition, ferraris, tumble "
+                               "or rate-table, or choose upper-triangular, lower-triangular or "
+                               "symmetric");
+    return command_error(error, NULL);
+}
+
+int session_choose(session *b)
+{
+    const calibrate_options *o = b->options;
+    imk_error error;
+    b->settings = imk_calibrate_log_default();
+    take_numbers(b);
+    int code = assign_procedures(b);
+    if (code < 0)
+        code = check_used(b);
+    if (code < 0 && o->position)
+        code = place_parse(o->position, &b->settings.place);
+    b->settings.place_known = o->position != NULL;
+    if (code < 0)
+        code = take_terms(b);
+    if (code < 0)
+        code = check_closed_form(b);
+    if (code < 0)
+        code = take_counts(b);
+    if (code < 0 && command_unless_memory(imk_calibrate_log_create(
+                        b->count, b->procedure, &b->settings, NULL, &b->found, &error)) != IMK_OK)
+        code = refused(&error);
+    return code;
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+int session_motion(const calibrate_options *o, const imk_geodetic *place, imk_motion_file **motion,
+                   imk_calibrate_log_settings *settings)
+{
+    imk_error error;
+    double sigma;
+    size_t count;
+    const char *text = o->motion_offset;
+    if (!o->motion)
+        return -1;
+    if (!*motion && imk_motion_read(o->motion, NULL, place, 1, motion, &error) != IMK_OK)
+        return command_error(&error, o->motion);
+    settings->motion = imk_motion_file_motion(*motion);
+    settings->find_offset = text && strcmp(text, "auto") == 0;
+    if (text && !settings->find_offset &&
+        imk_quantity_parse(text, text + strlen(text), imk_unit_of("s").dimension, 1,
+                           &settings->motion_offset, &sigma, &count, NULL, &error) != IMK_OK)
+        return command_misused("--motion-offset %s: expected the time of the log at which the "
+                               "programme begins, such as 2.5s, or auto",
+                               text);
+    return -1;
+}
+
+int session_known_before(session *b)
+{
+    const calibrate_options *o = b->options;
+    const char *given = o->into ? o->into : o->model;
+    if (!given)
+        return -1;
+    b->known = command_memory(NULL, sizeof *b->known);
+    b->found->settings.model = b->known;
+    return command_model(given, b->known, o->into ? &b->document : NULL);
+}

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From the settings to a problem: place and frame, how each record is looked at; and, with the
+ * records loaded, what is known before. */
+#include "calibrate_internal.h"
+
+#include "jobs/job_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Where the accelerometers' own axes are the frame, those of a table are others: the mounting of
+ * the unit is then estimated, from nothing known within this [rad]. */
+static const double loose_mounting = 0.1;
+
+/* What there is on Earth [m/s^2]. */
+static const double gravity_least = 9.5, gravity_most = 10.1;
+
+/* ---- place and frame ------------------------------------------------------------------------- */
+
+/* Gravity and the Earth's rotation. */
+static imk_status set_place(imk_calibrate_log *b, imk_error *error)
+{
+    const imk_calibrate_log_settings *s = &b->settings;
+    imk_calibration *c = b->calibration;
+    if (s->place_known) {
+        c->latitude = s->place.latitude;
+        c->gravity = imk_normal_gravity(s->place.latitude, s->place.height);
+    }
+    if (!isnan(s->gravity)) {
+        if (!(s->gravity > gravity_least && s->gravity < gravity_most)) {
+            (void)imk_error_set(error, IMK_ERROR_RANGE, "gravity", NULL, "9.5 to 10.1 m/s^2");
+            if (error)
+                error->value = s->gravity;
+            return IMK_ERROR_RANGE;
+        }
+        c->gravity = s->gravity;
+    }
+    if (s->no_earth)
+        c->earth_rate = 0;
+    return IMK_OK;
+}
+
+/* Forces on the accelerometers are known, and with them how the triad stands in the housing. */
+static bool knows_force(imk_procedure procedure)
+{
+    return imk_procedure_is_known(procedure) && procedure != IMK_PROCEDURE_RATE_TABLE &&
+           procedure != IMK_PROCEDURE_SPIN;
+}
+
+static imk_status choose_frame(imk_calibrate_log *b, imk_error *error)
+{
+    bool known = false, force = false, gravity = false;
+    for (size_t k = 0; k < b->count; k++) {
+        known = known || imk_procedure_is_known(b->record[k].procedure);
+        force = force || knows_force(b->record[k].procedure);
+        gravity = gravity || b->record[k].procedure == IMK_PROCEDURE_MULTIPOSITION;
+    }
+    /* A table for the gyros and poses for the accelerometers: the poses fix the frame. */
+    const bool reference = known && (force || !gravity);
+    b->calibration->frame = b->settings.frame >= 0 ? (imk_triad_frame)b->settings.frame
+                            : reference            ? IMK_FRAME_REFERENCE
+                                                   : IMK_FRAME_UPPER;
+    if (known || b->calibration->frame != IMK_FRAME_REFERENCE)
+        return IMK_OK;
+    return imk_error_set(error, IMK_ERROR_CONFLICT, "frame", NULL, NULL);
+}
+
+/* ---- procedures ------------------------------------------------------------------------------ */
+
+static void set_if(double *target, double value)
+{
+    if (!isnan(value))
+        *target = value;
+}
+
+static void switch_terms(unsigned terms, bool on, imk_procedure_settings *s)
+{
+    const struct {
+        unsigned term;
+        bool *target;
+    } switches[] = {{IMK_CALIBRATE_NONLINEARITY, &s->nonlinear},
+                    {IMK_CALIBRATE_CROSS_PRODUCTS, &s->cross_products},
+                    {IMK_CALIBRATE_G_SENSITIVITY, &s->g_sensitivity},
+                    {IMK_CALIBRATE_G2_SENSITIVITY, &s->g2_sensitivity},
+                    {IMK_CALIBRATE_GYRO_TURNS, &s->gyro_turns}};
+    for (size_t k = 0; k < sizeof switches / sizeof *switches; k++)
+        if (terms & switches[k].term)
+            *switches[k].target = on;
+}
+
+static imk_procedure_settings settings_of(const imk_calibrate_log *b, imk_procedure procedure)
+{
+    const imk_calibrate_log_settings *o = &b->settings;
+    imk_procedure_settings s = imk_procedure_default(procedure);
+    set_if(&s.stationary.initial_rest, o->initial_rest);
+    set_if(&s.stationary.window, o->window);
+    set_if(&s.stationary.minimum, o->minimum);
+    set_if(&s.minimum, o->minimum);
+    set_if(&s.placement_sigma, o->placement);
+    if (b->calibration->frame != IMK_FRAME_REFERENCE && imk_procedure_is_known(procedure))
+        s.fixture_sigma = loose_mounting;
+    set_if(&s.fixture_sigma, o->mounting);
+    set_if(&s.turn_angle, o->turn_angle);
+    set_if(&s.trim, o->trim);
+    set_if(&s.settle, o->settle);
+    set_if(&s.reference_temperature, o->reference_temperature);
+    s.temperature_order = o->temperature_order;
+    switch_terms(o->with, true, &s);
+    switch_terms(o->without, false, &s);
+    return s;
+}
+
+imk_status imki_calibrate_set_up(imk_calibrate_log *b, const imk_procedure *procedure,
+                                 imk_error *error)
+{
+    const imk_calibrate_log_settings *s = &b->settings;
+    imk_calibration_default(b->calibration);
+    b->calibration->robust = !s->least_squares;
+    for (size_t k = 0; k < b->count; k++) {
+        if ((int)procedure[k] < 0 || procedure[k] >= IMK_PROCEDURES)
+            return imk_error_set(error, IMK_ERROR_RANGE, "procedure", NULL, NULL);
+        b->record[k].procedure = procedure[k];
+    }
+    if (s->estimate && (s->with || s->without))
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "estimate", NULL, NULL);
+    if (s->closed_form &&
+        (b->count != 1 || procedure[0] != IMK_PROCEDURE_FERRARIS || s->repeatability))
+        return imk_error_set(error, IMK_ERROR_CONFLICT, "closed_form", NULL, NULL);
+    imk_status status = set_place(b, error);
+    if (status == IMK_OK)
+        status = choose_frame(b, error);
+    for (size_t k = 0; status == IMK_OK && k < b->count; k++)
+        b->record[k].settings = settings_of(b, procedure[k]);
+    return status;
+}
+
+/* ---- what is known before -------------------------------------------------------------------- */
+
+static imk_status refuse(imk_calibrate_log *b, const char *code, int sensor, imk_error *error)
+{
+    return imki_fail(&b->findings, error, IMK_ERROR_ARGUMENT, code, imki_sensor_keys[sensor], 0,
+                     NULL);
+}
+
+/* Numbers of a data sheet for the axes of a triad; false where they are of other axes. */
+static bool take_counts(const imk_calibrate_counts *given, int axes, double *value)
+{
+    if (given->count > 1 && given->count != axes)
+        return false;
+    for (int i = 0; given->count > 0 && i < axes; i++)
+        value[i] = given->value[given->count == 1 ? 0 : i];
+    return true;
+}
+
+static imk_status apply_counts(imk_calibrate_log *b, int sensor, imk_error *error)
+{
+    const imk_calibrate_counts *sensitivity = &b->settings.sensitivity[sensor];
+    imk_triad *triad = imk_model_triad_to_set(&b->calibration->model, sensor);
+    const int axes = triad->axis_count;
+    if (!take_counts(sensitivity, axes, triad->sensitivity.value) ||
+        !take_counts(&b->settings.zero_offset[sensor], axes, triad->zero_offset.value))
+        return imki_fail(&b->findings, error, IMK_ERROR_ARGUMENT, "counts_of_axes",
+                         imki_sensor_keys[sensor], IMKI_NUMBERS(axes));
+    for (int i = 0; i < axes; i++) {
+        if (sensitivity->count > 0 && triad->sensitivity.value[i] == 0)
+            return refuse(b, "no_sensitivity", sensor, error);
+        if (triad->zero_offset.value[i] != 0 && triad->sensitivity.value[i] == 0)
+            return refuse(b, "zero_of_nothing", sensor, error);
+    }
+    return IMK_OK;
+}
+
+/* The axes that the records have of a sensor: all that have some have the same. */
+static imk_status find_axes(imk_calibrate_log *b, int sensor, int *axes, bool *counts,
+                            imk_error *error)
+{
+    *axes = 0, *counts = false;
+    for (size_t k = 0; k < b->count; k++) {
+        const imk_test_record *record = &b->record[k].record;
+        const int here = record->axis_count[sensor];
+        b->failed = k;
+        if (here > 0 && *axes > 0 && here != *axes)
+            return imki_fail(&b->findings, error, IMK_ERROR_COLUMN, "axes_differ",
+                             imki_sensor_titles[sensor], IMKI_NUMBERS(here, *axes));
+        if (here > 0 && *axes > 0 && *counts != record->counts[sensor])
+            return imki_fail(&b->findings, error, IMK_ERROR_COLUMN, "counts_differ",
+                             imki_sensor_titles[sensor], 0, NULL);
+        *axes = here > 0 ? here : *axes;
+        *counts = here > 0 ? record->counts[sensor] : *counts;
+    }
+    b->failed = 0;
+    return IMK_OK;
+}
+
+/* Counts per unit say nothing about readings that have a unit. */
+static imk_status check_counts(imk_calibrate_log *b, int sensor, bool counts, imk_error *error)
+{
+    const imk_calibrate_log_settings *s = &b->settings;
+    if (counts || (s->sensitivity[sensor].count == 0 && s->zero_offset[sensor].count == 0))
+        return IMK_OK;
+    return imki_fail(&b->findings, error, IMK_ERROR_ARGUMENT, "not_in_counts",
+                     imki_sensor_keys[sensor], IMKI_NUMBERS(s->sensitivity[sensor].count));
+}
+
+/* Axes of the records; a model that is given must have them. */
+static imk_status match_axes(imk_calibrate_log *b, int sensor, imk_error *error)
+{
+    int axes;
+    bool counts;
+    imk_triad *triad = imk_model_triad_to_set(&b->calibration->model, sensor);
+    imk_status status = find_axes(b, sensor, &axes, &counts, error);
+    if (status == IMK_OK && axes > 0)
+        status = check_counts(b, sensor, counts, error);
+    if (status != IMK_OK)
+        return status;
+    if (b->settings.model && axes > 0 && (!triad->present || triad->axis_count != axes)) {
+        const int there = triad->present ? triad->axis_count : 0;
+        return imki_fail(&b->findings, error, IMK_ERROR_CONFLICT, "axes_of_model",
+                         imki_sensor_titles[sensor], IMKI_NUMBERS(there, axes));
+    }
+    if (!b->settings.model) {
+        triad->present = axes > 0;
+        triad->axis_count = axes > 0 ? axes : 3;
+        for (int i = 3; i < axes; i++)
+            triad->direction[i][i % 3] = 1;
+    }
+    b->nominal[sensor] = counts && triad->sensitivity.value[0] == 0;
+    return IMK_OK;
+}
+
+/* Where gravity is the reference, its amount is the scale of the accelerometers. */
+static void tell_gravity(imk_calibrate_log *b)
+{
+    bool needed = false;
+    for (size_t k = 0; k < b->count; k++)
+        needed = needed || (b->record[k].record.axis_count[1] > 0 &&
+                            b->record[k].procedure < IMK_PROCEDURE_RATE_TABLE);
+    if (needed && !b->settings.place_known && isnan(b->settings.gravity))
+        imki_find(&b->findings, IMK_FINDING_WARNING, "calibrate:gravity", NULL,
+                  IMKI_NUMBERS(b->calibration->gravity));
+}
+
+imk_status imki_know_before(imk_calibrate_log *b, imk_error *error)
+{
+    imk_model *model = &b->calibration->model;
+    imk_status status = IMK_OK;
+    b->failed = b->count;
+    if (b->settings.model)
+        *model = *b->settings.model;
+    if (model->residual_of[0])
+        return imki_fail(&b->findings, error, IMK_ERROR_CONFLICT, "model_of_residuals",
+                         model->residual_of, 0, NULL);
+    for (int sensor = 0; sensor < 2 && status == IMK_OK; sensor++)
+        status = apply_counts(b, sensor, error);
+    for (int sensor = 0; sensor < 2 && status == IMK_OK; sensor++)
+        status = match_axes(b, sensor, error);
+    if (status != IMK_OK)
+        return status;
+    b->failed = b->count;
+    *b->before = *model;
+    if (!b->settings.repeatability)
+        tell_gravity(b);
+    return IMK_OK;
+}
