@@ -45,7 +45,7 @@ typedef struct long_record {
     size_t first_not_finite; /* from 1 */
     bool uneven;             /* this needs the policies for whole records */
     size_t piece_count;
-    piece pieces[ROWS];
+    piece *pieces;                   /* ROWS of them, for a record that is long */
     bool dirty[IMK_LOG_COLUMNS_MAX]; /* the block has missing values of this channel */
     imk_identify_record *record[IMK_LOG_COLUMNS_MAX];
     imk_status status[IMK_LOG_COLUMNS_MAX];
@@ -188,13 +188,14 @@ static bool is_even(const long_record *s)
 static bool begin_records(long_record *s)
 {
     const size_t expected = (size_t)expected_rows(s), bytes = imk_identify_record_size(expected);
-    for (size_t c = 0; c < s->log->record.count; c++) {
+    s->pieces = imki_arena_room(&s->arena, ROWS * sizeof *s->pieces);
+    for (size_t c = 0; s->pieces && c < s->log->record.count; c++) {
         void *memory = imki_arena_room(&s->arena, bytes);
         if (!memory ||
             imk_identify_record_begin(expected, &s->record[c], memory, bytes, NULL) != IMK_OK)
             return false;
     }
-    return true;
+    return s->pieces != NULL;
 }
 
 /* Block by block to the end; stops at what only a whole record can be asked about. */
