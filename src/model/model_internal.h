@@ -16,7 +16,7 @@
  * (distort.h). @return false when there is neither */
 bool imki_pendulous_axis(const imk_triad *triad, int axis, double p[3]);
 
-/* True when the model has such a number. */
-bool imki_model_parameter_exists(const imk_model *model, imk_model_parameter parameter);
+/* True when the model has such a number, or may have it when its sensor is present. */
+bool imki_model_parameter_fits(const imk_model *model, imk_model_parameter parameter);
 
 #endif
