@@ -235,8 +235,8 @@ static imk_status check_sigma(double sigma, int index, imki_fault *fault)
     return IMK_OK;
 }
 
-imk_status imki_numbers_check(const imki_field *field, const void *base, int axis_count,
-                              imki_fault *fault)
+static imk_status check_numbers(const imki_field *field, const void *base, int axis_count,
+                                imki_fault *fault)
 {
     const double *values = imki_field_values(field, base);
     const double *sigmas = imki_field_sigmas(field, base);
@@ -293,7 +293,7 @@ static imk_status check_element(const imki_list *list, const void *element, int 
 {
     imk_status status = IMK_OK;
     for (size_t j = 0; j < list->field_count && status == IMK_OK; j++) {
-        status = imki_numbers_check(&list->field[j], element, axis_count, fault);
+        status = check_numbers(&list->field[j], element, axis_count, fault);
         fault->member = list->field[j].path[kind];
     }
     /* Time, frequency and q may be 0 only where the first field, the size, is 0. */
@@ -358,14 +358,20 @@ static imk_status check_density(const imk_triad *triad, imki_fault *fault)
     return IMK_OK;
 }
 
-static imk_status check_foreign(const imki_field *field, const imk_triad *triad, int kind,
-                                imki_fault *fault)
+static imk_status refuse_field(imki_fault *fault, const char *field, double value, double limit,
+                               const char *expected)
 {
-    if (imki_field_absent(field, triad))
-        return IMK_OK;
-    refuse(fault, IMK_ERROR_CONFLICT, -1, 0, 0, "set it to 0");
-    fault->found =
-        kind == IMK_GYRO ? "a gyro has no such error" : "an accelerometer has no such error";
+    refuse(fault, IMK_ERROR_RANGE, -1, value, limit, expected);
+    fault->field = field;
+    return IMK_ERROR_RANGE;
+}
+
+static imk_status conflict(imki_fault *fault, const char *field, int axis, const char *found,
+                           const char *remedy)
+{
+    refuse(fault, IMK_ERROR_CONFLICT, axis, 0, 0, remedy);
+    fault->field = field;
+    fault->found = found;
     return IMK_ERROR_CONFLICT;
 }
 
@@ -384,16 +390,71 @@ static imk_status check_own(const imki_field *field, const imk_triad *triad, int
     case IMKI_POLYNOMIAL:
         return check_polynomial(polynomial_of(field, triad), triad->axis_count, fault);
     default:
-        return imki_numbers_check(field, triad, triad->axis_count, fault);
+        return check_numbers(field, triad, triad->axis_count, fault);
     }
 }
 
-imk_status imki_field_check(const imki_field *field, const imk_triad *triad, int kind,
-                            imki_fault *fault)
+static imk_status check_field(const imki_field *field, const imk_triad *triad, int kind,
+                              imki_fault *fault)
 {
-    const bool own = field->path[kind] != NULL;
-    const imk_status status =
-        own ? check_own(field, triad, kind, fault) : check_foreign(field, triad, kind, fault);
-    fault->field = field->path[own ? kind : 1 - kind];
+    if (!field->path[kind])
+        return imki_field_absent(field, triad)
+                   ? IMK_OK
+                   : conflict(fault, field->path[1 - kind], -1,
+                              kind == IMK_GYRO ? "a gyro has no such error"
+                                               : "an accelerometer has no such error",
+                              "set it to 0");
+    const imk_status status = check_own(field, triad, kind, fault);
+    fault->field = field->path[kind];
+    return status;
+}
+
+/* Settings that need or exclude one another, axis by axis. */
+static imk_status check_together(const imk_triad *triad, imki_fault *fault)
+{
+    for (int i = 0; i < triad->axis_count; i++) {
+        bool counts = triad->sensitivity.value[i] != 0;
+        if (triad->bias.warm_up_amplitude.value[i] != 0 && !(triad->bias.warm_up_time.value > 0))
+            return refuse_field(fault, "bias.warm_up.time", triad->bias.warm_up_time.value, 0,
+                                "a positive time for the warm-up amplitude");
+        if (triad->damping.value[i] != 0 && triad->bandwidth.value[i] == 0)
+            return conflict(fault, "damping", i, "damping needs a bandwidth",
+                            "add bandwidth, or remove damping");
+        if (triad->resolution.value[i] != 0 && triad->noise.quantization.value[i] != 0)
+            return conflict(fault, "resolution", i,
+                            "resolution and noise.quantization exclude each other",
+                            "keep resolution, or noise.quantization if the sensor integrates");
+        if (counts != (triad->sensitivity.value[0] != 0))
+            return conflict(fault, "sensitivity", i,
+                            "some axes have a sensitivity and some have none",
+                            "give all of them one, or none");
+        if (triad->zero_offset.value[i] != 0 && !counts)
+            return conflict(fault, "zero_offset", i, "zero_offset needs a sensitivity",
+                            "add sensitivity, or remove zero_offset");
+    }
+    return IMK_OK;
+}
+
+imk_status imki_triad_check(const imk_triad *triad, int kind, imki_fault *fault)
+{
+    imk_status status = IMK_OK;
+    if (!triad->present)
+        return IMK_OK;
+    if (!(triad->axis_count >= 1 && triad->axis_count <= IMK_AXES_MAX))
+        status = refuse_field(fault, "axis_count", triad->axis_count, IMK_AXES_MAX, "1 to 8 axes");
+    for (size_t i = 0; status == IMK_OK && i < imki_triad_field_count; i++)
+        status = check_field(&imki_triad_fields[i], triad, kind, fault);
+    if (status == IMK_OK)
+        status = check_together(triad, fault);
+    return status;
+}
+
+imk_status imki_timing_check(const imk_timing *timing, imki_fault *fault)
+{
+    imk_status status = IMK_OK;
+    for (size_t i = 0; status == IMK_OK && i < imki_timing_field_count; i++) {
+        status = check_numbers(&imki_timing_fields[i], timing, 1, fault);
+        fault->field = imki_timing_fields[i].path[0];
+    }
     return status;
 }

@@ -102,14 +102,10 @@ typedef struct imki_fault {
     const char *found, *expected;
 } imki_fault;
 
-/* The field against its range. The fault is written where the status is not IMK_OK, its part is
- * left to the caller. */
-imk_status imki_field_check(const imki_field *field, const imk_triad *triad, int kind,
-                            imki_fault *fault);
-
-/* The same of the numbers of a field of shape scalar … quadratic; the place is the caller's. */
-imk_status imki_numbers_check(const imki_field *field, const void *base, int axis_count,
-                              imki_fault *fault);
+/* Every field against its range, then what the ranges of single fields cannot say: settings that
+ * need or exclude one another. Where the status is not IMK_OK the fault has all but its part. */
+imk_status imki_triad_check(const imk_triad *triad, int kind, imki_fault *fault);
+imk_status imki_timing_check(const imk_timing *timing, imki_fault *fault);
 
 /* The field of a triad with this dotted path, "noise.gauss_markov.sigma" included (then *list is
  * the list it belongs to, else NULL); NULL when there is none. */

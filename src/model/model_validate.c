@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Validation of a model: every field of the schema against its range, then what the ranges of
- * single fields cannot say: settings that need or exclude one another. */
+/* Validation of a model: its triads and its timing, field by field, then what is said of them:
+ * evidence and correlation. */
 #include "model_internal.h"
 #include "model_schema_internal.h"
 
@@ -18,68 +18,6 @@ static imk_status refuse(imki_fault *fault, const char *field, imk_status status
                           .value = value,
                           .limit = limit,
                           .expected = expected};
-    return status;
-}
-
-static imk_status conflict(imki_fault *fault, const char *field, int axis, const char *found,
-                           const char *remedy)
-{
-    refuse(fault, field, IMK_ERROR_CONFLICT, axis, 0, 0, remedy);
-    fault->found = found;
-    return IMK_ERROR_CONFLICT;
-}
-
-/* Settings that need or exclude one another, axis by axis. */
-static imk_status check_together(const imk_triad *triad, imki_fault *fault)
-{
-    for (int i = 0; i < triad->axis_count; i++) {
-        bool counts = triad->sensitivity.value[i] != 0;
-        if (triad->bias.warm_up_amplitude.value[i] != 0 && !(triad->bias.warm_up_time.value > 0))
-            return refuse(fault, "bias.warm_up.time", IMK_ERROR_RANGE, -1,
-                          triad->bias.warm_up_time.value, 0,
-                          "a positive time for the warm-up amplitude");
-        if (triad->damping.value[i] != 0 && triad->bandwidth.value[i] == 0)
-            return conflict(fault, "damping", i, "damping needs a bandwidth",
-                            "add bandwidth, or remove damping");
-        if (triad->resolution.value[i] != 0 && triad->noise.quantization.value[i] != 0)
-            return conflict(fault, "resolution", i,
-                            "resolution and noise.quantization exclude each other",
-                            "keep resolution, or noise.quantization if the sensor integrates");
-        if (counts != (triad->sensitivity.value[0] != 0))
-            return conflict(fault, "sensitivity", i,
-                            "some axes have a sensitivity and some have none",
-                            "give all of them one, or none");
-        if (triad->zero_offset.value[i] != 0 && !counts)
-            return conflict(fault, "zero_offset", i, "zero_offset needs a sensitivity",
-                            "add sensitivity, or remove zero_offset");
-    }
-    return IMK_OK;
-}
-
-static imk_status check_triad(const imk_triad *triad, int kind, imki_fault *fault)
-{
-    imk_status status = IMK_OK;
-    if (!triad->present)
-        return IMK_OK;
-    if (!(triad->axis_count >= 1 && triad->axis_count <= IMK_AXES_MAX))
-        status = refuse(fault, "axis_count", IMK_ERROR_RANGE, -1, triad->axis_count, IMK_AXES_MAX,
-                        "1 to 8 axes");
-    for (size_t i = 0; status == IMK_OK && i < imki_triad_field_count; i++)
-        status = imki_field_check(&imki_triad_fields[i], triad, kind, fault);
-    if (status == IMK_OK)
-        status = check_together(triad, fault);
-    fault->part = kind_names[kind];
-    return status;
-}
-
-static imk_status check_timing(const imk_timing *timing, imki_fault *fault)
-{
-    imk_status status = IMK_OK;
-    for (size_t i = 0; status == IMK_OK && i < imki_timing_field_count; i++) {
-        status = imki_numbers_check(&imki_timing_fields[i], timing, 1, fault);
-        fault->field = imki_timing_fields[i].path[0];
-    }
-    fault->part = "timing";
     return status;
 }
 
@@ -143,7 +81,6 @@ static imk_status check_evidence(const imk_evidence *evidence, const imk_triad *
                 status = refuse(fault, place, IMK_ERROR_KEY_DUPLICATE, -1, 0, 0,
                                 "one interval for each parameter");
     }
-    fault->part = kind_names[kind];
     return status;
 }
 
@@ -185,6 +122,8 @@ static imk_status check_correlation(const imk_model *model, imki_fault *fault)
 /* The first that is wrong. */
 static imk_status check(const imk_model *model, imki_fault *fault)
 {
+    const imk_triad *triads[2] = {&model->gyro, &model->accel};
+    const imk_evidence *evidence[2] = {&model->gyro_evidence, &model->accel_evidence};
     imk_status status = check_text(model->name, sizeof model->name, "name", fault);
     if (status == IMK_OK)
         status = check_text(model->description, sizeof model->description, "description", fault);
@@ -193,19 +132,19 @@ static imk_status check(const imk_model *model, imki_fault *fault)
     if (status == IMK_OK && !model->gyro.present && !model->accel.present)
         status =
             refuse(fault, "gyro", IMK_ERROR_KEY_MISSING, -1, 0, 0, "a gyro, an accel, or both");
-    if (status == IMK_OK)
-        status = check_triad(&model->gyro, IMK_GYRO, fault);
-    if (status == IMK_OK)
-        status = check_triad(&model->accel, IMK_ACCEL, fault);
-    if (status == IMK_OK)
-        status = check_timing(&model->timing, fault);
-    if (status == IMK_OK)
-        status = check_evidence(&model->gyro_evidence, &model->gyro, IMK_GYRO, fault);
-    if (status == IMK_OK)
-        status = check_evidence(&model->accel_evidence, &model->accel, IMK_ACCEL, fault);
-    if (status == IMK_OK)
-        status = check_correlation(model, fault);
-    return status;
+    for (int kind = 0; status == IMK_OK && kind < 2; kind++) {
+        status = imki_triad_check(triads[kind], kind, fault);
+        fault->part = kind_names[kind];
+    }
+    if (status == IMK_OK) {
+        status = imki_timing_check(&model->timing, fault);
+        fault->part = "timing";
+    }
+    for (int kind = 0; status == IMK_OK && kind < 2; kind++) {
+        status = check_evidence(evidence[kind], triads[kind], kind, fault);
+        fault->part = kind_names[kind];
+    }
+    return status == IMK_OK ? check_correlation(model, fault) : status;
 }
 
 /* ---- the message ---- */
