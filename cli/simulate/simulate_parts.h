@@ -34,19 +34,7 @@ void scene_free(scene *s);
 
 /* ---- simulate_run.c ---- */
 
-/* Units of the columns. @return -1 or the exit code */
-int simulate_units(const simulate_options *o, const imk_model *model,
-                   imk_simulate_log_settings *settings);
-
-typedef struct log_target {
-    const char *path, *label; /* what the progress says: "run 3 (4 of 20)" */
-} log_target;
-
-/* One run of the scene into one file. @return the exit code, the message printed */
-int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
-                 const imk_executor *executor, const log_target *target);
-/* What perfect sensors would have read, and where the unit was. @return -1 or the exit code */
-int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
-                   const imk_executor *executor);
+/* The truth, and one run or many, each into its file. @return the exit code, the message printed */
+int simulate_logs(const simulate_options *o, const imk_model *model, scene *s);
 
 #endif

@@ -1,7 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One run into one log, and the truth into another. */
+/* One run into one log, many into a directory, and the truth into another log. */
 #include "shell/job_progress.h"
 #include "simulate_parts.h"
+
+#include "imukit/thread_pool.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 /* Counts are of the rate, whatever unit is asked for. */
 static int check_counts(const simulate_options *o, const imk_model *model)
@@ -22,8 +29,9 @@ static int check_counts(const simulate_options *o, const imk_model *model)
     return -1;
 }
 
-int simulate_units(const simulate_options *o, const imk_model *model,
-                   imk_simulate_log_settings *settings)
+/* Units of the columns. @return -1 or the exit code */
+static int choose_units(const simulate_options *o, const imk_model *model,
+                        imk_simulate_log_settings *settings)
 {
     settings->increments = o->increments;
     settings->gyro_unit = o->gyro_unit;
@@ -38,8 +46,13 @@ int simulate_units(const simulate_options *o, const imk_model *model,
     return code < 0 ? check_counts(o, model) : code;
 }
 
-int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
-                 const imk_executor *executor, const log_target *target)
+typedef struct log_target {
+    const char *path, *label; /* what the progress says: "run 3 (4 of 20)" */
+} log_target;
+
+/* One run of the scene into one file. @return the exit code, the message printed */
+static int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
+                        const imk_executor *executor, const log_target *target)
 {
     imk_error error;
     imk_log_sink log = {
@@ -54,8 +67,9 @@ int simulate_log(const simulate_options *o, const imk_model *model, const scene 
     return status == IMK_OK ? EXIT_DONE : command_error(&error, NULL);
 }
 
-int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
-                   const imk_executor *executor)
+/* What perfect sensors would have read, and where the unit was. @return -1 or the exit code */
+static int simulate_truth(const simulate_options *o, const imk_model *model, const scene *s,
+                          const imk_executor *executor)
 {
     imk_error error;
     imk_log_sink log = {.path = o->truth};
@@ -66,4 +80,57 @@ int simulate_truth(const simulate_options *o, const imk_model *model, const scen
     job_progress_end(&shown);
     status = imk_log_sink_end(&log, status, &error);
     return status == IMK_OK ? -1 : command_error(&error, NULL);
+}
+
+/* One log per run, DIR/run_000.csv and so on. */
+static int simulate_runs(const simulate_options *o, const imk_model *model, scene *s,
+                         const imk_executor *executor)
+{
+    const size_t length = strlen(o->output);
+    for (uint64_t i = 0; i < o->runs.value; i++) {
+        char path[4096], label[64];
+        const uint64_t number = o->run.value + i;
+        int written = snprintf(path, sizeof path, "%s%srun_%03llu.%s", o->output,
+                               o->output[length - 1] == '/' ? "" : "/", (unsigned long long)number,
+                               o->format ? o->format : "csv");
+        if (written < 0 || (size_t)written >= sizeof path)
+            return command_failed("%s: the name is too long", o->output);
+        snprintf(label, sizeof label, "run %llu (%llu of %llu)", (unsigned long long)number,
+                 (unsigned long long)i + 1, (unsigned long long)o->runs.value);
+        s->settings.simulation.run = (uint32_t)number;
+        int code = simulate_log(o, model, s, executor, &(log_target){path, label});
+        if (code != EXIT_DONE)
+            return code;
+    }
+    return EXIT_DONE;
+}
+
+static int write_logs(const simulate_options *o, const imk_model *model, scene *s,
+                      const imk_executor *executor)
+{
+    /* A truth that cannot be written is known before the logs are made. */
+    int code = o->truth ? simulate_truth(o, model, s, executor) : -1;
+    if (code >= 0)
+        return code;
+    if (o->runs.given)
+        return simulate_runs(o, model, s, executor);
+    return simulate_log(o, model, s, executor,
+                        &(log_target){o->output ? o->output : "-", "simulating"});
+}
+
+int simulate_logs(const simulate_options *o, const imk_model *model, scene *s)
+{
+    int code = choose_units(o, model, &s->settings);
+    const bool made = code < 0 && o->runs.given && mkdir(o->output, 0777) == 0;
+    if (code < 0 && o->runs.given && !made && errno != EEXIST)
+        code = command_failed("%s: %s", o->output, strerror(errno));
+    if (code < 0) {
+        imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
+        imk_executor executor = imk_thread_pool_executor(pool);
+        code = write_logs(o, model, s, &executor);
+        imk_thread_pool_destroy(pool);
+    }
+    if (made && code != EXIT_DONE)
+        (void)rmdir(o->output); /* it stays when a log is in it */
+    return code;
 }

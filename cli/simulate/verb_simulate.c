@@ -4,14 +4,11 @@
 #include "simulate_parts.h"
 
 #include "imukit/model_file.h"
-#include "imukit/thread_pool.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #define AT(field) offsetof(simulate_options, field)
 
@@ -62,71 +59,12 @@ static const option motion_option_table[] = {
 
 _Static_assert(IMK_SUBSTEPS_MAX == 512, "as the range of --substeps says");
 
-/* ---- runs ---- */
-
 static bool is_directory(const char *path)
 {
     struct stat status;
     const size_t length = path ? strlen(path) : 0;
     return length > 0 &&
            (path[length - 1] == '/' || (stat(path, &status) == 0 && S_ISDIR(status.st_mode)));
-}
-
-/* One log per run, DIR/run_000.csv and so on. */
-static int simulate_runs(const simulate_options *o, const imk_model *model, scene *s,
-                         const imk_executor *executor)
-{
-    const size_t length = strlen(o->output);
-    for (uint64_t i = 0; i < o->runs.value; i++) {
-        char path[4096], label[64];
-        const uint64_t number = o->run.value + i;
-        int written = snprintf(path, sizeof path, "%s%srun_%03llu.%s", o->output,
-                               o->output[length - 1] == '/' ? "" : "/", (unsigned long long)number,
-                               o->format ? o->format : "csv");
-        if (written < 0 || (size_t)written >= sizeof path)
-            return command_failed("%s: the name is too long", o->output);
-        snprintf(label, sizeof label, "run %llu (%llu of %llu)", (unsigned long long)number,
-                 (unsigned long long)i + 1, (unsigned long long)o->runs.value);
-        s->settings.simulation.run = (uint32_t)number;
-        int code = simulate_log(o, model, s, executor, &(log_target){path, label});
-        if (code != EXIT_DONE)
-            return code;
-    }
-    return EXIT_DONE;
-}
-
-static int write_logs(const simulate_options *o, const imk_model *model, scene *s,
-                      const imk_executor *executor)
-{
-    /* A truth that cannot be written is known before the logs are made. */
-    int code = o->truth ? simulate_truth(o, model, s, executor) : -1;
-    if (code >= 0)
-        return code;
-    if (o->runs.given)
-        return simulate_runs(o, model, s, executor);
-    return simulate_log(o, model, s, executor,
-                        &(log_target){o->output ? o->output : "-", "simulating"});
-}
-
-static int simulate(const simulate_options *o, const imk_model *model)
-{
-    scene s;
-    int code = scene_open(o, model, &s);
-    if (code < 0)
-        code = simulate_units(o, model, &s.settings);
-    const bool made = code < 0 && o->runs.given && mkdir(o->output, 0777) == 0;
-    if (code < 0 && o->runs.given && !made && errno != EEXIST)
-        code = command_failed("%s: %s", o->output, strerror(errno));
-    if (code < 0) {
-        imk_thread_pool *pool = imk_thread_pool_create(o->threads.value);
-        imk_executor executor = imk_thread_pool_executor(pool);
-        code = write_logs(o, model, &s, &executor);
-        imk_thread_pool_destroy(pool);
-    }
-    if (made && code != EXIT_DONE)
-        (void)rmdir(o->output); /* it stays when a log is in it */
-    scene_free(&s);
-    return code;
 }
 
 /* A file where the log of a run goes would be lost. */
@@ -173,6 +111,16 @@ static int check(const simulate_options *o)
     if (o->runs.given && o->runs.value > UINT32_MAX - o->run.value + 1)
         return command_misused("run numbers: expected at most %u", UINT32_MAX);
     return check_outputs(o);
+}
+
+static int simulate(const simulate_options *o, const imk_model *model)
+{
+    scene s;
+    int code = scene_open(o, model, &s);
+    if (code < 0)
+        code = simulate_logs(o, model, &s);
+    scene_free(&s);
+    return code;
 }
 
 static int run(int count, char **words)

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Names and texts of the statuses, from the one list in status.h, and filling an imk_error. */
-#include "error_internal.h"
-
+#include "imukit/status.h"
 #include "base/text_internal.h"
 #include "imukit/utf8.h"
 
-#include <limits.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -48,18 +46,6 @@ imk_status imk_error_set(imk_error *error, imk_status status, const char *field,
         imk_utf8_shorten(field ? field : "", error->field, sizeof error->field);
         imki_copy_text(error->found, sizeof error->found, found ? found : "");
         imki_copy_text(error->expected, sizeof error->expected, expected ? expected : "");
-    }
-    return status;
-}
-
-imk_status imki_error_number(imk_error *error, imk_status status, const char *field, size_t index,
-                             double value, double limit, const char *expected)
-{
-    imk_error_set(error, status, field, NULL, expected);
-    if (error) {
-        error->index = index <= INT_MAX ? (int)index : -1;
-        error->value = value;
-        error->limit = limit;
     }
     return status;
 }

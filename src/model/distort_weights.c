@@ -27,39 +27,52 @@ static void place_row(const double a[3], const double r[3], double weight[IMK_FE
     imki_cross3(r, a, weight + THIRD);
 }
 
-bool imki_pendulous_axis(const imk_triad *triad, int axis, double p[3])
+bool imki_cross_axes(const imk_triad *triad, int axis, double p[3], double o[3])
 {
     const double *e = triad->direction[axis];
     memcpy(p, triad->nonlinearity.pendulous_axis[axis], 3 * sizeof *p);
     for (int k = 0; k < 3 && p[0] == 0.0 && p[1] == 0.0 && p[2] == 0.0; k++)
         if (e[(k + 1) % 3] == 0.0 && e[(k + 2) % 3] == 0.0)
             p[(k + 2) % 3] = 1.0;
+    imki_cross3(p, e, o);
     return p[0] != 0.0 || p[1] != 0.0 || p[2] != 0.0;
 }
 
-static imk_status compile_cross_products(imk_axis_response *axis, const imk_triad *triad, int i,
-                                         imk_error *error)
+static bool has_cross_products(const imk_triad *triad, int axis)
 {
-    const double *k = triad->nonlinearity.cross_products.value[i], *e = triad->direction[i];
+    const double *k = triad->nonlinearity.cross_products.value[axis];
+    return k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0;
+}
+
+static imk_status check_cross_products(const imk_triad *triad, imk_error *error)
+{
+    double p[3], o[3];
+    for (int i = 0; triad->present && i < triad->axis_count; i++)
+        if (has_cross_products(triad, i) && !imki_cross_axes(triad, i, p, o)) {
+            imk_error_set(
+                error, IMK_ERROR_CONFLICT, "accel.cross_products",
+                "cross_products of a sensor that is along no body axis need a pendulous axis",
+                "add pendulous_axis, a row x y z for each axis");
+            if (error)
+                error->index = i;
+            return IMK_ERROR_CONFLICT;
+        }
+    return IMK_OK;
+}
+
+static void compile_cross_products(imk_axis_response *axis, const imk_triad *triad, int i)
+{
+    const double *k = triad->nonlinearity.cross_products.value[i];
     double p[3], o[3];
     axis->kip = k[0];
     axis->kio = k[1];
     axis->kpo = k[2];
-    axis->has_cross_products = k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0;
+    axis->has_cross_products = has_cross_products(triad, i);
     if (!axis->has_cross_products)
-        return IMK_OK;
-    if (!imki_pendulous_axis(triad, i, p)) {
-        imk_error_set(error, IMK_ERROR_CONFLICT, "accel.cross_products",
-                      "cross_products of a sensor that is along no body axis need a pendulous axis",
-                      "add pendulous_axis, a row x y z for each axis");
-        if (error)
-            error->index = i;
-        return IMK_ERROR_CONFLICT;
-    }
-    imki_cross3(p, e, o);
+        return;
+    (void)imki_cross_axes(triad, i, p, o);
     place_row(p, triad->lever_arm.value[i], axis->pendulous);
     place_row(o, triad->lever_arm.value[i], axis->output);
-    return IMK_OK;
 }
 
 static void compile_weights(imk_axis_response *axis, const imk_triad *triad, int sensor, int i)
@@ -137,14 +150,9 @@ imk_status imk_distortion_start(imk_distortion *distortion, const imk_model *mod
                                 imk_error *error)
 {
     const imk_triad *triads[2] = {&model->gyro, &model->accel};
-    imk_status status = IMK_OK;
-    /* Nothing is written before it is known that nothing is wrong. */
-    for (int i = 0; model->accel.present && i < model->accel.axis_count; i++) {
-        imk_axis_response unused;
-        status = compile_cross_products(&unused, &model->accel, i, error);
-        if (status != IMK_OK)
-            return status;
-    }
+    const imk_status status = check_cross_products(&model->accel, error);
+    if (status != IMK_OK)
+        return status;
     memset(distortion, 0, sizeof *distortion);
     distortion->cookie = IMKI_DISTORTION_COOKIE;
     distortion->kernel = kernel;
@@ -155,7 +163,7 @@ imk_status imk_distortion_start(imk_distortion *distortion, const imk_model *mod
             compile_numbers(axis, triads[sensor], i);
             compile_weights(axis, triads[sensor], sensor, i);
             if (sensor == IMK_ACCEL)
-                status = compile_cross_products(axis, triads[sensor], i, error);
+                compile_cross_products(axis, triads[sensor], i);
             if (constants) {
                 axis->bias += constants->bias[sensor][i];
                 axis->scale += constants->scale_factor[sensor][i];
@@ -166,5 +174,5 @@ imk_status imk_distortion_start(imk_distortion *distortion, const imk_model *mod
             axis->used[IMKI_ROW_OUTPUT] = not_zero(axis->output);
         }
     }
-    return status;
+    return IMK_OK;
 }

@@ -13,10 +13,10 @@
 #define IMKI_CORRECTION_COOKIE 0x494D4B13u
 
 /* The pendulous axis that the model states, or for a sensor along a body axis the one two places on
- * (distort.h). @return false when there is neither */
-bool imki_pendulous_axis(const imk_triad *triad, int axis, double p[3]);
+ * (distort.h), and the output axis o = p x e. @return false when there is neither */
+bool imki_cross_axes(const imk_triad *triad, int axis, double p[3], double o[3]);
 
-/* True when the model has such a number. */
-bool imki_model_parameter_exists(const imk_model *model, imk_model_parameter parameter);
+/* True when the model has such a number, or may have it when its sensor is present. */
+bool imki_model_parameter_fits(const imk_model *model, imk_model_parameter parameter);
 
 #endif

@@ -32,14 +32,14 @@ static bool is_parameter(imk_model_parameter parameter)
            parameter.element < imk_model_term_elements(parameter.sensor, parameter.term);
 }
 
-bool imki_model_parameter_exists(const imk_model *model, imk_model_parameter parameter)
+bool imki_model_parameter_fits(const imk_model *model, imk_model_parameter parameter)
 {
     if (!is_parameter(parameter))
         return false;
     const imk_triad *triad = imk_model_triad(model, parameter.sensor);
     const bool diagonal = imki_terms[parameter.term].form == IMKI_FORM_SEEN &&
                           triad->axis_count == 3 && parameter.axis == parameter.element;
-    return triad->present && parameter.axis < triad->axis_count && !diagonal;
+    return !triad->present || (parameter.axis < triad->axis_count && !diagonal);
 }
 
 /* Each power of a polynomial is an imk_axes; elsewhere an axis has its elements in a row. */
@@ -51,9 +51,11 @@ static bool is_polynomial(imk_model_parameter parameter)
 
 static const double *value_at(const imk_model *model, imk_model_parameter parameter)
 {
-    if (!imki_model_parameter_exists(model, parameter))
+    if (!imki_model_parameter_fits(model, parameter))
         return NULL;
     const imk_triad *triad = imk_model_triad(model, parameter.sensor);
+    if (!triad->present)
+        return NULL;
     const double *first = imki_term_values(parameter.term, triad);
     if (is_polynomial(parameter)) {
         const imk_temperature_polynomial *polynomial = (const void *)first;

@@ -93,6 +93,20 @@ bool imki_field_absent(const imki_field *field, const imk_triad *triad);
 bool imki_numbers_equal(const imki_field *field, const void *a, const void *b, int axis_count,
                         bool with_sigmas);
 
+/* What a check refuses: part.field[element].member of a model, of this axis or row. NULL and -1
+ * stand for what the place does not have. */
+typedef struct imki_fault {
+    const char *part, *field, *member; /* of the member the element of a list, if any */
+    int element, index;
+    double value, limit;
+    const char *found, *expected;
+} imki_fault;
+
+/* Every field against its range, then what the ranges of single fields cannot say: settings that
+ * need or exclude one another. Where the status is not IMK_OK the fault has all but its part. */
+imk_status imki_triad_check(const imk_triad *triad, int kind, imki_fault *fault);
+imk_status imki_timing_check(const imk_timing *timing, imki_fault *fault);
+
 /* The field of a triad with this dotted path, "noise.gauss_markov.sigma" included (then *list is
  * the list it belongs to, else NULL); NULL when there is none. */
 const imki_field *imki_field_find(const char *path, int kind, const imki_field **list);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The numbers of a motion script, each by itself. What depends on the steps before, the speed and
  * the place, is checked while it is compiled. */
-#include "base/error_internal.h"
+#include "base/refuse_internal.h"
 #include "script_step_internal.h"
 
 #include <float.h>
@@ -20,8 +20,8 @@ imk_status imki_step_refuse(imk_error *error, const char *field, size_t index, d
 {
     const bool finite = value >= -DBL_MAX && value <= DBL_MAX;
     const imk_status status = finite ? IMK_ERROR_RANGE : IMK_ERROR_NOT_FINITE;
-    return imki_error_number(error, status, field, index, value, limit,
-                             finite ? expected : "a finite number");
+    return imki_refuse_at(error, status, field, index, value, limit,
+                          finite ? expected : "a finite number");
 }
 
 /* A number of the script itself: no index. */

@@ -7,6 +7,7 @@
  *
  * Samples are made in blocks of 512 counted from sample 0, so it does not matter how many are asked
  * for at a time. */
+#include "base/refuse_internal.h"
 #include "model/distort_internal.h"
 #include "simulate_internal.h"
 
@@ -19,7 +20,7 @@ enum {
     BATCH_DRAWS = BATCH_NORMALS / IMK_NOISE_BLOCK + IMKI_DRAWS_MAX
 };
 
-/* Bytes of the states of a term. */
+/* Bytes of the states of a term, a multiple of 64. */
 static size_t states_size(const imki_noise_term *term, imki_axis axis)
 {
     imki_term_place place = {axis.triad, axis.axis, 0};
@@ -28,24 +29,7 @@ static size_t states_size(const imki_noise_term *term, imki_axis axis)
     for (; place.instance < count; place.instance++)
         present += term->strength(place) != 0.0;
     const size_t size = present * imki_term_generator(term, place)->state_size;
-    return (size + 63) / 64 * 64;
-}
-
-/* Dotted path of a parameter that a generator has refused. */
-static imk_status refused(imk_error *error, imk_status status, imki_axis axis, const char *field,
-                          double value)
-{
-    char path[96] = "";
-    size_t length = strlen(axis.kind);
-    memcpy(path, axis.kind, length);
-    path[length++] = '.';
-    memcpy(path + length, field, strlen(field) + 1);
-    imk_error_set(error, status, path, "", "a value that fits the sample rate (see noise.h)");
-    if (error) {
-        error->index = axis.axis;
-        error->value = value;
-    }
-    return status;
+    return imki_aligned(size);
 }
 
 size_t imki_channel_memory(imki_axis axis)
@@ -56,10 +40,16 @@ size_t imki_channel_memory(imki_axis axis)
     return size;
 }
 
+/* A number of the model that does not fit the sample rate. */
+typedef struct misfit {
+    const char *field;
+    double value;
+} misfit;
+
 /* The states of a term; elements of strength 0 on this axis take no part. The instance of a stream
  * is the place in the model's list. */
 static imk_status start_term(imki_channel_term *made, const imki_noise_term *term, imki_axis axis,
-                             double dt, imk_random random, uint32_t run, imk_error *error)
+                             double dt, imk_random random, uint32_t run, misfit *found)
 {
     imki_term_place place = {axis.triad, axis.axis, 0};
     const imki_generator *generator = imki_term_generator(term, place);
@@ -72,32 +62,35 @@ static imk_status start_term(imki_channel_term *made, const imki_noise_term *ter
             imk_stream(run, term->stream, (uint8_t)place.instance, axis.stream_axis);
         void *state = made->states + made->count++ * generator->state_size;
         const imk_status status = generator->start(state, place, dt, random, stream);
-        if (status != IMK_OK)
-            return refused(error, status, axis, generator->field, generator->refused(place));
+        if (status != IMK_OK) {
+            *found = (misfit){generator->field, generator->refused(place)};
+            return status;
+        }
     }
     return IMK_OK;
 }
 
 static imk_status start_terms(imki_channel *channel, imki_axis axis, double dt, imk_random random,
-                              uint32_t run, unsigned char *memory, imk_error *error)
+                              uint32_t run, imki_parts *memory, misfit *found)
 {
     imk_status status = IMK_OK;
     for (int t = 0; t < IMKI_NOISE_TERMS && status == IMK_OK; t++) {
-        channel->term[t].states = memory;
-        memory += states_size(imki_noise_terms[t], axis);
-        status = start_term(&channel->term[t], imki_noise_terms[t], axis, dt, random, run, error);
+        const size_t size = states_size(imki_noise_terms[t], axis);
+        channel->term[t].states = imki_take(memory, size);
+        memset(channel->term[t].states, 0, size);
+        status = start_term(&channel->term[t], imki_noise_terms[t], axis, dt, random, run, found);
     }
     if (status != IMK_OK)
         return status;
+    const uint64_t stream = imk_stream(run, IMK_TERM_QUANTIZATION, 0, axis.stream_axis);
     const double q = axis.triad->noise.quantization.value[axis.axis];
-    status = imk_quantization_start(&channel->quantization, q, dt, random,
-                                    imk_stream(run, IMK_TERM_QUANTIZATION, 0, axis.stream_axis));
     channel->ramp = axis.triad->noise.ramp.value[axis.axis] * dt;
-    return status == IMK_OK ? status : refused(error, status, axis, "noise.quantization", q);
+    *found = (misfit){"noise.quantization", q};
+    return imk_quantization_start(&channel->quantization, q, dt, random, stream);
 }
 
 static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double part,
-                                   imk_error *error)
+                                   misfit *found)
 {
     imk_low_pass filter = {axis.triad->bandwidth.value[axis.axis],
                            axis.triad->damping.value[axis.axis]};
@@ -105,8 +98,9 @@ static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double
     if (filter.bandwidth == 0.0)
         return IMK_OK;
     const imk_status status = imki_low_pass_over(filter, part, &stretch);
+    *found = (misfit){"bandwidth", filter.bandwidth};
     if (status != IMK_OK)
-        return refused(error, status, axis, "bandwidth", filter.bandwidth);
+        return status;
     imki_band_limit *limit = &channel->band_limit;
     limit->present = true;
     for (int i = 0; i < 2; i++) {
@@ -117,10 +111,21 @@ static imk_status start_band_limit(imki_channel *channel, imki_axis axis, double
     return IMK_OK;
 }
 
-imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, size_t substeps,
-                              imk_random random, uint32_t run, unsigned char *memory,
-                              imk_error *error)
+static imk_status refuse(imk_error *error, imk_status status, imki_axis axis, misfit found)
 {
+    char path[96] = "";
+    size_t length = strlen(axis.kind);
+    memcpy(path, axis.kind, length);
+    path[length++] = '.';
+    memcpy(path + length, found.field, strlen(found.field) + 1);
+    return imki_refuse_at(error, status, path, (size_t)axis.axis, found.value, 0.0,
+                          "a value that fits the sample rate (see noise.h)");
+}
+
+imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, size_t substeps,
+                              imk_random random, uint32_t run, imki_parts *memory, imk_error *error)
+{
+    misfit found;
     channel->sensor = axis.sensor;
     channel->axis = axis.axis;
     channel->random = random;
@@ -130,10 +135,10 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
     channel->resolution = axis.triad->resolution.value[axis.axis];
     channel->sensitivity = axis.triad->sensitivity.value[axis.axis];
     channel->zero_offset = axis.triad->zero_offset.value[axis.axis];
-    imk_status status = start_band_limit(channel, axis, dt / (double)substeps, error);
+    imk_status status = start_band_limit(channel, axis, dt / (double)substeps, &found);
     if (status == IMK_OK)
-        status = start_terms(channel, axis, dt, random, run, memory, error);
-    return status;
+        status = start_terms(channel, axis, dt, random, run, memory, &found);
+    return status == IMK_OK ? IMK_OK : refuse(error, status, axis, found);
 }
 
 /* ---- the deterministic part ---- */

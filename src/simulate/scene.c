@@ -65,13 +65,10 @@ size_t imki_substeps(const imk_model *model, const imk_simulation *simulation)
     return substeps < IMK_SUBSTEPS_MAX ? substeps : IMK_SUBSTEPS_MAX;
 }
 
-size_t imki_scene_size(const imk_model *model, const imk_simulation *simulation)
+bool imki_scene_varies(const imk_model *model, const imk_simulation *simulation)
 {
-    bool varies = moves(simulation) || simulation->temperature || has_warm_up(&model->gyro) ||
-                  has_warm_up(&model->accel);
-    return varies ? (size_t)IMKI_COLUMNS * IMKI_STRETCH + IMKI_STRETCH + 8 +
-                        2 * (size_t)IMK_NOISE_BLOCK
-                  : 0;
+    return moves(simulation) || simulation->temperature || has_warm_up(&model->gyro) ||
+           has_warm_up(&model->accel);
 }
 
 /* ---- start ---- */
@@ -179,8 +176,6 @@ static imk_stimulus stimulus_of(const imki_scene *e, double *const *column, int 
 
 static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
 {
-    e->hysteresis_present[sensor] = has_hysteresis(triad);
-    e->hysteresis[sensor] = imk_hysteresis_start(triad);
     e->warm_up_present[sensor] = has_warm_up(triad);
     e->warm_up_time[sensor] = triad->bias.warm_up_time.value;
     e->same_warm_up =
@@ -190,10 +185,12 @@ static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
     for (size_t i = 0; needs_table && i < IMK_NOISE_BLOCK; i++)
         e->warm_up_table[(size_t)sensor * IMK_NOISE_BLOCK + i] =
             imk_exp(-((double)i * part) / e->warm_up_time[sensor]);
+    e->hysteresis_present[sensor] = has_hysteresis(triad);
+    e->hysteresis[sensor] = imk_hysteresis_start(triad);
 }
 
 imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_simulation *simulation,
-                            bool checked, double *memory, imk_error *error)
+                            bool checked, imki_parts *memory, imk_error *error)
 {
     *e = (imki_scene){.random = imk_random_seeded(simulation->seed),
                       .temperature = simulation->temperature,
@@ -209,13 +206,13 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
     e->interval = 1.0 / simulation->rate / (1.0 + model->timing.rate_error.value);
     e->substeps = imki_substeps(model, simulation);
     e->motion_varies = moves(simulation);
-    e->varies = imki_scene_size(model, simulation) > 0;
+    e->varies = imki_scene_varies(model, simulation);
     e->needs_acceleration = e->motion_varies && has_lever_arm(&model->accel);
     if (!e->varies)
         return IMK_OK;
-    assign_columns(e, memory);
-    start_triad(e, &model->gyro, IMK_GYRO);
-    start_triad(e, &model->accel, IMK_ACCEL);
+    assign_columns(e, imki_take(memory, IMKI_SCENE_SIZE));
+    for (int sensor = 0; sensor < 2; sensor++)
+        start_triad(e, sensor == IMK_GYRO ? &model->gyro : &model->accel, sensor);
     e->same_hysteresis = e->hysteresis_present[0] && e->hysteresis_present[1] &&
                          e->hysteresis[0].span == e->hysteresis[1].span;
     e->still = !e->motion_varies && !e->temperature && e->substeps == 1;

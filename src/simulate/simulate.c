@@ -3,7 +3,6 @@
 #include "imukit/simulate.h"
 
 #include "base/refuse_internal.h"
-#include "base/workspace_internal.h"
 #include "simulate_internal.h"
 
 #include <string.h>
@@ -72,38 +71,37 @@ static imki_axis axis_of(const imk_model *model, size_t channel)
                        (uint8_t)(axis + IMK_AXES_MAX)};
 }
 
-/* Bytes of the parts, in this order; the columns of the scene last. */
-typedef struct layout {
-    size_t channels, states, columns, all;
-} layout;
-
-static layout layout_of(const imk_model *model, const imk_simulation *simulation)
-{
-    const size_t count = axes_of(&model->gyro) + axes_of(&model->accel);
-    layout l = {.channels = imki_aligned(count * sizeof(imki_channel)),
-                .columns = imki_aligned(imki_scene_size(model, simulation) * sizeof(double))};
-    for (size_t i = 0; i < count; i++)
-        l.states += imki_channel_memory(axis_of(model, i));
-    l.all = imki_aligned(sizeof(imk_simulator)) + l.channels + l.states + l.columns +
-            IMKI_ALIGNMENT_SLACK;
-    return l;
-}
-
 size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
 {
-    return layout_of(model, simulation).all;
+    const size_t count = axes_of(&model->gyro) + axes_of(&model->accel);
+    imki_parts parts = {NULL, 0};
+    size_t states = 0;
+    for (size_t i = 0; i < count; i++) {
+        const imki_axis axis = axis_of(model, i);
+        states += imki_channel_memory(axis);
+    }
+    imki_take(&parts, states);
+    imki_take(&parts, count * sizeof(imki_channel));
+    imki_take(&parts, sizeof(imk_simulator));
+    if (imki_scene_varies(model, simulation))
+        imki_take(&parts, IMKI_SCENE_SIZE);
+    return imki_parts_size(&parts);
 }
 
 /* ---- start ---- */
 
-/* One draw for the whole run. */
-static double repeatability(const imk_axes *sigma, imki_axis axis, uint8_t instance,
-                            imk_random random, uint32_t run)
+/* One draw of bias and of scale factor for the whole run. */
+static void draw_constants(imki_axis axis, imk_random random, uint32_t run,
+                           imk_run_constants *constants)
 {
-    double normal;
-    imk_random_normals(random, imk_stream(run, IMK_TERM_REPEATABILITY, instance, axis.stream_axis),
-                       0, 1, &normal);
-    return sigma->value[axis.axis] * normal;
+    const imk_axes *sigma[2] = {&axis.triad->bias.repeatability,
+                                &axis.triad->scale_factor.repeatability};
+    double normal[2];
+    for (uint8_t i = 0; i < 2; i++)
+        imk_random_normals(random, imk_stream(run, IMK_TERM_REPEATABILITY, i, axis.stream_axis), 0,
+                           1, &normal[i]);
+    constants->bias[axis.sensor][axis.axis] = sigma[0]->value[axis.axis] * normal[0];
+    constants->scale_factor[axis.sensor][axis.axis] = sigma[1]->value[axis.axis] * normal[1];
 }
 
 static imk_status start_distortion(imk_simulator *made, const imk_model *model,
@@ -111,11 +109,8 @@ static imk_status start_distortion(imk_simulator *made, const imk_model *model,
 {
     imk_run_constants constants = {.bias = {{0.0}}};
     for (size_t i = 0; i < made->channels; i++) {
-        imki_axis axis = axis_of(model, i);
-        constants.bias[axis.sensor][axis.axis] =
-            repeatability(&axis.triad->bias.repeatability, axis, 0, made->random, simulation->run);
-        constants.scale_factor[axis.sensor][axis.axis] = repeatability(
-            &axis.triad->scale_factor.repeatability, axis, 1, made->random, simulation->run);
+        const imki_axis axis = axis_of(model, i);
+        draw_constants(axis, made->random, simulation->run, &constants);
     }
     return imk_distortion_start(&made->distortion, model, &constants, made->random.kernel, error);
 }
@@ -141,9 +136,9 @@ static imk_status start_channels(imk_simulator *made, imki_parts *memory, const 
     for (size_t i = 0; i < made->channels; i++) {
         imki_axis axis = axis_of(model, i);
         imki_channel *channel = &made->channel[i];
-        imk_status status = imki_channel_start(channel, axis, 1.0 / simulation->rate,
-                                               made->scene.substeps, made->random, simulation->run,
-                                               imki_take(memory, imki_channel_memory(axis)), error);
+        imk_status status =
+            imki_channel_start(channel, axis, 1.0 / simulation->rate, made->scene.substeps,
+                               made->random, simulation->run, memory, error);
         if (status != IMK_OK)
             return status;
         if (!made->scene.varies)
@@ -161,27 +156,26 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
         status = check_simulation(simulation, error);
     if (status != IMK_OK)
         return status;
-    const layout l = layout_of(model, simulation);
-    if (size < l.all)
+    if (size < imk_simulator_size(model, simulation))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "memory", "",
                              "imk_simulator_size() bytes");
     if (!memory)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory");
     imki_parts rest = imki_parts_of(memory);
-    memset(rest.memory, 0, l.all - IMKI_ALIGNMENT_SLACK - l.columns);
+    const size_t channels = axes_of(&model->gyro) + axes_of(&model->accel);
     imk_simulator *made = imki_take(&rest, sizeof *made);
+    imki_channel *channel = imki_take(&rest, channels * sizeof *channel);
+    memset(rest.memory, 0, rest.used);
     made->random = imk_random_seeded(simulation->seed);
     made->drops = model->timing.drops.value;
     made->drop_stream = imk_stream(simulation->run, IMK_TERM_DROPS, 0, 0);
-    made->channels = axes_of(&model->gyro) + axes_of(&model->accel);
-    made->channel = imki_take(&rest, l.channels);
-    imki_parts states = {imki_take(&rest, l.states), 0};
-    double *columns = imki_take(&rest, l.columns);
-    status = imki_scene_start(&made->scene, model, simulation, checked, columns, error);
+    made->channels = channels;
+    made->channel = channel;
+    status = imki_scene_start(&made->scene, model, simulation, checked, &rest, error);
     if (status == IMK_OK)
         status = start_distortion(made, model, simulation, error);
     if (status == IMK_OK)
-        status = start_channels(made, &states, model, simulation, error);
+        status = start_channels(made, &rest, model, simulation, error);
     if (status == IMK_OK)
         *simulator = made;
     return status;

@@ -3,6 +3,7 @@
 #ifndef IMUKIT_SIMULATE_INTERNAL_H
 #define IMUKIT_SIMULATE_INTERNAL_H
 
+#include "base/workspace_internal.h"
 #include "imukit/distort.h"
 #include "imukit/simulate.h"
 #include "noise/arma_internal.h"
@@ -53,11 +54,14 @@ typedef struct imki_scene {
 
 /* Parts of a sample this simulation needs. */
 size_t imki_substeps(const imk_model *model, const imk_simulation *simulation);
-/* Doubles of memory for the columns; 0 when nothing varies. */
-size_t imki_scene_size(const imk_model *model, const imk_simulation *simulation);
+/* True when anything varies: then the scene takes this memory for its columns. */
+bool imki_scene_varies(const imk_model *model, const imk_simulation *simulation);
+enum {
+    IMKI_SCENE_SIZE = ((IMKI_COLUMNS + 1) * IMKI_STRETCH + 8 + 2 * IMK_NOISE_BLOCK) * sizeof(double)
+};
 /* @param checked  the motion has been found valid before */
 imk_status imki_scene_start(imki_scene *scene, const imk_model *model,
-                            const imk_simulation *simulation, bool checked, double *memory,
+                            const imk_simulation *simulation, bool checked, imki_parts *memory,
                             imk_error *error);
 /* True when two scenes that have been used alike go on alike. */
 bool imki_scenes_agree(const imki_scene *a, const imki_scene *b);
@@ -110,10 +114,9 @@ typedef struct imki_channel {
 
 /* Bytes of the states of the stochastic terms, a multiple of 64. */
 size_t imki_channel_memory(imki_axis axis);
-/* Start the stochastic terms and the output stage.
- * @param memory  imki_channel_memory() bytes of zeros, 64-byte aligned */
+/* Start the stochastic terms, whose states are taken from memory, and the output stage. */
 imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, size_t substeps,
-                              imk_random random, uint32_t run, unsigned char *memory,
+                              imk_random random, uint32_t run, imki_parts *memory,
                               imk_error *error);
 
 /* The deterministic part of `rows` rows, whole blocks of 512 where the scene is still, out of the

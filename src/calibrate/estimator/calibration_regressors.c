@@ -100,8 +100,7 @@ static void add_cross_products(const imk_triad *triad, int axis, imki_axis_readi
     if (k[0] == 0.0 && k[1] == 0.0 && k[2] == 0.0)
         return;
     double p[3], o[3];
-    (void)imki_pendulous_axis(triad, axis, p);
-    imki_cross3(p, e, o);
+    (void)imki_cross_axes(triad, axis, p, o);
     const double along_p = imki_dot3(p, y->seen), along_o = imki_dot3(o, y->seen);
     y->value += k[0] * u * along_p + k[1] * u * along_o + k[2] * along_p * along_o;
     for (int j = 0; j < 3; j++)
@@ -181,8 +180,7 @@ static double by_lever_arm(const imki_axis_reading *y, const imki_input *input, 
 static double by_cross_product(const imki_axis_reading *y, int axis, int k)
 {
     double p[3], o[3];
-    (void)imki_pendulous_axis(y->triad, axis, p);
-    imki_cross3(p, y->triad->direction[axis], o);
+    (void)imki_cross_axes(y->triad, axis, p, o);
     const double along_p = imki_dot3(p, y->seen), along_o = imki_dot3(o, y->seen);
     return k == 0 ? y->along * along_p : k == 1 ? y->along * along_o : along_p * along_o;
 }

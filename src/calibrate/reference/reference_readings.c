@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Readings of stretches as observations: means with their sigma, and what is not usable. */
-#include "base/error_internal.h"
+#include "base/refuse_internal.h"
 #include "reference_internal.h"
 
 #include "imukit/attitude.h"
@@ -20,7 +20,7 @@ imk_status imki_reference_refuse(const imki_procedure_call *call, imk_status sta
                                  const char *field, int index, double value, double limit,
                                  const char *expected)
 {
-    return imki_error_number(call->error, status, field, (size_t)index, value, limit, expected);
+    return imki_refuse_at(call->error, status, field, (size_t)index, value, limit, expected);
 }
 
 imk_status imki_reference_room(const imki_procedure_call *call, size_t wanted)
