@@ -163,7 +163,7 @@ IMK_API void imk_allan_interval(double deviation, double edf, double confidence,
 typedef struct imk_allan_settings {
     uint32_t cookie;
     imk_allan_statistic statistic;
-    double confidence; /**< two-sided, of the intervals; 0.95 */
+    double confidence; /**< two-sided, of the intervals; default 0.95 */
     /** Degrees of freedom of the continuous process: the general formula of Greenhall and Riley
      *  [GREENHALL2003] for ADEV, OADEV, MDEV, TDEV, HDEV, OHDEV and Haar, its sum for PDEV; the
      *  published fits for TOTDEV, MTOT, HTOT [RILEY2008, 5.4] and Theo1 [HOWE2003], which are up to

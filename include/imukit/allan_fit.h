@@ -79,22 +79,21 @@ IMK_API imk_status imk_allan_covariance(const imk_allan_table *table, const imk_
 /** What to fit. Start from imk_allan_fit_default(), then change fields. */
 typedef struct imk_allan_fit_settings {
     uint32_t cookie;
-    double confidence;          /**< of the intervals; 0.95 */
-    double significance;        /**< false-alarm rate at which a term is called present; 0.01 */
+    double confidence;   /**< of the intervals; default 0.95 */
+    double significance; /**< false-alarm rate at which a term is called present; default 0.01 */
     bool term[IMK_NOISE_TERMS]; /**< candidates; all */
-    bool keep[IMK_NOISE_TERMS]; /**< present without question; none */
-    double tolerance;           /**< relative error of the model admitted in each deviation beside
-                                     what chance explains, 0 … 0.5; 0 */
-    bool trim;                  /**< where the model does not explain the table (chi-square's
-                                     probability below 1e-6), leave out the shortest tau, as few as
-                                     bring it above 0.01 and at most half of them: filters,
-                                     resonances and lines end there; true */
-    int gauss_markov_max;       /**< Gauss-Markov terms looked for, 0 … IMK_TERMS_MAX; 0 */
-    imk_low_pass filter;        /**< known output filter; none */
-    int sinusoid_count;         /**< sinusoids whose amplitude is fitted */
-    imk_sinusoid sinusoid[IMK_TERMS_MAX];   /**< their frequencies; amplitudes are not read */
-    bool sinusoid_refine;                   /**< also fit the frequencies, within 10 %; false */
-    int resonance_count;                    /**< resonances whose strength is fitted */
+    bool keep[IMK_NOISE_TERMS]; /**< present without question; default none */
+    double tolerance; /**< relative error of the model admitted in each deviation beside what chance
+                         explains, 0 … 0.5; default 0 */
+    bool trim; /**< where the model does not explain the table (chi-square's probability below
+                  1e-6), leave out the shortest tau, as few as bring it above 0.01 and at most half
+                  of them: filters, resonances and lines end there; default true */
+    int gauss_markov_max; /**< Gauss-Markov terms looked for, 0 … IMK_TERMS_MAX; default 0 */
+    imk_low_pass filter;  /**< known output filter; default none */
+    int sinusoid_count;   /**< sinusoids whose amplitude is fitted */
+    imk_sinusoid sinusoid[IMK_TERMS_MAX]; /**< their frequencies; amplitudes are not read */
+    bool sinusoid_refine; /**< also fit the frequencies, within 10 %; default false */
+    int resonance_count;  /**< resonances whose strength is fitted */
     imk_resonance resonance[IMK_TERMS_MAX]; /**< their frequency and q; sigma is not read */
 } imk_allan_fit_settings;
 

@@ -35,7 +35,7 @@ typedef struct imk_allan_gap_point {
 /** How to evaluate. Start from imk_allan_gaps_default(), then change fields. */
 typedef struct imk_allan_gaps_settings {
     uint32_t cookie;
-    double confidence; /**< two-sided, of the intervals; 0.95 */
+    double confidence; /**< two-sided, of the intervals; default 0.95 */
     bool robust;       /**< bounded influence of any sample: samples far from the level around them
                             count as missing, and squares beyond 6.25 times their mean count as
                             that; false. Degrees of freedom are then 0.96 of the others. */

@@ -20,15 +20,15 @@ typedef struct imk_allan_curve {
 /** @param allocator  of the job that made it */
 IMK_API void imk_allan_curve_free(imk_allan_curve *curve, const imk_allocator *allocator);
 
-/** What is asked. Start from imk_allan_log_default(). */
+/** Settings of the job. Start from imk_allan_log_default(). */
 typedef struct imk_allan_log_settings {
     uint32_t cookie;
     imk_gap_policy gaps; /**< IMK_GAPS_KEEP */
-    bool phase;          /**< the columns hold the integral of the rates; false */
+    bool phase;          /**< the columns hold the integral of the rates; default false */
     size_t statistic_count;
     imk_allan_statistic statistic[IMK_ALLAN_STATISTICS]; /**< the overlapping deviation */
-    double confidence;                                   /**< of the two-sided intervals; 0.95 */
-    bool greenhall_riley;                                /**< as of imk_allan_settings; false */
+    double confidence;    /**< of the two-sided intervals; default 0.95 */
+    bool greenhall_riley; /**< as of imk_allan_settings; default false */
     imk_allan_bias_removal bias;
     imk_allan_grid grid; /**< octaves; where there are no times */
     size_t time_count;   /**< 0 */
@@ -48,10 +48,10 @@ typedef struct imk_allan_log {
 } imk_allan_log;
 
 /** Deviations of every channel of a source. Memory: the record, its deviations, and workspaces.
- *  @param job     NULL: as if all zeros
- *  @param result  imk_allan_log_free() it, also on failure, where it holds the findings; NULL when
- *                 even its memory failed
- *  @return what imk_even_record_load() returns, and with a finding IMK_ERROR_CONSTANT,
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_allan_log_free(), also after a failure, because it then holds
+ *                 the findings; NULL if there was no memory for it
+ *  @return what imk_even_record_load() returns; with a finding that says why: IMK_ERROR_CONSTANT,
  *          _TOO_SHORT, _GAP (a statistic that needs every sample), _RANGE (a time) */
 IMK_API imk_status imk_allan_log_run(const imk_record_source *source,
                                      const imk_allan_log_settings *settings, const imk_job *job,

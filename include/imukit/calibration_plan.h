@@ -45,7 +45,7 @@ typedef struct imk_plan_settings {
                        (its Allan floor) and the repeatability of the model, which no test
                        lowers, count. false: about the test's own figures. Default true */
     double hold_minimum, hold_maximum; /**< time of a step that is measured [s]; 2, 120 */
-    double margin;                     /**< held longer, for detection and settling [s]; 2 */
+    double margin;        /**< held longer, for detection and settling [s]; default 2 */
     double turn_time;     /**< from pose to pose [s]; 2, longer where the range of the gyros needs
                                it */
     double soak;          /**< thermal: held at each temperature before it is measured, until the
@@ -54,13 +54,13 @@ typedef struct imk_plan_settings {
     size_t steps_minimum; /**< 0 (default): what the procedure needs to show misfits too */
     size_t steps_maximum; /**< 120 */
     double placement_sigma, fixture_sigma; /**< as in imk_procedure_settings [rad] */
-    double turn_angle;                     /**< ferraris: of each turn, with sign [rad]; 2 pi */
+    double turn_angle;  /**< ferraris: of each turn, with sign [rad]; default 2 pi */
     double rate_limit;  /**< highest rate of the table [rad/s]; 0 (default): nine tenths of the
                              range of the gyros, 3 rad/s where none is stated */
     double force_limit; /**< highest force of the centrifuge [m/s^2]; 0 (default): nine tenths of
                              the range of the accelerometers, 10 g where none is stated */
     double temperature_minimum, temperature_maximum; /**< [K]; 253.15, 343.15 */
-    int temperature_order;                           /**< of the bias; 3 */
+    int temperature_order;                           /**< of the bias; default 3 */
     bool nonlinear, cross_products, g_sensitivity;   /**< as in imk_procedure_settings */
 } imk_plan_settings;
 /** Defaults of a procedure, the values above. */

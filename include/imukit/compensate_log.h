@@ -19,17 +19,17 @@ typedef struct imk_term_keys {
     char key[IMK_TERM_KEYS_MAX][40];
 } imk_term_keys;
 
-/** What is asked. Start from imk_compensate_log_default(). */
+/** Settings of the job. Start from imk_compensate_log_default(). */
 typedef struct imk_compensate_log_settings {
     uint32_t cookie;
-    const imk_model *terms;         /**< the model with the terms alone that are to be taken out
-                                         (imk_model_select()); NULL: all */
-    double temperature;             /**< of the unit [K]; NaN: that of the record */
-    double temperature_time;        /**< imk_compensator.temperature_time [s]; 30 */
-    double powered_for;             /**< how long the unit was on before the first row [s]; 0 */
-    double rate_limit, force_limit; /**< as of imk_correction_settings; 0 */
+    const imk_model *terms;  /**< the model with the terms alone that are to be taken out
+                                  (imk_model_select()); NULL: all */
+    double temperature;      /**< of the unit [K]; NaN: that of the record */
+    double temperature_time; /**< imk_compensator.temperature_time [s]; default 30 */
+    double powered_for;      /**< how long the unit was on before the first row [s]; default 0 */
+    double rate_limit, force_limit; /**< as of imk_correction_settings; default 0 */
     imk_unit gyro_unit, accel_unit; /**< of what is written; scale 0: as read, SI for counts */
-    bool flags;                     /**< a column of flags is added; false */
+    bool flags;                     /**< a column of flags is added; default false */
 } imk_compensate_log_settings;
 
 /** Whole compensation, a temperature smoothed over 30 s, units as read. */
@@ -50,17 +50,18 @@ typedef struct imk_compensate_log {
     imk_compensate_counts counts;
     imk_term_keys taken_out, left_in;
     imk_findings findings;
-    imk_allocator allocator; /**< of this */
+    imk_allocator allocator; /**< allocator of this structure */
 } imk_compensate_log;
 
 /** Correct a source into a sink: gyros and accelerometers become angular rate and specific force of
  *  the body, other columns are copied. A gap in time begins anew.
- *  @param job     NULL: as if all zeros
- *  @param result  imk_compensate_log_free() it, also on failure, where it holds the findings; NULL
- *                 when even its memory failed
- *  @return what the source returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (the interval); and with a
- *          finding, IMK_ERROR_COLUMN, _UNIT_MISSING, _DIMENSION, _KEY_MISSING, _EMPTY, and what
- *          imk_compensator_start() ("model_refused") and the sink ("not_written") return */
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_compensate_log_free(), also after a failure, because it then
+ *                 holds the findings; NULL if there was no memory for it
+ *  @return what the source returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (the interval); with a
+ *          finding that says why: IMK_ERROR_COLUMN, _UNIT_MISSING, _DIMENSION, _KEY_MISSING,
+ *          _EMPTY, and what imk_compensator_start() ("model_refused") and the sink ("not_written")
+ *          return */
 IMK_API imk_status imk_compensate_log_run(const imk_record_source *source, const imk_model *model,
                                           const imk_compensate_log_settings *settings,
                                           const imk_record_sink *sink, const imk_job *job,

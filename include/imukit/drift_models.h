@@ -49,11 +49,11 @@ typedef struct imk_drift_wanted {
     double time;   /**< [s] */
 } imk_drift_wanted;
 
-/** What is asked. Start from imk_drift_models_default(). */
+/** Settings of the job. Start from imk_drift_models_default(). */
 typedef struct imk_drift_models_settings {
     uint32_t cookie;
     imk_drift_settings drift; /**< its times are those of `times`; its `compensated` is not used */
-    bool calibrated;          /**< known values taken out; of one model beside it before; false */
+    bool calibrated; /**< known values taken out; of one model beside it before; default false */
     imk_drift_wanted want;
 } imk_drift_models_settings;
 
@@ -124,10 +124,11 @@ typedef struct imk_drift_models {
 } imk_drift_models;
 
 /** Analyse models, which outlive the result, as do their names and the times.
- *  @param count   up to IMK_DRIFT_MODELS_MAX; one where something is wanted; 0: none, for runs
- *                 from elsewhere
- *  @param job     NULL: as if all zeros
- *  @param result  imk_drift_models_free() it, also on failure; NULL when even its memory failed
+ *  @param count   up to IMK_DRIFT_MODELS_MAX; one where something is wanted; 0: none, for runs from
+ *                 elsewhere
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_drift_models_free(), also after a failure; NULL if there was no
+ *                 memory for it
  *  @return as imk_drift_covariance(); IMK_ERROR_MEMORY */
 IMK_API imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
                                         const char *const *names, const imk_drift_times *times,

@@ -29,7 +29,7 @@ typedef struct imk_evaluation_table {
 /** Start from imk_evaluation_default(), then change fields. */
 typedef struct imk_evaluation_settings {
     uint32_t cookie;
-    double confidence;  /**< of the intervals, two-sided; 0.95 */
+    double confidence;  /**< of the intervals, two-sided; default 0.95 */
     double full_scale;  /**< what % of full scale is of [reference]; 0 (default): the largest
                              |reference| of the table */
     double level_width; /**< references not further apart are one level [reference]; 0 (default):

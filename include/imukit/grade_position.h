@@ -70,9 +70,9 @@ typedef struct imk_graded {
 } imk_graded;
 
 /** Grade a model, which outlives the result.
- *  @param job     NULL: as if all zeros
- *  @param result  imk_graded_free() it, also on failure, where it holds the findings; NULL when
- *                 even its memory failed
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_graded_free(), also after a failure, because it then holds the
+ *                 findings; NULL if there was no memory for it
  *  @return as imk_drift_covariance(); IMK_ERROR_MEMORY; with a finding, IMK_ERROR_EMPTY (a model
  *          with neither biases nor a position) */
 IMK_API imk_status imk_grade_run(const imk_model *model, const imk_job *job, imk_graded **result,

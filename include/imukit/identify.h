@@ -83,10 +83,10 @@ typedef struct imk_spectral_summary imk_spectral_summary;
 
 typedef struct imk_identify_settings {
     uint32_t cookie;
-    double dt;                     /**< sample interval [s] */
-    double confidence;             /**< of intervals and bounds; 0.95 */
-    double significance;           /**< false-alarm rate at which a term is called present; 0.01 */
-    bool shape;                    /**< look for lines, resonances and the output filter; true */
+    double dt;           /**< sample interval [s] */
+    double confidence;   /**< of intervals and bounds; default 0.95 */
+    double significance; /**< false-alarm rate at which a term is called present; default 0.01 */
+    bool shape;          /**< look for lines, resonances and the output filter; default true */
     imk_spectral_summary *summary; /**< filled when not NULL, imk_spectral_summary_size() bytes */
 } imk_identify_settings;
 

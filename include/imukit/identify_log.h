@@ -17,17 +17,19 @@
 
 IMK_BEGIN_C
 
-/** What is asked. Start from imk_identify_log_default(). */
+/** Settings of the job. Start from imk_identify_log_default(). */
 typedef struct imk_identify_log_settings {
     uint32_t cookie;
-    imk_gap_policy gaps;  /**< IMK_GAPS_KEEP */
-    double confidence;    /**< of intervals and bounds; 0.95 */
-    double significance;  /**< chance that a term which is not there is called present; 0.01 */
-    unsigned take_out;    /**< IMK_SCREEN_… bits; IMK_SCREEN_ALL */
-    bool from_allan;      /**< terms by generalised least squares on the Allan deviations; false */
-    double tolerance;     /**< as of imk_allan_fit_settings; 0 */
-    int gauss_markov_max; /**< the same; 0 */
-    bool summarise;       /**< keep what a joint estimate needs; false */
+    imk_gap_policy gaps; /**< IMK_GAPS_KEEP */
+    double confidence;   /**< of intervals and bounds; default 0.95 */
+    double
+        significance;  /**< chance that a term which is not there is called present; default 0.01 */
+    unsigned take_out; /**< IMK_SCREEN_… bits; default IMK_SCREEN_ALL */
+    bool from_allan;  /**< terms by generalised least squares on the Allan deviations; default false
+                       */
+    double tolerance; /**< as of imk_allan_fit_settings; default 0 */
+    int gauss_markov_max; /**< the same; default 0 */
+    bool summarise;       /**< keep what a joint estimate needs; default false */
 } imk_identify_log_settings;
 
 /** 95 % intervals, terms at 1 % significance, missing samples kept, all faults taken out. */
@@ -55,11 +57,12 @@ typedef struct imk_identify_log {
 } imk_identify_log;
 
 /** Identify every channel of a source.
- *  @param job     NULL: as if all zeros
- *  @param result  imk_identify_log_free() it, also on failure, where it holds the findings; NULL
- *                 when even its memory failed
- *  @return as imk_even_record_load(), imk_identify_channel() (error.field: the channel), and with a
- *          finding IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP (from_allan needs every sample) */
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_identify_log_free(), also after a failure, because it then holds
+ *                 the findings; NULL if there was no memory for it
+ *  @return as imk_even_record_load(), imk_identify_channel() (error.field: the channel); with a
+ *          finding that says why: IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP (from_allan needs every
+ *          sample) */
 IMK_API imk_status imk_identify_log_run(const imk_record_source *source,
                                         const imk_identify_log_settings *settings,
                                         const imk_job *job, imk_identify_log **result,

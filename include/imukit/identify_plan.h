@@ -30,13 +30,14 @@ IMK_API imk_expected_noise imk_expected_noise_of(const imk_triad *triad, int axi
 
 typedef struct imk_bounds_settings {
     uint32_t cookie;
-    double dt; /**< sample interval [s] */
-    double
-        significance; /**< at which a term is called present, as in imk_identify_settings; 0.01 */
+    double dt;                  /**< sample interval [s] */
+    double significance;        /**< at which a term is called present, as in imk_identify_settings;
+                                   default 0.01 */
     bool free[IMK_NOISE_TERMS]; /**< estimated although the noise has none of it; white noise, bias
                                      instability and random walk. Terms it has are always estimated
                                  */
-    bool shape; /**< correlation times, filter and resonances are found from the record too; true */
+    bool shape; /**< correlation times, filter and resonances are found from the record too; default
+                   true */
 } imk_bounds_settings;
 
 /** dt must be set. */

@@ -64,7 +64,7 @@ IMK_API imk_status imk_identify_comparable(const imk_identify_log *first,
  *  much the mean differs from run to run.
  *  @param count   2 … IMK_JOINT_RECORDS_MAX
  *  @param logs    identified with settings.summarise, all with the same settings
- *  @param result  imk_identify_several_free() it; NULL on failure
+ *  @param result  free it with imk_identify_several_free(); NULL after a failure
  *  @return as imk_identify_comparable() (error.index: the record), imk_identify_joint() and
  *          imk_repeatability_estimate() (error.field: the channel), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_identify_runs(size_t count, const imk_identify_log *const *logs,

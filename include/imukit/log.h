@@ -51,11 +51,11 @@ typedef struct imk_log_settings {
         *temperature_unit; /**< where the file has none */
     double rate;           /**< [Hz]; needed when there is no time column; 0: from time */
     const char *axes;      /**< "right-forward-up" …: mapped to forward-right-down; NULL: as is */
-    bool any_columns;      /**< accept a table without time and sensors too; false */
+    bool any_columns;      /**< accept a table without time and sensors too; default false */
     bool reopened; /**< the log is opened again after this, to be read by somebody else: what cannot
-                        be rewound, such as a pipe, is copied to a temporary file in TMPDIR first,
-                        which is read now and by the openings after this, up to the first without
-                        `reopened`; false */
+                      be rewound, such as a pipe, is copied to a temporary file in TMPDIR first,
+                      which is read now and by the openings after this, up to the first without
+                      `reopened`; default false */
     size_t memory; /**< bytes that a whole log may take; 0: half of imk_memory_limit() */
 } imk_log_settings;
 

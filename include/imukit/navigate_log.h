@@ -22,16 +22,17 @@ typedef enum imk_stop_policy {
     IMK_STOPS_FOUND      /**< whenever it is seen to */
 } imk_stop_policy;
 
-/** What is asked. Start from imk_navigate_log_default(). */
+/** Settings of the job. Start from imk_navigate_log_default(). */
 typedef struct imk_navigate_log_settings {
     uint32_t cookie;
     imk_gap_policy gaps; /**< IMK_GAPS_REFUSE */
     imk_geodetic place;  /**< of the start; 0, 0, 0 */
-    double align;        /**< how long the unit stands at the start, to find its attitude by
-                              itself [s], 1 or more; 0: the attitude is given; 300 */
-    bool method_given;   /**< false: by what the gyros read */
+    double align; /**< how long the unit stands at the start, to find its attitude by itself [s], 1
+                     or more; 0: the attitude is given; default 300 */
+    bool method_given; /**< false: by what the gyros read */
     imk_alignment_method method;
-    bool heading_given; /**< by attitude[2]: the alignment finds roll and pitch alone; false */
+    bool heading_given; /**< by attitude[2]: the alignment finds roll and pitch alone; default false
+                         */
     double attitude[3]; /**< roll, pitch, yaw at the start [rad] */
     double attitude_sigma[3];
     const imk_model *model; /**< errors of the sensors, outlives the result; NULL: not known */
@@ -39,13 +40,14 @@ typedef struct imk_navigate_log_settings {
     imk_stop_policy stops;  /**< those corrected by, with a model; IMK_STOPS_NONE. What rest looks
                                  like is learnt from the alignment */
     double stop_period, stop_length; /**< of the timetable [s] */
-    double still_velocity;           /**< 1 sigma of what moves in a unit that stands [m/s]; 0.01 */
+    double still_velocity;   /**< 1 sigma of what moves in a unit that stands [m/s]; default 0.01 */
     double still_rotation;   /**< and of its mean rate [rad/s]; 0: the rotation is not used */
     bool hold_height;        /**< true */
-    int samples;             /**< of coning and sculling, 1 … 4; 3 */
-    double interval;         /**< between rows of the track [s]; 1 */
-    double standard_gravity; /**< what g stands for in the columns in g, mg, ug; 9.80665 m/s^2 */
-    bool gravity_free;       /**< the track as a record has the acceleration too; false */
+    int samples;             /**< of coning and sculling, 1 … 4; default 3 */
+    double interval;         /**< between rows of the track [s]; default 1 */
+    double standard_gravity; /**< what g stands for in the columns in g, mg, ug; default 9.80665
+                                m/s^2 */
+    bool gravity_free;       /**< the track as a record has the acceleration too; default false */
 } imk_navigate_log_settings;
 
 /** Five minutes of alignment over inertial space, the height held. */
@@ -90,11 +92,11 @@ typedef struct imk_navigate_log {
 } imk_navigate_log;
 
 /** Navigate by a source.
- *  @param job     NULL: as if all zeros
- *  @param result  imk_navigate_log_free() it, also on failure, where it holds the findings; NULL
- *                 when even its memory failed
- *  @return as imk_even_record_load(); IMK_ERROR_RANGE (a setting: error.field), and, with a
- *          finding, _COLUMN, _UNIT_UNKNOWN (a unit can not be what it is said to be, no column is
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_navigate_log_free(), also after a failure, because it then holds
+ *                 the findings; NULL if there was no memory for it
+ *  @return as imk_even_record_load(); IMK_ERROR_RANGE (a setting: error.field); with a finding that
+ *          says why: _COLUMN, _UNIT_UNKNOWN (a unit can not be what it is said to be, no column is
  *          in g), _TOO_SHORT, _CONFLICT (near a pole), _UNSUPPORTED (the model), _NOT_FINITE */
 IMK_API imk_status imk_navigate_log_run(const imk_record_source *source,
                                         const imk_navigate_log_settings *settings,

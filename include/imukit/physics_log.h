@@ -56,17 +56,17 @@ typedef struct imk_physics_log {
     double *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< in imk_physics_output_unit() */
     double *input;                             /**< in that of output 0 */
     imk_findings findings;
-    imk_allocator allocator; /**< of this */
+    imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_log;
 
 /** Run an instrument for the duration. Row k is at the time (k + 1)/rate: the end of the sample
  *  whose mean it is. Signals of another rate have a run of their own.
  *  @param outputs,signals  where rows go; NULL: nowhere
- *  @param job     NULL: as if all zeros
- *  @param result  imk_physics_log_free() it, also on failure, where it holds the findings; NULL
- *                 when even its memory failed
+ *  @param job              NULL: one thread, no progress, the memory of the C library
+ *  @param result           free it with imk_physics_log_free(), also after a failure, because it
+ *                          then holds the findings; NULL if there was no memory for it
  *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
- *          "duration": no sample fits); and with a finding, IMK_ERROR_NOT_FINITE
+ *          "duration": no sample fits); with a finding that says why: IMK_ERROR_NOT_FINITE
  *          ("output_not_finite") and what the sinks return ("not_written") */
 IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                        const imk_record_sink *outputs,
@@ -92,7 +92,7 @@ typedef struct imk_physics_view {
 } imk_physics_view;
 
 /** Run the instrument as its view number `index` says.
- *  @param view  imk_physics_view_free() it, also on failure
+ *  @param view  free it with imk_physics_view_free(), also after a failure
  *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _RANGE (error.field "view": too
  *          few points, or too many) */
 IMK_API imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t index,
@@ -110,11 +110,11 @@ typedef struct imk_physics_sweep {
     imk_laboratory_result result;
     size_t count;
     imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
-    imk_allocator allocator; /**< of this */
+    imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_sweep;
 
 /** Find the error model by experiments (laboratory.h), in the settings' surroundings.
- *  @param sweep  imk_physics_sweep_free() it; NULL on failure
+ *  @param sweep  free it with imk_physics_sweep_free(); NULL after a failure
  *  @return as imk_laboratory_run(); IMK_ERROR_MEMORY */
 IMK_API imk_status imk_physics_sweep_run(const imk_physics_log_settings *settings,
                                          const imk_job *job, imk_physics_sweep **sweep,

@@ -44,18 +44,18 @@ typedef struct imk_procedure_settings {
     double placement_sigma; /**< of each hold [rad]; 0: exact. sixposition, ferraris, tumble */
     double fixture_sigma;   /**< of the unit on its fixture or table [rad]; 0: exact. All with a
                                  reference */
-    double trim;            /**< left out at each end of a stretch of constant reference [s]; 0.2 */
-    double settle;          /**< left out at its beginning besides, for filters [s]; 0 */
-    double steady_rate;     /**< by how much the reference may vary within a stretch, per axis
-                                 [rad/s]; 1e-4 */
-    double steady_force;    /**< [m/s^2]; 1e-3 */
-    double minimum;         /**< shortest stretch [s]; 0.5 */
-    bool gyro_turns;        /**< multiposition: also the gyros, by the turns; true */
-    double turn_angle;      /**< ferraris: of each turn about its axis, with sign [rad]; 2 pi */
-    bool nonlinear;         /**< rate-table, centrifuge: K2, Koq, K3, asymmetry too (as many as the
-                                 inputs tell apart); tumble: K2, K3, cross products; true but for
-                                 tumble */
-    bool cross_products;    /**< tumble, centrifuge: Kip, Kio, Kpo; false */
+    double trim;   /**< left out at each end of a stretch of constant reference [s]; default 0.2 */
+    double settle; /**< left out at its beginning besides, for filters [s]; default 0 */
+    double steady_rate;  /**< by how much the reference may vary within a stretch, per axis
+                              [rad/s]; 1e-4 */
+    double steady_force; /**< [m/s^2]; 1e-3 */
+    double minimum;      /**< shortest stretch [s]; default 0.5 */
+    bool gyro_turns;     /**< multiposition: also the gyros, by the turns; default true */
+    double turn_angle; /**< ferraris: of each turn about its axis, with sign [rad]; default 2 pi */
+    bool nonlinear;    /**< rate-table, centrifuge: K2, Koq, K3, asymmetry too (as many as the
+                            inputs tell apart); tumble: K2, K3, cross products; true but for
+                            tumble */
+    bool cross_products;                /**< tumble, centrifuge: Kip, Kio, Kpo; default false */
     bool g_sensitivity, g2_sensitivity; /**< of the gyros, where the forces vary; true, false */
     double sine_block;     /**< rate-table: samples are averaged over so long where the reference
                                 never holds still [s]; 0 (default): single samples */

@@ -18,16 +18,16 @@ enum {
     IMK_PLAN_CURVE = 61
 };
 
-/** What is asked. Start from imk_record_plan_default(). */
+/** Settings of the job. Start from imk_record_plan_default(). */
 typedef struct imk_record_plan_settings {
     uint32_t cookie;
     double rate;         /**< of the record [Hz]; must be set */
     double duration;     /**< planned [s]; 0: as long as the requirements need */
-    double significance; /**< as of imk_bounds_settings; 0.01 */
+    double significance; /**< as of imk_bounds_settings; default 0.01 */
     const char *want;    /**< requirements, "bias_instability 5%, gyro.rate_random_walk detected
                               95%": a term, and its 1 sigma in per cent of itself, or the chance
                               that it is found; NULL: none */
-    bool curve;          /**< also IMK_PLAN_CURVE records from a minute to a week; false */
+    bool curve;          /**< also IMK_PLAN_CURVE records from a minute to a week; default false */
 } imk_record_plan_settings;
 
 /** Terms at 1 % significance; the rate must be set. */
@@ -72,11 +72,12 @@ typedef struct imk_record_plan {
 } imk_record_plan;
 
 /** Plan the record of a model's noise.
- *  @param job     NULL: as if all zeros
- *  @param result  imk_record_plan_free() it, also on failure, where it holds the findings; NULL
- *                 when even its memory failed
- *  @return as imk_identify_duration(); IMK_ERROR_MEMORY; and with a finding IMK_ERROR_RANGE (the
- *          length), _EMPTY (no noise), _SYNTAX and _NAME_UNKNOWN (a requirement) */
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_record_plan_free(), also after a failure, because it then holds
+ *                 the findings; NULL if there was no memory for it
+ *  @return as imk_identify_duration(); IMK_ERROR_MEMORY; with a finding that says why:
+ *          IMK_ERROR_RANGE (the length), _EMPTY (no noise), _SYNTAX and _NAME_UNKNOWN (a
+ *          requirement) */
 IMK_API imk_status imk_record_plan_run(const imk_model *model,
                                        const imk_record_plan_settings *settings, const imk_job *job,
                                        imk_record_plan **result, imk_error *error);

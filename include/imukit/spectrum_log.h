@@ -16,18 +16,19 @@ enum {
     IMK_SPECTRUM_COARSE = 4  /**< the same, lines left out */
 };
 
-/** What is asked. Start from imk_spectrum_log_default(). */
+/** Settings of the job. Start from imk_spectrum_log_default(). */
 typedef struct imk_spectrum_log_settings {
     uint32_t cookie;
     imk_gap_policy gaps; /**< IMK_GAPS_REFUSE */
     imk_spectrum_method method;
     imk_window window;
     double resolution;  /**< [Hz]; 0: as imk_spectrum_settings */
-    bool trend;         /**< a straight line is removed from each segment; false */
+    bool trend;         /**< a straight line is removed from each segment; default false */
     double from, to;    /**< [Hz] of the fit of noise parameters; 0: the lowest, the highest */
-    double confidence;  /**< of the two-sided intervals; 0.95 */
-    double false_alarm; /**< chance that a channel without lines shows any; 0.001 */
-    bool one_sided;     /**< how densities are shown; those of the result are two-sided; false */
+    double confidence;  /**< of the two-sided intervals; default 0.95 */
+    double false_alarm; /**< chance that a channel without lines shows any; default 0.001 */
+    bool
+        one_sided; /**< how densities are shown; those of the result are two-sided; default false */
 } imk_spectrum_log_settings;
 
 /** 95 % intervals, lines at 0.1 % false alarm. */
@@ -54,11 +55,11 @@ typedef struct imk_spectrum_log {
 } imk_spectrum_log;
 
 /** Spectra of every channel of a source.
- *  @param job     NULL: as if all zeros
- *  @param result  imk_spectrum_log_free() it, also on failure, where it holds the findings; NULL
- *                 when even its memory failed
- *  @return as imk_even_record_load(); IMK_ERROR_RANGE (error.field "from" or "resolution"), and,
- *          with a finding, IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP */
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_spectrum_log_free(), also after a failure, because it then holds
+ *                 the findings; NULL if there was no memory for it
+ *  @return as imk_even_record_load(); IMK_ERROR_RANGE (error.field "from" or "resolution"); with a
+ *          finding that says why: IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP */
 IMK_API imk_status imk_spectrum_log_run(const imk_record_source *source,
                                         const imk_spectrum_log_settings *settings,
                                         const imk_job *job, imk_spectrum_log **result,
