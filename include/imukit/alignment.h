@@ -51,8 +51,8 @@ IMK_API imk_alignment_settings imk_alignment_default(void);
 
 /** What was found. */
 typedef struct imk_alignment_result {
-    imk_navigation_state
-        state;               /**< at the end of the time: where it is by then, as it last moved */
+    /** at the end of the time: where it is by then, as it last moved */
+    imk_navigation_state state;
     double roll, pitch, yaw; /**< [rad]; yaw is the azimuth of body x, east of north */
     double covariance[3][3]; /**< of the attitude error about north, east, down [rad^2], for small
                                   errors: a heading of sigma above a radian is not known at all.

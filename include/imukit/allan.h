@@ -184,8 +184,8 @@ typedef struct imk_allan_point {
     double deviation, lower, upper; /**< [unit of the rate]; TDEV: times the interval */
     double edf;                     /**< equivalent degrees of freedom */
     size_t count;                   /**< squares averaged */
-    imk_power_law
-        type; /**< noise type used for edf; that of the last factor with enough clusters */
+    /** noise type used for edf; that of the last factor with enough clusters */
+    imk_power_law type;
 } imk_allan_point;
 
 /** Deviations with intervals at each factor (ascending, in the statistic's range).

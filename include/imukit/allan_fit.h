@@ -118,10 +118,10 @@ typedef struct imk_allan_fit {
     double sigma[IMK_ALLAN_FIT_FACTORS_MAX];    /**< standard deviations of the measured ones */
     double chi_square;                          /**< (v - A a)^T C^-1 (v - A a) */
     int degrees;                                /**< tau used less fitted parameters */
-    double
-        probability; /**< of a larger chi-square by chance if variances were Gaussian; at long tau
-                          they are skewed, so that values below 0.05 come in 14 % of good fits to
-                          octaves and in 20 % with ten tau a decade: the bootstrap knows better */
+    /** of a larger chi-square by chance if variances were Gaussian; at long tau they are skewed,
+     *  so that values below 0.05 come in 14 % of good fits to octaves and in 20 % with ten tau a
+     *  decade: the bootstrap knows better */
+    double probability;
 } imk_allan_fit;
 
 /** Bytes of workspace for a fit, and for bootstraps of up to `draws` draws. */

@@ -47,8 +47,8 @@ typedef struct imk_allan_stream {
     double sum, sum_error;   /**< of the samples, and what rounding took from it */
     double minimum, maximum; /**< infinite while there is no sample */
     double last[IMK_ALLAN_STREAM_TIERS][IMK_ALLAN_STREAM_BLOCKS]; /**< block b in b mod 8 */
-    double head[IMK_ALLAN_STREAM_TIERS]
-               [IMK_ALLAN_STREAM_BLOCKS - 1]; /**< the shard's first blocks */
+    /** the shard's first blocks */
+    double head[IMK_ALLAN_STREAM_TIERS][IMK_ALLAN_STREAM_BLOCKS - 1];
     struct imk_allan_stream_squares {
         uint64_t count;    /**< windows */
         double sum, error; /**< of their squares, and what rounding took from it */

@@ -37,8 +37,8 @@ typedef struct imk_sigma_requirement {
 typedef struct imk_plan_settings {
     uint32_t cookie;
     imk_procedure procedure;
-    size_t
-        requirement_count; /**< 0: none; the programme is the shortest that determines everything */
+    /** 0: none; the programme is the shortest that determines everything */
+    size_t requirement_count;
     imk_sigma_requirement *requirement; /**< the caller's */
     double rate;                        /**< of samples [Hz]; 100, thermal 10: it takes hours */
     bool lasting; /**< requirements are about what stays true after the test: the bias instability

@@ -72,9 +72,9 @@ typedef struct imk_laboratory_response {
 /** What was found. Some 60 kB. */
 typedef struct imk_laboratory_result {
     double full_scale;
-    double zero,
-        zero_scatter; /**< mean of eight readings without input, and 1 sigma of one of them:
-                         slow noise makes them differ by more than each one's sigma */
+    /** mean of eight readings without input, and 1 sigma of one of them: slow noise makes them
+     *  differ by more than each one's sigma */
+    double zero, zero_scatter;
     int point_count;
     imk_laboratory_point point[IMK_LABORATORY_POINTS_MAX];
     double line_deviation; /**< largest distance from the least-squares line, of full scale [1] */

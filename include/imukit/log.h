@@ -47,11 +47,11 @@ IMK_API const char *imk_log_formats_text(const char *last, bool written, size_t 
 typedef struct imk_log_settings {
     uint32_t cookie;
     const char *columns; /**< names for a file without header: "time,gyro_x,gyro_y,…"; "-" skips */
-    const char *gyro_unit, *accel_unit, *time_unit,
-        *temperature_unit; /**< where the file has none */
-    double rate;           /**< [Hz]; needed when there is no time column; 0: from time */
-    const char *axes;      /**< "right-forward-up" …: mapped to forward-right-down; NULL: as is */
-    bool any_columns;      /**< accept a table without time and sensors too; default false */
+    /** where the file has none */
+    const char *gyro_unit, *accel_unit, *time_unit, *temperature_unit;
+    double rate;      /**< [Hz]; needed when there is no time column; 0: from time */
+    const char *axes; /**< "right-forward-up" …: mapped to forward-right-down; NULL: as is */
+    bool any_columns; /**< accept a table without time and sensors too; default false */
     bool reopened; /**< the log is opened again after this, to be read by somebody else: what cannot
                       be rewound, such as a pipe, is copied to a temporary file in TMPDIR first,
                       which is read now and by the openings after this, up to the first without
