@@ -87,7 +87,7 @@ typedef struct imk_identify_shown {
     const imk_identify_log *log;
     const char *name, *label; /**< such as its path and the last part of the path */
     imk_verdict verdict;
-    const imk_model *truth; /**< NULL: not known */
+    const imk_model *truth; /**< true model, for comparison; NULL: not known */
     /** Simulated deviations per channel (imk_identify_log_twin()); NULL: none */
     const imk_allan_curve *twin;
 } imk_identify_shown;
