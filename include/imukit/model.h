@@ -241,7 +241,7 @@ IMK_API void imk_model_default(imk_model *model);
  *          correlation), _ARGUMENT (a text without a terminating zero) */
 IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
 
-/** Set terms to zero, to see the effect of the others alone.
+/** Switch terms off, to see the effect of the others alone.
  *
  *  A name is a key of the model file, a term ("angle_random_walk", "noise.gauss_markov"), a group
  *  ("bias", "noise"), or either of one sensor only ("gyro.bias.fixed", "gyro.fixed",
@@ -317,8 +317,8 @@ IMK_API imk_grade_result imk_grade_model(const imk_model *model);
 
 /** Class by performance: the best class whose claim holds for these position errors. Navigation
  *  needs 1 nmi after an hour, strategic also 1 nmi after a day. The claim of tactical, "> 10 nmi /
- *  h", has no upper end, so every finite error after an hour is tactical. Lower classes claim no
- *  position: IMK_GRADE_NONE.
+ *  h", has no upper end, so any finite error after an hour is tactical at least. Lower classes
+ *  claim no position: IMK_GRADE_NONE.
  *  @param hour,day  position errors after an hour and after a day [m]; not finite: the position is
  *                   lost */
 IMK_API imk_grade imk_grade_of_position(double hour, double day);
