@@ -51,7 +51,7 @@ IMK_API imk_alignment_settings imk_alignment_default(void);
 
 /** Result of an alignment. */
 typedef struct imk_alignment_result {
-    /** at the end of the time: where it is by then, as it last moved */
+    /** State at the end of the last sample, with the last velocity. */
     imk_navigation_state state;
     double roll, pitch, yaw; /**< [rad]; yaw is the azimuth of body x, east of north */
     double covariance[3][3]; /**< of the attitude error about north, east, down [rad^2], for small
