@@ -2,23 +2,23 @@
 /** @file alignment.h
  *  Self-alignment: the attitude of a unit at a known place, from gravity and the Earth's rotation.
  *
- *  Three ways, from increments as they come, in constant memory:
- *   - means: the means of force and rate over the time give the vertical (first) and north. For a
- *     unit that does not move at all. To first order, mean errors b of force and c of rate in
- *     north-east-down axes leave an attitude error, in the sense of drift.h, of
+ *  Three methods, which take increments as they come and need constant memory:
+ *  - means: the mean force gives the vertical, then the mean rate gives north. For a unit that does
+ *    not move at all. To first order, mean errors b of force and c of rate in north-east-down axes
+ *    leave an attitude error, in the sense of drift.h, of
  *
  *         north -b_E/g,   east b_N/g,   down b_E tan(L)/g - c_E/(w_ie cos L);
  *
- *   - inertial: gravity seen from the unit's own inertial axes turns with the Earth; the velocities
- *     it makes give the attitude, while the unit may rock and turn as it likes, as long as it stays
- *     where it is (or moves by known velocities). All times weigh alike;
- *   - fine: the same velocities, weighed as likely as the sensors' noise makes them, and what the
- *     gyros' noise has turned the attitude by since the start taken off.
+ *  - inertial: in inertial axes carried along by the gyros, gravity turns with the Earth; its
+ *    integrals (velocities) give the attitude. The unit may rock and turn, as long as it stays at
+ *    its place (or moves at known velocities). All times have equal weight;
+ *  - fine: the same velocities, weighted by the sensors' noise, and corrected for the rotation that
+ *    the gyros' noise has caused since the start.
  *
- *  Constant errors do to the other two what they do to means: nothing that one unit sees at one
- *  place tells a level bias from a tilt or a bias to the east from a heading. And the attitude they
- *  carry along turns with the gyros' bias meanwhile, that of means does not: with gyros worse than
- *  the Earth's rotation, which find no north, means give the better vertical.
+ *  Constant errors have the same effect in all three methods: a unit at one place cannot
+ *  distinguish a horizontal force bias from a tilt, or an east rate bias from a heading. In the
+ *  last two methods the attitude also drifts with the gyro bias during the alignment. So if the
+ *  gyro bias exceeds the Earth's rotation and no north is found, means give the better vertical.
  *  Equations: docs/theory/alignment.md. */
 #ifndef IMUKIT_ALIGNMENT_H
 #define IMUKIT_ALIGNMENT_H
@@ -38,53 +38,56 @@ typedef enum imk_alignment_method {
 typedef struct imk_alignment_settings {
     uint32_t cookie;
     imk_alignment_method method;
-    imk_geodetic place;     /**< of the unit at the start */
-    double duration;        /**< how long it will be fed [s], > 0; more is no error */
-    const imk_model *model; /**< for weights and the covariance; kept until the end. Values it knows
-                                 are to be taken out of the samples before (correct.h): errors are
-                                 their sigmas, repeatability and noise. NULL: noise from the scatter
-                                 of the data, no biases */
+    imk_geodetic place; /**< of the unit at the start */
+    double duration;    /**< planned length of the alignment [s], > 0; more samples are no error */
+    /** For weights and the covariance; must exist until the end. Take its known values out of
+     *  the samples before (correct.h): the errors are their sigmas, repeatability and noise.
+     *  NULL: noise from the scatter of the data, no biases */
+    const imk_model *model;
 } imk_alignment_settings;
 
-/** Inertial, 300 s, at latitude and longitude 0. */
+/** Method inertial, 300 s, at latitude and longitude 0. */
 IMK_API imk_alignment_settings imk_alignment_default(void);
 
-/** What was found. */
+/** Result of an alignment. */
 typedef struct imk_alignment_result {
-    imk_navigation_state
-        state;               /**< at the end of the time: where it is by then, as it last moved */
+    /** State at the end of the last sample, with the last velocity. */
+    imk_navigation_state state;
     double roll, pitch, yaw; /**< [rad]; yaw is the azimuth of body x, east of north */
     double covariance[3][3]; /**< of the attitude error about north, east, down [rad^2], for small
-                                  errors: a heading of sigma above a radian is not known at all.
-                                  Without a model good to a factor of 1.5 in sigma */
-    double disturbance;      /**< rms of the horizontal velocity that is not gravity's, in means
-                                  over a 256th of the duration [m/s]; means: 0 */
-    double gravity_ratio;    /**< mean force found over normal gravity: far from 1, a unit is
-                                  wrong */
-    double earth_rate_ratio; /**< the same of the rotation: how fast gravity turns in the unit's
-                                  inertial axes */
+                                errors: a heading of sigma above a radian is not known at all.
+                                Without a model its sigmas are accurate to a factor of 1.5 */
+    double disturbance; /**< rms of the horizontal velocity not caused by gravity, in averages over
+                           1/256 of the duration [m/s]; 0 with method means */
+    double gravity_ratio; /**< mean force over normal gravity; far from 1: the unit of a column is
+                             wrong */
+    double earth_rate_ratio; /**< rate at which gravity turns in the unit's inertial axes, over the
+                                Earth's rate */
 } imk_alignment_result;
 
-/** An alignment under way: opaque memory of imk_alignment_size() bytes (23 kB), aligned as a
- * double, given by the caller. */
+/** An alignment in progress: opaque memory of imk_alignment_size() bytes (23 kB), aligned as a
+ *  double, given by the caller. */
 typedef struct imk_alignment imk_alignment;
 /** Bytes for an alignment with these settings. */
 IMK_API size_t imk_alignment_size(const imk_alignment_settings *settings);
-/** @return IMK_ERROR_UNINITIALISED, _RANGE, _NOT_FINITE, _CONFLICT (within 1 deg of a pole: no
- *          north there), _UNSUPPORTED (a model without gyros or accelerometers, or with fewer than
- *          three of either), _WORKSPACE, and those of imk_model_validate() */
+/** Start an alignment in memory of imk_alignment_size() bytes.
+ *  @return IMK_ERROR_UNINITIALISED, _RANGE, _NOT_FINITE, _CONFLICT (within 1 deg of a pole, where
+ *          north is not defined), _UNSUPPORTED (a model without gyros or accelerometers, or with
+ *          fewer than three of either), _WORKSPACE, and errors of imk_model_validate() */
 IMK_API imk_status imk_alignment_start(const imk_alignment_settings *settings,
                                        imk_alignment **alignment, void *memory, size_t memory_size,
                                        imk_error *error);
-/** One sample: increments of angle [rad] and velocity [m/s] over dt > 0 [s], and the velocity of
- *  the unit relative to the Earth, north-east-down, in its middle (NULL: it stays; means: it does
- *  not count). About 0.2 us. */
+/** Add one sample: increments of angle [rad] and velocity [m/s] over dt > 0 [s]. Takes about 0.2
+ *  us.
+ *  @param moving  velocity of the unit relative to the Earth in the middle of the sample,
+ *                 north-east-down [m/s]; NULL: at rest; not used by method means */
 IMK_API void imk_alignment_add(imk_alignment *alignment, double dt, imk_vector3 angle,
                                imk_vector3 velocity, const imk_vector3 *moving);
-/** The attitude at the end of the last sample. More may be added after. About 0.1 ms.
- *  @return IMK_ERROR_TOO_SHORT (less than a second, than eight samples, or than a 32nd of the
- *          duration; means: without a model than a quarter, with one only the first),
- *          IMK_ERROR_SINGULAR (force or rate is missing, or they are parallel; not finite) */
+/** Compute the attitude at the end of the last sample. More samples may be added afterwards. Takes
+ *  about 0.1 ms.
+ *  @return IMK_ERROR_TOO_SHORT (less than a second, eight samples, or 1/32 of the duration; method
+ *          means: less than 1/4 of the duration without a model, less than a second with one),
+ *          IMK_ERROR_SINGULAR (force or rate is zero, they are parallel, or not finite) */
 IMK_API imk_status imk_alignment_finish(const imk_alignment *alignment,
                                         imk_alignment_result *result, imk_error *error);
 

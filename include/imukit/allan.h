@@ -11,8 +11,8 @@
 
 IMK_BEGIN_C
 
-/** Which statistic, what it estimates, and the averaging factors m a record of n rate samples
- * allows (docs/theory/allan-deviation.md says which to use for what; equations of [RILEY2008]). */
+/** The statistics, what each estimates, and its range of averaging factors m for a record of n rate
+ *  samples. docs/theory/allan-deviation.md says which to use for what; equations of [RILEY2008]. */
 typedef enum imk_allan_statistic {
     IMK_ALLAN_OVERLAPPING = 0, /**< OADEV, 1 … n/2 */
     IMK_ALLAN_PLAIN,           /**< ADEV: non-overlapping clusters, 1 … n/2 */
@@ -29,9 +29,10 @@ typedef enum imk_allan_statistic {
     IMK_ALLAN_STATISTICS       /**< how many there are */
 } imk_allan_statistic;
 
-/** Short name of a statistic, "oadev"; NULL when there is none. */
+/** Short name of a statistic, "oadev"; NULL for a value that is not a statistic. */
 IMK_API const char *imk_allan_name(imk_allan_statistic statistic);
-/** Its title, "overlapping Allan deviation"; NULL when there is none. */
+/** Title of a statistic, "overlapping Allan deviation"; NULL for a value that is not a statistic.
+ */
 IMK_API const char *imk_allan_title(imk_allan_statistic statistic);
 
 /** Lowest and highest averaging factor of a statistic, and the step between valid ones (2 for
@@ -42,8 +43,8 @@ IMK_API void imk_allan_range(imk_allan_statistic statistic, size_t n, size_t *lo
 /** Averaging time in samples: m, and 0.75 m for Theo1. */
 IMK_API double imk_allan_averaging(imk_allan_statistic statistic, size_t m);
 
-/** Which averaging factors: powers of two, ten per decade, every one, or many: all up to 64, then
- * 32 to the octave. */
+/** Grids of averaging factors: powers of two, ten per decade, all, or many (all up to 64, then 32
+ *  per octave). */
 typedef enum imk_allan_grid {
     IMK_ALLAN_OCTAVE = 0,
     IMK_ALLAN_DECADE,
@@ -54,8 +55,8 @@ typedef enum imk_allan_grid {
  *  @param factors  NULL to count only
  *  @return how many */
 IMK_API size_t imk_allan_factors(imk_allan_grid grid, size_t n, size_t *factors);
-/** The same in the range of a statistic. Theo1 takes twice the factors of the grid from 5 on, since
- *  it wants even ones. */
+/** As imk_allan_factors(), limited to the range of a statistic. Theo1, which needs even factors,
+ *  takes twice the factors of the grid from 5 on. */
 IMK_API size_t imk_allan_factors_for(imk_allan_statistic statistic, imk_allan_grid grid, size_t n,
                                      size_t *factors);
 
@@ -68,10 +69,10 @@ IMK_API size_t imk_allan_factors_for(imk_allan_statistic statistic, imk_allan_gr
 IMK_API void imk_allan_sums(size_t n, const double *rate, double *sums,
                             const imk_executor *executor);
 
-/** Workspace [bytes] that imk_allan_compute() wants for these factors and threads; 0 for all
- *  statistics but MTOT, HTOT and Theo1. About 280 m bytes a thread, m the largest factor, and no
- *  more than 40 n; for Theo1 600 m and 75 n at most, 0 if no m is above 800. 0 too when a factor is
- *  out of range. */
+/** Workspace [bytes] that imk_allan_compute() needs for these factors and threads; 0 for all
+ *  statistics but MTOT, HTOT and Theo1. For these, about 280 m bytes a thread (m is the largest
+ *  factor), at most 40 n; for Theo1 600 m, at most 75 n, and 0 if no m is above 800. Also 0 when a
+ *  factor is out of range. */
 IMK_API size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n,
                                         size_t factor_count, const size_t *factors, size_t threads);
 
@@ -79,22 +80,24 @@ IMK_API size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n,
  *
  *      OAVAR(m) = 1/(2 m^2 (n - 2m + 1)) sum_j (s[j+2m] - 2 s[j+m] + s[j])^2   [RILEY2008, (11)]
  *
- *  and the others as the file of each says; as defined, no bias taken off. TVAR is in units of the
- *  rate times the sampling interval: multiply the deviation by dt. Cost a factor: O(n) for all but
- *  Theo1, which takes O(n log^2 m).
- *  @param n        rate samples; sums has n + 1 values
- *  @param factors  averaging factors in the statistic's range
- *  @param variances,counts  factor_count values; counts (may be NULL): squares, or stretches,
- *                  averaged
- *  @param workspace  imk_allan_workspace_size() bytes for executor->threads threads; any address
- *  @param executor NULL for serial. Summation order is fixed: the result does not depend on it
+ *  The other statistics follow their definitions; their bias is not removed. TVAR is in units of
+ *  the rate times the sample interval: multiply the deviation by dt. Time per factor: O(n), for
+ *  Theo1 O(n log^2 m).
+ *  @param n                 rate samples; sums has n + 1 values
+ *  @param factors           averaging factors in the statistic's range
+ *  @param variances,counts  factor_count values; counts (may be NULL): number of squares, or
+ *                           stretches, averaged
+ *  @param workspace         imk_allan_workspace_size() bytes for executor->threads threads; any
+ *                           address
+ *  @param executor          NULL for serial. Summation order is fixed: the result does not depend
+ *                           on it
  *  @return IMK_ERROR_RANGE, IMK_ERROR_TOO_SHORT, IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_allan_compute(imk_allan_statistic statistic, size_t n, const double *sums,
                                      size_t factor_count, const size_t *factors, double *variances,
                                      size_t *counts, const imk_executor *executor, void *workspace,
                                      size_t workspace_size);
 
-/** imk_allan_compute() for the statistics that need no workspace. */
+/** As imk_allan_compute(), for the statistics that need no workspace. */
 IMK_API imk_status imk_allan_variances(imk_allan_statistic statistic, size_t n, const double *sums,
                                        size_t factor_count, const size_t *factors,
                                        double *variances, size_t *counts,
@@ -113,12 +116,14 @@ typedef enum imk_power_law {
     IMK_RANDOM_RUN_RATE = -4
 } imk_power_law;
 
-/** Noise type at averaging factor m by the lag-1 autocorrelation [RILEY2004], 2 to -2. Needs n/m >=
- *  30; IMK_ERROR_TOO_SHORT otherwise. IMK_ERROR_NOT_FINITE: squares of the samples overflow. */
+/** Noise type at averaging factor m by the lag-1 autocorrelation [RILEY2004], 2 to -2. @return
+ *  IMK_ERROR_TOO_SHORT unless n/m >= 30; IMK_ERROR_NOT_FINITE when squares of the samples overflow
+ */
 IMK_API imk_status imk_allan_noise_type(size_t n, const double *sums, size_t m,
                                         imk_power_law *type);
 
-/** The same down to the lowest type for which a statistic converges: -4 for the Hadamard family. */
+/** As imk_allan_noise_type(), down to the lowest type for which a statistic converges: -4 for the
+ *  Hadamard family. */
 IMK_API imk_status imk_allan_noise_type_for(imk_allan_statistic statistic, size_t n,
                                             const double *sums, size_t m, imk_power_law *type);
 
@@ -140,22 +145,22 @@ IMK_API double imk_allan_edf_exact(imk_allan_statistic statistic, imk_power_law 
 IMK_API double imk_allan_bias(imk_allan_statistic statistic, imk_power_law type, size_t n,
                               size_t m);
 
-/** The same by the published fits [RILEY2008, 5.12 to 5.16], with which tables in print are
- *  corrected. MTOT's are up to 6 % off: 0.73 with white rate noise, where the ratio is 0.771. */
+/** As imk_allan_bias(), by the published fits [RILEY2008, 5.12 to 5.16], which printed tables use.
+ *  For MTOT they are up to 6 % off: 0.73 with white rate noise, where the ratio is 0.771. */
 IMK_API double imk_allan_bias_published(imk_allan_statistic statistic, imk_power_law type, size_t n,
                                         size_t m);
 
-/** What is done about the bias of TOTDEV, MTOT, HTOT and Theo1. */
+/** Treatment of the bias of TOTDEV, MTOT, HTOT and Theo1. */
 typedef enum imk_allan_bias_removal {
-    IMK_ALLAN_BIAS_REMOVED = 0, /**< imk_allan_bias() of the noise type found is taken off, and HTOT
-                                     at m = 1 is OHDEV */
-    IMK_ALLAN_BIAS_PUBLISHED,   /**< the same with imk_allan_bias_published() */
-    IMK_ALLAN_BIAS_LEFT         /**< the statistic as defined */
+    IMK_ALLAN_BIAS_REMOVED = 0, /**< the variance is divided by imk_allan_bias() for the noise type
+                                   found, and HTOT at m = 1 is OHDEV */
+    IMK_ALLAN_BIAS_PUBLISHED,   /**< the variance is divided by imk_allan_bias_published() */
+    IMK_ALLAN_BIAS_LEFT         /**< the bias is not removed */
 } imk_allan_bias_removal;
 
 /** Interval of the deviation at two-sided confidence (0.683, 0.95, …) for a variance with edf
  *  degrees of freedom: deviation * sqrt(edf / chi2 quantile). Above a confidence of 0.999999999 the
- *  lower end loses its digits, and at the next number below 1 it is NaN. */
+ *  lower end loses accuracy; at the last number below 1 it is NaN. */
 IMK_API void imk_allan_interval(double deviation, double edf, double confidence, double *lower,
                                 double *upper);
 
@@ -163,11 +168,11 @@ IMK_API void imk_allan_interval(double deviation, double edf, double confidence,
 typedef struct imk_allan_settings {
     uint32_t cookie;
     imk_allan_statistic statistic;
-    double confidence; /**< two-sided, of the intervals; 0.95 */
-    /** Degrees of freedom of the continuous process: the general formula of Greenhall and Riley
-     *  [GREENHALL2003] for ADEV, OADEV, MDEV, TDEV, HDEV, OHDEV and Haar, its sum for PDEV; the
-     *  published fits for TOTDEV, MTOT, HTOT [RILEY2008, 5.4] and Theo1 [HOWE2003], which are up to
-     *  20 % off below n/m = 6 (Theo1 with random-walk rate noise: of no use below n/m = 3).
+    double confidence; /**< two-sided, of the intervals; default 0.95 */
+    /** true: degrees of freedom of the continuous process, by the general formula of Greenhall and
+     *  Riley [GREENHALL2003] for ADEV, OADEV, MDEV, TDEV, HDEV, OHDEV and Haar, its sum for PDEV;
+     *  the published fits for TOTDEV, MTOT, HTOT [RILEY2008, 5.4] and Theo1 [HOWE2003], which are
+     *  up to 20 % off below n/m = 6 (Theo1 with random-walk rate noise: of no use below n/m = 3).
      *  false: those of imk_allan_edf_exact(). */
     bool greenhall_riley;
     imk_allan_bias_removal bias;
@@ -184,15 +189,15 @@ typedef struct imk_allan_point {
     double deviation, lower, upper; /**< [unit of the rate]; TDEV: times the interval */
     double edf;                     /**< equivalent degrees of freedom */
     size_t count;                   /**< squares averaged */
-    imk_power_law
-        type; /**< noise type used for edf; that of the last factor with enough clusters */
+    /** noise type used for edf; that of the last factor with enough clusters */
+    imk_power_law type;
 } imk_allan_point;
 
-/** Deviations with intervals at each factor (ascending, in the statistic's range).
+/** Compute deviations with intervals at each factor (ascending, in the statistic's range).
  *  @param sums    n + 1 running sums, imk_allan_sums()
  *  @param points  factor_count values
  *  @return IMK_ERROR_RANGE, IMK_ERROR_UNINITIALISED, IMK_ERROR_TOO_SHORT, IMK_ERROR_WORKSPACE,
- *          IMK_ERROR_NOT_FINITE (a sample is not, or squares overflow) */
+ *          IMK_ERROR_NOT_FINITE (a sample is not finite, or squares overflow) */
 IMK_API imk_status imk_allan_points(const imk_allan_settings *settings, size_t n,
                                     const double *sums, size_t factor_count, const size_t *factors,
                                     imk_allan_point *points, const imk_executor *executor);

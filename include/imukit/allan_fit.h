@@ -3,10 +3,11 @@
  *  Noise model from a table of Allan variances, by generalised least squares with the full
  *  covariance across tau (docs/theory/allan-fit.md).
  *
- *  For who has a curve and not the record: a published table, the sums a device kept while it ran,
- *  the pooled curves of several records. Who has the record uses imk_identify_channel(), which
- *  loses nothing. Allan variance is twice the variance of Haar wavelet coefficients, so the same
- *  functions fit those (the generalised method of wavelet moments [GUERRIER2013]).
+ *  Use it if you have a curve but not the record: a published table, the sums that a device kept
+ *  while it ran, or the pooled curves of several records. If you have the record, use
+ *  imk_identify_channel(), which loses nothing. Allan variance is twice the variance of Haar
+ *  wavelet coefficients, so the same functions fit those (the generalised method of wavelet moments
+ *  [GUERRIER2013]).
  *
  *  Neighbouring tau share most of their data; the covariance of the estimates follows from the
  *  noise model, and so does each estimate's weight. Both are iterated: the amounts a >= 0 solve
@@ -30,11 +31,12 @@ enum {
     IMK_ALLAN_FIT_TERMS_MAX = IMK_NOISE_TERMS + 3 * IMK_TERMS_MAX
 };
 
-/** A noise model: what imk_allan_noise_variance() sums up. Zero-initialised: no noise. */
+/** A noise model, whose Allan variance imk_allan_noise_variance() computes. Zero-initialised: no
+ *  noise. */
 typedef struct imk_allan_noise {
     double term[IMK_NOISE_TERMS]; /**< Q [unit s], N [unit/sqrt(Hz)], B [unit], K [unit/sqrt(s)],
                                        R [unit/s] */
-    imk_low_pass filter;          /**< that the white noise passes; bandwidth 0: none */
+    imk_low_pass filter; /**< output filter, which the white noise passes; bandwidth 0: none */
     int gauss_markov_count, sinusoid_count, resonance_count; /**< 0 … IMK_TERMS_MAX each */
     imk_gauss_markov gauss_markov[IMK_TERMS_MAX];
     imk_sinusoid sinusoid[IMK_TERMS_MAX];
@@ -44,20 +46,21 @@ typedef struct imk_allan_noise {
 /** Expected Allan variance of the model at tau = m dt, exact for the sampled process. */
 IMK_API double imk_allan_noise_variance(const imk_allan_noise *noise, double dt, size_t m);
 
-/** Measured Allan variances and how they came about. */
+/** Measured Allan variances, and how they were computed. */
 typedef struct imk_allan_table {
-    double dt;               /**< sample interval [s] */
-    size_t count;            /**< of tau: 2 … IMK_ALLAN_FIT_FACTORS_MAX */
-    const size_t *factors;   /**< ascending averaging factors m, tau = m dt */
-    const double *variances; /**< [unit^2] at each; NULL where only a covariance is asked for */
-    const size_t *strides;   /**< samples from one second difference to the next, each a divisor of
-                                  its factor; NULL: 1, full overlap (OAVAR). m: plain AVAR */
-    size_t record_count;     /**< records pooled, each variance weighted by its number of squares */
+    double dt;             /**< sample interval [s] */
+    size_t count;          /**< number of tau: 2 … IMK_ALLAN_FIT_FACTORS_MAX */
+    const size_t *factors; /**< ascending averaging factors m, tau = m dt */
+    /** Variance at each tau [unit^2]; NULL if only a covariance is computed */
+    const double *variances;
+    const size_t *strides; /**< samples from one second difference to the next, each a divisor of
+                                its factor; NULL: 1, full overlap (OAVAR). m: plain AVAR */
+    size_t record_count;   /**< records pooled, each variance weighted by its number of squares */
     const size_t *lengths; /**< samples of each record; every factor fits twice into one of them */
 } imk_allan_table;
 
-/** Bytes for a table of `count` tau and a model of `terms` terms (at most 5 and the Gauss-Markov
- *  terms, sinusoids and resonances): 25 tau and the five terms, 40 kB. */
+/** Bytes of workspace for a table of `count` tau and a model of `terms` terms (at most 5, and the
+ *  Gauss-Markov terms, sinusoids and resonances); 40 kB for 25 tau and five terms. */
 IMK_API size_t imk_allan_covariance_workspace_size(size_t count, size_t terms);
 
 /** Covariance of the table's variances when the records have this noise.
@@ -79,29 +82,29 @@ IMK_API imk_status imk_allan_covariance(const imk_allan_table *table, const imk_
 /** What to fit. Start from imk_allan_fit_default(), then change fields. */
 typedef struct imk_allan_fit_settings {
     uint32_t cookie;
-    double confidence;          /**< of the intervals; 0.95 */
-    double significance;        /**< false-alarm rate at which a term is called present; 0.01 */
-    bool term[IMK_NOISE_TERMS]; /**< candidates; all */
-    bool keep[IMK_NOISE_TERMS]; /**< present without question; none */
-    double tolerance;           /**< relative error of the model admitted in each deviation beside
-                                     what chance explains, 0 … 0.5; 0 */
-    bool trim;                  /**< where the model does not explain the table (chi-square's
-                                     probability below 1e-6), leave out the shortest tau, as few as
-                                     bring it above 0.01 and at most half of them: filters,
-                                     resonances and lines end there; true */
-    int gauss_markov_max;       /**< Gauss-Markov terms looked for, 0 … IMK_TERMS_MAX; 0 */
-    imk_low_pass filter;        /**< known output filter; none */
-    int sinusoid_count;         /**< sinusoids whose amplitude is fitted */
-    imk_sinusoid sinusoid[IMK_TERMS_MAX];   /**< their frequencies; amplitudes are not read */
-    bool sinusoid_refine;                   /**< also fit the frequencies, within 10 %; false */
-    int resonance_count;                    /**< resonances whose strength is fitted */
+    double confidence;   /**< of the intervals; default 0.95 */
+    double significance; /**< false-alarm rate at which a term is called present; default 0.01 */
+    bool term[IMK_NOISE_TERMS]; /**< terms that may be present; default all */
+    bool keep[IMK_NOISE_TERMS]; /**< terms that are always present; default none */
+    double tolerance; /**< relative error of each deviation that is allowed beside its random error,
+                         0 … 0.5; default 0 */
+    /** Where the model does not explain the table (chi-square's probability below 1e-6), leave
+     *  out the shortest tau: as few as bring the probability above 0.01, and at most half.
+     *  Filters, resonances and lines disturb the shortest tau. Default true */
+    bool trim;
+    int gauss_markov_max; /**< Gauss-Markov terms looked for, 0 … IMK_TERMS_MAX; default 0 */
+    imk_low_pass filter;  /**< known output filter; default none */
+    int sinusoid_count;   /**< sinusoids whose amplitude is fitted */
+    imk_sinusoid sinusoid[IMK_TERMS_MAX]; /**< their frequencies; amplitudes are not read */
+    bool sinusoid_refine; /**< also fit the frequencies, within 10 %; default false */
+    int resonance_count;  /**< resonances whose strength is fitted */
     imk_resonance resonance[IMK_TERMS_MAX]; /**< their frequency and q; sigma is not read */
 } imk_allan_fit_settings;
 
-/** The defaults named above: the five terms, trimmed. */
+/** The defaults stated above: the five terms, with trimming. */
 IMK_API imk_allan_fit_settings imk_allan_fit_default(void);
 
-/** What was found. */
+/** Result of a fit. */
 typedef struct imk_allan_fit {
     imk_estimate term[IMK_NOISE_TERMS]; /**< lower, upper by the profile of the quasi-likelihood;
                                              value +- z sigma is the asymptotic interval */
@@ -114,15 +117,15 @@ typedef struct imk_allan_fit {
     imk_estimate sinusoid[IMK_TERMS_MAX];  /**< amplitudes, in the order of the settings */
     imk_estimate resonance[IMK_TERMS_MAX]; /**< sigmas, in the order of the settings */
     imk_allan_noise noise;                 /**< the model of the terms present */
-    size_t first; /**< shortest tau used, by its place in the table; more than 0: see trim */
-    double expected[IMK_ALLAN_FIT_FACTORS_MAX]; /**< its Allan variances */
-    double sigma[IMK_ALLAN_FIT_FACTORS_MAX];    /**< standard deviations of the measured ones */
-    double chi_square;                          /**< (v - A a)^T C^-1 (v - A a) */
-    int degrees;                                /**< tau used less fitted parameters */
-    double
-        probability; /**< of a larger chi-square by chance if variances were Gaussian; at long tau
-                          they are skewed, so that values below 0.05 come in 14 % of good fits to
-                          octaves and in 20 % with ten tau a decade: the bootstrap knows better */
+    size_t first; /**< index in the table of the shortest tau used; more than 0 after trimming */
+    double expected[IMK_ALLAN_FIT_FACTORS_MAX]; /**< Allan variances of this model */
+    double sigma[IMK_ALLAN_FIT_FACTORS_MAX]; /**< standard deviations of the measured variances */
+    double chi_square;                       /**< (v - A a)^T C^-1 (v - A a) */
+    int degrees;                             /**< tau used less fitted parameters */
+    /** probability of a larger chi-square by chance if variances were Gaussian. At long tau they
+     *  are skewed, so 14 % of good fits to octaves have a value below 0.05, and 20 % with ten tau a
+     *  decade; the bootstrap gives a better value */
+    double probability;
 } imk_allan_fit;
 
 /** Bytes of workspace for a fit, and for bootstraps of up to `draws` draws. */
@@ -130,19 +133,19 @@ IMK_API size_t imk_allan_fit_workspace_size(const imk_allan_fit_settings *settin
                                             size_t draws);
 
 /** Fit a model to a table.
- *  @return as imk_allan_covariance(), IMK_ERROR_UNINITIALISED, IMK_ERROR_NO_CONVERGENCE,
+ *  @return errors of imk_allan_covariance(), IMK_ERROR_UNINITIALISED, IMK_ERROR_NO_CONVERGENCE,
  *          IMK_ERROR_SINGULAR (the covariance of these tau is singular: leave some out) */
 IMK_API imk_status imk_allan_fit_table(const imk_allan_fit_settings *settings,
                                        const imk_allan_table *table, imk_allan_fit *fit,
                                        void *workspace, size_t workspace_size, imk_error *error);
 
-/** What drawing tables from the fitted model and fitting them again says about the fit. */
+/** Result of a bootstrap: statistics of fits to tables drawn from the fitted model. */
 typedef struct imk_allan_bootstrap {
     size_t draws;
     struct imk_allan_bootstrap_term {
-        double bias, sigma;  /**< of the amount (square) over the draws, relative to it */
+        double bias, sigma;  /**< relative bias and 1 sigma of the amount (square) over the draws */
         double lower, upper; /**< quantiles of the value at the confidence */
-        double covered;      /**< share of draws whose profile interval holds the fit's value */
+        double covered;      /**< share of draws whose profile interval contains the fitted value */
     } term[IMK_NOISE_TERMS]; /**< zeros for terms that are absent */
     double probability;      /**< share of draws with a larger chi-square */
 } imk_allan_bootstrap;
@@ -150,8 +153,8 @@ typedef struct imk_allan_bootstrap {
 /** Parametric bootstrap: variances are drawn as chi-squares of the degrees of freedom that the
  *  model's covariance gives each, joined by a Gaussian copula with the model's correlations, and
  *  fitted with the terms that are present.
- *  @param fit  from imk_allan_fit_table() with the same settings and table
- *  @param draws  20 … what the workspace was sized for */
+ *  @param fit    from imk_allan_fit_table() with the same settings and table
+ *  @param draws  20 up to the number for which the workspace was sized */
 IMK_API imk_status imk_allan_fit_bootstrap(const imk_allan_fit_settings *settings,
                                            const imk_allan_table *table, const imk_allan_fit *fit,
                                            imk_random random, size_t draws,

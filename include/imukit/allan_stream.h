@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file allan_stream.h
- *  Allan variances of a record as it arrives: for a device that characterises itself, and for
- *  records cut into shards.
+ *  Allan variances of a record as its samples arrive: for a device that characterises itself, and
+ *  for records cut into pieces (shards).
  *
  *  One pass, less than 4 KiB a channel whatever the length, no allocation. The averaging factors
  *  are the octaves m = 1, 2, 4 … 2^27. A tier t adds up blocks of 2^t samples, two of tier t - 1 at
@@ -17,7 +17,7 @@
  *  | random walk  | 1.000 | 1.000 | 1.000 | 1.000  |
  *
  *  (1 for m <= 4; from the correlations of the windows, docs/theory/allan-stream.md). Quantization
- *  is told from the shortest factors, where nothing is lost.
+ *  is determined by the shortest factors, where nothing is lost.
  *
  *  A block is the pairwise sum of its samples, so a large constant (gravity) costs no digits: the
  *  rounding error of a mean over 2^27 samples stays below 2e-15 of the constant.
@@ -33,7 +33,7 @@ IMK_BEGIN_C
 
 enum {
     IMK_ALLAN_STREAM_TIERS = 26,
-    IMK_ALLAN_STREAM_BLOCKS = 8,  /**< of a tier kept, at each end */
+    IMK_ALLAN_STREAM_BLOCKS = 8,  /**< blocks kept of each tier, at each end */
     IMK_ALLAN_STREAM_OVERLAP = 4, /**< windows start every m/4 samples, at least every sample */
     IMK_ALLAN_STREAM_FACTORS = IMK_ALLAN_STREAM_TIERS + 2
 };
@@ -44,26 +44,27 @@ typedef struct imk_allan_stream {
     uint64_t first, next;    /**< sample numbers: first of the shard, and the next one to come */
     uint64_t present;        /**< samples that were finite */
     uint64_t missing;        /**< samples that were not */
-    double sum, sum_error;   /**< of the samples, and what rounding took from it */
+    double sum, sum_error;   /**< sum of the samples, and its rounding error */
     double minimum, maximum; /**< infinite while there is no sample */
     double last[IMK_ALLAN_STREAM_TIERS][IMK_ALLAN_STREAM_BLOCKS]; /**< block b in b mod 8 */
-    double head[IMK_ALLAN_STREAM_TIERS]
-               [IMK_ALLAN_STREAM_BLOCKS - 1]; /**< the shard's first blocks */
+    /** the shard's first blocks */
+    double head[IMK_ALLAN_STREAM_TIERS][IMK_ALLAN_STREAM_BLOCKS - 1];
     struct imk_allan_stream_squares {
         uint64_t count;    /**< windows */
-        double sum, error; /**< of their squares, and what rounding took from it */
+        double sum, error; /**< sum of their squares, and its rounding error */
     } squares[IMK_ALLAN_STREAM_FACTORS];
 } imk_allan_stream;
 
-/** Start. @param first  number of the first sample: 0 for a stream, that of the record for a shard
- *  of it (below 2^62) */
+/** Start a stream or a shard. @param first  number of the first sample in the record: 0 for a
+ *  stream (below 2^62) */
 IMK_API void imk_allan_stream_start(imk_allan_stream *stream, uint64_t first);
 
-/** Take the next samples; the cuts between calls do not matter.
+/** Take the next samples; it does not matter how they are divided among calls.
  *
- *  A sample that is not finite is missing: windows of m <= 4 that touch it are left out, and in
- *  longer ones a block takes twice its present half. So rare drops cost nothing, and a fraction p
- *  missing raises white noise by less than about 2 p. A block with nothing in it is missing too. */
+ *  A sample that is not finite counts as missing. Windows of m <= 4 that touch it are left out; in
+ *  longer windows a block with one half missing takes twice the other half. So rare drops cost
+ *  nothing, and a missing fraction p raises white noise by less than about 2 p. A block without
+ *  samples is missing, too. */
 IMK_API void imk_allan_stream_add(imk_allan_stream *stream, size_t count, const double *samples);
 
 /** Join a shard and the one that follows it: the same windows and counts as one pass over both, and
@@ -93,7 +94,7 @@ typedef struct imk_allan_stream_point {
 IMK_API size_t imk_allan_stream_points(const imk_allan_stream *stream,
                                        imk_allan_stream_point *points);
 
-/** Mean of the samples that were there; not a number when there is none. */
+/** Mean of the finite samples; NaN when there is none. */
 IMK_API double imk_allan_stream_mean(const imk_allan_stream *stream);
 
 IMK_END_C

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file campaign.h
- *  Monte Carlo beyond one process: shards of a campaign on files that survive being killed, and
- *  their merging. Part of libimukit-io.
+ *  Monte Carlo campaigns divided among processes: shards, kept in files that survive a killed
+ *  process, and their merging. Part of libimukit-io.
  *
- *  A campaign is a number of runs, each of which gives the same bytes wherever it is computed. A
- *  shard is a consecutive part of them. The merged file is the same, byte for byte, however the
- *  campaign was divided. Format: docs/campaign-file.md.
+ *  A campaign is a number of runs; each run gives the same bytes wherever it is computed. A shard
+ *  is a consecutive part of the runs. The merged file does not depend on how the campaign was
+ *  divided. Format: docs/campaign-file.md.
  *
- *  Results files (.h5) are made and read by libhdf5, in whose serial form only one thread may be at
- *  a time. Calls of this header keep to that among themselves; a program that uses libhdf5 on
- *  other threads must not do so during imk_campaign_create(), _commit(), _load() and _merge(). */
+ *  Results files (.h5) are written and read by libhdf5, whose serial form allows one thread at a
+ *  time. The functions of this header ensure that among themselves. A program that uses libhdf5
+ *  itself must not do so on another thread during imk_campaign_create(), _commit(), _load() and
+ *  _merge(). */
 #ifndef IMUKIT_CAMPAIGN_H
 #define IMUKIT_CAMPAIGN_H
 
@@ -20,36 +21,38 @@
 
 IMK_BEGIN_C
 
-/** What the numbers of a campaign depend on, and their shape. Arrays and texts are the caller's. */
+/** Everything on which the numbers of a campaign depend, and their shape. Arrays and texts belong
+ *  to the caller. */
 typedef struct imk_campaign {
-    const char *version;    /**< of the program that computes: IMK_VERSION */
-    const char *parameters; /**< everything else that the numbers depend on (model, motion,
-                                 settings), as JSON text of the caller's; two campaigns are the same
-                                 when all of this is */
+    const char *version;    /**< version of the program that computes: IMK_VERSION */
+    const char *parameters; /**< everything else on which the numbers depend (model, motion,
+                               settings), as JSON text; two campaigns are the same when all members
+                               of this structure are equal */
     uint64_t seed;
     uint64_t run_count;       /**< of the whole campaign, >= 1 */
     size_t time_count;        /**< >= 1 */
     const double *time;       /**< [s] */
     size_t state_count;       /**< numbers per run and time */
     const char *const *state; /**< their names, "position_north" */
-    const char *const *unit;  /**< and units, "m" */
+    const char *const *unit;  /**< their units, "m" */
 } imk_campaign;
 
-/** Runs of shard `index` (1 … count): consecutive, differing by at most one between shards. */
+/** First run and number of runs of shard `index` (1 … count). The numbers differ by at most one
+ *  between shards. */
 IMK_API void imk_campaign_shard(uint64_t run_count, uint64_t index, uint64_t count, uint64_t *first,
                                 uint64_t *runs);
 
 /* ---- computing ---------------------------------------------------------------------------------
  */
 
-/** A results file being made. Runs may arrive in any order; what has arrived is kept beside the
- *  file, in PATH.part, and found again after the process was killed. */
+/** A results file in the making. Runs may be added in any order. They are kept in PATH.part and
+ *  found again after a killed process. */
 typedef struct imk_campaign_writer imk_campaign_writer;
 
-/** Start, or go on where a killed process stopped. When PATH is already the results file (.h5) of
- *  this campaign and shard, whole and undamaged, all runs are there and there is nothing to do, so
- *  that submitting a job again costs nothing.
- *  @param path   ending in .h5 or .csv (.csv.gz, .csv.zst)
+/** Start a results file, or continue where a killed process stopped. If PATH is already the
+ *  complete, undamaged results file (.h5) of this campaign and shard, all runs are present and
+ *  nothing is left to do, so submitting a job again costs nothing.
+ *  @param path        ending in .h5 or .csv (.csv.gz, .csv.zst)
  *  @param first,runs  the shard
  *  @return IMK_ERROR_CONFLICT (PATH.part belongs to another campaign, seed, version or shard:
  *          error.found says which; or another process is writing it), IMK_ERROR_OPEN,
@@ -57,24 +60,26 @@ typedef struct imk_campaign_writer imk_campaign_writer;
 IMK_API imk_status imk_campaign_create(const char *path, const imk_campaign *campaign,
                                        uint64_t first, uint64_t runs, imk_campaign_writer **writer,
                                        imk_error *error);
-/** Runs of the shard that are there already. */
+/** Number of runs of the shard that are already present. */
 IMK_API uint64_t imk_campaign_done(const imk_campaign_writer *writer);
-/** True when run `run` (a number of the campaign) is there. */
+/** True when run `run` (numbered in the campaign) is present. */
 IMK_API bool imk_campaign_has(const imk_campaign_writer *writer, uint64_t run);
-/** Numbers of runs that are there, such as those a killed process had left: [run][time][state].
- *  @return IMK_ERROR_EMPTY (one of them is not there), IMK_ERROR_READ */
+/** Read runs that are present, such as those left by a killed process.
+ *  @param values  [run][time][state]
+ *  @return IMK_ERROR_EMPTY (a run is not present), IMK_ERROR_READ */
 IMK_API imk_status imk_campaign_read(imk_campaign_writer *writer, uint64_t first, uint64_t runs,
                                      double *values, imk_error *error);
-/** Add runs first … first + runs - 1: [run][time][state]. Thread-safe. Kept on disk at once; synced
- *  every few seconds.
- *  @return IMK_ERROR_WRITE (a full disk: what was there before stays usable) */
+/** Add runs first … first + runs - 1: [run][time][state]. Thread-safe. They are written at once and
+ *  synced every few seconds.
+ *  @return IMK_ERROR_WRITE (such as a full disk; earlier runs stay usable) */
 IMK_API imk_status imk_campaign_add(imk_campaign_writer *writer, uint64_t first, uint64_t runs,
                                     const double *values, imk_error *error);
-/** Write the results file, complete or not at all, remove PATH.part, and free the writer. On error
- *  PATH.part stays, so that nothing is lost.
+/** Write the results file, complete or not at all, remove PATH.part, and free the writer. After an
+ *  error PATH.part remains, so nothing is lost.
  *  @return IMK_ERROR_CONFLICT (runs are missing), IMK_ERROR_WRITE */
 IMK_API imk_status imk_campaign_commit(imk_campaign_writer *writer, imk_error *error);
-/** Stop for now: PATH.part stays. Frees the writer; NULL is allowed. */
+/** Stop without a results file; PATH.part remains, to be continued later. Frees the writer; NULL is
+ *  allowed. */
 IMK_API void imk_campaign_stop(imk_campaign_writer *writer);
 
 /* ---- reading and merging ------------------------------------------------------------------------
@@ -83,9 +88,10 @@ IMK_API void imk_campaign_stop(imk_campaign_writer *writer);
 /** Results in memory. */
 typedef struct imk_campaign_results {
     imk_campaign campaign; /**< texts and arrays are owned by these results */
-    uint64_t runs;         /**< that are there */
-    const uint64_t *run;   /**< their numbers, increasing; consecutive but in a partial merge */
-    const double *values;  /**< [run][time][state] */
+    uint64_t runs;         /**< number of runs present */
+    /** Numbers of these runs, increasing; consecutive except after a partial merge */
+    const uint64_t *run;
+    const double *values; /**< [run][time][state] */
 } imk_campaign_results;
 
 /** Read a results file (.h5): whole, a shard, or a partial merge. Its checksum is verified.
@@ -96,33 +102,34 @@ IMK_API imk_status imk_campaign_load(const char *path, imk_campaign_results **re
 /** Free results; NULL is allowed. */
 IMK_API void imk_campaign_free(imk_campaign_results *results);
 
-/** What was wrong with one file of a merge. */
+/** A fault of one file of a merge. */
 typedef struct imk_campaign_complaint {
-    const char *path; /**< the caller's */
+    const char *path; /**< name of the file, which belongs to the caller */
     imk_error error;
 } imk_campaign_complaint;
 
-/** What became of a merge. */
+/** Outcome of a merge. */
 typedef struct imk_campaign_merge_report {
-    imk_campaign_complaint *complaint; /**< room for as many as there are paths; the caller's */
+    imk_campaign_complaint *complaint; /**< room for one per path; belongs to the caller */
     size_t complaint_count;
-    uint64_t run_count, present; /**< of the campaign; of these there */
+    uint64_t run_count, present; /**< runs of the campaign, and how many of them are present */
     uint64_t shard_count;        /**< N when every good file is a shard i/N of the same N; or 0 */
-    char missing[1000];          /**< runs that are not there, from 0: "17-32,65"; "" when whole */
-    char shards[1000];           /**< shards i of N that hold them, from 1: "3,17-19" */
+    char missing[1000];          /**< missing runs, counted from 0: "17-32,65"; "" when complete */
+    /** Shards i of N that contain the missing runs, counted from 1: "3,17-19" */
+    char shards[1000];
 } imk_campaign_merge_report;
 
-/** Merge shards, given in any order, into one results file: the same, byte for byte, as that of the
+/** Merge shards, given in any order, into one results file. It has the same bytes as that of the
  *  campaign computed in one piece.
  *
- *  Damaged files, files of another campaign, seed or version than most of the good ones (the first
- *  of equals), and files that give the same run other numbers than another one does (both: which is
- *  right cannot be known) are complained about, each by name; the rest is used. When runs are
- *  missing, nothing is written unless `partial`. Long lists end in "...".
+ *  Each unusable file is reported in `complaint`; the others are used. Unusable are damaged files;
+ *  files of another campaign, seed or version than most of the good ones (of equal numbers the
+ *  first counts); and files that contradict each other about a run (both, as it is not known which
+ *  is right). When runs are missing, nothing is written unless `partial`. Long lists end in "...".
  *  @param output  ending in .h5 or .csv (.csv.gz, .csv.zst)
- *  @return IMK_OK; IMK_ERROR_CONFLICT (runs are missing, and not `partial`), IMK_ERROR_EMPTY (no
- *          usable file), IMK_ERROR_FORMAT (ending of the output), IMK_ERROR_OPEN, IMK_ERROR_WRITE,
- *          IMK_ERROR_MEMORY */
+ *  @return IMK_OK; IMK_ERROR_CONFLICT (runs are missing, and `partial` is false), IMK_ERROR_EMPTY
+ *          (no usable file), IMK_ERROR_FORMAT (ending of the output), IMK_ERROR_OPEN,
+ *          IMK_ERROR_WRITE, IMK_ERROR_MEMORY */
 IMK_API imk_status imk_campaign_merge(size_t count, const char *const *paths, const char *output,
                                       bool partial, imk_campaign_merge_report *report,
                                       imk_error *error);

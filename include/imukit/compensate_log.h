@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file compensate_log.h
- *  The job of `imukit compensate`: a record and a model into the record without the errors that the
- *  model describes. Rows are corrected as they are read; the memory does not depend on their
- *  number. */
+ *  The job of `imukit compensate`: it takes the errors that a model describes out of a record. Rows
+ *  are corrected as they are read, so the memory does not depend on their number. */
 #ifndef IMUKIT_COMPENSATE_LOG_H
 #define IMUKIT_COMPENSATE_LOG_H
 
@@ -12,55 +11,58 @@
 
 IMK_BEGIN_C
 
-/** A list of terms, as their keys in the model file ("gyro.bias.fixed"). */
+/** A list of model terms, each as its key in the model file ("gyro.bias.fixed"). */
 enum { IMK_TERM_KEYS_MAX = 64 };
 typedef struct imk_term_keys {
     int count;
     char key[IMK_TERM_KEYS_MAX][40];
 } imk_term_keys;
 
-/** What is asked. Start from imk_compensate_log_default(). */
+/** Settings of the job. Start from imk_compensate_log_default(). */
 typedef struct imk_compensate_log_settings {
     uint32_t cookie;
-    const imk_model *terms;         /**< the model with the terms alone that are to be taken out
-                                         (imk_model_select()); NULL: all */
-    double temperature;             /**< of the unit [K]; NaN: that of the record */
-    double temperature_time;        /**< imk_compensator.temperature_time [s]; 30 */
-    double powered_for;             /**< how long the unit was on before the first row [s]; 0 */
-    double rate_limit, force_limit; /**< as of imk_correction_settings; 0 */
-    imk_unit gyro_unit, accel_unit; /**< of what is written; scale 0: as read, SI for counts */
-    bool flags;                     /**< a column of flags is added; false */
+    const imk_model *terms;  /**< the model with only those terms that are to be taken out
+                                (imk_model_select()); NULL: all terms */
+    double temperature;      /**< temperature of the unit [K]; NaN: from the record */
+    double temperature_time; /**< see imk_compensator.temperature_time [s]; default 30 */
+    double powered_for;      /**< how long the unit was on before the first row [s]; default 0 */
+    double rate_limit, force_limit; /**< see imk_correction_settings; default 0 */
+    /** units written; scale 0: the unit that was read, SI for counts */
+    imk_unit gyro_unit, accel_unit;
+    bool flags; /**< add a column of flags (IMK_FLAG_…); default false */
 } imk_compensate_log_settings;
 
-/** Whole compensation, a temperature smoothed over 30 s, units as read. */
+/** All terms, the rate of temperature smoothed over 30 s, units as read. */
 IMK_API imk_compensate_log_settings imk_compensate_log_default(void);
 
-/** What was met on the way; rows count from 1. */
+/** Counts of a run. Row numbers (first_…) count from 1; 0: none. */
 typedef struct imk_compensate_counts {
     uint64_t rows, any_flag, stretches, first_gap, temperatures_held;
-    uint64_t times_missing, first_time_missing; /**< whose time is no number */
+    uint64_t times_missing, first_time_missing; /**< rows whose time is not a number */
     uint64_t flagged[IMK_FLAG_COUNT], first_flagged[IMK_FLAG_COUNT];
 } imk_compensate_counts;
 
-/** What was done. */
+/** Result of the job. */
 typedef struct imk_compensate_log {
     imk_compensate_log_settings settings;
-    imk_model model; /**< what is taken out, of the sensors that the record has */
+    imk_model model; /**< terms taken out, of the sensors that the record has */
     imk_compensator compensator;
     imk_compensate_counts counts;
     imk_term_keys taken_out, left_in;
     imk_findings findings;
-    imk_allocator allocator; /**< of this */
+    imk_allocator allocator; /**< allocator of this structure */
 } imk_compensate_log;
 
-/** Correct a source into a sink: gyros and accelerometers become angular rate and specific force of
- *  the body, other columns are copied. A gap in time begins anew.
- *  @param job     NULL: as if all zeros
- *  @param result  imk_compensate_log_free() it, also on failure, where it holds the findings; NULL
- *                 when even its memory failed
- *  @return what the source returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (the interval); and with a
- *          finding, IMK_ERROR_COLUMN, _UNIT_MISSING, _DIMENSION, _KEY_MISSING, _EMPTY, and what
- *          imk_compensator_start() ("model_refused") and the sink ("not_written") return */
+/** Correct the rows of a source and write them to a sink. Readings of gyros and accelerometers
+ *  become angular rate and specific force of the body; other columns are copied. After a gap in
+ *  time the compensation starts anew.
+ *  @param job     NULL: one thread, no progress, the memory of the C library
+ *  @param result  free it with imk_compensate_log_free(), also after a failure, because it then
+ *                 holds the findings; NULL if there was no memory for it
+ *  @return what the source returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (the sample interval);
+ *          with a finding that says why: IMK_ERROR_COLUMN, _UNIT_MISSING, _DIMENSION, _KEY_MISSING,
+ *          _EMPTY, and what imk_compensator_start() ("model_refused") and the sink ("not_written")
+ *          return */
 IMK_API imk_status imk_compensate_log_run(const imk_record_source *source, const imk_model *model,
                                           const imk_compensate_log_settings *settings,
                                           const imk_record_sink *sink, const imk_job *job,
@@ -68,8 +70,8 @@ IMK_API imk_status imk_compensate_log_run(const imk_record_source *source, const
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_compensate_log_free(imk_compensate_log *result);
 
-/** The terms to be taken out of a unit: those selected, with the output stage (range, resolution,
- *  quantization) of the whole model, which tells what readings are saturated. */
+/** Complete a model of selected terms for compensation: copies range, resolution and quantization
+ *  from the whole model, because they tell which readings are saturated. */
 IMK_API void imk_compensation_model(const imk_model *whole, imk_model *selected);
 
 IMK_END_C

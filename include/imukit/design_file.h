@@ -18,12 +18,12 @@ IMK_BEGIN_C
 
 enum { IMK_DESIGN_NAME_SIZE = 96 };
 
-/** A design as it was read. */
+/** A design that was read. */
 typedef struct imk_design_file {
     const imk_instrument *instrument;
     void *design; /**< instrument->design_size bytes from malloc(); imk_design_file_free() */
-    char name[IMK_DESIGN_NAME_SIZE]; /**< as the file says; "" without */
-    char description[256];           /**< likewise */
+    char name[IMK_DESIGN_NAME_SIZE]; /**< name stated in the file; "" without */
+    char description[256];           /**< description stated in the file; "" without */
 } imk_design_file;
 
 /** Read a design file ("-": standard input) and validate the design.
@@ -34,30 +34,30 @@ typedef struct imk_design_file {
  *          _UNSUPPORTED, with line and column; _MEMORY */
 IMK_API imk_status imk_design_read(const char *path, imk_design_file *file, imk_error *error);
 
-/** The same from memory. */
+/** As imk_design_read(), from a text in memory. */
 IMK_API imk_status imk_design_parse(const char *text, size_t size, imk_design_file *file,
                                     imk_error *error);
 
-/** The same for a kind of instrument that the caller knows, which need not be in the list of
- *  instrument.h: a file that says another is refused with IMK_ERROR_CONFLICT. */
+/** As imk_design_parse(), for a known instrument, which need not be in the list of instrument.h. A
+ *  file for another instrument is refused with IMK_ERROR_CONFLICT. */
 IMK_API imk_status imk_design_parse_as(const imk_instrument *instrument, const char *text,
                                        size_t size, imk_design_file *file, imk_error *error);
 
-/** The design of a file, or the default design of the instrument of this name, whichever `name` is
- *  (a file first). */
+/** Get the design of the file `name` or, if there is no such file, the default design of the
+ *  instrument with this name. @return errors of imk_design_read() */
 IMK_API imk_status imk_design_open(const char *name, imk_design_file *file, imk_error *error);
 
 /** Free the design; a file of zeros is allowed. */
 IMK_API void imk_design_file_free(imk_design_file *file);
 
-/** Write a design file: every parameter with its unit and what it is, as imk_design_print().
+/** Write a design file: every parameter with its unit and description, as imk_design_print().
  *  @param path  see imk_output_file_open()
  *  @return errors of imk_design_print(); IMK_ERROR_OPEN, _WRITE */
 IMK_API imk_status imk_design_write(const char *path, const imk_design_file *file,
                                     imk_error *error);
 
-/** The same into memory obtained from malloc(), which the caller frees. What is read from the text
- *  has the same bits in every field.
+/** Write a design file into memory obtained from malloc(), which the caller frees. Reading the text
+ *  gives the same bits in every field.
  *  @return errors of the instrument's validate; IMK_ERROR_MEMORY */
 IMK_API imk_status imk_design_print(const imk_design_file *file, char **text, size_t *size,
                                     imk_error *error);

@@ -9,30 +9,30 @@
 
 IMK_BEGIN_C
 
-/** Standard normal distribution function and its inverse; relative error < 1e-14, also in tails. */
+/** Probability that a standard normal is below x; relative error < 1e-14, also in the tails. */
 IMK_API double imk_normal_probability(double x);
-/** x below which a standard normal lies with this probability. */
+/** Inverse of imk_normal_probability(), with the same accuracy. */
 IMK_API double imk_normal_quantile(double probability);
 
 /** log Gamma(x) for x > 0, relative error < 1e-14 (absolute near 1 and 2). */
 IMK_API double imk_log_gamma(double x);
 
-/** Regularised incomplete gamma functions P(a, x) and Q = 1 - P, a > 0, x >= 0; relative error of
- *  the smaller one < 1e-12 for a <= 1e8. */
+/** Regularised incomplete gamma function P(a, x), a > 0, x >= 0. The smaller one of P and Q = 1 - P
+ *  has a relative error < 1e-12 for a <= 1e8. */
 IMK_API double imk_gamma_lower(double a, double x);
-/** Q(a, x), the upper one. */
+/** Regularised incomplete gamma function Q(a, x) = 1 - P(a, x). */
 IMK_API double imk_gamma_upper(double a, double x);
 
-/** Chi-square distribution with any real degrees of freedom > 0: probability of a value <= x, and
- *  the value below which it lies with a probability, relative error < 1e-12 (1e-12/degrees below 1
- *  degree) for probabilities 1e-12 … 1 - 1e-12; about 1 us. */
+/** Probability that chi-square with any real degrees of freedom > 0 is <= x. This function and its
+ *  inverse have a relative error < 1e-12 (1e-12/degrees below 1 degree) for probabilities 1e-12 … 1
+ *  - 1e-12, and take about 1 us. */
 IMK_API double imk_chi_square_probability(double x, double degrees);
-/** x below which chi-square lies with this probability. */
+/** Inverse of imk_chi_square_probability(). */
 IMK_API double imk_chi_square_quantile(double probability, double degrees);
 
-/** Regularised incomplete beta function I_x(a, b), a, b > 0, with y = 1 - x given besides, so that
- *  neither end is lost to rounding; relative error of the smaller one of I and 1 - I < 1e-12 for
- *  a, b <= 1e6. About 1 us, more with the square root of a and b. */
+/** Regularised incomplete beta function I_x(a, b), a, b > 0, with y = 1 - x given as well, so that
+ *  both ends are accurate; relative error of the smaller one of I and 1 - I < 1e-12 for a, b <=
+ *  1e6. About 1 us, more with the square root of a and b. */
 IMK_API double imk_beta_lower(double a, double b, double x, double y);
 
 /** Probability that a ratio of mean squares with these degrees of freedom (F distribution) exceeds

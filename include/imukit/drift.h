@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file drift.h
- *  What a sensor is worth: how the errors of a model grow in a navigator that has nothing else, by
- *  covariance (linear, with the share of every term) and by Monte Carlo (the whole mechanisation,
- *  run by run).
+ *  Growth of the errors of a model in free inertial navigation, by covariance (linear, with the
+ *  share of every term) and by Monte Carlo (full mechanisation, run by run).
  *
- *  Both see the same thing: a unit at rest or on a trajectory, a strapdown navigator started with
- *  given or self-found attitude, its vertical slaved to a true height (a barometer) or free, and
- *  the error estimate minus truth at times of interest as nine numbers,
+ *  Both describe the same case: a unit at rest or on a trajectory, and a strapdown navigator. Its
+ *  initial attitude is given or found by self-alignment. Its vertical channel is slaved to the true
+ *  height (as by a barometer) or free. The error, estimate minus truth, at each time of interest is
+ *  nine numbers,
  *
  *      0-2  position, north, east, down [m]
  *      3-5  velocity, north, east, down [m/s]
@@ -15,12 +15,12 @@
  *
  *  in the north-east-down axes of the true place. Equations: docs/theory/error-growth.md.
  *
- *  Terms whose value is known (bias.fixed, misalignment, R, …) shift every run alike: they make the
- *  mean. Terms of which a size is known only (repeatability, N, B, K, Gauss-Markov, 1 sigma of what
- *  was calibrated) make the covariance. With `compensated`, known values are taken out, and their
- *  sigma stays: of biases, warm-up, scale factors, nonlinearity, misalignment, cross-axis response,
- *  sensitivities to force, lever arms, ramps, rate error and skew of the clock. The delay that a
- *  bandwidth makes stays.
+ *  Terms with a known value (bias.fixed, misalignment, R, …) shift every run alike: they give the
+ *  mean. Terms of which only the size is known (repeatability, N, B, K, Gauss-Markov, 1 sigma of
+ *  calibrated values) give the covariance. With `compensated`, known values are taken out and their
+ *  sigmas remain: those of biases, warm-up, scale factors, nonlinearity, misalignment, cross-axis
+ *  response, sensitivities to force, lever arms, ramps, rate error and skew of the clock. The delay
+ *  caused by a bandwidth remains.
  *
  *  Power-on, from which random walks, ramps and warm-up count, is the start of the self-alignment,
  *  or of the navigation with a given attitude. */
@@ -35,37 +35,37 @@ IMK_BEGIN_C
 
 enum { IMK_DRIFT_STATES = 9, IMK_DRIFT_LANES = 8 };
 
-/** A tenth of the Earth's radius [m]: a horizontal error beyond it is no position any more, and the
- *  linear theory says nothing about it. */
+/** A tenth of the Earth's radius [m]: with a larger horizontal error the position is lost, and the
+ *  linear theory does not hold. */
 #define IMK_DRIFT_DISTANCE_MAX 637100.0
 
 typedef enum imk_vertical {
     IMK_VERTICAL_SLAVED = 0, /**< height and climb follow the truth */
-    IMK_VERTICAL_FREE        /**< grows without bound: doubles every 6.6 min */
+    IMK_VERTICAL_FREE        /**< the height error grows without bound: it doubles every 6.6 min */
 } imk_vertical;
 
 typedef enum imk_alignment_source {
-    IMK_ALIGNED_GIVEN = 0, /**< initial attitude is the truth but for initial_sigma */
-    IMK_ALIGNED_SELF /**< found by the unit at rest before the start, from the means of its own
-                          readings over alignment_time (imk_alignment, method means) */
+    IMK_ALIGNED_GIVEN = 0, /**< the initial attitude is true except for errors of initial_sigma */
+    IMK_ALIGNED_SELF /**< the unit finds it at rest before the start, from the means of its readings
+                        over alignment_time (imk_alignment, method means) */
 } imk_alignment_source;
 
-/** What is navigated, and when to look. Start from imk_drift_default(). */
+/** Motion, navigator and times of the analysis. Start from imk_drift_default(). */
 typedef struct imk_drift_settings {
     uint32_t cookie;
     const imk_trajectory *motion; /**< NULL: at rest as follows, on the Earth */
     double latitude, height;      /**< [rad], [m]; default 45 deg, 0 */
     double roll, pitch, yaw;      /**< [rad] */
-    double rate;                  /**< of the samples [Hz]; 0.001 … 1e6, default 100 */
+    double rate;                  /**< sampling rate [Hz]; 0.001 … 1e6, default 100 */
     imk_vertical vertical;
     imk_alignment_source alignment;
     double alignment_time;                  /**< [s]; 1 … 1e7, default 300 */
-    double initial_sigma[IMK_DRIFT_STATES]; /**< 1 sigma of the errors at the start, independent;
-                                                 those of attitude for IMK_ALIGNED_GIVEN only */
+    double initial_sigma[IMK_DRIFT_STATES]; /**< 1 sigma of independent errors at the start; those
+                                               of attitude are used for IMK_ALIGNED_GIVEN only */
     bool compensated;
     size_t time_count;
-    const double *time; /**< when to look, from the start of navigation: increasing, > 0, up to
-                             1e8 [s] */
+    const double *time; /**< times at which errors are computed, from the start of navigation:
+                           increasing, > 0, up to 1e8 [s] */
 } imk_drift_settings;
 
 /** At rest at 45 deg north, level, heading north, 100 Hz, slaved vertical, perfect start. */
@@ -84,8 +84,7 @@ IMK_API imk_status imk_drift_validate(const imk_model *model, const imk_drift_se
 /** Mean and covariance of the nine errors. */
 typedef struct imk_drift_moments {
     double mean[IMK_DRIFT_STATES];
-    double covariance[IMK_DRIFT_STATES][IMK_DRIFT_STATES]; /**< symmetric to the bit; about the
-                                                                mean */
+    double covariance[IMK_DRIFT_STATES][IMK_DRIFT_STATES]; /**< about the mean; exactly symmetric */
 } imk_drift_moments;
 
 enum { IMK_DRIFT_SOURCES_MAX = 128 };
@@ -94,21 +93,22 @@ enum { IMK_DRIFT_SOURCES_MAX = 128 };
 typedef struct imk_drift_source {
     char name[64]; /**< "gyro.bias.repeatability", "accel.noise.gauss_markov[1]", "initial.attitude"
                     */
-    const char *text; /**< for people: "gyro bias repeatability" */
+    const char *text; /**< in words: "gyro bias repeatability" */
 } imk_drift_source;
 
 /** Result of imk_drift_covariance(), in the memory given to it. The moments of the sources add up
- *  to the total: to the bit when added in their order. */
+ *  to the total, exactly if added in their order. */
 typedef struct imk_drift_analysis {
     size_t source_count, time_count;
     const imk_drift_source *source;
     const imk_drift_moments *contribution; /**< [source * time_count + time] */
     const imk_drift_moments *total;        /**< [time] */
     const double *time;                    /**< [s] */
-    /** What the linear theory leaves out, for a warning: dead bands, ranges that the motion comes
-     *  near to, resolution that noise does not carry across ("gyro.resolution"), lost samples, and
-     *  what vibration makes of terms that are not linear ("motion.vibration"), which act in Monte
-     *  Carlo; and terms in temperature, which without a profile of it act nowhere. */
+    /** Effects that the linear theory leaves out, for a warning. Those in Monte Carlo only: dead
+     *  bands, ranges that the motion comes near, a resolution coarser than the noise
+     *  ("gyro.resolution"), lost samples, and vibration acting on terms that are not linear
+     *  ("motion.vibration"). Left out of both: terms in temperature, as there is no temperature
+     *  profile. */
     size_t omitted_count;
     const char *omitted[24];
 } imk_drift_analysis;
@@ -116,9 +116,9 @@ typedef struct imk_drift_analysis {
 /** Bytes for an analysis of this model and settings (both valid). */
 IMK_API size_t imk_drift_covariance_size(const imk_model *model,
                                          const imk_drift_settings *settings);
-/** Covariance analysis along the motion. A day at rest takes some 40 ms at 2.7 GHz, 10 minutes of a
- *  car's drive 60 ms, most of it for the flicker noise's 32 stages.
- *  @param memory    imk_drift_covariance_size() bytes, in which the analysis is
+/** Covariance analysis along the motion. At 2.7 GHz, a day at rest takes some 40 ms and 10 minutes
+ *  of a car's drive 60 ms, mostly for the 32 stages of the flicker noise.
+ *  @param memory    imk_drift_covariance_size() bytes; holds the analysis
  *  @param executor  sources are its work items; NULL: serial. The bits do not depend on it
  *  @return the errors of imk_drift_validate(), IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_drift_covariance(const imk_model *model, const imk_drift_settings *settings,
@@ -132,21 +132,22 @@ IMK_API imk_status imk_drift_covariance(const imk_model *model, const imk_drift_
 IMK_API size_t imk_drift_runs_workspace_size(const imk_model *model,
                                              const imk_drift_settings *settings);
 /** Runs first … first + count - 1: each simulated as imk_simulator does (the samples are those of
- *  `imukit simulate --run`), aligned, and navigated. A run's bits depend on model, settings, seed
- *  and its number alone. With `compensated`, each run draws what calibration left of every known
- *  value (normal, term IMK_TERM_RESIDUAL); initial errors are drawn by IMK_TERM_INITIAL, those of
- *  height and climb for a free vertical only. docs/theory/monte-carlo.md has the numbers.
+ *  `imukit simulate --run`), aligned, and navigated. The bits of a run depend only on model,
+ *  settings, seed and its number. With `compensated`, each run draws the error that calibration
+ *  left in every known value (normal, term IMK_TERM_RESIDUAL). Initial errors are drawn by
+ *  IMK_TERM_INITIAL, those of height and climb for a free vertical only. docs/theory/monte-carlo.md
+ *  has the numbers.
  *
- *  Self-alignment takes the first alignment_time * rate rows, rounded; a motion has a standstill
- *  of that length before it. The error at a time is that at the end of the last sample that ended
- *  by then, against the truth at the instant when it truly ended, with all errors of the clock.
- *  Counts are divided by the sensitivity; the navigator takes a lost row to be like the one before.
- *  Per run and row on a core with AVX-512 some 70 ns at rest, 90 ns on a motion; eight runs at once
- *  are best.
+ *  Self-alignment takes the first alignment_time * rate rows, rounded; a motion has a standstill of
+ *  that length before it. The error at a time is that at the end of the last sample that has ended
+ *  by then, against the truth at the instant when this sample truly ended (including clock errors).
+ *  Counts are divided by the sensitivity; the navigator replaces a lost row by the one before. A
+ *  run takes some 70 ns a row at rest and 90 ns on a motion, on a core with AVX-512; eight runs at
+ *  once are fastest.
  *  @param count   1 … IMK_DRIFT_LANES
- *  @param errors  [run][time][state], estimate minus truth; NaN from where a run left the Earth's
+ *  @param errors  [run][time][state], estimate minus truth; NaN after a run has left the Earth's
  *                 surroundings (below 6000 km or above 10000 km from the centre), and for a run
- *                 that found no north
+ *                 whose alignment found no north
  *  @return the errors of imk_drift_validate() and of the simulator, IMK_ERROR_RANGE (count, or run
  *          numbers beyond 2^32 - 1), IMK_ERROR_WORKSPACE, IMK_ERROR_ARGUMENT (no workspace) */
 IMK_API imk_status imk_drift_runs(const imk_model *model, const imk_drift_settings *settings,
@@ -156,10 +157,10 @@ IMK_API imk_status imk_drift_runs(const imk_model *model, const imk_drift_settin
 /* ---- figures ----------------------------------------------------------------------------------
  */
 
-/** What errors at one time amount to. */
+/** Figures that summarise the errors at one time. */
 typedef struct imk_drift_figures {
-    double cep;  /**< radius of the circle that holds half of the horizontal errors [m] */
-    double r95;  /**< and 95 % of them [m] */
+    double cep;  /**< radius of the circle that contains half of the horizontal errors [m] */
+    double r95;  /**< radius of the circle that contains 95 % of them [m] */
     double drms; /**< root mean square horizontal error [m] */
     double north, east, height; /**< root mean squares [m] */
     double velocity;            /**< horizontal, rms [m/s] */
@@ -168,29 +169,30 @@ typedef struct imk_drift_figures {
     double heading;             /**< rms [rad] */
 } imk_drift_figures;
 
-/** Of a normal distribution; the radii exact to 1e-9 relative, mean included. */
+/** Figures of a normal distribution, mean included; the radii have a relative error of 1e-9. */
 IMK_API imk_drift_figures imk_drift_figures_of(const imk_drift_moments *moments);
 
-/** Of `count` runs: errors[run * stride + state]. `low` and `high` (or NULL) are 95 % intervals:
- *  of the radii by order statistics (infinite above where the runs are too few to say), of root
- *  mean squares by the fourth moments. Runs with a NaN are left out; `used` (or NULL) counts the
- *  others.
- *  @param scratch  count doubles */
+/** Figures of `count` runs. Runs with a NaN are left out.
+ *  @param errors    errors[run * stride + state]
+ *  @param scratch   count doubles
+ *  @param low,high  95 % intervals, or NULL: radii by order statistics (high is infinite if there
+ *                   are too few runs), root mean squares by the fourth moments
+ *  @param used      number of runs not left out, or NULL */
 IMK_API imk_drift_figures imk_drift_figures_of_runs(size_t count, size_t stride,
                                                     const double *errors, double *scratch,
                                                     imk_drift_figures *low, imk_drift_figures *high,
                                                     size_t *used);
 
-/** What the answer of a linear theory is worth at one time. */
+/** Validity of the linear theory at one time. */
 typedef enum imk_drift_validity {
     IMK_DRIFT_LINEAR = 0,
     IMK_DRIFT_ROUGH, /**< tilt or heading beyond a tenth of a radian */
-    IMK_DRIFT_LOST   /**< drms beyond IMK_DRIFT_DISTANCE_MAX: no position any more */
+    IMK_DRIFT_LOST   /**< drms beyond IMK_DRIFT_DISTANCE_MAX: the position is lost */
 } imk_drift_validity;
-/** By tilt, heading and drms. */
+/** Validity by tilt, heading and drms. */
 IMK_API imk_drift_validity imk_drift_validity_of(const imk_drift_figures *figures);
 
-/** A requirement: a figure at a time of the analysis. */
+/** The figure to which a requirement applies. */
 typedef enum imk_drift_requirement {
     IMK_REQUIRED_CEP = 0,
     IMK_REQUIRED_R95,
@@ -205,23 +207,24 @@ typedef enum imk_drift_requirement {
 IMK_API const char *imk_drift_requirement_name(imk_drift_requirement requirement);
 /** The SI unit of its figure: "m", "m/s", "rad". */
 IMK_API const char *imk_drift_requirement_unit(imk_drift_requirement requirement);
-/** Value of the figure a requirement is about. */
+/** Value of the figure to which a requirement applies [SI]. */
 IMK_API double imk_drift_required(const imk_drift_figures *figures,
                                   imk_drift_requirement requirement);
 
-/** How good each source must become to meet a requirement. */
+/** Factors by which error sources must be reduced to meet a requirement. */
 typedef struct imk_drift_allocation {
-    double present;                       /**< the figure as it is */
-    double all;                           /**< every source times this meets it (> 1: margin) */
-    double source[IMK_DRIFT_SOURCES_MAX]; /**< the least work: only sources above a common ceiling
-                                               are made better, by this factor (1: good enough) */
-    double alone[IMK_DRIFT_SOURCES_MAX]; /**< this source alone made better by this factor would do;
-                                              0: not even without it; 1 or more: it may be that
-                                              much larger; infinite: it does not matter */
+    double present; /**< the present value of the figure */
+    double all; /**< the requirement is met if every source is multiplied by this (> 1: margin) */
+    double source[IMK_DRIFT_SOURCES_MAX]; /**< least effort: only sources above a common limit are
+                                             reduced, by this factor (1: good enough) */
+    /** The requirement is met if this source alone is multiplied by this; 0: not even without
+     *  the source; 1 or more: it may be so much larger; infinite: it has no effect */
+    double alone[IMK_DRIFT_SOURCES_MAX];
 } imk_drift_allocation;
 
-/** @param time  index of the time
- *  @param goal  of the figure, SI, > 0
+/** Compute the factors by which sources must be reduced to meet a requirement.
+ *  @param time  index of the time
+ *  @param goal  largest value of the figure, SI, > 0
  *  @return IMK_ERROR_RANGE */
 IMK_API imk_status imk_drift_require(const imk_drift_analysis *analysis, size_t time,
                                      imk_drift_requirement requirement, double goal,

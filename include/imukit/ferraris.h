@@ -11,10 +11,11 @@
  *
  *      accel reading = K R f + b,    gyro reading = K_g R_g w + G f + b_g
  *
- *  K is diagonal and holds the lengths of the rows, R the directions of the axes. Holds of
+ *  K is diagonal and contains the lengths of the rows, R the directions of the axes. Holds of
  *  unequal length up and down leave a part of G in b_g. The Earth's rate, placement errors and
- *  redundant holds are left to imk_procedure_observe(), which solves the same
- *  log by maximum likelihood; this form is for comparison, and for where it is what was agreed. */
+ *  redundant holds are not taken into account; imk_procedure_observe() does that and solves the
+ *  same log by maximum likelihood. Use the closed form for comparison, or where it was agreed on.
+ */
 #ifndef IMUKIT_FERRARIS_H
 #define IMUKIT_FERRARIS_H
 
@@ -22,13 +23,13 @@
 
 IMK_BEGIN_C
 
-/** A part of a log that matters. */
+/** A hold or a turn in a log. */
 typedef struct imk_ferraris_stretch {
-    bool turn;         /**< else a hold */
+    bool turn;         /**< true: a turn; false: a hold */
     size_t begin, end; /**< samples begin … end - 1 */
-    int axis;          /**< that points up or down, or that was turned about; 0 … 2 */
-    int sense;         /**< of a hold: 1 up (reads +g), -1 down; of a turn: 1 by turn_angle, -1
-                            against it */
+    int axis;          /**< axis that points up or down, or axis of the turn; 0 … 2 */
+    int sense; /**< hold: 1 up (reads +g), -1 down; turn: 1 in the sense of turn_angle, -1 opposite
+                */
 } imk_ferraris_stretch;
 
 /** One triad, in units of the reading. */
@@ -46,15 +47,16 @@ typedef struct imk_ferraris {
     double g_sensitivity_sigma[3][3];
 } imk_ferraris;
 
-/** Find holds and turns, by the labels of sections or by where the unit stands still. Labels are
- *  words in any case, separated by anything that is neither letter nor digit: an axis (x, y, z);
- *  up, p, pos, plus, positive or down, a, n, neg, minus, negative; rot, rotation, turn, spin for a
- *  turn; "+x", "x-" are up and down too. A label with two axes, or with to, move, moving,
- *  transition, is passed over. What a label does not say is found from the readings.
- *  @param settings   of IMK_PROCEDURE_FERRARIS: stationary, trim, settle, minimum, turn_angle
- *  @param model      nominal sensitivities; zero where they are not known
+/** Find holds and turns, by the labels of sections or by the times at rest. Labels are words in any
+ *  case, separated by anything that is neither letter nor digit: an axis (x, y, z); up, p, pos,
+ *  plus, positive or down, a, n, neg, minus, negative; rot, rotation, turn, spin for a turn; "+x",
+ *  "x-" are up and down too. A label with two axes, or with to, move, moving, transition, is
+ *  skipped. Anything that a label does not state is found from the readings.
+ *  @param settings   those of IMK_PROCEDURE_FERRARIS; stationary, trim, settle, minimum and
+ *                    turn_angle are used
+ *  @param model      nominal sensitivities; zero if not known
  *  @param workspace  imk_procedure_workspace_size(IMK_PROCEDURE_FERRARIS, …)
- *  @param count      how many there are, also beyond the capacity
+ *  @param count      number found, also beyond the capacity
  *  @return the errors of imk_procedure_observe() */
 IMK_API imk_status imk_ferraris_stretches(const imk_test_record *record,
                                           const imk_procedure_settings *settings,
@@ -62,15 +64,15 @@ IMK_API imk_status imk_ferraris_stretches(const imk_test_record *record,
                                           imk_ferraris_stretch *stretch, size_t *count,
                                           void *workspace, size_t workspace_size, imk_error *error);
 
-/** The closed form. Holds of one face are pooled by samples, turns about one axis by angle. Sigmas
- *  follow from the scatter within the holds and `angle_sigma`, to first order.
+/** Solve the closed form. Holds of one face are pooled by samples, turns about one axis by angle.
+ *  Sigmas follow from the scatter within the holds and `angle_sigma`, to first order.
  *  @param gravity      [m/s^2], > 0
- *  @param turn_angle   of each turn, with sign [rad]
- *  @param angle_sigma  1 sigma of it [rad], >= 0
+ *  @param turn_angle   angle of each turn, with sign [rad]
+ *  @param angle_sigma  1 sigma of this angle [rad], >= 0
  *  @return IMK_ERROR_TOO_SHORT (field "hold" or "turn"; expected: which are missing),
- *          IMK_ERROR_KEY_MISSING ("gyro", "accel"), IMK_ERROR_RANGE, IMK_ERROR_ARGUMENT (a stretch
- *          that is none), IMK_ERROR_NOT_FINITE, IMK_ERROR_GAP (index: of the turn),
- *          IMK_ERROR_SINGULAR */
+ *          IMK_ERROR_KEY_MISSING ("gyro", "accel"), IMK_ERROR_RANGE, IMK_ERROR_ARGUMENT (an invalid
+ *          stretch), IMK_ERROR_NOT_FINITE, IMK_ERROR_GAP (index: of the turn), IMK_ERROR_SINGULAR
+ */
 IMK_API imk_status imk_ferraris_closed_form(const imk_test_record *record, size_t count,
                                             const imk_ferraris_stretch *stretch, double gravity,
                                             double turn_angle, double angle_sigma,
@@ -82,7 +84,8 @@ IMK_API imk_status imk_ferraris_closed_form(const imk_test_record *record, size_
  *      (K R)_ij = sensitivity_i [(1 + scale_i) delta_ij + misalignment_ij],
  *      b_i = sensitivity_i bias_i + zero_offset_i */
 IMK_API void imk_ferraris_to_model(const imk_ferraris *ferraris, imk_model *model);
-/** The inverse; cross-axis response is taken with the misalignment; sigmas are 0. */
+/** The inverse of imk_ferraris_to_model(). Cross-axis response is added to the misalignment; sigmas
+ *  are 0. */
 IMK_API void imk_ferraris_from_model(const imk_model *model, imk_ferraris *ferraris);
 
 IMK_END_C

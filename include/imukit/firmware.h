@@ -1,25 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file firmware.h
- *  What a small processor has to compute to take a model's errors out of one sample: a list of
- *  operations with their constants, the bound of what it does wrong, and what it costs.
+ *  Compensation on a small processor: the list of operations, with constants, that takes a model's
+ *  errors out of one sample, with a bound of its error and its cost.
  *
- *  The list has no loop and no branch. With readings r in counts or physical units, the temperature
- *  clipped to the valid range of each polynomial and scaled to t in -1 … 1,
+ *  The list has no loop and no branch. Readings r are in counts or physical units; the temperature
+ *  is clipped to the valid range of each polynomial and scaled to t in -1 … 1. For a linear model
+ *  the list is
  *
  *      d_i = r_i - zero_i - sensitivity_i b_i(t)                    (Horner's rule)
  *      x   = W d                                    (W = J+ of correct.h / sensitivity)
  *
- *  is all there is for a linear model. Where the response is not linear, or the scale factor
- *  depends on temperature, what is left of it, n(x, t), is taken out in the fixed number of steps
- *  that imk_correction_start() has proven to be enough,
+ *  Where the response is not linear, or the scale factor depends on temperature, the remainder n(x,
+ *  t) is taken out in a fixed number of steps, which imk_correction_start() has proven to be
+ *  enough,
  *
  *      x <- W d - J+ n(x, t),
  *
- *  which is the iteration of correct.h in another order.
+ *  This is the iteration of correct.h in another order.
  *
- *  What cannot be done sample by sample stays in the reading: lever arms (they need the angular
- *  acceleration), warm-up and the rate of temperature (they need time). Theory:
- *  docs/theory/compensation.md. C code from it: firmware_file.h. */
+ *  Terms that cannot be corrected sample by sample stay in the reading: lever arms (they need the
+ *  angular acceleration), warm-up and the rate of temperature (they need time). Theory:
+ *  docs/theory/compensation.md. firmware_file.h writes it as C code. */
 #ifndef IMUKIT_FIRMWARE_H
 #define IMUKIT_FIRMWARE_H
 
@@ -38,34 +39,36 @@ typedef struct imk_firmware_settings {
     uint32_t cookie;
     imk_firmware_arithmetic arithmetic;
     double rate_limit, force_limit; /**< as in imk_correction_settings */
-    double tolerance; /**< of the steps of a model that is not linear, relative to the limit; 0
-                           (default): 2^-22 for float, 1e-14 for double, 2^-28 for fixed point */
+    double tolerance; /**< largest error of the iteration for a model that is not linear, relative
+                         to the limit; 0 (default): 2^-22 for float, 1e-14 for double, 2^-28 for
+                         fixed point */
 } imk_firmware_settings;
 /** Float; limits from the model. */
 IMK_API imk_firmware_settings imk_firmware_default(void);
 
 /** One operation. Operands are numbers of earlier operations. */
 typedef enum imk_firmware_kind {
-    IMK_FIRMWARE_READING,     /**< of axis `axis`, less its origin; fixed point: clipped before */
+    IMK_FIRMWARE_READING, /**< reading of axis `axis`, less its origin; fixed point: clipped before
+                           */
     IMK_FIRMWARE_TEMPERATURE, /**< [degC] */
-    IMK_FIRMWARE_CLIP,        /**< a, within lower … upper */
+    IMK_FIRMWARE_CLIP,        /**< a, clipped to lower … upper */
     IMK_FIRMWARE_SIZE,        /**< |a| */
     IMK_FIRMWARE_PRODUCT,     /**< a b + constant */
     IMK_FIRMWARE_SUM          /**< constant + sum of coefficient times operand, in this order */
 } imk_firmware_kind;
 
-/** What an operation is for: names in the code, comments of its constants. */
+/** Purpose of an operation; it decides names and comments in the code. */
 typedef enum imk_firmware_role {
-    IMK_FIRMWARE_STEP,    /**< part of the next one */
+    IMK_FIRMWARE_STEP,    /**< intermediate result for the next operation */
     IMK_FIRMWARE_CELSIUS, /**< temperature within a valid range */
-    IMK_FIRMWARE_SCALED,  /**< the same, -1 … 1 */
+    IMK_FIRMWARE_SCALED,  /**< temperature scaled to -1 … 1 */
     IMK_FIRMWARE_BIAS,    /**< in the unit of the readings, less the origin */
     IMK_FIRMWARE_INPUT,   /**< reading less bias */
     IMK_FIRMWARE_SLOPE,   /**< scale factor, as far as it depends on temperature */
     IMK_FIRMWARE_WITHIN,  /**< component of the motion, within the limits */
     IMK_FIRMWARE_ALONG,   /**< component along an axis */
-    IMK_FIRMWARE_REST,    /**< what is not linear in an axis' response */
-    IMK_FIRMWARE_MOTION   /**< a component of the motion; in the end the output */
+    IMK_FIRMWARE_REST,    /**< part of an axis' response that is not linear */
+    IMK_FIRMWARE_MOTION   /**< a component of the motion; the last one is the output */
 } imk_firmware_role;
 
 /** An addend of a sum. */
@@ -78,31 +81,32 @@ typedef struct imk_firmware_term {
 typedef struct imk_firmware_operation {
     imk_firmware_kind kind;
     imk_firmware_role role;
-    int sensor, axis, step; /**< step: of the iteration, from 1; power of t in a polynomial */
-    int a, b;               /**< operands of clip, size and product; else -1 */
-    int first, count;       /**< terms of a sum */
+    /** step: number of the iteration, from 1, or power of t in a polynomial */
+    int sensor, axis, step;
+    int a, b;                      /**< operands of clip, size and product; else -1 */
+    int first, count;              /**< terms of a sum */
     double constant, lower, upper; /**< as rounded to the arithmetic */
     int bits;                      /**< fixed point: the value is the integer times 2^-bits */
-    int shift;                     /**< of a sum or product, to the right */
+    int shift;                     /**< right shift of a sum or product */
     int64_t fixed_constant;        /**< sum: before the shift, rounding included; else after it */
     int32_t fixed_lower, fixed_upper;
-    double minimum, maximum; /**< of the exact value */
-    double error;            /**< largest difference of the value computed from the exact one */
+    double minimum, maximum; /**< range of the exact value */
+    double error;            /**< largest difference between the computed and the exact value */
 } imk_firmware_operation;
 
-/** A reading. */
+/** The reading of one axis. */
 typedef struct imk_firmware_channel {
     bool in_counts;
-    int32_t origin;      /**< [count], taken off as an integer; 0 in physical units */
-    double lower, upper; /**< flagged at and beyond; the bound holds between */
-    unsigned flag;       /**< which; 0: none, lower and upper are those that the limits lead to */
+    int32_t origin;      /**< subtracted as an integer [count]; 0 in physical units */
+    double lower, upper; /**< readings at or beyond these are flagged; the bound holds between */
+    unsigned flag;       /**< the flag; 0: none, and lower and upper follow from the limits */
     int bits;            /**< fixed point: the reading is the integer times 2^-bits */
 } imk_firmware_channel;
 
-/** Counted over all operations; a coefficient of 1 costs no multiplication. */
+/** Number of arithmetic operations in all; a coefficient of 1 costs no multiplication. */
 typedef struct imk_firmware_cost {
     int multiplications, additions;
-    int comparisons; /**< of clipping and flags */
+    int comparisons; /**< for clipping and flags */
 } imk_firmware_cost;
 
 enum { IMK_FIRMWARE_OPERATIONS_MAX = 768, IMK_FIRMWARE_TERMS_MAX = 4096 };
@@ -111,28 +115,29 @@ enum { IMK_FIRMWARE_OPERATIONS_MAX = 768, IMK_FIRMWARE_TERMS_MAX = 4096 };
 typedef struct imk_firmware {
     uint32_t cookie;
     imk_firmware_arithmetic arithmetic;
-    imk_model model;           /**< what is taken out: the model without the terms that cannot be */
-    imk_correction correction; /**< of that model, to the tolerance of the plan */
+    /** The terms taken out: the model without the terms that cannot be corrected */
+    imk_model model;
+    imk_correction correction; /**< correction of that model, to the tolerance of the plan */
     int axis_count[2], output_count[2];
     imk_firmware_channel channel[2][IMK_AXES_MAX];
     bool needs_temperature;
-    double temperature_minimum, temperature_maximum; /**< flagged beyond [degC] */
+    double temperature_minimum, temperature_maximum; /**< temperatures beyond are flagged [degC] */
     int temperature_bits;                            /**< fixed point */
     bool limited[2];               /**< outputs beyond limit are flagged, see compensate.h */
     double limit[2][IMK_AXES_MAX]; /**< [rad/s], [m/s^2]; as rounded to the arithmetic */
-    bool limit_stated[2];          /**< by range or settings; else nominal ones */
+    bool limit_stated[2];          /**< true: by range or settings; false: nominal limits */
     int output_bits[2];            /**< fixed point: scale of the outputs */
-    int iterations;                /**< steps, 1 for a linear model */
+    int iterations;                /**< steps of the iteration; 1 for a linear model */
     double bound[2];               /**< largest difference of an output from imk_correct() [rad/s],
                                         [m/s^2], for unflagged samples of a motion within limit */
     imk_firmware_cost cost;
     int operation_count, term_count;
-    int output[2][IMK_AXES_MAX]; /**< operations */
+    int output[2][IMK_AXES_MAX]; /**< numbers of the operations that give the outputs */
     imk_firmware_operation operation[IMK_FIRMWARE_OPERATIONS_MAX];
     imk_firmware_term term[IMK_FIRMWARE_TERMS_MAX];
 } imk_firmware;
 
-/** Plan for a model. Takes some 60 kB of stack.
+/** Plan the compensation of a model. Needs some 60 kB of stack.
  *  @param settings  NULL: imk_firmware_default()
  *  @return errors of imk_model_validate() and imk_correction_start(); IMK_ERROR_UNINITIALISED,
  *          _ARGUMENT or _RANGE (settings); IMK_ERROR_KEY_MISSING (fixed point without a range),
@@ -141,19 +146,19 @@ typedef struct imk_firmware {
 IMK_API imk_status imk_firmware_plan(imk_firmware *firmware, const imk_model *model,
                                      const imk_firmware_settings *settings, imk_error *error);
 
-/** A sample as the device has it: readings in counts or physical units, temperature [degC]. */
+/** A sample on the device: readings in counts or physical units, temperature [degC]. */
 typedef struct imk_firmware_sample {
     double reading[2][IMK_AXES_MAX];
     double temperature;
     double out[2][IMK_AXES_MAX]; /**< [rad/s], [m/s^2] */
-    unsigned flags;              /**< of compensate.h */
+    unsigned flags;              /**< IMK_FLAG_… bits (compensate.h) */
 } imk_firmware_sample;
 
-/** Round readings and temperature to what the arithmetic can hold. */
+/** Round readings and temperature to values that the arithmetic can represent. */
 IMK_API void imk_firmware_round(const imk_firmware *firmware, imk_firmware_sample *sample);
-/** Compute a sample exactly as the device does: in fixed point bit by bit, in float and double up
- * to fused multiply-adds, which round less. Readings must be as imk_firmware_round() leaves them.
- */
+/** Compute a sample exactly as the device does: in fixed point bit by bit, in float and double
+ *  except for fused multiply-adds, which round less. Call imk_firmware_round() on the sample
+ *  before. */
 IMK_API void imk_firmware_run(const imk_firmware *firmware, imk_firmware_sample *sample);
 
 IMK_END_C

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file firmware_file.h
  *  A plan of correction (firmware.h) as C99: NAME.h and NAME.c, which need nothing but <stdint.h>,
- *  and NAME_test.c, a table of readings with what imk_correct() makes of them.
+ *  and NAME_test.c, a table of readings and the results of imk_correct() for them.
  *
  *  The code has no loop, no heap, no libm, no variable outside its function. Equal models give
- *  equal bytes. The comment at its head says what is taken out and what is not, units, bound and
+ *  equal bytes. The comment at its head states the terms taken out and left in, units, bound and
  *  cost. */
 #ifndef IMUKIT_FIRMWARE_FILE_H
 #define IMUKIT_FIRMWARE_FILE_H
@@ -19,28 +19,29 @@ enum { IMK_FIRMWARE_NAME_MAX = 48 };
 /** How to write. Start from imk_firmware_file_default(), then change fields. */
 typedef struct imk_firmware_file_settings {
     uint32_t cookie;
-    const char *name; /**< of the files, and what every name in them begins with: letters, digits,
-                         _; NULL: "imukit_" and the name of the model */
-    uint32_t vectors; /**< in the test's table, default 64; 1 … 1 000 000 */
+    const char *name; /**< name of the files, and prefix of every name in them: letters, digits, _;
+                         NULL: "imukit_" and the name of the model */
+    uint32_t vectors; /**< number of samples in the test's table, 1 … 1 000 000; default 64 */
 } imk_firmware_file_settings;
 /** Names from the model, 64 vectors. */
 IMK_API imk_firmware_file_settings imk_firmware_file_default(void);
 
-/** The name the files will have: as set, or made of the model's. */
+/** The name that the files will have: from the settings, or made from the model's name. */
 IMK_API void imk_firmware_name(const imk_firmware_file_settings *settings, const imk_model *model,
                                char name[IMK_FIRMWARE_NAME_MAX]);
 
-/** What the plan takes out of the readings of a unit, and what it leaves in. */
+/** List the terms that the plan takes out of the readings of a unit, and those that it leaves in.
+ */
 IMK_API void imk_firmware_terms(const imk_firmware *firmware, const imk_model *model,
                                 imk_term_keys *taken_out, imk_term_keys *left_in);
 
-/** Write NAME.h, NAME.c and NAME_test.c into a directory, which is made when it is not there. Files
- *  of these names that were not made by this function are not replaced.
+/** Write NAME.h, NAME.c and NAME_test.c into a directory, which is created if it does not exist.
+ *  Files of these names that were not made by this function are not replaced.
  *  @param firmware  from imk_firmware_plan()
- *  @param model     the model it was planned for
+ *  @param model     the model that was planned for
  *  @param settings  NULL: imk_firmware_file_default()
- *  @return IMK_ERROR_UNINITIALISED, _ARGUMENT (name), _RANGE (vectors), _CONFLICT (a foreign file
- *          of that name), _OPEN, _WRITE, _MEMORY */
+ *  @return IMK_ERROR_UNINITIALISED, _ARGUMENT (name), _RANGE (vectors), _CONFLICT (a file of that
+ *          name was not made by this function), _OPEN, _WRITE, _MEMORY */
 IMK_API imk_status imk_firmware_write(const char *directory, const imk_firmware *firmware,
                                       const imk_model *model,
                                       const imk_firmware_file_settings *settings, imk_error *error);

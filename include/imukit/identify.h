@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file identify.h
- *  Static record -> stochastic terms with confidence, and a verdict on the record.
+ *  Noise terms with confidence intervals from a stationary record, and a verdict on the record.
  *
  *  The estimator is maximum likelihood on the cosine spectrum of the record
- *  (docs/theory/identification.md): the cosine transform makes white noise and random walk exactly
- *  independent and the rest nearly so, which gives every frequency its right weight;
- *  profile-likelihood intervals; a term is kept when the likelihood says so, and otherwise reported
- *  as absent with an upper bound. */
+ *  (docs/theory/identification.md). The coefficients of white noise and random walk are exactly
+ *  independent, those of the other terms nearly so, which gives every frequency its right weight.
+ *  Intervals are by profile likelihood. A term is kept if the likelihood ratio supports it; else it
+ *  is reported as absent with an upper bound. */
 #ifndef IMUKIT_IDENTIFY_H
 #define IMUKIT_IDENTIFY_H
 
@@ -18,7 +18,7 @@
 
 IMK_BEGIN_C
 
-/** The five terms of the lecture and of IEEE 952. */
+/** The five noise terms of IEEE 952. */
 typedef enum imk_noise_term {
     IMK_NOISE_QUANTIZATION = 0,
     IMK_NOISE_WHITE,
@@ -30,34 +30,41 @@ typedef enum imk_noise_term {
 
 /** One estimated parameter. */
 typedef struct imk_estimate {
-    bool present;        /**< false: absent; value 0, lower 0, upper the bound at the confidence */
-    double value, sigma; /**< [unit of the parameter]; sigma by the likelihood's curvature */
+    bool present; /**< false: the term is absent; then value and lower are 0, and upper is the bound
+                     at the confidence */
+    double value, sigma; /**< estimate and its 1 sigma [unit of the parameter]; sigma is from the
+                            curvature of the likelihood */
     double lower, upper; /**< profile-likelihood interval */
-    double free_value; /**< likeliest value while white noise, bias instability, random walk and the
-                            term itself are all free, chosen or not: the interval's centre, with
-                            next to no bias in its square */
+    double free_value;   /**< most likely value when white noise, bias instability, random walk and
+                            the term itself are all free, whether present or not; centre of the
+                            interval; its square is almost unbiased */
 } imk_estimate;
 
-/** What the record holds that the five terms do not explain. */
+/** Features of a record that the five terms do not explain. */
 enum {
-    IMK_VERDICT_SHORT = 1 << 0,  /**< too short for the slowest terms: bounds only */
-    IMK_VERDICT_COARSE = 1 << 1, /**< resolution step larger than the noise: white noise doubtful */
-    IMK_VERDICT_LINES = 1 << 2,  /**< spectral lines (vibration, interference) modelled apart */
-    IMK_VERDICT_RESONANCE = 1 << 3, /**< structural resonance modelled apart */
+    IMK_VERDICT_SHORT =
+        1 << 0, /**< the record is too short for the slowest terms: only bounds are given */
+    IMK_VERDICT_COARSE =
+        1 << 1, /**< the resolution step is larger than the noise: do not trust the white noise */
+    IMK_VERDICT_LINES =
+        1 << 2, /**< spectral lines (vibration, interference), modelled separately */
+    IMK_VERDICT_RESONANCE = 1 << 3, /**< structural resonance, modelled separately */
     IMK_VERDICT_FILTERED = 1 << 4,  /**< the output is low-pass filtered within the band */
-    IMK_VERDICT_WARM_UP = 1 << 5,   /**< the start drifts unlike the rest */
+    IMK_VERDICT_WARM_UP = 1 << 5,   /**< the start drifts differently from the rest */
     IMK_VERDICT_SATURATED = 1 << 6, /**< samples stick at an extreme value */
-    IMK_VERDICT_MISFIT = 1 << 7,    /**< something else remains outside valid_from … valid_to */
-    IMK_VERDICT_FROZEN = 1 << 8 /**< long runs of one value: samples repeated, rate overstated */
+    IMK_VERDICT_MISFIT =
+        1 << 7, /**< the model does not explain all tau: see valid_from, valid_to */
+    IMK_VERDICT_FROZEN =
+        1 << 8 /**< long runs of one value: samples are repeated, and the true rate is lower */
 };
 
-/** Everything found on one channel. Values in the channel's unit. */
+/** Result for one channel. Values are in the channel's unit. */
 typedef struct imk_identification {
     imk_estimate term[IMK_NOISE_TERMS];
     double correlation[IMK_NOISE_TERMS][IMK_NOISE_TERMS];
     double mean, deviation; /**< of the samples */
-    double minimum_floor;   /**< smallest Allan deviation/0.664, for comparison with B */
-    imk_low_pass filter;    /**< output filter, bandwidth 0 when none is seen */
+    double minimum_floor;   /**< smallest Allan deviation divided by 0.664, for comparison with B */
+    imk_low_pass filter;    /**< output filter; bandwidth 0 when none is detected */
     int gauss_markov_count, sinusoid_count, resonance_count;
     struct imk_gauss_markov_estimate {
         imk_estimate sigma;            /**< [unit] */
@@ -67,30 +74,30 @@ typedef struct imk_identification {
     imk_resonance resonance[IMK_TERMS_MAX];
     double valid_from, valid_to; /**< range of tau [s] over which the model explains the measured
                                       Allan deviation; from is infinite when there is none */
-    double five_terms_from;      /**< the same start for the five terms alone, without Gauss-Markov
-                                      terms, lines, resonances and filter */
-    double longest;              /**< longest tau [s] compared: a ninth of the record */
-    double resolution;           /**< smallest step between values, 0 when none is seen [unit] */
+    double five_terms_from; /**< the same lower end for the five terms alone, without Gauss-Markov
+                               terms, lines, resonances and filter */
+    double longest;         /**< longest tau compared with the record: a ninth of its length [s] */
+    double resolution;      /**< smallest step between values [unit]; 0 when none is detected */
     double log_likelihood;
-    size_t missing;     /**< samples missing between the first and the last that is there */
-    double largest_gap; /**< longest run of them [s] */
-    int rounds;         /**< in which they and the spectrum were found by turns; 0: none missing */
-    unsigned verdict;   /**< IMK_VERDICT_… bits */
+    size_t missing;     /**< missing samples between the first and the last sample present */
+    double largest_gap; /**< longest run of missing samples [s] */
+    int rounds; /**< iterations between missing samples and spectrum; 0: no sample is missing */
+    unsigned verdict; /**< IMK_VERDICT_… bits */
 } imk_identification;
 
-/** What a joint estimate needs of a record (identify_joint.h). */
+/** Summary of a record for a joint estimate (identify_joint.h). */
 typedef struct imk_spectral_summary imk_spectral_summary;
 
 typedef struct imk_identify_settings {
     uint32_t cookie;
-    double dt;                     /**< sample interval [s] */
-    double confidence;             /**< of intervals and bounds; 0.95 */
-    double significance;           /**< false-alarm rate at which a term is called present; 0.01 */
-    bool shape;                    /**< look for lines, resonances and the output filter; true */
+    double dt;           /**< sample interval [s] */
+    double confidence;   /**< of intervals and bounds; default 0.95 */
+    double significance; /**< false-alarm rate at which a term is called present; default 0.01 */
+    bool shape;          /**< look for lines, resonances and the output filter; default true */
     imk_spectral_summary *summary; /**< filled when not NULL, imk_spectral_summary_size() bytes */
 } imk_identify_settings;
 
-/** 95 % intervals, 1 % significance, shapes looked for; dt must be set. */
+/** The defaults stated above; dt must be set. */
 IMK_API imk_identify_settings imk_identify_default(void);
 
 /** Bytes of workspace for n samples: about 62 n, of which 21 n are touched only where samples are
@@ -99,23 +106,24 @@ IMK_API size_t imk_identify_workspace_size(size_t n);
 
 /** Identify one channel.
  *
- *  NaN is a missing sample. The estimate is then that of maximum likelihood on the samples that are
- *  there, and the intervals are as wide as these make them (docs/theory/identification.md).
- *  @param n         samples, at least 256; of these no more than three quarters may be missing
- *  @param samples   equally spaced; not changed
+ *  NaN is a missing sample. The estimate is then maximum likelihood on the samples present, and the
+ *  intervals take the missing samples into account (docs/theory/identification.md).
+ *  @param n        number of samples, at least 256; at most three quarters may be missing
+ *  @param samples  equally spaced; not changed
  *  @return IMK_ERROR_TOO_SHORT, IMK_ERROR_CONSTANT, IMK_ERROR_NOT_FINITE (error.index: sample),
  *          IMK_ERROR_WORKSPACE, IMK_ERROR_NO_CONVERGENCE (no noise in the record) */
 IMK_API imk_status imk_identify_channel(const imk_identify_settings *settings, size_t n,
                                         const double *samples, imk_identification *result,
                                         void *workspace, size_t workspace_size, imk_error *error);
 
-/** Expected Allan variance of the identified model at tau = m dt, exact for the sampled process;
- *  `term` < 0: of all; else of one of the five. */
+/** Expected Allan variance of the identified model at tau = m dt, exact for the sampled process
+ *  [unit^2].
+ *  @param term  one of the five terms; negative: all terms together */
 IMK_API double imk_identification_allan_variance(const imk_identification *result, double dt,
                                                  size_t m, int term);
 
 /** Put a channel's result into one axis of a model: its noise terms, its output filter and the
- *  evidence for them. Terms that are absent become zero there, with their bound in the evidence.
+ *  evidence for them. Absent terms become zero in the model, and their bounds go into the evidence.
  *  @param sensor  IMK_GYRO or IMK_ACCEL
  *  @param axis    0 … IMK_AXES_MAX - 1 */
 IMK_API void imk_identification_store(const imk_identification *result, imk_model *model,

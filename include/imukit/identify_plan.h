@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file identify_plan.h
- *  How well a record will tell each term, before it is made, and how long it must be.
+ *  How accurately a planned record will determine each noise term, and how long it must be.
  *
  *  The information of Whittle's likelihood [WHITTLE1953] about the parameters p of a spectrum S,
  *
@@ -15,8 +15,8 @@
 
 IMK_BEGIN_C
 
-/** The noise of one axis, as a record of it is expected. Sinusoids are left out: they are found and
- *  subtracted, and cost next to nothing. */
+/** The noise expected on one axis. Sinusoids are left out: identification finds and subtracts them
+ *  with almost no loss. */
 typedef struct imk_expected_noise {
     double term[IMK_NOISE_TERMS]; /**< Q, N, B, K, R, each in its unit; 0: absent */
     imk_low_pass filter;          /**< bandwidth 0: none */
@@ -25,30 +25,31 @@ typedef struct imk_expected_noise {
     imk_resonance resonance[IMK_TERMS_MAX];
 } imk_expected_noise;
 
-/** Of one axis of a model. Terms of strength 0 are left out. */
+/** The noise of one axis of a model. Terms of strength 0 are left out. */
 IMK_API imk_expected_noise imk_expected_noise_of(const imk_triad *triad, int axis);
 
 typedef struct imk_bounds_settings {
     uint32_t cookie;
-    double dt; /**< sample interval [s] */
-    double
-        significance; /**< at which a term is called present, as in imk_identify_settings; 0.01 */
-    bool free[IMK_NOISE_TERMS]; /**< estimated although the noise has none of it; white noise, bias
-                                     instability and random walk. Terms it has are always estimated
-                                 */
-    bool shape; /**< correlation times, filter and resonances are found from the record too; true */
+    double dt;                  /**< sample interval [s] */
+    double significance;        /**< false-alarm rate at which a term is called present, see
+                                   imk_identify_settings; default 0.01 */
+    bool free[IMK_NOISE_TERMS]; /**< terms estimated even if the noise has none of them; default
+                                   white noise, bias instability and random walk. Terms that the
+                                   noise has are always estimated */
+    bool shape; /**< correlation times, filter and resonances are estimated from the record too;
+                   default true */
 } imk_bounds_settings;
 
-/** dt must be set. */
+/** The defaults stated above; dt must be set. */
 IMK_API imk_bounds_settings imk_bounds_default(void);
 
-/** Bound on one parameter. */
+/** Smallest possible error of one parameter. */
 typedef struct imk_bound {
-    double value;        /**< of the parameter in the noise */
+    double value;        /**< value of the parameter */
     double square_sigma; /**< standard deviation of the estimate of its square [unit^2] */
-    double sigma;        /**< of the estimate itself: square_sigma/(2 value); infinite at 0 */
-    double relative;     /**< sigma/value; infinite at 0 */
-    double detection;    /**< chance that the term is called present; 0 at 0 */
+    double sigma;     /**< of the estimate itself: square_sigma/(2 value); infinite for value 0 */
+    double relative;  /**< sigma/value; infinite for value 0 */
+    double detection; /**< probability that the term is called present; 0 for value 0 */
 } imk_bound;
 
 typedef struct imk_identification_bounds {
@@ -56,18 +57,18 @@ typedef struct imk_identification_bounds {
     /** Covariance of Q^2, N^2, B^2, K^2 and R; 0 where not estimated. */
     double covariance[IMK_NOISE_TERMS][IMK_NOISE_TERMS];
     imk_bound sigma[IMK_TERMS_MAX];            /**< of the Gauss-Markov terms */
-    imk_bound correlation_time[IMK_TERMS_MAX]; /**< detection as of its sigma */
+    imk_bound correlation_time[IMK_TERMS_MAX]; /**< detection is that of the term's sigma */
 } imk_identification_bounds;
 
 /** Bytes of workspace for the two functions below: some 700 KiB. */
 IMK_API size_t imk_bounds_workspace_size(void);
 
-/** Bounds for a record of so many seconds.
+/** Bounds for a record of a given duration [s].
  *
- *  Detection compares the likelihood with and without the term. Without it the others take its
- *  place as well as they can; with S' what they then come to, the signed root of twice the gain is
- *  nearly normal about sqrt(L), L = sum [log(S'/S) + S/S' - 1], with the variance
- *  sum (S/S' - 1)^2/(2 L), and must exceed the normal quantile of 1 - significance. About 1 ms.
+ *  Detection compares the likelihood with and without the term. Without it, the other terms take
+ *  its place as well as they can and give a spectrum S'. The signed root of twice the gain in
+ *  likelihood is nearly normal about sqrt(L), L = sum [log(S'/S) + S/S' - 1], with the variance sum
+ *  (S/S' - 1)^2/(2 L), and must exceed the normal quantile of 1 - significance. Takes about 1 ms.
  *  @return IMK_ERROR_RANGE for a duration below 256 dt or above 1e12 dt, or noise out of range;
  *          IMK_ERROR_SINGULAR when the record cannot tell the parameters apart */
 IMK_API imk_status imk_identify_bounds(const imk_expected_noise *noise,
@@ -75,17 +76,19 @@ IMK_API imk_status imk_identify_bounds(const imk_expected_noise *noise,
                                        imk_identification_bounds *bounds, void *workspace,
                                        size_t workspace_size, imk_error *error);
 
-/** What a record shall tell. */
+/** A requirement on one parameter. */
 typedef struct imk_identify_requirement {
-    int term;         /**< imk_noise_term, or IMK_NOISE_TERMS + i for Gauss-Markov term i */
-    bool time;        /**< of a Gauss-Markov term: its correlation time instead of its sigma */
-    double relative;  /**< wanted standard deviation over value; 0: not asked */
-    double detection; /**< wanted chance of being called present, < 1; 0: not asked */
+    int term;        /**< imk_noise_term, or IMK_NOISE_TERMS + i for Gauss-Markov term i */
+    bool time;       /**< true: the correlation time of a Gauss-Markov term, not its sigma */
+    double relative; /**< required sigma/value; 0: no such requirement */
+    /** Required probability of being called present, < 1; 0: no such requirement */
+    double detection;
 } imk_identify_requirement;
 
-/** The shortest record that meets a requirement, to 0.1 %. About 50 ms.
- *  @return as imk_identify_bounds(); IMK_ERROR_NO_CONVERGENCE when no record up to 1e12 samples
- *          does */
+/** Find the shortest record that meets a requirement, to 0.1 %. Takes about 50 ms.
+ *  @param duration  receives its length [s]
+ *  @return errors of imk_identify_bounds(); IMK_ERROR_NO_CONVERGENCE when no record of up to 1e12
+ *          samples meets it */
 IMK_API imk_status imk_identify_duration(const imk_expected_noise *noise,
                                          const imk_bounds_settings *settings,
                                          const imk_identify_requirement *requirement,

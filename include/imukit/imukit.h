@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file imukit.h
- *  Everything of libimukit. Instruments: imukit/physics.h; reading and writing files:
- *  imukit/io.h.
+ *  Everything of libimukit. Instruments: imukit/physics.h; reading and writing files: imukit/io.h.
  *
- *  Threads. The library holds no writable data and makes no threads: any functions may run at the
- *  same time, on any threads, as long as none writes what another one uses. What a function writes
- *  is what its arguments point to without `const`: results, workspaces, objects such as a simulator
- *  or a compensator. What is `const` may be shared, and must stay as it is while it is used. Where
- *  a function takes an executor (executor.h), the bits of its result do not depend on it. */
+ *  Threads. The library has no writable data and makes no threads. All functions may run at the
+ *  same time on any threads, as long as none writes data that another one uses. A function writes
+ *  only to arguments that are not `const`: results, workspaces, objects such as a simulator or a
+ *  compensator. Arguments that are `const` may be shared, and must not change while they are used.
+ *  If a function takes an executor (executor.h), the bits of its result do not depend on it. */
 #ifndef IMUKIT_IMUKIT_H
 #define IMUKIT_IMUKIT_H
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file instrument.h
- *  Instruments from first principles: what the parts of a gyro or an accelerometer do, from its
- *  design parameters to its readings.
+ *  Instruments from first principles: the physics of the parts of a gyro or an accelerometer, from
+ *  design parameters to readings.
  *
  *  Each instrument has a header of its own (ring_laser.h, fibre_optic.h, …) with a design struct,
  *  its `_default()`, `_validate()`, `_reduce()` and the closed forms that a designer computes by
- *  hand; and a description, imk_instrument, through which all of them can be run alike:
+ *  hand; and a description, imk_instrument, through which all instruments are run in the same way:
  *
  *      const imk_instrument *instrument = imk_instrument_find("ring_laser");
  *      instrument->set_default(design);              // design_size bytes
@@ -16,8 +16,9 @@
  *  light, beat of the laser), a slow map or envelope of it, and the error model of model.h that
  *  `reduce` computes. Each is tested against the one before.
  *
- *  The same design, settings and exposures give the same bits on every machine: + - * / sqrt and
- *  the functions of elementary.h only, and random numbers by stream (term IMK_TERM_PHYSICS). */
+ *  The same design, settings and exposures give the same bits on every machine: only + - * / sqrt
+ *  and the functions of elementary.h are used, and random numbers by stream (term
+ *  IMK_TERM_PHYSICS). */
 #ifndef IMUKIT_INSTRUMENT_H
 #define IMUKIT_INSTRUMENT_H
 
@@ -29,20 +30,20 @@ IMK_BEGIN_C
 enum { IMK_INSTRUMENT_OUTPUTS_MAX = 8, IMK_INSTRUMENT_SIGNALS_MAX = 16, IMK_VIEW_CURVES_MAX = 4 };
 
 /** What an instrument is exposed to, in the axes of its case: x is the input axis of a single-axis
- *  instrument; each header names y and z. Held constant over a step. A step refuses nothing: beyond
- *  these ranges its readings mean nothing, but it takes no longer than at their ends. */
+ *  instrument; each header names y and z. It is constant over a step. A step does not check the
+ *  ranges: beyond them the readings are meaningless, but a step takes no longer. */
 typedef struct imk_exposure {
-    double angular_rate[3];         /**< of the case in inertial space, to 1e6 [rad/s] */
+    double angular_rate[3];         /**< of the case in inertial space, up to 1e6 [rad/s] */
     double angular_acceleration[3]; /**< [rad/s^2] */
-    double specific_force[3];       /**< to 1e6 [m/s^2] */
-    double temperature;             /**< above 0, to 1e4 [K] */
+    double specific_force[3];       /**< up to 1e6 [m/s^2] */
+    double temperature;             /**< above 0, up to 1e4 [K] */
     double temperature_rate;        /**< [K/s] */
 } imk_exposure;
 
 /** No motion, no force, 293.15 K. */
 IMK_API imk_exposure imk_exposure_default(void);
 
-/** How much of an instrument is computed. */
+/** Level of detail of the simulation. */
 typedef enum imk_level {
     IMK_LEVEL_FULL = 0, /**< the dynamics of its parts, cycle by cycle */
     IMK_LEVEL_SLOW = 1  /**< a map or envelope that leaves the fast part out */
@@ -54,13 +55,15 @@ typedef struct imk_physics_settings {
     imk_level level;
     double rate; /**< samples per second [Hz], > 0: a step of the interface is 1/rate */
     double step; /**< internal step [s], shortened to a whole fraction of 1/rate; 0 (default): the
-                    longest that keeps the instrument's stated accuracy. One that would give wrong
+                    longest with the instrument's stated accuracy. A step that would give wrong
                     results is refused */
-    bool noise;  /**< false: nothing random, the run's constants included (default true) */
+    bool noise;  /**< false: no random effects, including the constants of the run; default true */
     uint64_t seed;
-    uint32_t run;     /**< another draw of the same instrument */
-    uint8_t axis;     /**< of several identical instruments, 0 … 255: other draws */
-    uint8_t occasion; /**< of one run, 0 … 255: other noise, the same constants of the run */
+    uint32_t run; /**< run number: each run is another random draw of the same instrument */
+    uint8_t axis; /**< number of one of several identical instruments, 0 … 255: each has its own
+                     draws */
+    uint8_t occasion; /**< number of an occasion in one run, 0 … 255: each has other noise, but the
+                         constants of the run */
 } imk_physics_settings;
 
 /** 100 Hz, full dynamics, noise, seed 0. */
@@ -75,14 +78,15 @@ typedef enum imk_design_kind {
     IMK_DESIGN_SWITCH      /**< yes or no: bool */
 } imk_design_kind;
 
-/** One parameter of a design: where it stands in its file and its struct, and what it may be.
- *  Reading, writing, checking and help all walk the table of these. */
+/** One parameter of a design: its place in the file and in the structure, and its valid values.
+ *  Reading, writing, checking and help all use the table of these fields. */
 typedef struct imk_design_field {
     const char *path; /**< dotted: "dither.frequency" */
     imk_design_kind kind;
     size_t offset;
-    const char *unit;        /**< as it is written; gives the dimension; "1" for pure numbers */
-    double minimum, maximum; /**< in SI; of counts too */
+    const char *unit; /**< unit in which it is written, which also states the dimension; "1" for
+                         pure numbers */
+    double minimum, maximum; /**< valid range, in SI; also for counts */
     bool open;               /**< the minimum itself is excluded */
     const char *choices;     /**< "open|closed" */
     const char *help;        /**< one line: "peak rate of the dither" */
@@ -90,38 +94,38 @@ typedef struct imk_design_field {
 
 /* ---- signals --------------------------------------------------------------------------------- */
 
-/** A number an instrument shows: a reading, or something inside. */
+/** An output of an instrument, or an internal signal. */
 typedef struct imk_signal {
     const char *name; /**< "operating_point" */
     const char *si;   /**< SI unit of the value: "rad/s" */
-    const char *unit; /**< to show it in: "deg/h" */
+    const char *unit; /**< unit in which it is shown: "deg/h" */
     const char *help;
 } imk_signal;
 
-/** A picture worth looking at: signals against time or against each other. */
+/** A figure of an instrument: signals against time or against each other. */
 typedef struct imk_view {
     const char *title, *caption;
     int x; /**< signal on the horizontal axis; -1: time */
     int curve_count;
-    int y[IMK_VIEW_CURVES_MAX]; /**< signals on the vertical axis, of one unit */
+    int y[IMK_VIEW_CURVES_MAX]; /**< signals on the vertical axis, all of one unit */
     double duration;            /**< [s] */
-    double rate;                /**< samples per second of the picture [Hz] */
-    double settle;              /**< run this long before [s] */
-    double input; /**< rate [rad/s] or specific force [m/s^2] along x to draw it under, when none
-                     is asked for */
-    bool points;  /**< separate points: the signals jump, and a line would only hide them */
+    double rate;                /**< sampling rate of the figure [Hz] */
+    double settle;              /**< time simulated before the figure begins [s] */
+    /** Default input of the figure: rate [rad/s] or specific force [m/s^2] along x */
+    double input;
+    bool points; /**< drawn as separate points, because the signals jump */
 } imk_view;
 
 /* ---- the interface --------------------------------------------------------------------------- */
 
 /** A kind of instrument. */
 typedef struct imk_instrument {
-    const char *name;       /**< "ring_laser", as design files say it */
+    const char *name;       /**< name in design files: "ring_laser" */
     const char *title;      /**< "ring laser gyro" */
-    const char *technology; /**< as the table of grades calls it: "RLG"; "" when it does not */
+    const char *technology; /**< name in the table of grades: "RLG"; "" if it is not there */
     const char *source;     /**< where the default design's figures come from */
     int sensor;             /**< IMK_GYRO or IMK_ACCEL */
-    uint32_t cookie;        /**< what a design's first member must be */
+    uint32_t cookie;        /**< value of the first member of a valid design */
     size_t design_size, state_size;
     size_t field_count;
     const imk_design_field *fields;
@@ -135,42 +139,44 @@ typedef struct imk_instrument {
 
     /** A realistic design, cookie included. */
     void (*set_default)(void *design);
-    /** What imk_design_check() asks of a design whose fields are in their ranges: is it possible as
-     *  a whole? NULL: it is.
+    /** Called by imk_design_check() for a design whose fields are in their ranges: checks that the
+     *  design is possible as a whole. NULL: it always is.
      *  @return IMK_ERROR_RANGE, _CONFLICT; error.field the path */
     imk_status (*check)(const void *design, imk_error *error);
-    /** What imk_instrument_init() does once design and settings are valid and the state is 0.
+    /** Called by imk_instrument_init() with valid design and settings and a state of zeros.
      *  @return IMK_ERROR_RANGE, _UNSUPPORTED */
     imk_status (*init)(const void *design, const imk_physics_settings *settings, void *state,
                        imk_error *error);
     /** Advance by 1/rate under a constant exposure. */
     void (*step)(void *state, const imk_exposure *exposure, double *outputs);
-    /** The internal signals as they are now. */
+    /** Get the present internal signals. */
     void (*observe)(const void *state, double *signals);
-    /** What imk_instrument_reduce() does with a triad of one axis along x that has no errors. */
+    /** Called by imk_instrument_reduce() with a triad of one axis along x without errors, to fill
+     *  in the errors. */
     void (*reduce)(const void *design, imk_triad *triad);
-    /** Internal step that settings.step 0 gives [s], for a valid design. */
+    /** Internal step for settings.step 0 [s]; the design must be valid. */
     double (*step_length)(const void *design, const imk_physics_settings *settings);
 } imk_instrument;
 
-/** Number of kinds. */
+/** Number of kinds of instruments. */
 IMK_API size_t imk_instrument_count(void);
 /** Kind `index`; NULL beyond the end. */
 IMK_API const imk_instrument *imk_instrument_get(size_t index);
 /** Kind by name ("ring_laser", case, blanks, - and _ ignored); NULL when there is none. */
 IMK_API const imk_instrument *imk_instrument_find(const char *name);
 
-/** Is a design this instrument's, every field finite and in its range, and the design possible as a
- *  whole?
+/** Check that a design belongs to this instrument, that every field is finite and in its range, and
+ *  that the design is possible as a whole.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
 IMK_API imk_status imk_design_check(const imk_instrument *instrument, const void *design,
                                     imk_error *error);
 
-/** Check design and settings, and start in the state the instrument is in when it is switched on.
- *  @param state state_size bytes, 64-byte aligned; plain data that may be copied; of no use after
- *               an error
+/** Check design and settings, and start the instrument in its state at power-on.
+ *  @param state  state_size bytes, 64-byte aligned; plain data that may be copied; of no use after
+ *                an error
  *  @return errors of imk_design_check(); IMK_ERROR_RANGE for a step (field "step") or rate that
- *          would give wrong results; IMK_ERROR_UNSUPPORTED for a level it does not have */
+ *          would give wrong results; IMK_ERROR_UNSUPPORTED for a level that the instrument does not
+ *          have */
 IMK_API imk_status imk_instrument_init(const imk_instrument *instrument, const void *design,
                                        const imk_physics_settings *settings, void *state,
                                        imk_error *error);
@@ -180,9 +186,9 @@ IMK_API imk_status imk_instrument_init(const imk_instrument *instrument, const v
 IMK_API void imk_instrument_reduce(const imk_instrument *instrument, const void *design,
                                    imk_model *model);
 
-/** Make a model of one axis, from imk_instrument_reduce(), one of three such instruments along body
- *  x, y and z; the case axes y and z of each are the next body axes in turn. Evidence is kept for
- *  axis x only. */
+/** Change a model of one axis, from imk_instrument_reduce(), into a model of three such instruments
+ *  along body x, y and z. The case axes y and z of each are the next body axes in cyclic order.
+ *  Evidence is kept for axis x only. */
 IMK_API void imk_model_three_axes(imk_model *model);
 
 IMK_END_C

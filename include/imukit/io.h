@@ -20,7 +20,7 @@
 
 IMK_BEGIN_C
 
-/** A message that says what was found, what was expected and what to do:
+/** Write the message of an error, which says what was found, what was expected and what to do:
  *  `tactical.yaml:7:3: gyro.noise.angle_random_walk: "0.1 deg/h" is a rate; expected a unit like …`
  *
  *  How an author fills an imk_error so that the message is good:
@@ -31,12 +31,13 @@ IMK_BEGIN_C
  *  - expected begins with an article, a count or "at least" when it says what is due ("a positive
  *    number"; "expected" is put in front), else it is what to do ("add --rate 100Hz"); a single
  *    word after _UNIT_UNKNOWN, _KEY_UNKNOWN, _NAME_UNKNOWN becomes "did you mean …?".
- *  - without found, value and limit are printed unless both are 0 (SI, as they are);
- *    index is an axis under gyro… and accel…, a row with _TIME_ORDER and _GAP, else an element.
+ *  - without found, value and limit are printed unless both are 0 (SI, as they are); index is an
+ *    axis under gyro… and accel…, a row with _TIME_ORDER and _GAP, else an element.
  *
- *  Control characters and bytes that are not UTF-8 come out as "?".
+ *  Control characters and bytes that are not UTF-8 are written as "?".
  *  @param source  file name to put in front ("-": standard input), or NULL
- *  @return length; the text is shortened between characters to fit `size` with its zero */
+ *  @return length; the text is cut between characters so that it fits into `size` with its
+ *          terminating zero */
 IMK_API size_t imk_error_text(const imk_error *error, const char *source, char *text, size_t size);
 
 IMK_END_C

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file jobs.h
- *  What a user calls a task, as functions: a record source and settings in, one result out, and
- *  renderers that make JSON, text and pages of it. No file is opened and no thread is made. Part of
- *  libimukit-io. */
+ *  All jobs in one header. A job is a task of the command as a function: it takes a record source
+ *  and settings and gives one result; renderers make JSON, text and pages of the result. Jobs open
+ *  no file and make no thread. Part of libimukit-io. */
 #ifndef IMUKIT_JOBS_H
 #define IMUKIT_JOBS_H
 

@@ -41,12 +41,12 @@ typedef struct imk_laboratory {
     double full_scale;         /**< largest input [rad/s or m/s^2]; 0: 0.8 of the range that reduce
                                   states, else 1 rad/s or 10 m/s^2 */
     int points;                /**< of the rate table, 7 … 101, odd; 21. 0: no rate table */
-    double settle;             /**< time left out at the begin of each point [s]; 0.2 */
-    double dwell;              /**< time of which the mean is taken [s]; 1 */
+    double settle;             /**< time left out at the begin of each point [s]; default 0.2 */
+    double dwell;              /**< time of which the mean is taken [s]; default 1 */
     bool threshold;            /**< true */
     bool tumble;               /**< true */
     bool temperature;          /**< true */
-    int frequencies;           /**< 0: none; 16 */
+    int frequencies;           /**< 0: none; default 16 */
     double lowest, highest;    /**< [Hz]; 0: from 1/30 to 3 times the bandwidth that reduce states,
                                   else 0.01 to 0.25 times the rate */
     double record; /**< length of the static record [s], at least 256 samples; 60. 0: none */
@@ -72,9 +72,9 @@ typedef struct imk_laboratory_response {
 /** What was found. Some 60 kB. */
 typedef struct imk_laboratory_result {
     double full_scale;
-    double zero,
-        zero_scatter; /**< mean of eight readings without input, and 1 sigma of one of them:
-                         slow noise makes them differ by more than each one's sigma */
+    /** mean of eight readings without input, and 1 sigma of one of them: slow noise makes them
+     *  differ by more than each one's sigma */
+    double zero, zero_scatter;
     int point_count;
     imk_laboratory_point point[IMK_LABORATORY_POINTS_MAX];
     double line_deviation; /**< largest distance from the least-squares line, of full scale [1] */

@@ -22,41 +22,43 @@ IMK_BEGIN_C
 
 /** A format of logs. */
 typedef struct imk_log_format {
-    const char *name;      /**< what it is called, which is the ending of its files: ".npy" */
-    const char *beginning; /**< of its files; NULL: they are known by the ending only */
-    const char *companion; /**< what FILE.npy.columns, which comes with a file, ends in more: a file
-                                of names and units; NULL: nothing comes with it */
-    bool written;          /**< it can be written, too */
+    const char *name;      /**< its name, which is also the ending of its files: ".npy" */
+    const char *beginning; /**< first bytes of its files; NULL: only the ending tells the format */
+    const char *companion; /**< ending added for the file of names and units that comes with each
+                              file, such as ".columns" for FILE.npy.columns; NULL: there is none */
+    bool written;          /**< the format can be written, too */
 } imk_log_format;
 
 /** Format `index`, CSV first; NULL beyond the last. */
 IMK_API const imk_log_format *imk_log_format_get(size_t index);
-/** The format of a log of this name, also of one that ends in .gz or .zst behind: CSV where the
- *  name says nothing. @param path  may be NULL */
+/** Format of a log by its name, where a final .gz or .zst is ignored; CSV if the name does not
+ *  tell.
+ *  @param path  may be NULL */
 IMK_API const imk_log_format *imk_log_format_of(const char *path);
-/** The format of a log that begins with these bytes; NULL: they tell none. */
+/** Format of a log by its first bytes; NULL: they do not tell. */
 IMK_API const imk_log_format *imk_log_format_begun(const char *begin, size_t size);
-/** The names of the formats but CSV, to stand behind that: ", .bag or .npy".
- *  @param last  what stands before the last one: " or "
- *  @param written  only those that can be written
+/** List the names of all formats except CSV, to follow "CSV" in a message: ", .bag or .npy".
+ *  @param last     text before the last name: " or "
+ *  @param written  true: only formats that can be written
  *  @return text, of at most size - 1 bytes */
 IMK_API const char *imk_log_formats_text(const char *last, bool written, size_t size, char *text);
 
-/** How to read a file. Start from imk_log_default(). Texts may be NULL: taken from the
- *  header. */
+/** How to read a file. Start from imk_log_default(). A text that is NULL is taken from the header.
+ */
 typedef struct imk_log_settings {
     uint32_t cookie;
     const char *columns; /**< names for a file without header: "time,gyro_x,gyro_y,…"; "-" skips */
-    const char *gyro_unit, *accel_unit, *time_unit,
-        *temperature_unit; /**< where the file has none */
-    double rate;           /**< [Hz]; needed when there is no time column; 0: from time */
-    const char *axes;      /**< "right-forward-up" …: mapped to forward-right-down; NULL: as is */
-    bool any_columns;      /**< accept a table without time and sensors too; false */
-    bool reopened; /**< the log is opened again after this, to be read by somebody else: what cannot
-                        be rewound, such as a pipe, is copied to a temporary file in TMPDIR first,
-                        which is read now and by the openings after this, up to the first without
-                        `reopened`; false */
-    size_t memory; /**< bytes that a whole log may take; 0: half of imk_memory_limit() */
+    /** Units for columns without a unit in the header. */
+    const char *gyro_unit, *accel_unit, *time_unit, *temperature_unit;
+    double rate;      /**< sampling rate [Hz]; required without a time column; 0: from the times */
+    const char *axes; /**< axes of the log, "right-forward-up" …, mapped to forward-right-down;
+                         NULL: no mapping */
+    bool any_columns; /**< also accept a table without time and sensors; default false */
+    bool reopened;    /**< the log will be opened again. An input that cannot be rewound, such as a
+                         pipe, is then first copied to a temporary file in TMPDIR. That file is read
+                         now and at later openings, up to and including the first without `reopened`;
+                         default false */
+    size_t memory;    /**< largest memory for a whole log [bytes]; 0: half of imk_memory_limit() */
 } imk_log_settings;
 
 /** Everything from the header of the file. */
@@ -64,28 +66,28 @@ IMK_API imk_log_settings imk_log_default(void);
 
 typedef struct imk_log_reader imk_log_reader;
 
-/** Open a log ("-": standard input; also a pipe, or what is compressed) and read its header. The
- *  memory needed does not depend on the length of the log; a line beyond 1 MiB is refused.
+/** Open a log and read its header. `path` may be "-" (standard input), a pipe or a compressed file.
+ *  The memory needed does not depend on the length of the log; a line beyond 1 MiB is refused.
  *
  *  Names, in any case: time (t, timestamp); gyro_, dtheta_, accel_ (acc_), dvel_ followed by x, y,
- *  z or 0 … 7; temperature (temp). Units stand in brackets or parentheses behind the name. Counts
- *  are allowed for any sensor. Other columns are kept as IMK_QUANTITY_OTHER, in SI if their unit is
- *  known, as they stand if not; where the first row holds a text, the column is one of labels.
+ *  z or 0 … 7; temperature (temp). Units follow the name in brackets or parentheses. Counts are
+ *  allowed for any sensor. Other columns are kept as IMK_QUANTITY_OTHER: in SI if their unit is
+ *  known, else unchanged. If the first row holds a text, the column is a label column.
  *
- *  The message of every refusal ends with the exact option to add.
- *  @return IMK_ERROR_OPEN, _READ, _WRITE (a copy), _EMPTY, _FORMAT, _COMPRESSED, _COLUMN,
- *          _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, … */
+ *  The message of every error ends with the exact option to add.
+ *  @return IMK_ERROR_OPEN, _READ, _WRITE (of the temporary copy), _EMPTY, _FORMAT, _COMPRESSED,
+ *          _COLUMN, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _RATE_MISSING, … */
 IMK_API imk_status imk_log_open(const char *path, const imk_log_settings *settings,
                                 imk_log_reader **reader, imk_error *error);
 
-/** The same for a CSV text in memory, which must outlive the reader. */
+/** As imk_log_open(), for a CSV text in memory, which must outlive the reader. */
 IMK_API imk_status imk_log_open_memory(const char *text, size_t size,
                                        const imk_log_settings *settings, imk_log_reader **reader,
                                        imk_error *error);
 
-/** Columns of the log. */
+/** Number of columns of the log. */
 IMK_API size_t imk_log_column_count(const imk_log_reader *reader);
-/** Column `index` as the reader gives it, SI; NULL beyond the last. */
+/** Description of column `index`, whose values are read in SI; NULL beyond the last. */
 IMK_API const imk_log_column *imk_log_column_get(const imk_log_reader *reader, size_t index);
 /** Index of the column of a quantity and axis, or -1. */
 IMK_API int imk_log_column_find(const imk_log_reader *reader, imk_quantity quantity, int axis);
@@ -95,37 +97,35 @@ IMK_API void imk_log_progress(const imk_log_reader *reader, uint64_t *done, uint
 /** Read up to max_rows rows, SI units, into one array per column (NULL skips a column).
  *
  *  A value is number * scale + offset of its unit. Increments are divided by the interval: 1/rate
- *  where the settings say a rate, else the step from the row before (the first row: to the next; a
- *  step that is not positive: the last that was). An empty cell is NaN. An error behind rows that
- *  could be read comes with the call after.
+ *  if the settings state a rate, else the time step from the row before (for the first row: to the
+ *  next row; if the step is not positive: the last positive one). An empty cell is NaN. If rows
+ *  before an error could be read, the next call returns the error.
  *  @param rows  how many were read; 0 at the end
- *  @return IMK_ERROR_SYNTAX (a cell that is no number), IMK_ERROR_COLUMN (a row with another number
- *          of cells), IMK_ERROR_COMPRESSED, IMK_ERROR_READ, with line and column. A last line that
- *          was cut in the middle is an error, not a row. */
+ *  @return IMK_ERROR_SYNTAX (a cell that is not a number), IMK_ERROR_COLUMN (a row with another
+ *          number of cells), IMK_ERROR_COMPRESSED, IMK_ERROR_READ, with line and column. A last
+ *          line that was cut in the middle is an error, not a row. */
 IMK_API imk_status imk_log_read(imk_log_reader *reader, size_t max_rows, double *const *columns,
                                 size_t *rows, imk_error *error);
 
-/** Text number `index` of the columns of labels, in the order they were met; NULL beyond the last.
- */
+/** Text number `index` of the label columns, in the order of appearance; NULL beyond the last. */
 IMK_API const char *imk_log_label(const imk_log_reader *reader, size_t index);
 
-/** Findings on the rows read so far. */
+/** Counts and times of the rows read so far. */
 IMK_API imk_log_findings imk_log_findings_get(const imk_log_reader *reader);
 
 /** Close and free; NULL is allowed. */
 IMK_API void imk_log_close(imk_log_reader *reader);
 
-/** A log as a source of records, from the place where the reader is; it belongs to the reader and
- *  ends with it. Rewound it is opened again, by the name and settings it was opened with, which
- *  must still be there; what may be rewound is opened with settings.reopened, or a pipe is empty
- *  then. */
+/** Make a record source of a log, from the present position of the reader; it is valid until the
+ *  reader is closed. Rewinding opens the log again with the same path and settings, which must
+ *  still exist. To rewind a pipe, open it with settings.reopened; else it is empty then. */
 IMK_API imk_record_source imk_log_source(imk_log_reader *reader);
 
 /** Read a whole log. Free with imk_log_free().
- *  @param job  its allocator, progress and memory, which settings.memory overrules; NULL: as if all
- *              zeros
- *  @return as imk_log_open(), imk_log_read(); IMK_ERROR_MEMORY (how many rows were read) for a log
- *          that takes more memory than allowed */
+ *  @param job  its allocator, progress and memory are used (settings.memory takes precedence);
+ *              NULL: no progress, memory from the C library
+ *  @return errors of imk_log_open() and imk_log_read(); IMK_ERROR_MEMORY (with the number of rows
+ *          read) for a log that takes more memory than allowed */
 IMK_API imk_status imk_log_load(const char *path, const imk_log_settings *settings,
                                 const imk_job *job, imk_log *log, imk_error *error);
 
@@ -146,66 +146,69 @@ typedef enum imk_log_precision {
  *  executor. */
 typedef struct imk_log_writer imk_log_writer;
 
-/** Start a log, which appears complete or not at all (output_file.h).
+/** Start a log. The file appears complete or not at all (output_file.h).
  *
  *  - A path ending in .npy: float64 matrix, rows x columns, C order, little-endian, values in the
  *    units of the columns chosen as for IMK_LOG_SHORTEST; `name [unit]` of each column goes to a
  *    line of FILE.npy.columns, which appears with it.
- *  - Any other: CSV text, commas, line feeds, `name [unit]` in the header (`name` for a unit
+ *  - Any other path: CSV text, commas, line feeds, `name [unit]` in the header (`name` for a unit
  *    without text). NaN and infinities are written nan, inf, -inf.
- *  - With .gz or .zst behind either, compressed; "-" and NULL are CSV to standard output.
+ *  - A path that ends in .gz or .zst after that is compressed; "-" and NULL are CSV to standard
+ *    output.
  *
- *  @param columns   name and unit of each; values given to imk_log_write() are SI: an increment
- *                   column takes increments of the integral [rad, m/s]. Names are not empty,
- *                   different, and without separators, quotes and brackets.
- *  @param decimals  per column (0 … 17), with IMK_LOG_FIXED; else NULL
- *  @param row_count number of rows if known, else 0. Only a .npy that is not a plain file (a pipe,
- *                   compressed) needs it, and then exactly.
+ *  @param columns    name and unit of each; values given to imk_log_write() are SI: an increment
+ *                    column takes increments of the integral [rad, m/s]. Names are not empty,
+ *                    different, and without separators, quotes and brackets.
+ *  @param decimals   per column (0 … 17), with IMK_LOG_FIXED; else NULL
+ *  @param row_count  number of rows if known, else 0. Only a .npy that is not a plain file (a pipe,
+ *                    compressed) needs it, and then exactly.
  *  @return IMK_ERROR_OPEN, IMK_ERROR_COLUMN (a name), IMK_ERROR_ARGUMENT (a unit or decimals),
  *          IMK_ERROR_UNSUPPORTED (a .npy that needs row_count), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_create(const char *path, size_t column_count,
                                   const imk_log_column *columns, imk_log_precision precision,
                                   const int *decimals, uint64_t row_count, imk_log_writer **writer,
                                   imk_error *error);
-/** Comment lines (one per line of the text) at the head of a CSV, before its header; a .npy has no
- *  place for them and leaves them out. @return IMK_ERROR_ARGUMENT after the first row */
+/** Write comment lines (one per line of the text) before the header of a CSV; a .npy leaves them
+ *  out. @return IMK_ERROR_ARGUMENT after the first row */
 IMK_API imk_status imk_log_comment(imk_log_writer *writer, const char *text);
-/** Text of a label column, for a value of it; NULL when there is none. */
+/** Function that gives the text for a value of a label column; NULL: there is none. */
 typedef const char *(*imk_log_label_lookup)(void *context, size_t index);
-/** Where the texts of columns with `label` set are, for a CSV; before the first row. Without it,
- *  and where it gives NULL, and in a .npy, the index is written. It is called by several threads at
- *  once when imk_log_write() has an executor. */
+/** State the function that gives the texts of label columns of a CSV; call this before the first
+ *  row. Without `lookup`, where it returns NULL, and in a .npy, the index is written. With an
+ *  executor in imk_log_write(), several threads call `lookup` at once. */
 IMK_API void imk_log_write_labels(imk_log_writer *writer, imk_log_label_lookup lookup,
                                   void *context);
-/** Add rows from one array per column, SI. @param executor formats blocks in parallel, beside the
- *  compression and writing of the blocks before; may be NULL. The bytes do not depend on it, nor on
+/** Add rows from one array per column, SI. @param executor  formats blocks in parallel while
+ *  earlier blocks are compressed and written; may be NULL. The bytes depend neither on it nor on
  *  how the rows are divided among calls.
- *  @return IMK_ERROR_WRITE or IMK_ERROR_MEMORY, possibly a call late;
- *          IMK_ERROR_NOT_FINITE (a finite value that is infinite in the column's unit); commit has
- *          the reason */
+ *  @return IMK_ERROR_WRITE or IMK_ERROR_MEMORY, possibly one call late; IMK_ERROR_NOT_FINITE (a
+ *          finite value that is infinite in the column's unit); imk_log_commit() gives the reason
+ */
 IMK_API imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *const *columns,
                                  const imk_executor *executor);
-/** Finish: the file appears. On error nothing appears. Frees the writer.
+/** Finish the log: the file appears, or nothing after an error. Frees the writer.
  *  @return IMK_ERROR_WRITE (error.field: the path, error.found: the system's reason),
- *          IMK_ERROR_CONFLICT (another row count than announced, where it matters),
+ *          IMK_ERROR_CONFLICT (the number of rows differs from row_count, where that is needed),
  *          IMK_ERROR_NOT_FINITE (error.field: column and row), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_log_commit(imk_log_writer *writer, imk_error *error);
-/** A log that is written as a sink of records. */
+/** A log written as a record sink. */
 typedef struct imk_log_sink {
     const char *path; /**< "-": standard output */
-    bool fixed;       /**< IMK_LOG_FIXED, with these decimals where the job knows no better ones */
+    bool fixed; /**< write with IMK_LOG_FIXED; `decimals` holds for columns for which the job states
+                   none */
     int decimals;
     imk_log_writer *writer; /**< its own */
     imk_record_source labels;
 } imk_log_sink;
 
-/** `log` with its path and precision set. */
+/** Make a record sink of a log, whose path and precision must be set. */
 IMK_API imk_record_sink imk_log_sink_of(imk_log_sink *log);
-/** Finish the log, or leave none. @param status  of the job that wrote it, with its error
- *  @return that, or why the log could not be finished */
+/** Finish the log, or discard it if the job failed.
+ *  @param status,error  those of the job that wrote the log
+ *  @return `status`, or why the log could not be finished */
 IMK_API imk_status imk_log_sink_end(imk_log_sink *log, imk_status status, imk_error *error);
 
-/** Give up: nothing appears. Frees the writer; NULL is allowed. */
+/** Discard a log: no file appears. Frees the writer; NULL is allowed. */
 IMK_API void imk_log_abandon(imk_log_writer *writer);
 
 IMK_END_C

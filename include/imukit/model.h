@@ -16,9 +16,10 @@
 IMK_BEGIN_C
 
 enum {
-    IMK_AXES_MAX = 8,              /**< sensing axes of one kind: 3 in a triad, more if redundant */
-    IMK_TEMPERATURE_ORDER_MAX = 5, /**< of the temperature polynomials */
-    IMK_TERMS_MAX = 8,             /**< Gauss-Markov terms, sinusoids, resonances: of each kind */
+    IMK_AXES_MAX =
+        8, /**< largest number of sensing axes of one kind: usually 3, more if redundant */
+    IMK_TEMPERATURE_ORDER_MAX = 5, /**< largest order of the temperature polynomials */
+    IMK_TERMS_MAX = 8, /**< largest number each of Gauss-Markov terms, sinusoids and resonances */
     IMK_INTERVALS_MAX = 24
 };
 
@@ -67,20 +68,21 @@ typedef struct imk_bias {
 
 typedef struct imk_scale_factor {
     imk_axes fixed;                         /**< relative error [1] */
-    imk_axes repeatability;                 /**< 1 sigma, per run [1] */
+    imk_axes repeatability;                 /**< 1 sigma of the random constant of each run [1] */
     imk_temperature_polynomial temperature; /**< [1/K^i] */
 } imk_scale_factor;
 
-/** K2 u^2 + Koq u|u| + K3 u^3 + asymmetry |u|/2 per axis; names of IEEE 1293. */
+/** Error per axis K2 u^2 + Koq u|u| + K3 u^3 + asymmetry |u|/2 for an input u; names of IEEE 1293.
+ */
 typedef struct imk_nonlinearity {
     imk_axes k2, koq;        /**< [1/unit] */
     imk_axes k3;             /**< [1/unit^2] */
     imk_axes asymmetry;      /**< difference of the scale factors for + and - input, relative [1] */
     imk_rows cross_products; /**< accelerometer: Kip, Kio, Kpo of input, pendulous, output axes
                                 [1/unit] */
-    double pendulous_axis[IMK_AXES_MAX][3]; /**< of cross_products, in the body frame, unit norm and
-                                               across the direction; zeros: by default, see
-                                               distort.h. The output axis is pendulous x input */
+    /** Pendulous axis for cross_products, in the body frame, unit norm, perpendicular to the
+     *  direction; zeros: default axis, see distort.h. The output axis is pendulous x input */
+    double pendulous_axis[IMK_AXES_MAX][3];
 } imk_nonlinearity;
 
 typedef enum imk_density {
@@ -89,8 +91,8 @@ typedef enum imk_density {
     IMK_DENSITY_ONE_SIDED
 } imk_density;
 
-/** Stochastic terms; see noise.h for each. Values are always two-sided inside; `density` only
- *  remembers how the file states them. */
+/** Stochastic terms; see noise.h for each. Values are always of two-sided densities; `density` only
+ *  records how the model file states them. */
 typedef struct imk_noise {
     imk_density density;
     imk_axes white;            /**< N: angle or velocity random walk [unit/sqrt(Hz)] */
@@ -124,7 +126,7 @@ typedef struct imk_triad {
     imk_nonlinearity nonlinearity;
     imk_rows misalignment;  /**< row i: response of axis i to the x, y, z components [rad]; the
                                diagonal of three axes is 0 */
-    imk_rows cross_axis;    /**< the same for what is not geometry [1] */
+    imk_rows cross_axis;    /**< the same for cross-coupling that is not geometric [1] */
     imk_rows g_sensitivity; /**< gyro only [rad/s/(m/s^2)] */
     imk_quadratic_rows g2_sensitivity; /**< gyro only [rad/s/(m/s^2)^2] */
     imk_rows lever_arm;                /**< accelerometer only: position of each sensor [m] */
@@ -141,19 +143,20 @@ typedef struct imk_triad {
 typedef struct imk_timing {
     imk_scalar rate_error; /**< relative error of the sample clock [1] */
     imk_scalar jitter;     /**< 1 sigma of a sample's time [s] */
-    imk_scalar skew;       /**< accelerometer samples lag the gyro's by [s] */
+    imk_scalar skew;       /**< delay of the accelerometer samples against the gyros' [s] */
     imk_scalar drops;      /**< fraction of samples lost, 0 … < 1 */
 } imk_timing;
 
 /** A 95 % interval of one parameter, as identification or calibration found it. */
 typedef struct imk_interval {
-    char key[48];          /**< dotted path in the triad: "noise.bias_instability" */
-    int instance;          /**< of a list term ("noise.gauss_markov.sigma"), from 0; else 0 */
-    imk_axes lower, upper; /**< in value[]; [unit of the parameter]; where a term is absent on an
-                                axis lower is 0 and upper the bound. sigma[] is not used */
+    char key[48]; /**< dotted path in the triad: "noise.bias_instability" */
+    int instance; /**< index in a list term ("noise.gauss_markov.sigma"), from 0; else 0 */
+    /** Ends of the interval, in value[] [unit of the parameter]; for an axis without the term,
+     *  lower is 0 and upper the bound. sigma[] is not used */
+    imk_axes lower, upper;
 } imk_interval;
 
-/** Where a model's numbers come from. Documents; never alters a simulation. */
+/** Where a model's numbers come from: documentation, which never alters a simulation. */
 typedef struct imk_evidence {
     char source[192]; /**< file or publication */
     char method[192];
@@ -164,12 +167,12 @@ typedef struct imk_evidence {
 
 enum { IMK_CORRELATED_MAX = 64 };
 
-/** The deterministic terms that have numbers of their own. Values are fixed for ever. */
+/** The deterministic terms whose numbers can be addressed one by one. Values are fixed for ever. */
 typedef enum imk_model_term {
     IMK_MODEL_BIAS = 0,
     IMK_MODEL_SCALE_FACTOR = 1,
     IMK_MODEL_MISALIGNMENT = 2, /**< element: column 0 … 2, not the axis itself in a triad */
-    IMK_MODEL_CROSS_AXIS = 3,   /**< likewise */
+    IMK_MODEL_CROSS_AXIS = 3,   /**< element: column 0 … 2, not the axis itself in a triad */
     IMK_MODEL_K2 = 4,
     IMK_MODEL_KOQ = 5,
     IMK_MODEL_K3 = 6,
@@ -192,13 +195,13 @@ typedef struct imk_model_parameter {
     uint8_t element;
 } imk_model_parameter;
 
-/** Correlations of what was estimated together; with the sigmas of the parameters they are its
- *  covariance. Documents, like imk_evidence; error analyses read it. */
+/** Correlations of parameters that were estimated together; with their sigmas they give the
+ *  covariance. Documentation, like imk_evidence, but error analyses use it. */
 typedef struct imk_correlation {
     int count; /**< 0 … IMK_CORRELATED_MAX; 0: none stated */
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
-    float value[IMK_CORRELATED_MAX * (IMK_CORRELATED_MAX - 1) / 2]; /**< of parameters i > j at
-                                                                        i (i - 1)/2 + j; -1 … 1 */
+    float value[IMK_CORRELATED_MAX * (IMK_CORRELATED_MAX - 1) /
+                2]; /**< correlation of parameters i > j at i (i - 1)/2 + j; -1 … 1 */
 } imk_correlation;
 
 /** The sensor model. Start from imk_model_default(), then change fields. About 53 kB. */
@@ -206,7 +209,8 @@ typedef struct imk_model {
     uint32_t cookie;
     char name[96];
     char description[256];
-    char residual_of[96]; /**< not "": what is left after compensating with that model */
+    char residual_of[96]; /**< not "": this model describes the errors left after compensation with
+                             the model named here */
     imk_triad gyro;       /**< [rad/s] */
     imk_triad accel;      /**< [m/s^2] */
     imk_timing timing;
@@ -214,36 +218,38 @@ typedef struct imk_model {
     imk_correlation correlation;
 } imk_model;
 
-/** A kind of sensor, and the index of arrays of two: gyros and accelerometers. */
+/** Kinds of sensors; also the index of arrays with one element for gyros and one for
+ *  accelerometers. */
 enum { IMK_GYRO = 0, IMK_ACCEL = 1 };
 
 /** The triad of a kind of sensor, IMK_GYRO or IMK_ACCEL. */
 IMK_API const imk_triad *imk_model_triad(const imk_model *model, int sensor);
-/** The same, to be changed. */
+/** The triad of a kind of sensor, to be changed. */
 IMK_API imk_triad *imk_model_triad_to_set(imk_model *model, int sensor);
 
 /** A perfect unit: orthogonal triads of gyros and accelerometers without any error. */
 IMK_API void imk_model_default(imk_model *model);
 
 /** Check every field: finite numbers, sizes, signs, unit directions, correlation times, polynomial
- *  ranges, terms that exclude each other or belong to the other kind of sensor. What lies beyond
- *  axis_count, or beyond the count of a list, is not looked at; nor is a sensor that is not
- *  present. A time, frequency or q may be 0 on an axis where the term's sigma or amplitude is 0.
+ *  ranges, terms that exclude each other or belong to the other kind of sensor. Elements beyond
+ *  axis_count or the count of a list are not checked, nor is a sensor that is not present. A time,
+ *  frequency or q may be 0 on an axis where the term's sigma or amplitude is 0.
  *  @param error  field is the dotted path ("gyro.noise.gauss_markov[1].correlation_time"), index
  *                the axis
  *  @return IMK_OK, IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT, _KEY_MISSING (neither
  *          gyro nor accel), _KEY_UNKNOWN or _KEY_DUPLICATE (key of an interval, parameter of the
- *          correlation), _ARGUMENT (a text without end) */
+ *          correlation), _ARGUMENT (a text without a terminating zero) */
 IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
 
 /** Switch terms off, to see the effect of the others alone.
  *
  *  A name is a key of the model file, a term ("angle_random_walk", "noise.gauss_markov"), a group
  *  ("bias", "noise"), or either of one sensor only ("gyro.bias.fixed", "gyro.fixed",
- *  "accel.noise"), or "timing" and its keys. What is no error stays always: directions, pendulous
- *  axes, sensitivity and zero offset.
- *  @param keep  true: only the terms named stay; false: only those go
- *  @return IMK_ERROR_NAME_UNKNOWN (error.found: the name, error.expected: the nearest) */
+ *  "accel.noise"), or "timing" and its keys. Fields that are not errors always stay: directions,
+ *  pendulous axes, sensitivity and zero offset.
+ *  @param keep  true: keep only the terms named; false: remove only the terms named
+ *  @return IMK_ERROR_NAME_UNKNOWN (error.found: the name, error.expected: the nearest known name)
+ */
 IMK_API imk_status imk_model_select(imk_model *model, bool keep, size_t count,
                                     const char *const *names, imk_error *error);
 
@@ -257,19 +263,19 @@ IMK_API bool imk_model_equal(const imk_model *a, const imk_model *b);
 typedef struct imk_device {
     const char *name;   /**< "ADIS16465", "tactical" */
     const char *grade;  /**< "industrial MEMS", "navigation", … */
-    const char *source; /**< where the figures are from */
+    const char *source; /**< source of the figures */
     const char *note;   /**< conversions made and contradictions found */
     bool is_preset;     /**< one of the five grades */
 } imk_device;
 
-/** Entries of the catalogue, presets included. */
+/** Number of entries in the catalogue, presets included. */
 IMK_API size_t imk_device_count(void);
 /** Entry `index`; pointers live for ever. NULL beyond the end. */
 IMK_API const imk_device *imk_device_get(size_t index);
 /** Entry by name, ASCII case and blanks ignored; NULL when there is none. */
 IMK_API const imk_device *imk_device_find(const char *name);
-/** Model of an entry: always valid. Floors of datasheets are converted to B by 1/0.664. `device`
- *  is one of imk_device_get() or imk_device_find(), not a copy. */
+/** Model of an entry; it is always valid. The Allan floor of a datasheet is divided by 0.664 to
+ *  give B. `device` must come from imk_device_get() or imk_device_find(), and not be a copy. */
 IMK_API void imk_device_model(const imk_device *device, imk_model *model);
 
 /* ---- grades ---------------------------------------------------------------------------------- */
@@ -286,34 +292,35 @@ typedef enum imk_grade {
 /** A row of the table of grades. */
 typedef struct imk_grade_row {
     const char *name;
-    const char *position_performance; /**< as the table prints it */
+    const char *position_performance; /**< claim about the position error, as the table prints it */
     const char *gyro_technology, *accel_technology;
     double gyro_bias_limit;  /**< upper end of the class [rad/s] */
     double accel_bias_limit; /**< [m/s^2] */
-    double position_limit;   /**< the claim as a number, the error after position_time [m];
-                                infinite: the claim has no upper end; NaN: there is none */
+    double position_limit;   /**< largest position error after position_time by that claim [m];
+                                infinite: the claim has no upper end; NaN: no claim */
     double position_time;    /**< [s]; NaN without a claim */
 } imk_grade_row;
 
 /** Row of a class; NULL for IMK_GRADE_NONE. */
 IMK_API const imk_grade_row *imk_grade_table(imk_grade grade);
 
-/** Class of a model by table look-up: the bias that stays after calibration, the root sum of
- * squares of repeatability and instability (and of the fixed bias's sigma), worst axis. */
+/** Class of a model by the table, from the bias that remains after calibration: on the worst axis,
+ *  the root sum of squares of repeatability, bias instability and the fixed bias's sigma. */
 typedef struct imk_grade_result {
     imk_grade gyro, accel, overall;
     double gyro_bias, accel_bias; /**< the figures compared; NaN when the model states none */
-    const char *limiting; /**< "gyro bias" or "accelerometer bias": what decides overall (the
-                             gyro's, of two equal classes); "" when neither is stated */
+    const char *limiting; /**< "gyro bias" or "accelerometer bias", whichever decides `overall` (the
+                             gyro's if both are of one class); "" when the model states neither */
 } imk_grade_result;
 /** Grade of a model; see imk_grade_result. */
 IMK_API imk_grade_result imk_grade_model(const imk_model *model);
 
-/** Class by performance: the best whose claim of position holds for these errors after an hour and
- * after a day [m]; not finite: no longer a position. Navigation needs 1 nmi after the hour,
- * strategic that and 1 nmi after the day; the claim of tactical, "> 10 nmi / h", has no upper end,
- * so it is the class of whatever still has a position after an hour. Below it the table claims
- * none: IMK_GRADE_NONE. */
+/** Class by performance: the best class whose claim holds for these position errors. Navigation
+ *  needs 1 nmi after an hour, strategic also 1 nmi after a day. The claim of tactical, "> 10 nmi /
+ *  h", has no upper end, so any finite error after an hour is tactical at least. Lower classes
+ *  claim no position: IMK_GRADE_NONE.
+ *  @param hour,day  position errors after an hour and after a day [m]; not finite: the position is
+ *                   lost */
 IMK_API imk_grade imk_grade_of_position(double hour, double day);
 
 IMK_END_C

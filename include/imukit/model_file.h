@@ -2,8 +2,8 @@
 /** @file model_file.h
  *  The model file: YAML 1.1 (or JSON), every number with its unit. Format: docs/model-file.md.
  *
- *  A document keeps the text of every value it was read from, so that reading and writing a model
- *  changes nothing, and changing one field changes that field's text only. */
+ *  A document keeps the text from which every value was read. So a model that is read and written
+ *  is unchanged, and changing one field changes only that field's text. */
 #ifndef IMUKIT_MODEL_FILE_H
 #define IMUKIT_MODEL_FILE_H
 
@@ -25,12 +25,12 @@ typedef struct imk_document imk_document;
 IMK_API imk_status imk_model_read(const char *path, imk_model *model, imk_document **document,
                                   imk_error *error);
 
-/** The same from memory. */
+/** Read a model file from a text in memory; see imk_model_read(). */
 IMK_API imk_status imk_model_parse(const char *text, size_t size, imk_model *model,
                                    imk_document **document, imk_error *error);
 
-/** Is it a model, or another script of imukit or a parameter file, by its name (.yaml, .yml,
- * .json), or else a model by its content? A pipe can be read after this. */
+/** True when a file is a script or parameter file by its name (.yaml, .yml, .json), or a model by
+ *  its content. A pipe can still be read afterwards. */
 IMK_API bool imk_model_recognise(const char *path);
 
 /** Free a document; NULL is allowed. */
@@ -44,22 +44,23 @@ IMK_API void imk_document_free(imk_document *document);
 IMK_API imk_status imk_model_write(const char *path, const imk_model *model,
                                    const imk_document *document, imk_error *error);
 
-/** The same into memory obtained from malloc(), which the caller frees: YAML, or JSON when the
- *  document is JSON. */
+/** Write a model file into memory obtained from malloc(), which the caller frees: YAML, or JSON
+ *  when the document is JSON. See imk_model_write(). */
 IMK_API imk_status imk_model_print(const imk_model *model, const imk_document *document,
                                    char **text, size_t *size, imk_error *error);
 
-/** The same as JSON, whatever the document is. */
+/** As imk_model_print(), but always JSON. */
 IMK_API imk_status imk_model_print_json(const imk_model *model, const imk_document *document,
                                         char **text, size_t *size, imk_error *error);
 
-/** The model of a catalogue name or of a model file, whichever `name` is (a file first). An unknown
- *  name that is no file is IMK_ERROR_NAME_UNKNOWN with the nearest names in error.expected. */
+/** Get a model by the name of a model file or, if there is no such file, of a catalogue entry.
+ *  @return errors of imk_model_read(); IMK_ERROR_NAME_UNKNOWN when it is neither (nearest names in
+ *          error.expected) */
 IMK_API imk_status imk_model_open(const char *name, imk_model *model, imk_document **document,
                                   imk_error *error);
 
-/** A value that is JSON already, an object: it is shown like the rest. Its keys are copied.
- *  @return false: it is none; null is added */
+/** Add a JSON object, given as text, to the data of a result. Its keys are copied.
+ *  @return false when the text is not a JSON object; null is then added */
 IMK_API bool imk_result_json(imk_result *result, const char *key, const char *text);
 
 IMK_END_C

@@ -1,23 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file navigate.h
- *  Strapdown mechanisation: from increments of angle and velocity to attitude, velocity and
- *  position, in Earth-fixed (ECEF) axes, so that no place on Earth is special.
+ *  Strapdown mechanisation: attitude, velocity and position from increments of angle and velocity.
+ *  It works in Earth-fixed (ECEF) axes, so that it has no singular place, such as a pole.
  *
  *  One step over dt, from increments of angle and of velocity:
- *    - the rotation vector of the body with its coning correction; attitude
- *      q_eb <- q(-w_ie dt) q_eb q(phi), exact for both rotations [SAVAGE1998a];
- *    - the velocity increment turned by the exact mean of the rotating frame over the step, with
- *      the sculling correction [SAVAGE1998b];
- *    - gravity and Coriolis in the middle of the step; position by the trapezium of velocities with
- *      the scrolling term.
- *  The corrections are those of rates and forces that are polynomials in time, through the last one
- *  to four samples (`samples`), whatever their lengths. With three, a parabola, errors are of
- *  fourth order in dt: on a drive of 10 minutes at 100 Hz with perfect sensors below a micrometre.
- *  Rotations faster than the samples resolve leave more: of coning with phase x per sample, two
- *  samples miss 0.20 x^2, three 0.32 x^2, four 0.29 x^4; one misses all.
+ *  - the rotation vector of the body with its coning correction; attitude q_eb <- q(-w_ie dt) q_eb
+ *    q(phi), exact for both rotations [SAVAGE1998a];
+ *  - the velocity increment turned by the exact mean of the rotating frame over the step, with the
+ *    sculling correction [SAVAGE1998b];
+ *  - gravity and Coriolis in the middle of the step; position by the trapezium of velocities with
+ *    the scrolling term.
+ *  The corrections assume that rates and forces are polynomials in time through the last one to
+ *  four samples (`samples`), which may differ in length. With three samples (a parabola) errors are
+ *  of fourth order in dt: below a micrometre on a drive of 10 minutes at 100 Hz with perfect
+ *  sensors. Rotations that the samples do not resolve cause larger errors: of coning with phase x
+ *  per sample, the part missed is 0.20 x^2 with two samples, 0.32 x^2 with three, 0.29 x^4 with
+ *  four, and all with one.
  *
- *  Gravity is imk_gravity_ecef(), as in motion.h. Only + - * / sqrt and elementary.h: the same bits
- *  everywhere. Equations: docs/theory/navigation.md. */
+ *  Gravity is imk_gravity_ecef(), as in motion.h. Only + - * / sqrt and elementary.h are used, so
+ *  the bits are the same everywhere. Equations: docs/theory/navigation.md. */
 #ifndef IMUKIT_NAVIGATE_H
 #define IMUKIT_NAVIGATE_H
 
@@ -29,7 +30,7 @@
 
 IMK_BEGIN_C
 
-/** Where a body is, how fast, and how it stands; Earth-fixed axes. */
+/** Position, velocity and attitude of a body, in Earth-fixed axes. */
 typedef struct imk_navigation_state {
     double time;             /**< [s] */
     imk_vector3 position;    /**< [m] */
@@ -40,7 +41,7 @@ typedef struct imk_navigation_state {
 /** State from geodetic place, north-east-down velocity and C_nb. */
 IMK_API imk_navigation_state imk_navigation_state_ned(double time, imk_geodetic place,
                                                       imk_vector3 velocity_ned, imk_matrix3 c_nb);
-/** The reverse; any output may be NULL. */
+/** Geodetic place, north-east-down velocity and C_nb of a state; any output may be NULL. */
 IMK_API void imk_navigation_state_to_ned(const imk_navigation_state *state, imk_geodetic *place,
                                          imk_vector3 *velocity_ned, imk_matrix3 *c_nb);
 /** Difference a - b of two positions in north-east-down axes at b [m], without loss of digits. */
@@ -52,7 +53,7 @@ enum {
     IMK_STRAPDOWN_CARRIED = 45 /**< numbers carried from sample to sample */
 };
 
-/** Where in a block a mechanisation is. Its fields are internal. */
+/** Progress of a mechanisation within a block. Its fields are internal. */
 typedef struct imk_strapdown_block {
     double step, last_step, step_before; /**< dt of this block; of the two samples before, when they
                                               are not of this length [s] */
@@ -60,48 +61,49 @@ typedef struct imk_strapdown_block {
     uint32_t known;                      /**< samples before the next, 0 … 2 */
 } imk_strapdown_block;
 
-/** A mechanisation under way. Plain data: a copy goes on from the same point. Start with
+/** A mechanisation in progress. Plain data: a copy continues from the same point. Start with
  *  imk_strapdown_start(), then set hold_height or samples if wanted. */
 typedef struct imk_strapdown {
     imk_navigation_state state;
     imk_vector3 last_angle, last_velocity; /**< increments of the sample before */
     bool has_last;
-    bool hold_height; /**< the vertical channel slaved, as to a barometer: after each step the
-                           height is `height` and the upward velocity `climb` */
-    double height;    /**< above the ellipsoid [m]; at the start that of the start */
-    double climb;     /**< [m/s]; at the start 0. A moving unit's are set before each step */
-    int samples; /**< 1 … 4 that coning, sculling and scrolling are computed from. Rate and force
-                      over the last one are 1: constant (exact for such inputs); 2: the straight
-                      line through two; 3: the parabola through three, at the start; 4: the cubic */
-    imk_vector3 position_low;    /**< what rounding has taken from the position */
-    imk_quaternion attitude_low; /**< and from the attitude */
+    bool hold_height; /**< true: the vertical channel is given, as by a barometer: after each step
+                         the height is set to `height` and the upward velocity to `climb` */
+    double height;    /**< above the ellipsoid [m]; initially that of the start */
+    double climb; /**< [m/s]; initially 0. If the unit moves vertically, set height and climb before
+                     each step */
+    int samples; /**< number of samples, 1 … 4, for coning, sculling and scrolling. Rate and force
+                    over the last one are 1: constant (exact for such inputs); 2: the straight line
+                    through two; 3: the parabola through three, at the start; 4: the cubic */
+    imk_vector3 position_low;    /**< rounding error of the position */
+    imk_quaternion attitude_low; /**< rounding error of the attitude */
     double last_step;            /**< dt of the sample before [s], when has_last */
-    double step_before[2];       /**< and of the two before that, as far as known */
-    int differences;             /**< how many of these the sample before has, 0 … 2 */
+    double step_before[2];       /**< dt of the two samples before that, as far as known [s] */
+    int differences; /**< how many of the differences below the sample before has, 0 … 2 */
     imk_vector3 angle_difference[2], velocity_difference[2]; /**< its divided differences of rate
                                                                   and force, of first and second
                                                                   order: half the slope, a sixth of
                                                                   the bend */
-    /** What imk_strapdown_run() carries from call to call, the state it left, and hold_height as it
-     *  was. Internal. */
+    /** Internal to imk_strapdown_run(): values carried from call to call, the state at the end of
+     *  the last call, and hold_height then. */
     imk_strapdown_block block;
     double carried[IMK_STRAPDOWN_CARRIED];
     imk_navigation_state reported;
     bool held;
 } imk_strapdown;
 
-/** Start at a state; the attitude is made a unit quaternion. A body that is moving already may be
- *  given the sample before the start: last_angle, last_velocity, last_step and has_last. */
+/** Start at a state; the attitude is normalised. For a body that is already moving, you may set the
+ *  sample before the start: last_angle, last_velocity, last_step and has_last. */
 IMK_API imk_strapdown imk_strapdown_start(const imk_navigation_state *state);
 
-/** One sample: increments of angle [rad] and velocity [m/s] over dt > 0 [s], in body axes. */
+/** Take one sample: increments of angle [rad] and velocity [m/s] over dt > 0 [s], in body axes. */
 IMK_API void imk_strapdown_step(imk_strapdown *strapdown, double dt, imk_vector3 angle,
                                 imk_vector3 velocity);
 
-/** The increments between two states for which a step with constant rate and force over the sample
- *  (`samples` 1) leads from one to the other in attitude and velocity: the exact inverse of that
- *  step, to rounding, for steps up to 10 s and turns below half a revolution. dt is the difference
- *  of their times. The position of `to` is not used. */
+/** Increments of the sample that leads from one state to another in attitude and velocity, if rate
+ *  and force are constant over it: the exact inverse of imk_strapdown_step() with `samples` 1, to
+ *  rounding, for steps up to 10 s and turns below half a revolution. dt is the difference of the
+ *  times. The position of `to` is not used. */
 IMK_API void imk_strapdown_invert(const imk_navigation_state *from, const imk_navigation_state *to,
                                   imk_vector3 *angle, imk_vector3 *velocity);
 
@@ -115,13 +117,13 @@ IMK_API void imk_strapdown_invert(const imk_navigation_state *from, const imk_na
  * acts once per block. Errors are of fourth order in a pair and of third in a block: on the drive
  * of 10 minutes at 100 Hz some micrometres, and 1e-6 of what the sensors' errors do. */
 
-/** `count` samples of equal length at once, in blocks; where `samples` is not 3, as so many
+/** Take `count` samples of equal length at once, in blocks; if `samples` is not 3, by
  *  imk_strapdown_step(). On return `state` is that after the last sample. The bits do not depend on
- *  how samples are divided among calls; but where the state has been changed in between, by a step
- *  or a correction, or hold_height, or dt, a new block begins.
- *  @param channel  means over the samples of angular rate x, y, z [rad/s] and specific force x, y,
- *                  z [m/s^2]: six arrays of `count`
- *  @param height,climb  of the end of each sample, with hold_height; NULL: they stay */
+ *  how samples are divided among calls, unless state, hold_height or dt are changed in between,
+ *  because a new block then begins.
+ *  @param channel       means over the samples of angular rate x, y, z [rad/s] and specific force
+ *                       x, y, z [m/s^2]: six arrays of `count`
+ *  @param height,climb  at the end of each sample, with hold_height; NULL: they do not change */
 IMK_API void imk_strapdown_run(imk_strapdown *strapdown, size_t count, double dt,
                                const double *const channel[6], const double *height,
                                const double *climb);
@@ -131,31 +133,30 @@ IMK_API void imk_strapdown_run(imk_strapdown *strapdown, size_t count, double dt
 
 enum { IMK_STRAPDOWN_LANES = 8 };
 
-/** Eight mechanisations that take their samples together, each its own. Plain data; a copy goes on
- *  from the same point. Its fields are internal. */
+/** Eight mechanisations that take samples at the same time, each with samples of its own. Plain
+ *  data; a copy continues from the same point. Its fields are internal. */
 typedef struct imk_strapdown_lanes {
     double carried[IMK_STRAPDOWN_CARRIED][IMK_STRAPDOWN_LANES];
     imk_strapdown_block block;
     bool hold_height;
 } imk_strapdown_lanes;
 
-/** Start one lane (0 … 7) at a state, its attitude made a unit quaternion, with no sample before.
- *  All are to be started before samples are given, spare ones at any state; later on, again all.
- *  hold_height is common to all; the height held is that of the state, the climb 0. */
+/** Start one lane (0 … 7) at a state; the attitude is normalised, and no sample precedes. Start all
+ *  lanes before samples are given, unused ones at any state; to restart one later, restart all.
+ *  hold_height is common to all lanes; the height held is that of the state, the climb is 0. */
 IMK_API void imk_strapdown_lanes_start(imk_strapdown_lanes *lanes, size_t lane,
                                        const imk_navigation_state *state, bool hold_height);
 /** State of a lane. */
 IMK_API imk_navigation_state imk_strapdown_lanes_state(const imk_strapdown_lanes *lanes,
                                                        size_t lane);
-/** `count` samples of equal length in every lane: the bits imk_strapdown_run() has from the same
- *  state with the same samples, whatever those of other lanes, the kernel, and how `count` is
- *  divided (but for the sign of NaN, which one that is lost becomes). A change of dt begins a new
- *  block. On AVX-512 some 3 ns per lane and sample, at 80 Hz or more; slower samples make smaller
- *  blocks.
- *  @param kernel   of imk_random_seeded(), or IMK_KERNEL_SCALAR
- *  @param channel  [lane][rate x, y, z, force x, y, z]: as in imk_strapdown_run(); lanes may share
- *                  arrays
- *  @param height,climb  true ones, common to all lanes, as there */
+/** Take `count` samples of equal length in every lane. Each lane has the same bits as
+ *  imk_strapdown_run() from the same state and samples, for every kernel and division of `count`
+ *  (except the sign of NaN in a lane whose state is lost). A change of dt begins a new block. On
+ *  AVX-512 some 3 ns per lane and sample at 80 Hz or more; slower samples make smaller blocks.
+ *  @param kernel        of imk_random_seeded(), or IMK_KERNEL_SCALAR
+ *  @param channel       [lane][rate x, y, z, force x, y, z]: as in imk_strapdown_run(); lanes may
+ *                       share arrays
+ *  @param height,climb  as in imk_strapdown_run(), common to all lanes */
 IMK_API void imk_strapdown_lanes_run(imk_strapdown_lanes *lanes, imk_kernel kernel, size_t count,
                                      double dt, const double *const channel[][6],
                                      const double *height, const double *climb);

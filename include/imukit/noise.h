@@ -2,27 +2,28 @@
 /** @file noise.h
  *  The stochastic terms: for each its Allan variance, its spectrum, and its generator.
  *
- *  Three views of a term are kept apart, because mixing them up is the commonest error here:
- *   - `imk_<term>_allan_variance(…, tau)`: the continuous-time closed form [IEEE952];
- *   - `imk_<term>_sampled_allan_variance(…, dt, n)`: exact for the sequence the generator makes, at
- *     tau = n dt, n >= 1;
- *   - `imk_<term>_sampled_spectrum(…, dt, f)`: two-sided power spectral density [unit^2/Hz] of that
- *     sequence, 0 < f <= 1/(2 dt); the integral over (-1/2dt, 1/2dt) is its variance. For terms
- *     that are not stationary it is the spectrum seen by a cosine transform of the sequence.
+ *  Three views of a term are kept apart, because confusing them is the most common error:
+ *  - `imk_<term>_allan_variance(…, tau)`: the continuous-time closed form [IEEE952];
+ *  - `imk_<term>_sampled_allan_variance(…, dt, n)`: exact for the sequence that the generator
+ *    makes, at tau = n dt, n >= 1;
+ *  - `imk_<term>_sampled_spectrum(…, dt, f)`: two-sided power spectral density [unit^2/Hz] of that
+ *    sequence, 0 < f <= 1/(2 dt); the integral over (-1/2dt, 1/2dt) is its variance. For terms that
+ *    are not stationary it is the spectrum seen by a cosine transform of the sequence.
  *
- *  Generators add `count` samples to `out`. Sample k of a term depends on the random source, its
- *  stream and k only: blocks may have any size, but must be asked for in order. Their state is
- *  plain data: copying it forks the sequence. All use + - * / sqrt and elementary.h only.
+ *  Generators add `count` samples to `out`. Sample k of a term depends only on the random source,
+ *  its stream and k. Blocks may have any size but must be generated in order. The state of a
+ *  generator is plain data; a copy of it continues the same sequence independently. All generators
+ *  use only + - * / sqrt and elementary.h.
  *
- *  Which normal drives which sample is part of the contract. Recursions run over 16 segments of a
- *  block of 512 samples at a time, so white noise, random walk, Gauss-Markov and the two fastest
- *  flicker stages drive sample 512 b + 32 s + i (s < 16, i < 32) by normal 512 b + 16 i + s; the
- *  ARMA sequences drive sample k by normal k. Normals 2^63 and up of the same stream draw
+ *  It is fixed for ever which normal random number drives which sample. Recursions run over 16
+ *  segments of a block of 512 samples at a time, so white noise, random walk, Gauss-Markov and the
+ *  two fastest flicker stages drive sample 512 b + 32 s + i (s < 16, i < 32) by normal 512 b + 16 i
+ *  + s; the ARMA sequences drive sample k by normal k. Normals 2^63 and up of the same stream draw
  *  stationary starting values, words 3 * 2^62 and up starting phases.
  *
  *  Every `_start` takes dt [s] > 0 and returns IMK_ERROR_NOT_FINITE for a parameter that is not
- *  finite and IMK_ERROR_RANGE for one outside its range; the state is untouched then. The formulas
- *  do not check: outside the range their value means nothing. */
+ *  finite and IMK_ERROR_RANGE for one outside its range; the state is then unchanged. The formulas
+ *  do not check their arguments: outside the range their value is meaningless. */
 #ifndef IMUKIT_NOISE_H
 #define IMUKIT_NOISE_H
 
@@ -44,8 +45,9 @@ enum {
     IMK_TERM_JITTER = 9,
     IMK_TERM_DROPS = 10,
     IMK_TERM_PHYSICS = 11,
-    IMK_TERM_RESIDUAL = 12, /**< what calibration left of the known values (drift.h) */
-    IMK_TERM_INITIAL = 13   /**< errors at the start of a navigation (drift.h) */
+    IMK_TERM_RESIDUAL =
+        12,               /**< errors of the known values that remain after calibration (drift.h) */
+    IMK_TERM_INITIAL = 13 /**< errors at the start of a navigation (drift.h) */
 };
 
 enum {
@@ -53,24 +55,24 @@ enum {
     IMK_NOISE_BLOCK = 512 /**< samples the generators make at a time: 16 segments */
 };
 
-/** Samples made and not yet handed out. */
+/** A buffer of samples generated but not yet given out. */
 typedef struct imk_noise_block {
-    size_t used; /**< of the block; IMK_NOISE_BLOCK: all */
+    size_t used; /**< samples of the block already given out; IMK_NOISE_BLOCK: all */
     double sample[IMK_NOISE_BLOCK];
 } imk_noise_block;
 
 /* ---- white noise: N [unit/sqrt(Hz)], two-sided density N^2 --------------------------------- */
 
-/** N^2/tau */
+/** N^2/tau [unit^2] of white noise of density N [unit/sqrt(Hz)]; tau [s]. */
 IMK_API double imk_white_allan_variance(double density, double tau);
-/** The same, the samples being means over dt. */
+/** N^2/tau at tau = n dt, for samples that are means over dt [s]. */
 IMK_API double imk_white_sampled_allan_variance(double density, double dt, size_t n);
-/** N^2 at every frequency. */
+/** N^2 at every frequency [unit^2/Hz]. */
 IMK_API double imk_white_sampled_spectrum(double density, double dt, double frequency);
 
 typedef struct imk_white_state {
     imk_random random;
-    uint64_t stream, next; /**< next normal */
+    uint64_t stream, next; /**< next: index of the next normal random number */
     double sigma;          /**< N/sqrt(dt) */
     imk_noise_block block;
 } imk_white_state;
@@ -82,9 +84,9 @@ IMK_API void imk_white_add(imk_white_state *state, size_t count, double *out);
 
 /* ---- ARMA sequences -------------------------------------------------------------------------
  *
- *  y[k] = a1 y[k-1] + a2 y[k-2] + b0 e[k] + b1 e[k-1] + b2 e[k-2],  e standard normal: what a
- * linear filter or resonance of first or second order becomes when it is sampled. The poles are
- * kept beside a1 and a2 because these lose them when they are close to 1. */
+ *  y[k] = a1 y[k-1] + a2 y[k-2] + b0 e[k] + b1 e[k-1] + b2 e[k-2], e standard normal: the sampled
+ *  form of a linear filter or resonance of first or second order. The poles are kept beside a1 and
+ *  a2, which do not determine them accurately when they are close to 1. */
 
 typedef struct imk_arma {
     double dt;
@@ -96,8 +98,8 @@ typedef struct imk_arma {
     double decrement;   /**< variance minus the covariance of neighbours, without cancellation */
 } imk_arma;
 
-/** Two-sided spectrum dt |B/A|^2 [unit^2/Hz], 0 <= f <= 1/(2 dt): full relative accuracy also in a
- *  narrow resonance. About 40 ns. */
+/** Two-sided spectrum dt |B/A|^2 [unit^2/Hz] of an ARMA sequence, 0 <= f <= 1/(2 dt), accurate even
+ *  in a narrow resonance. Takes about 40 ns. */
 IMK_API double imk_arma_spectrum(const imk_arma *arma, double frequency);
 
 typedef struct imk_arma_state {
@@ -108,8 +110,8 @@ typedef struct imk_arma_state {
     imk_noise_block block;
 } imk_arma_state;
 
-/** Stationary from sample 0: the joint distribution of the two samples and two innovations before
- *  it is drawn. */
+/** Start a sequence that is stationary from sample 0: the two samples and two innovations before it
+ *  are drawn from their joint distribution. */
 IMK_API imk_status imk_arma_start(imk_arma_state *state, const imk_arma *arma, imk_random random,
                                   uint64_t stream);
 /** Add the next `count` samples. */
@@ -122,23 +124,26 @@ IMK_API void imk_arma_add(imk_arma_state *state, size_t count, double *out);
  *  an ARMA(2,2) sequence (first order: ARMA(1,1)), driven by one normal per sample. The mean of n
  *  samples is the mean over n dt, so its Allan variance does not depend on dt. */
 
-/** The filter: -3 dB bandwidth [Hz]; damping > 0 for second order, 0 for first order. */
+/** An output filter of first or second order. */
 typedef struct imk_low_pass {
-    double bandwidth; /**< [Hz] of the -3 dB point; 0: no filter */
-    double damping;   /**< second order's damping ratio, 0.05 … 50; 0: first order */
+    double bandwidth; /**< -3 dB bandwidth [Hz]; 0: no filter */
+    double damping;   /**< damping ratio of a second-order filter, 0.05 … 50; 0: first order */
 } imk_low_pass;
 
-/** About 5 us. Relative error < 1e-9 for bandwidth * dt > 1e-5. */
+/** Allan variance at tau = n dt of the filtered noise. Relative error < 1e-9 for bandwidth * dt >
+ *  1e-5. Takes about 5 us. */
 IMK_API double imk_filtered_white_sampled_allan_variance(double density, imk_low_pass filter,
                                                          double dt, size_t n);
-/** Designs the sequence each time (about 5 us): for many frequencies call
- *  imk_filtered_white_arma() once and imk_arma_spectrum() for each. */
+/** Spectrum of the filtered noise. Every call designs the sequence anew (about 5 us); for many
+ *  frequencies call imk_filtered_white_arma() once and imk_arma_spectrum() for each. */
 IMK_API double imk_filtered_white_sampled_spectrum(double density, imk_low_pass filter, double dt,
                                                    double frequency);
-/** The sequence: IMK_ERROR_RANGE unless 1e-6 <= bandwidth * dt <= 1e6 or bandwidth is 0. */
+/** Design the ARMA sequence of the filtered noise. @return IMK_ERROR_RANGE unless 1e-6 <= bandwidth
+ *  * dt <= 1e6 or bandwidth is 0 */
 IMK_API imk_status imk_filtered_white_arma(double density, imk_low_pass filter, double dt,
                                            imk_arma *arma);
-/** Stationary from sample 0; continue with imk_arma_add(). @return as imk_filtered_white_arma() */
+/** Start the filtered noise, stationary from sample 0; get samples by imk_arma_add(). @return
+ *  errors of imk_filtered_white_arma() */
 IMK_API imk_status imk_filtered_white_start(imk_arma_state *state, double density,
                                             imk_low_pass filter, double dt, imk_random random,
                                             uint64_t stream);
@@ -153,7 +158,7 @@ IMK_API imk_status imk_filtered_white_start(imk_arma_state *state, double densit
  *  below 0.1/dt. Runs may be 2e9 samples long; the number of stages does not depend on the run.
  *  Sample 0 has the variance of all stages, about (2.7 B)^2. */
 
-/** The flat part, (2 ln 2/pi) B^2. */
+/** The flat part of the Allan variance, (2 ln 2/pi) B^2 [unit^2]; the same at every tau. */
 IMK_API double imk_flicker_allan_variance(double instability, double tau);
 /** Exact for the generated stages. */
 IMK_API double imk_flicker_sampled_allan_variance(double instability, double dt, size_t n);
@@ -167,11 +172,11 @@ IMK_API double imk_flicker_cosine_spectrum(double instability, double dt, size_t
 enum { IMK_FLICKER_STAGES = 16, IMK_FLICKER_BUFFER = 64 };
 typedef struct imk_flicker_state {
     imk_random random;
-    uint64_t stream;   /**< of stage 0; stage j has this number plus j in the instance bits */
-    uint64_t next;     /**< next sample */
-    uint64_t phase;    /**< stages j >= 2 change at samples k where 4^(j-1) divides k + phase */
-    double sigma;      /**< of every stage but the fastest */
-    double innovation; /**< of stages 1 and slower, of unit variance */
+    uint64_t stream; /**< stream of stage 0; stage j uses this number plus j in the instance bits */
+    uint64_t next;   /**< next sample */
+    uint64_t phase;  /**< stages j >= 2 change at samples k where 4^(j-1) divides k + phase */
+    double sigma;    /**< of every stage but the fastest */
+    double innovation;                    /**< of stages 1 and slower, of unit variance */
     double fast_innovation;               /**< of stage 0 */
     double power[2][IMK_NOISE_STEPS + 1]; /**< phi^i of stages 0 and 1 */
     double fast[2];                       /**< stages 0 and 1, in units of their innovation */
@@ -181,7 +186,8 @@ typedef struct imk_flicker_state {
     double ahead[IMK_FLICKER_STAGES][IMK_FLICKER_BUFFER]; /**< innovations of stages 3 … */
     imk_noise_block block;
 } imk_flicker_state;
-/** Takes the streams of 16 instances: `stream` and the next 15. */
+/** Start flicker noise of instability B [unit]. It uses the streams of 16 instances: `stream` and
+ *  the next 15. */
 IMK_API imk_status imk_flicker_start(imk_flicker_state *state, double instability, double dt,
                                      imk_random random, uint64_t stream);
 /** Add the next `count` samples. */
@@ -189,9 +195,9 @@ IMK_API void imk_flicker_add(imk_flicker_state *state, size_t count, double *out
 
 /* ---- random walk of the output: K [unit/sqrt(s)] -------------------------------------------- */
 
-/** K^2 tau/3 */
+/** K^2 tau/3 [unit^2] of a random walk K [unit/sqrt(s)]. */
 IMK_API double imk_random_walk_allan_variance(double k, double tau);
-/** K^2 tau/3 (1 + 1/(2 n^2)): the walk is point-sampled. */
+/** K^2 tau/3 (1 + 1/(2 n^2)) at tau = n dt, as the walk is point-sampled. */
 IMK_API double imk_random_walk_sampled_allan_variance(double k, double dt, size_t n);
 /** K^2 dt^2/(4 sin^2(pi f dt)). */
 IMK_API double imk_random_walk_sampled_spectrum(double k, double dt, double frequency);
@@ -203,7 +209,7 @@ typedef struct imk_random_walk_state {
     double step;  /**< K sqrt(dt) [unit] */
     imk_noise_block block;
 } imk_random_walk_state;
-/** Starts at 0: sample 0 is 0. */
+/** Start a random walk at 0: sample 0 is 0. */
 IMK_API imk_status imk_random_walk_start(imk_random_walk_state *state, double k, double dt,
                                          imk_random random, uint64_t stream);
 /** Add the next `count` samples. */
@@ -211,9 +217,9 @@ IMK_API void imk_random_walk_add(imk_random_walk_state *state, size_t count, dou
 
 /* ---- ramp: R [unit/s], deterministic -------------------------------------------------------- */
 
-/** R^2 tau^2/2 */
+/** R^2 tau^2/2 [unit^2] of a ramp of slope R [unit/s]. */
 IMK_API double imk_ramp_allan_variance(double slope, double tau);
-/** Add slope * dt * (first + i) to out[i]. */
+/** Add slope * dt * (first + i) to out[i]; `first` is the number of the first sample. */
 IMK_API void imk_ramp_add(double slope, double dt, uint64_t first, size_t count, double *out);
 
 /* ---- first-order Gauss-Markov --------------------------------------------------------------- */
@@ -225,13 +231,13 @@ typedef struct imk_gauss_markov {
 
 /** 2 sigma^2 T/tau [1 - T/(2 tau) (3 - 4 e^(-tau/T) + e^(-2 tau/T))], by series for short tau. */
 IMK_API double imk_gauss_markov_allan_variance(imk_gauss_markov process, double tau);
-/** Of the point-sampled process, an AR(1) sequence. */
+/** Allan variance at tau = n dt of the point-sampled process, an AR(1) sequence. */
 IMK_API double imk_gauss_markov_sampled_allan_variance(imk_gauss_markov process, double dt,
                                                        size_t n);
 /** Of the point-sampled process. */
 IMK_API double imk_gauss_markov_sampled_spectrum(imk_gauss_markov process, double dt,
                                                  double frequency);
-/** As imk_flicker_cosine_spectrum(); exact. */
+/** As imk_flicker_cosine_spectrum(), for a Gauss-Markov process; exact. */
 IMK_API double imk_gauss_markov_cosine_spectrum(imk_gauss_markov process, double dt, size_t n,
                                                 size_t k);
 
@@ -263,11 +269,12 @@ IMK_API double imk_sinusoid_sampled_allan_variance(imk_sinusoid sinusoid, double
 
 typedef struct imk_sinusoid_state {
     double amplitude;
-    uint64_t phase, step; /**< of the next sample, and per sample, in 2^-64 cycles */
+    uint64_t phase, step; /**< phase of the next sample, and its step per sample [2^-64 cycles] */
     double turn_sine[IMK_NOISE_STEPS], turn_cosine[IMK_NOISE_STEPS]; /**< of i steps */
     imk_noise_block block;
 } imk_sinusoid_state;
-/** The phase is counted in whole 2^-64 cycles: it neither drifts nor repeats. */
+/** Start a sinusoid at a random phase. The phase is counted in whole 2^-64 cycles, so it neither
+ *  drifts nor repeats. */
 IMK_API imk_status imk_sinusoid_start(imk_sinusoid_state *state, imk_sinusoid sinusoid, double dt,
                                       imk_random random, uint64_t stream);
 /** Add the next `count` samples. */
@@ -281,13 +288,15 @@ typedef struct imk_resonance {
     double q;         /**< quality factor, > 0.5, at most 1e6 */
 } imk_resonance;
 
-/** Of the continuous process. */
+/** Allan variance of the continuous process. */
 IMK_API double imk_resonance_allan_variance(imk_resonance resonance, double tau);
 /** Of the point-sampled process. */
 IMK_API double imk_resonance_sampled_allan_variance(imk_resonance resonance, double dt, size_t n);
-/** Of the point-sampled process; designs it each time, see imk_resonance_arma(). */
+/** Spectrum of the point-sampled process. Every call designs the sequence anew; for many
+ *  frequencies see imk_resonance_arma(). */
 IMK_API double imk_resonance_sampled_spectrum(imk_resonance resonance, double dt, double frequency);
-/** The exact ARMA(2,1); IMK_ERROR_RANGE unless 1e-6 <= frequency * dt <= 1e6. */
+/** Design the ARMA(2,1) sequence that describes the resonance exactly. @return IMK_ERROR_RANGE
+ *  unless 1e-6 <= frequency * dt <= 1e6 */
 IMK_API imk_status imk_resonance_arma(imk_resonance resonance, double dt, imk_arma *arma);
 /** Stationary from sample 0; continue with imk_arma_add(). */
 IMK_API imk_status imk_resonance_start(imk_arma_state *state, imk_resonance resonance, double dt,
@@ -295,7 +304,7 @@ IMK_API imk_status imk_resonance_start(imk_arma_state *state, imk_resonance reso
 
 /* ---- quantization of the integrated output -------------------------------------------------- */
 
-/** 3 Q^2/tau^2, for Q = LSB/sqrt(12) [unit s] and a busy input. */
+/** 3 Q^2/tau^2 [unit^2], for Q = LSB/sqrt(12) [unit s] and an input that changes by many LSB. */
 IMK_API double imk_quantization_allan_variance(double q, double tau);
 /** 3 Q^2/tau^2, exact for independent rounding errors of the integral. */
 IMK_API double imk_quantization_sampled_allan_variance(double q, double dt, size_t n);
@@ -306,14 +315,14 @@ typedef struct imk_quantization_state {
     double lsb; /**< of the integral: Q sqrt(12) [unit s] */
     double dt;
     double residual;     /**< of the integral at the last segment's end; |residual| <= lsb/2 */
-    double sum, counted; /**< since then: integral without the residual, and steps put out */
+    double sum, counted; /**< since that end: integral without the residual, and steps given out */
     uint64_t next;       /**< next sample */
 } imk_quantization_state;
-/** The residual starts uniform, drawn from the stream. */
+/** Start quantization; the first residual is drawn uniformly from the stream. */
 IMK_API imk_status imk_quantization_start(imk_quantization_state *state, double q, double dt,
                                           imk_random random, uint64_t stream);
-/** Replace the rates in `out` by quantised increments divided by dt; the residual is carried, so no
- *  rate is ever lost. Applies to the sum of everything else, last. */
+/** Replace the rates in `out` by quantised increments divided by dt; the residual is carried over,
+ *  so no rate is ever lost. Apply it last, to the sum of all other terms. */
 IMK_API void imk_quantization_apply(imk_quantization_state *state, size_t count, double *out);
 
 IMK_END_C

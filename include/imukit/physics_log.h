@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file physics_log.h
- *  The jobs of `imukit physics`: an instrument from first principles (instrument.h) run into a
- *  record, looked into, and measured as in a laboratory. */
+ *  The jobs of `imukit physics`: they simulate an instrument from first principles (instrument.h)
+ *  into a record, show its inner signals, and measure it as in a laboratory. */
 #ifndef IMUKIT_PHYSICS_LOG_H
 #define IMUKIT_PHYSICS_LOG_H
 
@@ -12,14 +12,16 @@
 
 IMK_BEGIN_C
 
-/** What the instrument is exposed to, against time. */
+/** What the instrument is exposed to, as a function of time. */
 typedef struct imk_physics_input {
-    imk_exposure exposure;   /**< angular rate and specific force: the amplitudes of a sine */
-    double frequency;        /**< [Hz] of the sine; 0: none, they are steady */
+    /** With a frequency, angular rate and specific force are amplitudes of a sine */
+    imk_exposure exposure;
+    double frequency;        /**< frequency of the sine [Hz]; 0: rate and force are constant */
     double temperature_rate; /**< [K/s] */
 } imk_physics_input;
 
-/** Exposure of sample `index` at this rate, the mean over it. */
+/** Exposure of the instrument in sample `index`, as the mean over the sample.
+ *  @param rate  sampling rate [Hz] */
 IMK_API imk_exposure imk_physics_input_at(const imk_physics_input *input, double rate,
                                           uint64_t index);
 
@@ -28,45 +30,47 @@ typedef struct imk_physics_log_settings {
     uint32_t cookie;
     const imk_instrument *instrument;
     const void *design;
-    imk_physics_settings physics; /**< its rate is that of the rows */
+    imk_physics_settings physics; /**< physics.rate is the rate of the rows */
     imk_physics_input input;
-    double duration;                 /**< [s] */
-    double signal_rate;              /**< of the rows of signals [Hz]; 0: that of the others */
-    double view_duration, view_rate; /**< of views [s], [Hz]; 0: their own */
-    bool view_input;                 /**< views are of this input; false: of their own */
+    double duration;    /**< length of the run [s] */
+    double signal_rate; /**< rate of the rows of signals [Hz]; 0: as the rows of outputs */
+    /** Length and sampling rate of views [s], [Hz]; 0: as each view states */
+    double view_duration, view_rate;
+    bool view_input; /**< true: views use `input`; false: the input that each view states */
 } imk_physics_log_settings;
 
-/** At rest at 20 degrees, 100 Hz. */
+/** At rest at 20 degC, 100 Hz. Instrument, design and duration must be set. */
 IMK_API imk_physics_log_settings imk_physics_log_default(void);
-/** Rows of so many hertz in the duration. */
+/** Number of rows in settings->duration at a rate [Hz]. */
 IMK_API uint64_t imk_physics_rows(const imk_physics_log_settings *settings, double rate);
 
 enum { IMK_PHYSICS_CURVE_POINTS = 4000 };
 
-/** A run: statistics of the outputs, and means for a picture. */
+/** Result of a run: statistics of the outputs, and means for a figure. */
 typedef struct imk_physics_log {
     imk_physics_log_settings settings;
-    imk_model model;          /**< reduced, one axis */
-    uint64_t samples, stride; /**< samples to a point of the picture */
+    imk_model model;          /**< error model of the design, one axis */
+    uint64_t samples, stride; /**< number of samples; samples per point of the figure */
     double mean[IMK_INSTRUMENT_OUTPUTS_MAX];
-    double deviation[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< NaN: of one sample */
-    double last[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< at the end: mean of the last 1 % of the samples */
+    double deviation[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< standard deviation; NaN for one sample */
+    double last[IMK_INSTRUMENT_OUTPUTS_MAX];      /**< mean of the last 1 % of the samples */
     size_t points;
-    double *time; /**< [s]; IMK_PHYSICS_CURVE_POINTS + 1, as all of these */
+    double *time; /**< of each point [s]; this and the next two hold IMK_PHYSICS_CURVE_POINTS + 1
+                     values */
     double *curve[IMK_INSTRUMENT_OUTPUTS_MAX]; /**< in imk_physics_output_unit() */
-    double *input;                             /**< in that of output 0 */
+    double *input;                             /**< in the unit of output 0 */
     imk_findings findings;
-    imk_allocator allocator; /**< of this */
+    imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_log;
 
-/** Run an instrument for the duration. Row k is at the time (k + 1)/rate: the end of the sample
- *  whose mean it is. Signals of another rate have a run of their own.
- *  @param outputs,signals  where rows go; NULL: nowhere
- *  @param job     NULL: as if all zeros
- *  @param result  imk_physics_log_free() it, also on failure, where it holds the findings; NULL
- *                 when even its memory failed
+/** Run an instrument for the duration. Row k is the mean over a sample that ends at its time (k +
+ *  1)/rate. Signals at another rate are simulated in a second run.
+ *  @param outputs,signals  receive the rows of outputs and of signals; NULL: not wanted
+ *  @param job              NULL: one thread, no progress, the memory of the C library
+ *  @param result           free it with imk_physics_log_free(), also after a failure, because it
+ *                          then holds the findings; NULL if there was no memory for it
  *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
- *          "duration": no sample fits); and with a finding, IMK_ERROR_NOT_FINITE
+ *          "duration": no sample fits); with a finding that says why: IMK_ERROR_NOT_FINITE
  *          ("output_not_finite") and what the sinks return ("not_written") */
 IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                        const imk_record_sink *outputs,
@@ -75,24 +79,25 @@ IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_physics_log_free(imk_physics_log *result);
 
-/** Unit to show an output in: of the measured input, by its size. */
+/** Unit in which a person reads an output: a unit of the measured input, chosen by the size of the
+ *  output. */
 IMK_API imk_unit imk_physics_output_unit(const imk_physics_log *log, size_t output);
 
 enum { IMK_PHYSICS_LABEL = 128 };
 
-/** A view of an instrument (imk_view), run. */
+/** A view of an instrument (imk_view) with its data. */
 typedef struct imk_physics_view {
-    imk_view view; /**< with the duration and rate that were asked for */
+    imk_view view; /**< the view with the duration and rate used */
     const imk_instrument *instrument;
     size_t points;
-    double *data; /**< x, then each curve, in the units of their labels */
-    bool empty;   /**< it shows what this design has not, such as the bits of an open loop */
+    double *data; /**< `points` values of x, then of each curve, in the units of the labels */
+    bool empty;   /**< the design has nothing to show here, such as the bits of an open loop */
     char x_label[IMK_PHYSICS_LABEL], y_label[IMK_PHYSICS_LABEL], clock[80];
-    imk_allocator allocator; /**< of the data */
+    imk_allocator allocator; /**< allocator of the data */
 } imk_physics_view;
 
-/** Run the instrument as its view number `index` says.
- *  @param view  imk_physics_view_free() it, also on failure
+/** Run the instrument as its view `index` (from 0) states.
+ *  @param view  free it with imk_physics_view_free(), also after a failure
  *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _RANGE (error.field "view": too
  *          few points, or too many) */
 IMK_API imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t index,
@@ -100,41 +105,42 @@ IMK_API imk_status imk_physics_view_run(const imk_physics_log_settings *settings
                                         imk_error *error);
 /** Free its data. */
 IMK_API void imk_physics_view_free(imk_physics_view *view);
-/** The view of this number from 1, or whose title begins so; -1: none. */
+/** Find a view by its number (from 1) or by the beginning of its title. @return index from 0; -1:
+ *  no such view */
 IMK_API int imk_physics_view_find(const imk_instrument *instrument, const char *text);
-/** Whether it shows one signal against another, which can move. */
+/** True when a view shows one signal against another, which can be animated. */
 IMK_API bool imk_physics_view_moves(const imk_view *view);
 
-/** Closed forms beside what a laboratory found. */
+/** Error model by closed forms beside the one that experiments found. */
 typedef struct imk_physics_sweep {
     imk_laboratory_result result;
     size_t count;
     imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
-    imk_allocator allocator; /**< of this */
+    imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_sweep;
 
-/** Find the error model by experiments (laboratory.h), in the settings' surroundings.
- *  @param sweep  imk_physics_sweep_free() it; NULL on failure
- *  @return as imk_laboratory_run(); IMK_ERROR_MEMORY */
+/** Find the error model by experiments (laboratory.h) in the surroundings that the settings state.
+ *  @param sweep  free it with imk_physics_sweep_free(); NULL after a failure
+ *  @return errors of imk_laboratory_run(); IMK_ERROR_MEMORY */
 IMK_API imk_status imk_physics_sweep_run(const imk_physics_log_settings *settings,
                                          const imk_job *job, imk_physics_sweep **sweep,
                                          imk_error *error);
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_physics_sweep_free(imk_physics_sweep *sweep);
-/** Figure `index`: "agrees", "close", "differs", "not measured". A figure agrees when the
- * difference is within four 1-sigma values, and is close within the tenth of it that the closed
- * forms may leave out: small terms of higher order. */
+/** Verdict on figure `index`: "agrees" when found and computed value differ by 4 sigma or less;
+ *  "close" when they differ by 10 % of the computed value or less, as closed forms leave out terms
+ *  of higher order; else "differs"; or "not measured". */
 IMK_API const char *imk_physics_sweep_verdict(const imk_physics_sweep *sweep, size_t index);
 
-/** Put the numbers of an error that a validate or init filled in SI into the unit of the field it
- *  names, for the message: `"30 kHz" is outside its valid range (limit 10 kHz)`. Fields that are
- *  not of the table, and values that do not stand in the design, are left as they are.
- *  @param design  what was refused */
+/** Convert the numbers of an error of a validate or init function from SI to the unit of the field
+ *  that the error names, for the message: `"30 kHz" is outside its valid range (limit 10 kHz)`.
+ *  Fields that are not in the table, and values that are not in the design, stay as they are.
+ *  @param design  the design that was refused */
 IMK_API void imk_design_error_in_units(const imk_instrument *instrument, const void *design,
                                        imk_error *error);
 
-/** A field of the table as text with its unit ("400 Hz", "closed", "yes"), at most `digits`
- *  significant digits, or 0 for as many as give the same bits.
+/** Write the value of a design field as text with its unit: "400 Hz", "closed", "yes".
+ *  @param digits  largest number of significant digits; 0: as many as give the same bits
  *  @return length, 0 when `size` is too small */
 IMK_API size_t imk_design_field_text(const imk_design_field *field, const void *design, int digits,
                                      char *text, size_t size);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file record.h
- *  Records of sensors: what their columns are, where their rows come from, and one in memory.
+ *  Records of sensors: their columns, the source and the sink of their rows, and a record in
+ *  memory.
  *
- *  Jobs (job.h) take a record source: a file is one kind (imk_log_source(), log.h), arrays
- *  in memory are another (imk_array_source_make()); they give to a record sink. */
+ *  Jobs (job.h) read from a record source: a file (imk_log_source(), log.h) or arrays in memory
+ *  (imk_array_source_make()). They write to a record sink. */
 #ifndef IMUKIT_RECORD_H
 #define IMUKIT_RECORD_H
 
@@ -31,50 +32,51 @@ typedef struct imk_log_column {
     char name[48]; /**< "gyro_x" */
     imk_quantity quantity;
     int axis;       /**< 0 … 7; -1 for time, temperature, other */
-    imk_unit unit;  /**< as in the file */
+    imk_unit unit;  /**< unit of the numbers in the file */
     bool increment; /**< the file holds increments of the integral */
     bool label; /**< the file holds texts (section names, …): the value is the index of the text
                      in the reader's list, see imk_log_label() */
 } imk_log_column;
 
-/** What was found in the rows read so far. Rows count from 1, the first data row.
+/** Counts and times of the rows read so far. Rows count from 1, the first data row.
  *
  *  The interval is the median of the first 4096 positive time steps (of all, when there are fewer),
- *  afterwards the median of the medians of groups of 4096, or 1/rate where the settings say a rate.
- *  Gaps and jitter are assessed by the interval known when the group of the step was complete.
- *  Jitter leaves gaps, repeats and reversals out. No step is formed with a time that is not
- *  finite. */
+ *  afterwards the median of the medians of groups of 4096, or 1/rate where the settings state a
+ *  rate. Gaps and jitter are assessed by the interval that was known when the group of the step was
+ *  complete. The jitter leaves out gaps, repeats and reversals. A time that is not finite forms no
+ *  step. */
 typedef struct imk_log_findings {
     size_t rows;
     size_t not_finite, first_not_finite; /**< rows with a NaN, an infinity or an empty cell */
     size_t reversals, first_reversal;    /**< time steps < 0 */
     size_t repeats, first_repeat;        /**< time steps = 0 */
-    size_t gaps, first_gap, missing;     /**< imk_step_is_gap(); samples missing in them */
-    double interval;                     /**< median time step, or 1/rate [s] */
-    double jitter;                       /**< rms deviation of the steps from it [s] */
-    double first_time, last_time;        /**< [s] */
-    double
-        time_origin; /**< [s] subtracted from the times: the first one if beyond 1e6 s (clocks that
-                        count from an epoch), so that microseconds keep their resolution; else 0 */
+    /** steps that leave samples out (imk_step_is_gap()); number of missing samples */
+    size_t gaps, first_gap, missing;
+    double interval;              /**< median time step, or 1/rate [s] */
+    double jitter;                /**< rms deviation of the steps from the interval [s] */
+    double first_time, last_time; /**< [s] */
+    /** [s] subtracted from the times: the first one if beyond 1e6 s (clocks that count from an
+     *  epoch), so that microseconds keep their resolution; else 0 */
+    double time_origin;
 } imk_log_findings;
 
-/** Where the rows of a record come from. Functions that are NULL are not there. */
+/** Where the rows of a record come from. A function that the source does not offer is NULL. */
 typedef struct imk_record_source {
     void *context;
     size_t column_count;
-    const imk_log_column *columns; /**< as imk_record_source.read gives them, SI */
-    double rate;                   /**< [Hz]; 0: from the time column */
-    /** The next rows, up to `rows_most`, into one array per column (NULL skips a column); 0 rows at
-     *  the end. */
+    const imk_log_column *columns; /**< columns in the order of `read`; values are SI */
+    double rate;                   /**< sampling rate [Hz]; 0: from the time column */
+    /** Read the next rows, up to `rows_most`, into one array per column (NULL skips a column).
+     *  `rows` is set to the number of rows read: 0 at the end. */
     imk_status (*read)(void *context, size_t rows_most, double *const *columns, size_t *rows,
                        imk_error *error);
-    /** Back to the first row. */
+    /** Go back to the first row. */
     imk_status (*rewind)(void *context, imk_error *error);
-    /** On the rows read so far. */
+    /** Counts and times of the rows read so far. */
     imk_log_findings (*findings)(void *context);
-    /** What was read, and of how much (0: not known), in any measure. */
+    /** How much was read, and the total (0: not known), both in the same arbitrary measure. */
     void (*progress)(void *context, uint64_t *done, uint64_t *total);
-    /** Text number `index` of the columns of labels; NULL beyond the last. */
+    /** Text number `index` of the label columns; NULL beyond the last. */
     const char *(*label)(void *context, size_t index);
 } imk_record_source;
 
@@ -82,10 +84,10 @@ typedef struct imk_record_source {
 IMK_API int imk_record_find(const imk_record_source *source, imk_quantity quantity, int axis);
 
 /** A column of a sensor in SI units, by name: gyro_x, accel_z, time, temperature, or any other.
- *  @return IMK_QUANTITY_OTHER for a name that says nothing */
+ *  @return the column; its quantity is IMK_QUANTITY_OTHER for a name that is not known */
 IMK_API imk_log_column imk_record_column(const char *name);
 
-/** Rows in memory as a source; the arrays stay the caller's. */
+/** Rows in memory as a source. The arrays belong to the caller. */
 typedef struct imk_array_source {
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     const double *data[IMK_LOG_COLUMNS_MAX];
@@ -94,14 +96,13 @@ typedef struct imk_array_source {
     imk_log_findings findings;
 } imk_array_source;
 
-/** A source of `rows` rows in one array per column.
- *  @param names  gyro_x [rad/s], accel_x [m/s^2], time [s], temperature [K] and so on, without
- *                units
- *  @param rate   [Hz]; 0: from a column named time
- *  @param memory what the source is about, until it is not used any more
- *  @return IMK_ERROR_COLUMN (too many, or a name twice), _ARGUMENT (no array), _RATE_MISSING,
- *          _MEMORY
- */
+/** Make a source of `rows` rows in one array per column.
+ *  @param names   names of the columns, without units: gyro_x [rad/s], accel_x [m/s^2], time [s],
+ *                 temperature [K] and so on
+ *  @param rate    sampling rate [Hz]; 0: from a column named time
+ *  @param memory  holds the state of the source; must live as long as the source is used
+ *  @return IMK_ERROR_COLUMN (too many columns, or a name twice), _ARGUMENT (an array is NULL),
+ *          _RATE_MISSING (neither rate nor time), _MEMORY */
 IMK_API imk_status imk_array_source_make(size_t column_count, const char *const *names,
                                          const double *const *data, size_t rows, double rate,
                                          imk_array_source *memory, imk_record_source *source,
@@ -110,31 +111,34 @@ IMK_API imk_status imk_array_source_make(size_t column_count, const char *const 
 /** Where the rows of a record go. */
 typedef struct imk_record_sink {
     void *context;
-    /** Before the first row: the columns.
-     *  @param decimals  per column, those that hold every value to come; -1: not known
-     *  @param rows      how many are to come; 0: not known */
+    /** Called once before the first row: states the columns.
+     *  @param decimals  per column: decimal places that hold every value to come; -1: not known
+     *  @param rows      number of rows to come; 0: not known */
     imk_status (*begin)(void *context, size_t column_count, const imk_log_column *columns,
                         const int *decimals, uint64_t rows, imk_error *error);
-    /** Rows from one array per column, SI; increments as increments. */
+    /** Write rows from one array per column, in SI. Columns of increments hold increments. */
     imk_status (*write)(void *context, size_t rows, const double *const *columns,
                         const imk_executor *executor, imk_error *error);
-    /** Where the texts of columns of labels are; NULL: they are not wanted. */
+    /** Tells the source that holds the texts of the label columns; NULL: the sink does not need the
+     *  texts. */
     void (*labels)(void *context, const imk_record_source *source);
 } imk_record_sink;
 
-/** Rows into arrays of the caller. */
+/** A sink that writes rows into arrays of the caller. */
 typedef struct imk_array_sink {
-    size_t column_count, capacity, rows; /**< capacity: of each array */
-    double *const *data;                 /**< as many as there will be columns */
+    size_t column_count, capacity, rows; /**< capacity: rows that each array can hold */
+    double *const *data;                 /**< one array per column */
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
 } imk_array_sink;
 
-/** A sink into arrays: `memory` with its counts, capacity and data set.
- *  Writing beyond the capacity, or more columns, is IMK_ERROR_WORKSPACE. */
+/** Make a sink into arrays. The caller sets column_count, capacity and data of `memory` before.
+ *  More rows than the capacity, or more columns, give IMK_ERROR_WORKSPACE. */
 IMK_API imk_record_sink imk_array_sink_of(imk_array_sink *memory);
 
-/** "gyro_x", "accel_3": the column of a sensor by its number, 0 to 2 along the axes of the body.
- *  @param text  48 bytes */
+/** "gyro_x", "accel_3": the name of a sensor's column. Axes 0 to 2 are called x, y and z, others by
+ *  their number.
+ *  @param sensor  "gyro" or "accel"
+ *  @param text    receives the name, 48 bytes */
 IMK_API void imk_axis_name(const char *sensor, int axis, char *text);
 
 /** A whole log in memory. */
@@ -144,8 +148,8 @@ typedef struct imk_log {
     double *data[IMK_LOG_COLUMNS_MAX]; /**< rows values each (room for rows + 1), SI */
     imk_log_findings findings;
     size_t label_count;
-    char (*label)[48];       /**< texts the values of label columns index */
-    imk_allocator allocator; /**< of the columns and labels */
+    char (*label)[48];       /**< texts; the values of label columns are indices into this list */
+    imk_allocator allocator; /**< allocator of the columns and labels */
 } imk_log;
 
 /** Free the columns of a loaded log. */

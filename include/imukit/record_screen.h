@@ -25,7 +25,7 @@ typedef struct imk_screen_settings {
     double dt;           /**< sample interval [s]; must be set */
     double false_alarm;  /**< chance that a sound record of Gaussian noise shows an outlier; 1e-3 */
     double significance; /**< false-alarm rate of warm-up, temperature slope and steps, each;
-                              0.001 */
+                            default 0.001 */
     const double *temperature; /**< n values [K or degC], NaN where missing; NULL: none */
 } imk_screen_settings;
 

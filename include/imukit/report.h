@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file report.h
- *  Figures as data, drawn as SVG, and self-contained HTML pages. Figures and animations need memory
- *  and arithmetic only; as files: imukit/figure_file.h. Part of libimukit-io. */
+ *  Figures as data, and functions that draw them as SVG. They need memory and arithmetic only;
+ *  imukit/figure_file.h writes them to files. Part of libimukit-io. */
 #ifndef IMUKIT_REPORT_H
 #define IMUKIT_REPORT_H
 
@@ -17,40 +17,42 @@ typedef enum imk_curve_style {
     IMK_CURVE_POINTS,
     IMK_CURVE_DASHES,
     IMK_CURVE_BAND,  /**< filled between lower and upper */
-    IMK_CURVE_LAYER, /**< the same in a strong colour: layers that lie on one another */
-    IMK_CURVE_MARKS  /**< large points that stand out from a map */
+    IMK_CURVE_LAYER, /**< a band in a strong colour, for bands stacked on one another */
+    IMK_CURVE_MARKS  /**< large points that stand out on a map */
 } imk_curve_style;
 
-/** One curve of a panel. Arrays are the caller's. Values that are not finite (or not positive on a
- *  logarithmic axis) are left out. */
+/** One curve of a panel. The arrays belong to the caller. Values that are not finite (or not
+ *  positive on a logarithmic axis) are left out. */
 typedef struct imk_curve {
-    const char *label; /**< "" leaves it out of the key */
+    const char *label; /**< text in the key; "": not in the key */
     imk_curve_style style;
-    int color; /**< index into the house palette, which colour-blind readers can tell apart */
+    int color; /**< index into the palette, whose colours colour-blind readers can tell apart */
     size_t count;
     const double *x, *y;
     const double *lower, *upper; /**< error bars or band; NULL: none */
 } imk_curve;
 
-/** A tinted rectangle behind the curves, with its name in the upper left corner, or the right. */
+/** A tinted rectangle behind the curves, with its label in the upper left corner (label_right:
+ *  upper right). */
 typedef struct imk_region {
     const char *label;
-    int color; /**< as of a curve */
+    int color; /**< index into the palette */
     double x_low, x_high, y_low, y_high;
     bool label_right;
 } imk_region;
 
 /** Where the key of a panel stands. */
 typedef enum imk_key_place {
-    IMK_KEY_UPPER = 0, /**< the upper right corner, or another where it hides much less; beside the
-                            axes of a single panel */
-    IMK_KEY_LOWER,     /**< the lower right corner, which rising curves leave free, or another */
+    IMK_KEY_UPPER = 0, /**< in the upper right corner, or in another corner where it hides much
+                          less; if the figure has one panel, beside the axes */
+    IMK_KEY_LOWER,     /**< in the lower right corner, which rising curves leave free, or in another
+                          corner */
     IMK_KEY_BELOW      /**< below the axes */
 } imk_key_place;
 
-/** One pair of axes. They span the points, error bars, bands and regions with some air, and the
- *  lines only where there is nothing else: an asymptote may leave the frame. Texts are drawn as
- *  they are: no markup. */
+/** One pair of axes. The axes span points, error bars, bands and regions with some margin. They
+ *  span lines only if there is nothing else, so an asymptote may leave the frame. Texts are drawn
+ *  as they are, without markup. */
 typedef struct imk_panel {
     const char *title, *x_label, *y_label;
     bool x_logarithmic, y_logarithmic;
@@ -61,35 +63,36 @@ typedef struct imk_panel {
     imk_key_place key;
 } imk_panel;
 
-/** Panels on a grid, row by row; larger ones where regions have names to be read. The title is
- *  drawn over two or more panels. */
+/** Panels on a grid, row by row. Panels are larger if regions have labels. The title is drawn only
+ *  above two or more panels. */
 typedef struct imk_figure {
     const char *title;
     size_t panel_count, columns;
     const imk_panel *panels;
 } imk_figure;
 
-/** The figure as SVG text obtained from malloc(). Of a curve with very many points those are left
- *  out that fall on the same pixel, and 20000 are drawn at most: no curve takes a megabyte, a line
- *  along its axis less than 0.1. Equal figures give equal bytes, in any locale.
+/** Draw a figure as SVG text, obtained from malloc(); the caller frees it. Points of a curve that
+ *  fall on the same pixel are left out, and at most 20000 are drawn, so a curve takes less than 1
+ *  MB (a line along its axis less than 0.1 MB). Equal figures give equal bytes, in any locale.
  *  @return IMK_ERROR_EMPTY (error.field: the panel without a drawable point), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_figure_svg(const imk_figure *figure, char **svg, size_t *size,
                                   imk_error *error);
 
-/** A point that walks along its path as time passes, again and again: an SVG that moves by itself
- *  (SMIL), without script, in any browser and as an image of a page. Readers who have asked their
- *  system for less motion see the path alone; so does what cannot move, such as print. */
+/** A point that moves along its path again and again: an SVG animation (SMIL) without script, for
+ *  any browser and as an image of a page. Only the path is shown in print, and to readers whose
+ *  system is set to reduced motion. */
 typedef struct imk_animation {
     const char *title, *x_label, *y_label; /**< drawn as they are: no markup */
     size_t count;                          /**< >= 2 */
     const double *x, *y;                   /**< at equal intervals of time; all finite */
-    bool points;                           /**< separate points: the path jumps */
-    double duration;                       /**< of a round on the screen [s], 1 … 3600 */
-    const char *clock;                     /**< what a round stands for, "600 us"; "": nothing */
+    bool points;                           /**< the path is drawn as separate points */
+    double duration;                       /**< time of one round on the screen [s], 1 … 3600 */
+    const char *clock;                     /**< true time of one round, "600 us"; "": not shown */
 } imk_animation;
 
-/** The animation as SVG text obtained from malloc(). Paths beyond 4000 points are thinned.
- *  @return IMK_ERROR_EMPTY for less than two points or a path that stays where it is,
+/** Draw an animation as SVG text, obtained from malloc(); the caller frees it. Paths of more than
+ *  4000 points are thinned.
+ *  @return IMK_ERROR_EMPTY for fewer than two points or a path that never moves,
  *          IMK_ERROR_NOT_FINITE, IMK_ERROR_RANGE (error.field "duration"), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_animation_svg(const imk_animation *animation, char **svg, size_t *size,
                                      imk_error *error);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file result.h
- *  What a job found, ready to be shown: one result, and renderers that make JSON, text and an HTML
- *  page of it.
+ *  Results of jobs, ready for display: one result object, and renderers that make JSON, text and an
+ *  HTML page of it.
  *
- *  A result has two parts. The data is a tree of named values: what `--json` prints. The display is
- *  a list of headings, lines, tables and figures, each for the terminal, the page, or both.
+ *  A result has two parts. The data is a tree of named values, which `--json` prints. The display
+ *  is a list of headings, lines, tables and figures; each is for the terminal, the page, or both.
  *
- *  Memory that fails is remembered: no function that adds need be checked, the renderers return
- *  IMK_ERROR_MEMORY. Texts and numbers are copied. Part of libimukit-io; no file is opened and no
- *  program is run. */
+ *  A result remembers that memory was exhausted. So functions that add need no check: the renderers
+ *  return IMK_ERROR_MEMORY. Texts and numbers are copied. Part of libimukit-io; no file is opened
+ *  and no program is run. */
 #ifndef IMUKIT_RESULT_H
 #define IMUKIT_RESULT_H
 
@@ -24,14 +24,15 @@ IMK_BEGIN_C
 typedef struct imk_result imk_result;
 
 /** An empty result. @param allocator  NULL: the C library's
- *  @return NULL when memory is exhausted, which every function here allows */
+ *  @return NULL when memory is exhausted; every function here accepts NULL */
 IMK_API imk_result *imk_result_create(const imk_allocator *allocator);
 /** Free it and all it holds; NULL is allowed. */
 IMK_API void imk_result_free(imk_result *result);
 
 /** @name Data
- *  Members of the object that was begun last, elements of the array (then `key` is NULL). The root
- *  is an object. Keys are kept, not copied: texts that outlive the result.
+ *  Each function adds a member to the object, or an element to the array, that was begun last. In
+ *  an array `key` is NULL. The root is an object. Keys are not copied: they must outlive the
+ *  result.
  *  @{ */
 /** Begin an object. */
 IMK_API void imk_result_object(imk_result *result, const char *key);
@@ -39,121 +40,125 @@ IMK_API void imk_result_object(imk_result *result, const char *key);
 IMK_API void imk_result_array(imk_result *result, const char *key);
 /** End the object or array that was begun last. */
 IMK_API void imk_result_end(imk_result *result);
-/** A key that is made at run time, which lives as long as the result. */
+/** Make a key at run time; it lives as long as the result. */
 IMK_API const char *imk_result_key(imk_result *result, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/** null when it is not finite. */
+/** Add a number; null when it is not finite. */
 IMK_API void imk_result_number(imk_result *result, const char *key, double value);
-/** A whole number. */
+/** Add a whole number. */
 IMK_API void imk_result_count(imk_result *result, const char *key, long long value);
-/** What is no UTF-8 becomes U+FFFD; NULL is null. */
+/** Add a text. Bytes that are not UTF-8 become U+FFFD; NULL becomes null. */
 IMK_API void imk_result_text(imk_result *result, const char *key, const char *text);
-/** true or false. */
+/** Add true or false. */
 IMK_API void imk_result_flag(imk_result *result, const char *key, bool value);
-/** null. */
+/** Add null. */
 IMK_API void imk_result_null(imk_result *result, const char *key);
-/** {"value": …, "unit": …} */
+/** Add a quantity, {"value": …, "unit": …}. */
 IMK_API void imk_result_quantity(imk_result *result, const char *key, double value,
                                  const char *unit);
-/** An array of numbers. */
+/** Add an array of numbers. */
 IMK_API void imk_result_numbers(imk_result *result, const char *key, size_t count,
                                 const double *values);
-/** The text at a path of the data, "model.gyro.noise.gauss_markov[1].sigma"; NULL: none is there.
- */
+/** The text at a path of the data, such as "model.gyro.noise.gauss_markov[1].sigma"; NULL: there is
+ *  none. */
 IMK_API const char *imk_result_find(const imk_result *result, const char *path);
 /** @} */
 
-/** For whom what is added to the display from here on is meant; at first for both. */
+/** Where an element of the display is shown. */
 typedef enum imk_audience {
     IMK_FOR_TERMINAL = 1,
     IMK_FOR_PAGE = 2,
     IMK_FOR_BOTH = 3,
-    IMK_FOR_PLOT = 4 /**< a figure that stands nowhere: what a plot draws before all others */
+    IMK_FOR_PLOT = 4 /**< a figure that is neither on the terminal nor on the page: a plot draws it
+                        before all others */
 } imk_audience;
-/** Until it is called again. */
+/** State where the elements added from now on are shown, until the next call. At first:
+ *  IMK_FOR_BOTH. */
 IMK_API void imk_result_for(imk_result *result, imk_audience audience);
 
 /** @name Display
  *  @{ */
-/** Title and the line below it, of the page. */
+/** Set the title of the page and the line below the title. */
 IMK_API void imk_result_title(imk_result *result, const char *title, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/** A heading of the page; on the terminal a line. */
+/** Add a heading; on the terminal a line. */
 IMK_API void imk_result_heading(imk_result *result, const char *text);
-/** What stands between the two is bold, in a line for the terminal alone. */
+/** Text between these two is bold, in lines for the terminal only. */
 #define IMK_BOLD "\x0e"
 #define IMK_PLAIN "\x0f"
-/** A paragraph of the page; on the terminal a line, where control characters and what is no UTF-8
- *  become "?". */
+/** Add a paragraph; on the terminal a line, in which control characters and bytes that are not
+ *  UTF-8 become "?". */
 IMK_API void imk_result_line(imk_result *result, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/** An empty line on the terminal; nothing on the page. */
+/** Add an empty line on the terminal; nothing on the page. */
 IMK_API void imk_result_gap(imk_result *result);
-/** A finding in words: a coloured box of the page, a line on the terminal.
+/** Add the message of a finding: a coloured box on the page, a line on the terminal.
  *  @param level  0 good, 1 note, 2 warning */
 IMK_API void imk_result_finding(imk_result *result, int level, const char *text);
-/** Text as it is, such as a model file. */
+/** Add a text that is shown unchanged, such as a model file. */
 IMK_API void imk_result_code(imk_result *result, const char *text);
-/** On paper what follows begins a new sheet; nothing on the terminal. */
+/** Begin a new sheet when the page is printed; nothing on the terminal. */
 IMK_API void imk_result_break(imk_result *result);
-/** A moving picture of the page; nothing on the terminal. */
+/** Add an animation to the page; nothing on the terminal. */
 IMK_API void imk_result_animation(imk_result *result, const imk_animation *animation,
                                   const char *caption);
 
-/** Tables grow row by row; the first row is the header. One without rows is not shown. */
+/** A table, filled row by row; the first row is the header. A table without rows is not shown. */
 typedef struct imk_table imk_table;
-/** @param right  bit c: the numbers of column c stand to the right
- *  @return NULL when memory is exhausted, which the functions of tables allow */
+/** Begin a table.
+ *  @param right  bit c set: column c is aligned to the right
+ *  @return NULL when memory is exhausted; the functions of tables accept NULL */
 IMK_API imk_table *imk_result_table(imk_result *result, unsigned right);
-/** Begin a row. Cells are what stands between tabs of the text: "tau [s]\t%s [%s]". Control
- *  characters and what is no UTF-8 become "?". */
+/** Begin a row. Tabs separate the cells: "tau [s]\t%s [%s]". Control characters and bytes that are
+ *  not UTF-8 become "?". */
 IMK_API void imk_table_row(imk_table *table, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /** Add cells to the last row. */
 IMK_API void imk_table_add(imk_table *table, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/** Rows so far, the header among them. */
+/** Number of rows so far, header included. */
 IMK_API size_t imk_table_rows(const imk_table *table);
 /** @} */
 
 /** @name Figures
  *  @{ */
 typedef struct imk_figure_builder imk_figure_builder;
-/** Begin a figure of the display; for the terminal it is what a plot draws.
- *  @param columns  panels beside one another */
+/** Begin a figure. For the terminal, the figure is drawn when a plot is requested.
+ *  @param columns  number of panels side by side */
 IMK_API imk_figure_builder *imk_result_figure(imk_result *result, const char *title, size_t columns,
                                               const char *caption);
 /** Add a panel: its texts, scales and key; curves and regions are added after it. */
 IMK_API void imk_figure_panel(imk_figure_builder *figure, const imk_panel *panel);
-/** Add a curve to the last panel. @param scale  its y, lower and upper are divided by it */
+/** Add a curve to the last panel. @param scale  y, lower and upper are divided by this */
 IMK_API void imk_figure_curve(imk_figure_builder *figure, const imk_curve *curve, double scale);
-/** Add a point to the last curve, which was begun without any. */
+/** Add a point to the last curve, which must have been added without points. */
 IMK_API void imk_figure_point(imk_figure_builder *figure, double x, double y);
-/** The same with its error bar, or a piece of a band: all points of a curve have one, or none. */
+/** Add a point with its error bar, or a piece of a band. Either all points of a curve have one, or
+ *  none. */
 IMK_API void imk_figure_bar(imk_figure_builder *figure, double x, double y, double lower,
                             double upper);
 /** Add a region to the last panel. */
 IMK_API void imk_figure_region(imk_figure_builder *figure, const imk_region *region);
-/** The figure number `index` of those meant for all of `audience`; NULL beyond the last. */
+/** Figure `index` (from 0) among those shown in all places of `audience`; NULL beyond the last. */
 IMK_API const imk_figure *imk_result_figure_get(const imk_result *result, imk_audience audience,
                                                 size_t index);
 /** @} */
 
 /** @name Renderers
- *  Each makes a text obtained from malloc(), which is the caller's.
+ *  Each makes a text obtained from malloc(), which the caller frees. `size` is its length [bytes].
  *  @return IMK_ERROR_MEMORY
  *  @{ */
-/** The data. Numbers are the shortest decimals that read back to the same double. */
+/** Render the data as JSON. Numbers are the shortest decimals that read back to the same double. */
 IMK_API imk_status imk_result_to_json(const imk_result *result, char **text, size_t *size);
-/** The data on one line, members in the order of their keys and numbers to 17 digits: equal data
+/** Render the data on one line, members sorted by key and numbers to 17 digits, so that equal data
  *  give equal text. */
 IMK_API imk_status imk_result_to_key(const imk_result *result, char **text, size_t *size);
-/** What is meant for the terminal. @param bold,plain  escape sequences around the heads of tables;
- *  NULL: none */
+/** Render the display for the terminal.
+ *  @param bold,plain  escape sequences around the headers of tables; NULL: none */
 IMK_API imk_status imk_result_to_text(const imk_result *result, const char *bold, const char *plain,
                                       char **text, size_t *size);
-/** What is meant for the page, self-contained. @param error  also says why a figure could not be
- *  drawn */
+/** Render the display as a self-contained HTML page.
+ *  @param error  also tells why a figure could not be drawn */
 IMK_API imk_status imk_result_to_page(const imk_result *result, char **text, size_t *size,
                                       imk_error *error);
 /** @} */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file show.h
- *  The results of jobs, made ready to be shown: each function adds data, tables and figures to an
- *  imk_result (result.h). `name` is what the record is called, such as its file. */
+ *  The results of jobs, prepared for display: each function adds data, tables and figures to an
+ *  imk_result (result.h). `name` is the name of the record, such as that of its file. */
 #ifndef IMUKIT_SHOW_RESULTS_H
 #define IMUKIT_SHOW_RESULTS_H
 
@@ -21,23 +21,24 @@
 
 IMK_BEGIN_C
 
-/** Deviations: a table for each statistic and kind of sensor, a figure. */
+/** Show Allan deviations: a table for each statistic and kind of sensor, and a figure. */
 IMK_API void imk_show_allan_log(const imk_allan_log *allan, const char *name, imk_result *result);
 
-/** Densities, lines and parameters: a table for each kind of sensor, a figure. */
+/** Show densities, lines and noise parameters: a table for each kind of sensor, and a figure. */
 IMK_API void imk_show_spectrum_log(const imk_spectrum_log *spectrum, const char *name,
                                    imk_result *result);
 
-/** Attitude at the start, the track and its end, and a figure. */
+/** Show the attitude at the start, the track and its end, and a figure. */
 IMK_API void imk_show_navigate_log(const imk_navigate_log *n, const char *name, imk_result *result);
-/** What was taken out, and what was met on the way. @param model  what the model is called */
+/** Show the terms taken out, and the counts of the run. @param model  name of the model */
 IMK_API void imk_show_compensate_log(const imk_compensate_log *log, const char *name,
                                      const char *model, imk_result *result);
-/** Terms as an array of the data, and as a line. @param key,label  of these */
+/** Add terms as an array of the data and as a line of text.
+ *  @param key,label  key of the array; beginning of the line */
 IMK_API void imk_show_terms(const char *key, const char *label, const imk_term_keys *keys,
                             imk_result *result);
 
-/** Models that are graded, with what each is called. */
+/** Graded models with their names. */
 typedef struct imk_graded_several {
     size_t count;
     const imk_graded *const *graded;
@@ -45,53 +46,56 @@ typedef struct imk_graded_several {
 } imk_graded_several;
 /** Maps of models among classes, technologies and applications. */
 typedef enum imk_grade_map {
-    IMK_GRADE_MAP_GYRO = 0, /**< stability of bias against that of scale factor */
+    IMK_GRADE_MAP_GYRO = 0, /**< bias stability against scale-factor stability */
     IMK_GRADE_MAP_ACCEL,
     IMK_GRADE_MAP_COST, /**< cost against performance */
     IMK_GRADE_MAPS      /**< all of them */
 } imk_grade_map;
-/** Does a model state enough to stand on a map, or on any of IMK_GRADE_MAPS? */
+/** True when a model states enough for a map; with IMK_GRADE_MAPS, for any map. */
 IMK_API bool imk_grade_stands(const imk_graded_several *r, imk_grade_map map);
-/** Classes, errors of position and what limits them, and maps. @param map  for the plot */
+/** Show classes, position errors, what limits them, and maps. @param map  the one to plot */
 IMK_API void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_result *result);
 
-/** @name What was identified
+/** @name Results of identification
  *  @{ */
-/** A message of a verdict. */
+/** One message of a verdict. */
 typedef struct imk_message {
     imk_finding_level level; /**< good, note or warning */
     const char *code, *text;
 } imk_message;
 
-/** What a record is good for, and what is wrong with it. Its memory is the result's. */
+/** Assessment of a record: the uses it is good for, and its faults. The memory belongs to the
+ *  result. */
 typedef struct imk_verdict {
     imk_result *result;
-    const char *label; /**< before each message; NULL: nothing */
+    const char *label; /**< text before each message; NULL: none */
     size_t count;
-    imk_message *message; /**< NULL when memory is exhausted: there is one at least */
+    imk_message *message; /**< one or more; NULL when memory is exhausted */
 } imk_verdict;
 
-/** Of one record. @param label  before each message; NULL: nothing */
+/** Assess one record. @param label  text before each message; NULL: none */
 IMK_API imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
                                          imk_result *result);
-/** @param labels  of the records */
+/** Assess several records together. @param labels  of the records */
 IMK_API imk_verdict imk_several_verdict(const imk_identify_several *several,
                                         const char *const *labels, imk_result *result);
-/** Is there a warning among its messages? */
+/** True when a message of the verdict is a warning. */
 IMK_API bool imk_verdict_warns(const imk_verdict *verdict);
 
-/** One record, or several together, and what stands beside it. */
+/** Results of one record, or of several together, and what is shown with them. */
 typedef struct imk_identify_shown {
     const imk_identify_log *log;
-    const char *name, *label; /**< such as its path, and the last part of it */
+    const char *name, *label; /**< such as its path and the last part of the path */
     imk_verdict verdict;
-    const imk_model *truth;      /**< NULL: not known */
-    const imk_allan_curve *twin; /**< of each channel (imk_identify_log_twin()); NULL: none */
+    const imk_model *truth; /**< true model, for comparison; NULL: not known */
+    /** Simulated deviations per channel (imk_identify_log_twin()); NULL: none */
+    const imk_allan_curve *twin;
 } imk_identify_shown;
 
-/** Parameters, truth, verdict and a figure. */
+/** Show parameters, the true values if known, the verdict and a figure. */
 IMK_API void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result);
-/** @param joint    of several->joint; its name tells of all records
+/** Show several records.
+ *  @param joint    results of several->joint; its name stands for all records
  *  @param records  the names, labels and verdicts of several->log */
 IMK_API void imk_show_identify_several(const imk_identify_several *several,
                                        const imk_identify_shown *joint,
@@ -100,99 +104,108 @@ IMK_API void imk_show_identify_several(const imk_identify_several *several,
 
 /** @name Calibrations
  *  @{ */
-/** Diagnostics, findings over temperature and warnings as messages; FAILURE: of no use.
- *  @param before  `count` messages on the way here */
+/** Assess a calibration: diagnostics, findings over temperature and warnings as messages. A message
+ *  of level IMK_FINDING_FAILURE means that the calibration is of no use.
+ *  @param before  `count` earlier messages to include */
 IMK_API imk_verdict imk_calibrate_verdict(const imk_calibrate_log *session, size_t count,
                                           const imk_message *before, imk_result *result);
-/** The worst there is; good when there is nothing. */
+/** The worst level among the messages; good when there are none. */
 IMK_API imk_finding_level imk_verdict_level(const imk_verdict *verdict);
-/** Parameters, fit, remarks, verdict and a figure. @param poses  also on the terminal */
+/** Show parameters, fit, remarks, verdict and a figure. @param poses  show the poses on the
+ *  terminal, too */
 IMK_API void imk_show_calibrate_log(const imk_calibrate_log *session, const imk_verdict *verdict,
                                     bool poses, imk_result *result);
-/** The steps of a programme, and what is reached. @param model  what the unit's is called */
+/** Show the steps of a test programme and the accuracy reached. @param model  name of the unit's
+ *  model */
 IMK_API void imk_show_calibrate_plan(const imk_calibrate_plan *plan, const char *model,
                                      imk_result *result);
-/** A programme as a motion file, or a temperature file. @param place  NULL: not known
- *  @param text  obtained from malloc(), the caller's @return IMK_ERROR_MEMORY */
+/** Write a test programme as a motion file, or as a temperature file.
+ *  @param place  place of the test; NULL: not known
+ *  @param text   obtained from malloc(); the caller frees it
+ *  @param size   length of the text [bytes]
+ *  @return IMK_ERROR_MEMORY */
 IMK_API imk_status imk_calibrate_plan_text(const imk_calibrate_plan *plan,
                                            const imk_geodetic *place, char **text, size_t *size);
-/** Why imk_calibrate_log_run() failed, with the name of the record: diagnostics about it say more
- * than the error. @return length of the text; 0: nothing is to be said beyond the error */
+/** Write why imk_calibrate_log_run() failed, with the name of the record, if diagnostics of the
+ *  record say more than the error.
+ *  @return length of the text; 0: the error says all */
 IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *session, const imk_error *error,
                                      char *text, size_t size);
 /** @} */
 
 /** @name Drift
  *  @{ */
-/** What makes figures doubtful: terms that are left out, errors beyond the linear range, runs that
- *  differ. Warnings alone. */
+/** Reasons not to trust the figures: terms left out, errors beyond the linear range, Monte Carlo
+ *  runs that differ. All are warnings. */
 IMK_API imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result);
 
-/** What stands beside the figures. */
+/** What is shown beside the figures. */
 typedef struct imk_drift_shown {
-    const char *motion; /**< what it is called; NULL: at rest */
-    uint64_t seed;      /**< of the runs */
+    const char *motion; /**< name of the motion; NULL: at rest */
+    uint64_t seed;      /**< seed of the Monte Carlo runs */
     imk_verdict verdict;
-    const imk_result *model; /**< the last model as data called "model", for values of terms; NULL:
-                                  none are told */
+    const imk_result *model; /**< data of the last model under the key "model", from which values of
+                                terms are shown; NULL: they are not shown */
 } imk_drift_shown;
 
-/** Growth, budgets, runs, the answer to what is wanted, and figures. */
+/** Show the growth of errors, budgets, runs, the answer to the requirement, and figures. */
 IMK_API void imk_show_drift(const imk_drift_models *r, const imk_drift_shown *shown,
                             imk_result *result);
-/** Runs alone. @param words  what they are */
+/** Show Monte Carlo runs alone. @param words  a description of the runs */
 IMK_API void imk_show_drift_runs(const imk_drift_models *r, const char *words, imk_result *result);
 /** @} */
 
 /** @name Instruments
  *  @{ */
-/** An instrument, and what was done with it. */
+/** An instrument and its results. */
 typedef struct imk_physics_shown {
     const imk_physics_log_settings *settings;
-    const char *source;             /**< as it was asked for */
-    const char *name, *description; /**< of the design; NULL or "": none */
-    const imk_model *model;         /**< by closed forms, one axis */
-    bool reduced;                   /**< which is shown */
+    const char *source;             /**< the instrument or file as the user named it */
+    const char *name, *description; /**< those of the design; NULL or "": none */
+    const imk_model *model;         /**< error model by closed forms, one axis */
+    bool reduced;                   /**< show this model */
     const imk_physics_log *run;     /**< NULL: none */
     const imk_physics_sweep *sweep; /**< NULL: none */
 } imk_physics_shown;
 
-/** The instruments there are. */
+/** Show the list of all instruments. */
 IMK_API void imk_show_instruments(imk_result *result);
-/** A run with its figure, error models, or, without either, the design. What is added after it is
- *  for the page. */
+/** Show a run with its figure and the error models; if there is neither, the design. Anything added
+ *  afterwards goes to the page only. */
 IMK_API void imk_show_physics(const imk_physics_shown *shown, imk_result *result);
-/** Design and error model, for the page. */
+/** Show design and error model on the page. */
 IMK_API void imk_show_physics_design(const imk_physics_shown *shown, imk_result *result);
-/** The sweep for the page, with a figure where something was measured that can be drawn. */
+/** Show the experiments on the page, with a figure if their results can be drawn. */
 IMK_API void imk_show_physics_sweep(const imk_physics_shown *shown, imk_result *result);
-/** A view that shows something: a figure, or an animation. */
+/** Show a view that is not empty, as a figure or an animation. */
 IMK_API void imk_show_physics_view(const imk_physics_view *view, imk_result *result);
-/** A view as a panel of a figure. */
+/** Add a view as a panel of a figure. */
 IMK_API void imk_show_physics_panel(const imk_physics_view *view, imk_figure_builder *figure);
-/** A view that can move; its texts and numbers are the view's. */
+/** Make the animation of a view (imk_physics_view_moves()). Its texts and numbers belong to the
+ *  view. */
 IMK_API imk_animation imk_physics_animation(const imk_physics_view *view);
 /** @} */
 
-/** An evaluation, and what its test report says of the unit; texts may be NULL. */
+/** An evaluation, and what its test report states about the unit. Texts may be NULL. */
 typedef struct imk_evaluate_shown {
     double confidence;
     size_t path_count;
-    const char *const *path; /**< of the readings */
-    const char *rest_path;   /**< of the log at rest */
+    const char *const *path; /**< files of the readings */
+    const char *rest_path;   /**< file of the log at rest */
     const char *unit, *serial, *operator_name, *laboratory, *date, *temperature;
-    const char *report; /**< where the page goes */
-    bool levels;        /**< on the terminal too */
-    bool missed;        /**< a limit */
+    const char *report; /**< file of the page */
+    bool levels;        /**< show the levels on the terminal, too */
+    bool missed;        /**< a limit is exceeded */
     size_t channel_count, rest_count, limit_count;
     const imk_evaluate_channel *channel;
     const imk_evaluate_rest *rest;
 } imk_evaluate_shown;
 
-/** Data, tables and test report. What is added after it is for the page. */
+/** Show data, tables and test report. Anything added afterwards goes to the page only. */
 IMK_API void imk_show_evaluate(const imk_evaluate_shown *shown, imk_result *result);
 
-/** What records of several lengths tell, how long they must be, and, of a curve, a figure. */
+/** Show the accuracy reached by records of several lengths, the lengths needed, and, if a curve was
+ *  computed, a figure. */
 IMK_API void imk_show_record_plan(const imk_record_plan *plan, const char *name,
                                   imk_result *result);
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file simulate.h
- *  Model + motion -> samples of an imperfect sensor unit, in blocks, the same bytes however the
- *  work is divided.
+ *  Simulation: samples of an imperfect sensor unit from a model and a motion, in blocks. The bytes
+ *  do not depend on how the work is divided.
  *
- *  What happens to a sample, in this order:
+ *  A sample is made in this order:
  *
  *      motion (means over the sample) and temperature
  *      -> deterministic terms (distort.h), with this run's repeatabilities
@@ -11,22 +11,21 @@
  *      -> resolution -> counts
  *
  *  Some conventions:
- *   - row k is stamped k/rate. It covers the interval that ends there: a motion starts at time 0
- *     with row 0, which still shows the body as it was before;
- *   - samples are means. Terms that are not linear see the mean of each of `substeps` parts of a
- *     sample;
- *   - the bandwidth shapes the white noise, exactly, and the deterministic signal; the slower noise
- *     terms are taken as they appear in the output, behind the filter;
- *   - the dead band gives 0 for a sample within +-dead_band and leaves others as they are;
- *   - without a temperature profile the temperature terms are zero;
- *   - timing: the sample clock runs fast by rate_error, so that samples are shorter than they say;
- *     each boundary between two samples is off by jitter (normal); accelerometers show what
- *     happened `skew` earlier than the gyros; a row is lost with the probability `drops`. Stamps
- *     stay k/rate;
- *   - with a sensitivity the output is whole counts, round(sensitivity * x + zero_offset);
- *   - every term of every axis has its own random stream, so that changing one changes no other:
- *     axes 0-7 are gyros, 8-15 accelerometers. Repeatabilities are normal 0 of the term
- *     IMK_TERM_REPEATABILITY, instance 0 the bias, 1 the scale factor. */
+ *  - row k is stamped k/rate. It covers the interval that ends there: a motion starts at time 0
+ *    with row 0, which still shows the body as it was before;
+ *  - samples are means. Terms that are not linear are applied to the mean of each of `substeps`
+ *    parts of a sample;
+ *  - the bandwidth shapes the white noise, exactly, and the deterministic signal; the slower noise
+ *    terms are defined at the output, after the filter;
+ *  - the dead band sets a sample within +-dead_band to 0 and does not change others;
+ *  - without a temperature profile the temperature terms are zero;
+ *  - timing: the sample clock runs fast by rate_error, so that samples are shorter than they say;
+ *    each boundary between two samples is off by jitter (normal); accelerometers show what happened
+ *    `skew` earlier than the gyros; a row is lost with the probability `drops`. Stamps stay k/rate;
+ *  - with a sensitivity the output is whole counts, round(sensitivity * x + zero_offset);
+ *  - every term of every axis has its own random stream, so that changing one changes no other:
+ *    axes 0-7 are gyros, 8-15 accelerometers. Repeatabilities are normal 0 of the term
+ *    IMK_TERM_REPEATABILITY, instance 0 the bias, 1 the scale factor. */
 #ifndef IMUKIT_SIMULATE_H
 #define IMUKIT_SIMULATE_H
 
@@ -44,15 +43,17 @@ typedef struct imk_simulation {
     uint32_t cookie;
     double rate; /**< [Hz], > 0 */
     uint64_t seed;
-    uint32_t run; /**< run number: another draw of the same model, other run-to-run constants */
-    imk_motion motion;       /**< none of the two (default): at rest as follows */
-    bool earth;              /**< Earth rate and gravity at the place below (default true) */
-    double latitude;         /**< geodetic [rad]; default 45 deg */
-    double height;           /**< above the ellipsoid [m], -1e4 … 1e5 */
-    double roll, pitch, yaw; /**< attitude of the body, north-east-down [rad] */
+    uint32_t run; /**< run number: each run draws other noise and other run-to-run constants from
+                     the same model */
+    imk_motion motion; /**< if it states neither of its two kinds (default), the unit is at rest as
+                          follows */
+    bool earth;        /**< Earth rate and gravity at the place below (default true) */
+    double latitude;   /**< geodetic [rad]; default 45 deg */
+    double height;     /**< above the ellipsoid [m], -1e4 … 1e5 */
+    double roll, pitch, yaw;                    /**< attitude of the body, north-east-down [rad] */
     const imk_temperature_profile *temperature; /**< of the unit, time 0 at row 0; NULL: none */
-    size_t substeps; /**< parts of a sample, 1 … IMK_SUBSTEPS_MAX; 0 (default): as many as vibration
-                          needs, and 8 for a moving unit with a bandwidth */
+    size_t substeps; /**< parts of a sample, 1 … IMK_SUBSTEPS_MAX; 0 (default): as many as the
+                        vibration needs, and 8 for a moving unit with a bandwidth */
 } imk_simulation;
 
 /** 100 Hz, seed 0, level and at rest at 45 deg north with Earth rate and gravity. */
@@ -66,28 +67,28 @@ typedef struct imk_simulator imk_simulator;
 IMK_API size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation);
 
 /** Validate and start.
- *  @param memory  imk_simulator_size() bytes, in which it lives; owns nothing else. The motion and
- *                 the temperature profile must stay while it runs
+ *  @param memory  imk_simulator_size() bytes for the simulator, which needs no other memory. The
+ *                 motion and the temperature profile must exist while it is used
  *  @return the errors of imk_model_validate() and of the motion; IMK_ERROR_RANGE;
- *          IMK_ERROR_CONFLICT (a clock error with a recorded motion, whose samples are what they
- *          are; another rate than the recorded motion's); IMK_ERROR_WORKSPACE */
+ *          IMK_ERROR_CONFLICT (a recorded motion with a clock error, or with another rate than its
+ *          own); IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_simulator_start(const imk_model *model, const imk_simulation *simulation,
                                        imk_simulator **simulator, void *memory, size_t memory_size,
                                        imk_error *error);
 
-/** Channels it makes: gyro axes, then accelerometer axes. */
+/** Number of channels: gyro axes, then accelerometer axes. */
 IMK_API size_t imk_simulator_channels(const imk_simulator *simulator);
 
-/** The next `count` samples of every channel.
- *  @param columns  one array of `count` doubles per channel, SI units (or counts when the model
- *                  has a sensitivity)
- *  @param executor NULL for serial; the bytes do not depend on it nor on how `count` is split. Its
- *                  work items are channels; calls of some thousand samples are worth threads */
+/** Make the next `count` samples of every channel.
+ *  @param columns   one array of `count` doubles per channel, SI units (or counts when the model
+ *                   has a sensitivity)
+ *  @param executor  NULL: serial. The bytes depend neither on it nor on how `count` is split. Its
+ *                   work items are channels; threads pay off for calls of some thousand samples */
 IMK_API void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *columns,
                                 const imk_executor *executor);
 
-/** Time in the motion at the end of row `row` [s]; -1 is the beginning of row 0. It is row/rate
- * from the start of the motion but for the timing errors. */
+/** True time at the end of row `row`, from the start of the motion [s]; row -1 stands for the
+ *  beginning of row 0. It is row/rate apart from timing errors. */
 IMK_API double imk_simulator_true_time(const imk_simulator *simulator, int64_t row);
 
 /** True when row `row` is lost (timing.drops). */

@@ -42,11 +42,11 @@ typedef struct imk_spectrum_settings {
                                 overlap (Welch) or one segment (multitaper), of at most 2^20 and 2^18
                                 samples */
     imk_window window;     /**< of Welch's estimator */
-    double kaiser_beta;    /**< 0 … 40; 8.6 */
-    double overlap;        /**< of Welch's segments, 0 … 0.9; 0.5 */
-    double time_bandwidth; /**< NW of the multitaper estimator, 1 … 16; 4 */
+    double kaiser_beta;    /**< 0 … 40; default 8.6 */
+    double overlap;        /**< of Welch's segments, 0 … 0.9; default 0.5 */
+    double time_bandwidth; /**< NW of the multitaper estimator, 1 … 16; default 4 */
     int tapers;            /**< 1 … 2 NW; 0: 2 NW - 1 */
-    bool adaptive;         /**< weight the tapers by what leaks into them; true */
+    bool adaptive;         /**< weight the tapers by what leaks into them; default true */
     bool trend;            /**< remove a straight line from each segment; false: its mean only */
 } imk_spectrum_settings;
 

@@ -23,7 +23,7 @@ typedef struct imk_static_settings {
     uint32_t cookie;
     double window;       /**< [s]; 0 (default): chosen from the log */
     double false_alarm;  /**< probability that a standing window is called moving; 1e-4 */
-    double minimum;      /**< shortest interval that counts [s]; 1 */
+    double minimum;      /**< shortest interval that counts [s]; default 1 */
     double guard;        /**< left out at both ends of an interval [s]; -1 (default): a window */
     double initial_rest; /**< the log begins with so long a rest, from which the noise is learnt
                               [s]; 0 (default): the quietest part is searched for */

@@ -25,7 +25,7 @@ enum { IMK_THERMAL_GAPS_MAX = 24 };
 typedef struct imk_thermal_settings {
     uint32_t cookie;
     int order;                    /**< -1 (default): chosen per axis, 0 … order_max */
-    int order_max;                /**< 1 … 5; 5 */
+    int order_max;                /**< 1 … 5; default 5 */
     double reference_temperature; /**< [K]; NaN (default): 25 degC if within the range, else its
                                        middle */
     double significance; /**< probability at which hysteresis, rate or lag is found where there is
