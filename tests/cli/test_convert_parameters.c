@@ -41,9 +41,9 @@ static void test_from_model(void **state)
                   "imukit convert: warning: gyro.noise.bias_instability is not held by the format "
                   "kalibr\n");
     check_message("$I convert model.yaml out.sdf --to gazebo", 1,
-                  "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and "
-                  "the sample rate is not known; add --rate 200Hz (samples per second)\n"
-                  "Next: imukit convert model.yaml out.sdf --to gazebo --rate 200Hz\n");
+                  "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and the "
+                  "sampling rate is not known; add --rate 200Hz (samples per second)\nNext: imukit "
+                  "convert model.yaml out.sdf --to gazebo --rate 200Hz\n");
     check_message("$I convert ADIS16465 out.m --to navego --rate 200Hz 2>/dev/null", 0, "");
     check_message(
         "$I convert model.yaml out.x --to kalibra", 2,
@@ -51,8 +51,8 @@ static void test_from_model(void **state)
         "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter\n" TRY(
             "convert"));
     check_message("$I convert model.yaml /nowhere/out.yaml --to kalibr", 1,
-                  "imukit convert: error: /nowhere/out.yaml: the folder /nowhere does not "
-                  "exist; make it, or name another\n");
+                  "imukit convert: error: /nowhere/out.yaml: the folder /nowhere does not exist; "
+                  "create this folder, or choose another\n");
     assert_int_equal(sweep(), 3);
 }
 
@@ -83,7 +83,7 @@ static void test_refused(void **state)
     check_contains(err, "(--from says which)", "world.sdf");
     check_message("$I convert missing.sdf out.yaml", 1,
                   "imukit convert: error: missing.sdf: the file cannot be opened: No such file or "
-                  "directory\n");
+                  "directory; check the path\n");
     put("log.csv", "time [s],gyro_x [deg/s]\n0,1\n0.1,2\n");
     assert_int_equal(run("$I convert log.csv out.csv --sensor a"), 2);
     check_contains(err, "are for parameter files", "log.csv");

@@ -323,7 +323,7 @@ void imki_filter_write(imki_parameters *p)
 {
     if (!(p->settings->rate > 0))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "rate",
-                              "\"Phi\" and \"Q_d\" depend on the sample rate, which is not known",
+                              "\"Phi\" and \"Q_d\" depend on the sampling rate, which is not known",
                               "add --rate 200Hz (samples per second)");
     tree_writer w = {.p = p};
     if (p->is_json)

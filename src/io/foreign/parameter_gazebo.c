@@ -347,7 +347,7 @@ void imki_gazebo_write(imki_parameters *p)
     const double rate = p->settings->rate;
     if (!(rate > 0) && (has_white(p->origin[0]) || has_white(p->origin[1])))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "stddev",
-                              "\"stddev\" is per sample, and the sample rate is not known",
+                              "\"stddev\" is per sample, and the sampling rate is not known",
                               "add --rate 200Hz (samples per second)");
     imki_text_add(&p->out, "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model "
                            "name=\"imu\">\n    <link name=\"link\">\n      <sensor name=\"imu\" "

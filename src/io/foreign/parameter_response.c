@@ -127,7 +127,7 @@ void imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *
         if (!(rate > 0)) {
             imki_parameter_refuse_at(
                 p, place, IMK_ERROR_KEY_MISSING,
-                "\"inf\" is white noise per sample, and the sample rate is not known",
+                "\"inf\" is white noise per sample, and the sampling rate is not known",
                 "add --rate 100Hz (samples per second)");
             return;
         }

@@ -82,6 +82,14 @@ static size_t key_missing(const message *to, const imk_calibrate_record *log,
                    "%s: %s needs a column of texts that names the sections: add "
                    "--section NAME",
                    log->path, name);
+    const bool of_reference =
+        log->procedure == IMK_PROCEDURE_RATE_TABLE || log->procedure == IMK_PROCEDURE_SPIN;
+    for (int sensor = 0; sensor < 2 && of_reference; sensor++)
+        if (strcmp(error->field, imki_sensor_keys[sensor]) == 0)
+            return say(to,
+                       "%s: %s needs %s readings, which the log does not have: log them, or name "
+                       "their columns with --columns",
+                       log->path, name, imki_sensor_titles[sensor]);
     return say(to, "%s: %s needs %s", log->path, name,
                error->expected[0] ? error->expected : error->field);
 }
