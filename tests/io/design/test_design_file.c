@@ -171,7 +171,7 @@ static void bad_files_are_refused_with_a_message(void **state)
          "w.yaml:3:1: rotor.inertia: \"rotor.inertia\" is not a known key; nest the keys instead "
          "of writing dots: a: {b: …}"},
         {"sealed: yes\nsealed: no\n", IMK_ERROR_KEY_DUPLICATE,
-         "w.yaml:4:1: sealed: \"sealed\" is given twice; it stands first in line 3"},
+         "w.yaml:4:1: sealed: \"sealed\" is given twice; the first one is in line 3"},
         {"rotor: 3 rpm\n", IMK_ERROR_SYNTAX,
          "w.yaml:3:8: rotor: \"3 rpm\" cannot be read; expected a mapping: {key: value, …}"},
         {"rotor: {inertia: 3}\n", IMK_ERROR_UNIT_MISSING,

@@ -631,7 +631,7 @@ static const struct {
     {"steps: &x [hold 1 s]", "m.yaml:2:8: this is not supported: an anchor (&); write every value "
                              "out: motion files have no anchors and aliases"},
     {"steps: [hold 1 s]\nsteps: [hold 1 s]",
-     "m.yaml:3:1: steps: \"steps\" is given twice; it stands first in line 2"},
+     "m.yaml:3:1: steps: \"steps\" is given twice; the first one is in line 2"},
 };
 
 static void refusals_say_what_is_due(void **state)

@@ -52,7 +52,7 @@ static size_t too_short(const message *to, const imk_calibrate_record *log, cons
     const char *due = error->expected;
     for (size_t k = 0; k < 3; k++)
         if (strcmp(error->field, things[k]) == 0)
-            return say(to, "%s: %s needs at least %g %s, %g were found%s%s", log->path, name,
+            return say(to, "%s: %s needs at least %g %s, found %g%s%s", log->path, name,
                        error->limit, many[k], error->value, due[0] ? ": " : "", due);
     if (strcmp(error->field, "temperature") == 0)
         return say(to,
@@ -68,7 +68,7 @@ static size_t key_missing(const message *to, const imk_calibrate_record *log,
                           const imk_error *error)
 {
     const char *name = imk_procedure_name(log->procedure);
-    const bool also = error->expected[0] && strcmp(error->field, "reference") != 0;
+    const bool also = error->expected[0] && log->procedure == IMK_PROCEDURE_SPIN;
     if (strncmp(error->field, "reference", 9) == 0)
         return say(
             to,
