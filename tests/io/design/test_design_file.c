@@ -191,7 +191,7 @@ static void bad_files_are_refused_with_a_message(void **state)
          "one "
          "text"},
         {"rotor: {inertia: nan kg m^2}\n", IMK_ERROR_NOT_FINITE,
-         "w.yaml:3:18: rotor.inertia: \"nan kg m^2\" is not finite; finite numbers"},
+         "w.yaml:3:18: rotor.inertia: \"nan kg m^2\" is not finite; expected a finite number"},
         {"pickoff: {quality: inf}\n", IMK_ERROR_NOT_FINITE,
          "w.yaml:3:20: pickoff.quality: \"inf\" is not finite; expected a finite number"},
         {"rotor: {inertia: 0 kg m^2}\n", IMK_ERROR_RANGE,
