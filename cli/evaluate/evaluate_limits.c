@@ -75,10 +75,11 @@ static int refuse_limit(const imk_evaluate_limit *limit)
     const bool runs = strstr(limit->key, "repeatability") != NULL;
     const bool rest =
         strcmp(limit->key, "bias_instability") == 0 || strcmp(limit->key, "allan_minimum") == 0;
-    return command_misused("--limit %s: there is no such figure of these files%s", limit->key,
-                           runs   ? "; it takes two runs: a column run, or a file for each"
-                           : rest ? "; it takes a log at rest: --static LOG"
-                                  : "");
+    return command_misused(
+        "--limit %s: these files do not give this figure%s", limit->key,
+        runs   ? "; it needs two runs: add a column run, or give a file for each run"
+        : rest ? "; it needs a log at rest: add --static LOG"
+               : "");
 }
 
 int evaluate_check_limits(evaluation *v)

@@ -11,7 +11,7 @@
 
 static const option result_options[] = {
     {"limit", OPTION_TEXT, AT(limit), .value = "LIMITS",
-     .help = "hold figures against limits, such as \"linearity 0.05 %, zero 0.2 deg/s\": a column "
+     .help = "compare figures with limits, such as \"linearity 0.05 %, zero 0.2 deg/s\"; a column "
              "says which are met"},
     REPORT_OPTION(AT(report),
                   "write a test report that can be printed: figures, plots, definitions, levels"),
@@ -24,40 +24,42 @@ static const option result_options[] = {
     {"serial", OPTION_TEXT, AT(serial), .value = "TEXT", .help = "its serial number"},
     {"operator", OPTION_TEXT, AT(operator_name), .value = "TEXT", .help = "who tested it"},
     {"laboratory", OPTION_TEXT, AT(laboratory), .value = "TEXT", .help = "where"},
-    {"date", OPTION_TEXT, AT(date), .value = "TEXT", .help = "when; never filled in by itself"},
+    {"date", OPTION_TEXT, AT(date), .value = "TEXT", .help = "when; never filled in automatically"},
     {"at-temperature", OPTION_TEXT, AT(temperature), .value = "TEXT",
      .help = "at which temperature"},
 };
 
 static const option test_options[] = {
     {"static", OPTION_FILE, AT(rest), .value = "LOG",
-     .help = "log of the unit at rest: bias instability, fitted and by the Allan minimum"},
+     .help = "log of the unit at rest, for the bias instability: fitted, and by the Allan minimum"},
     {"full-scale", OPTION_TEXT, AT(full_scale), .value = "QUANTITY",
-     .help = "what % of full scale is of, such as \"300 deg/s\"; default: the largest reference"},
+     .help =
+         "full scale, to which % refers, such as \"300 deg/s\"; default: the largest reference"},
     {"sensitivity", OPTION_TEXT, AT(sensitivity), .value = "QUANTITY",
-     .help = "nominal, of readings in counts, such as \"131 count/(deg/s)\": figures are then in "
-             "the unit of the reference, with accuracy"},
+     .help = "nominal sensitivity of readings in counts, such as \"131 count/(deg/s)\": figures "
+             "are then in the unit of the reference, with accuracy"},
     {"zero", OPTION_TEXT, AT(zero), .value = "QUANTITY",
      .help = "counts at zero, such as \"32768 count\""},
     {"level-width", OPTION_TEXT, AT(level_width), .value = "QUANTITY",
-     .help = "references not further apart are one level; default 1e-5 of full scale in logs, 0 in "
-             "tables"},
+     .help = "references at most this far apart are one level; default 1e-5 of full scale in logs, "
+             "0 in tables"},
     {"motion", OPTION_FILE, SESSION(motion), .value = "PROGRAMME",
      .help = "motion file that the table ran: the reference of a log"},
     {"motion-offset", OPTION_TEXT, SESSION(motion_offset), .value = "TIME|auto",
      .help = "time of the log at which the programme begins; auto finds it; default 0s"},
     {"table-axis", OPTION_CHOICE, SESSION(table_axis), .value = "AXIS", .choices = "x|y|z",
-     .help = "of the unit, about which a column table_rate [deg/s] turns it"},
+     .help = "axis of the unit about which the column table_rate [deg/s] turns the unit"},
     {"section", OPTION_TEXT, SESSION(section), .value = "COLUMN",
      .help = "column of texts that names the runs of a log"},
     {"minimum", OPTION_QUANTITY, SESSION(minimum), .value = "TIME", .unit = "s",
      .choices = "positive",
      .help = "shortest stretch of constant reference that counts; default 0.5s"},
     {"trim", OPTION_QUANTITY, SESSION(trim), .value = "TIME", .unit = "s",
-     .choices = "not negative", .help = "left out at both ends of a stretch; default 0.2s"},
+     .choices = "not negative", .help = "time left out at both ends of a stretch; default 0.2s"},
     {"settle", OPTION_QUANTITY, SESSION(settle), .value = "TIME", .unit = "s",
      .choices = "not negative",
-     .help = "left out at its beginning besides, until filters have settled; default 0s"},
+     .help = "time also left out at the beginning of a stretch, until filters have settled; "
+             "default 0s"},
 };
 
 #define COUNT(table) (sizeof(table) / sizeof *(table))
@@ -104,14 +106,16 @@ static int check_company(const evaluation *v)
     for (size_t k = 0; k < v->log->channel_count; k++)
         counts = counts || in_counts(&v->log->channel[k]);
     if (o->sensitivity && !counts)
-        return command_misused("--sensitivity is of readings in counts, and there are none");
+        return command_misused(
+            "--sensitivity is for readings in counts, and there are none: leave --sensitivity out");
     if (o->zero && !o->sensitivity)
-        return command_misused("--zero is of --sensitivity: add it");
+        return command_misused("--zero is used with --sensitivity only: add --sensitivity");
     if (o->session.motion_offset && !o->session.motion)
-        return command_misused("--motion-offset is of --motion: add it");
+        return command_misused("--motion-offset is used with --motion only: add --motion");
     for (size_t k = 0; k < sizeof of_logs / sizeof of_logs[0]; k++)
         if (of_logs[k].given && !v->has_log)
-            return command_misused("--%s is of logs, and there are tables only", of_logs[k].name);
+            return command_misused("--%s is for logs, and all files are tables: leave it out",
+                                   of_logs[k].name);
     return -1;
 }
 
@@ -246,17 +250,14 @@ const verb evaluate_verb = {
                   "deviations.svg",
                   "a log of a rate table that ran the programme, and one at rest"}},
     .description =
-        "FILE is a table, CSV with the columns reference and reading (or several: reading_x …) "
-        "with "
-        "their units, and if there are such: direction (up, down; else inferred from the order), "
-        "run (power cycles), sigma; or a log of a sensor with what it was exposed to: columns "
-        "reference_rate_x [deg/s] …, reference_force_x [g] …, table_rate [deg/s] with "
-        "--table-axis, "
-        "or --motion. Every stretch of constant reference of a log is a reading. Each file is a "
-        "run.\n\n"
-        "Every figure comes with an interval. How large the noise is follows from repeated "
-        "readings of one reference, reached from the same side: take each level twice or more. "
-        "docs/evaluate.md has the definitions.",
+        "FILE is a table or a log. A table is CSV with the columns reference and reading (or "
+        "several: reading_x …) with their units; it may have the columns direction (up, down; else "
+        "inferred from the order), run (power cycles) and sigma. A log of a sensor needs its "
+        "reference: columns reference_rate_x [deg/s] …, reference_force_x [g] …, table_rate "
+        "[deg/s] with --table-axis, or --motion. Every stretch of constant reference of a log is a "
+        "reading. Each file is a run.\n\nEvery figure has an interval. The noise is estimated from "
+        "repeated readings of one reference, reached from the same side: take each level twice or "
+        "more. docs/evaluate.md has the definitions.",
     .groups = {{"Options", COUNT(result_options), result_options, 0},
                {"The test", COUNT(test_options), test_options, 0},
                {"Reading logs", LOG_INPUT_OPTIONS, log_input_options, SESSION(log)}},

@@ -50,7 +50,7 @@ IMK_API const char *imk_version(void);
     X(IMK_ERROR_KEY_MISSING, -10, "a required key is missing")                                     \
     X(IMK_ERROR_CONFLICT, -11, "two settings exclude each other")                                  \
     X(IMK_ERROR_VERSION, -12, "the format version is not supported")                               \
-    X(IMK_ERROR_UNINITIALISED, -13, "the structure was not made by its _default")                  \
+    X(IMK_ERROR_UNINITIALISED, -13, "the structure was not initialised by its _default function")  \
     X(IMK_ERROR_WORKSPACE, -14, "the workspace is too small")                                      \
     X(IMK_ERROR_MEMORY, -15, "memory is exhausted")                                                \
     X(IMK_ERROR_SINGULAR, -16, "the matrix is singular or not positive definite")                  \
@@ -65,11 +65,11 @@ IMK_API const char *imk_version(void);
     X(IMK_ERROR_WRITE, -25, "the file cannot be written")                                          \
     X(IMK_ERROR_FORMAT, -26, "the file format is not recognised")                                  \
     X(IMK_ERROR_COMPRESSED, -27, "the compressed data is damaged or cut short")                    \
-    X(IMK_ERROR_COLUMN, -28, "a column is missing, unknown or doubled")                            \
-    X(IMK_ERROR_RATE_MISSING, -29, "the sample rate is not known")                                 \
+    X(IMK_ERROR_COLUMN, -28, "a column is missing, unknown or duplicated")                         \
+    X(IMK_ERROR_RATE_MISSING, -29, "the sampling rate is not known")                               \
     X(IMK_ERROR_UNSUPPORTED, -30, "this is not supported")                                         \
     X(IMK_ERROR_NAME_UNKNOWN, -31, "the name is not known")                                        \
-    X(IMK_ERROR_CANCELLED, -32, "the work was given up")
+    X(IMK_ERROR_CANCELLED, -32, "the work was cancelled")
 
 typedef enum imk_status {
 #define IMK_STATUS_ENUM(name, value, text) name = value,

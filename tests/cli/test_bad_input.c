@@ -12,10 +12,12 @@
 static const struct bad_log {
     const char *make, *file, *says;
 } bad_logs[] = {
-    {":", "missing.csv", "missing.csv: the file cannot be opened: No such file or directory\n"},
-    {"mkdir dir.csv", "dir.csv", "dir.csv: the file cannot be opened: Is a directory\n"},
+    {":", "missing.csv",
+     "missing.csv: the file cannot be opened: No such file or directory; check the path\n"},
+    {"mkdir dir.csv", "dir.csv",
+     "dir.csv: the file cannot be opened: Is a directory; give a file, not a folder\n"},
     {": >empty.csv", "empty.csv", "empty.csv: the file is empty\n"},
-    {"head -1 good.csv >b.csv", "b.csv", "b.csv: there is no data: "},
+    {"head -1 good.csv >b.csv", "b.csv", "b.csv: the log has a header but no rows; expected"},
     {"head -2 good.csv >b.csv", "b.csv",
      "b.csv: there is one row only; a static record of minutes to hours is due\n"},
     {"sed '1s/ .deg.*//' good.csv >b.csv", "b.csv", "add --gyro-unit deg/s"},
@@ -155,10 +157,9 @@ static void test_unit_too_small(void **state)
 {
     (void)state;
     put("late.csv", "time [s],gyro_x [deg/s]\n0,1\n1e300,2\n2e300,3\n");
-    check_message(
-        "$I convert late.csv b.csv --to-time-unit ns", 1,
-        "imukit convert: error: time, row 2: \"ns\" is too small a unit: the number would "
-        "be infinite; write a larger one\n");
+    check_message("$I convert late.csv b.csv --to-time-unit ns", 1,
+                  "imukit convert: error: time, row 2: \"ns\" is too small a unit: the number "
+                  "would be infinite; choose a larger unit\n");
     assert_int_equal(run("$I convert late.csv b.csv --to-time-unit s && cmp late.csv b.csv"), 0);
     assert_int_equal(sweep(), 2);
 }
@@ -298,9 +299,8 @@ static void test_next_command(void **state)
     assert_int_equal(run("cut -d, -f2 good.csv >'b 1.csv'"), 0);
     check_message(
         "$I allan 'b 1.csv' --tau=1s", 1,
-        "imukit allan: error: b 1.csv:1: time: the sample rate is not known: no column of "
-        "time; add --rate 100Hz (samples per second)\n"
-        "Next: imukit allan 'b 1.csv' --tau=1s --rate 100Hz\n");
+        "imukit allan: error: b 1.csv:1: time: the log has no time column; add --rate 100Hz "
+        "(samples per second)\nNext: imukit allan 'b 1.csv' --tau=1s --rate 100Hz\n");
     assert_int_equal(run("$I allan 'b 1.csv' --tau=1s --rate 100Hz"), 0);
     sweep();
 }
@@ -415,9 +415,9 @@ static void test_unwritable_outputs(void **state)
             check_contains(err, places[k].says, line);
         }
     }
-    check_message("$I allan good.csv -o nodir/ >/dev/null", 1,
-                  "imukit allan: error: nodir/: it is the name of a folder; expected a name of a "
-                  "file\n");
+    check_message(
+        "$I allan good.csv -o nodir/ >/dev/null", 1,
+        "imukit allan: error: nodir/: this is the name of a folder; expected a file name\n");
     assert_int_equal(sweep(), 2); /* good.csv and dir.csv: nothing else was left */
     write_good();
     static const char *const to_standard_output[] = {"--help",

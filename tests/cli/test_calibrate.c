@@ -220,14 +220,16 @@ static void bad_columns_are_explained(void **state)
         const char *says;
     } cases[] = {
         {"for(i=5;i<8;i++)$i/=9.80665", 1,
-         "gravity is 9.8074: the columns look like g, not m/s^2; correct the header to g"},
+         "gravity is 9.8074: the columns look like g, not m/s^2; correct the unit in the header to "
+         "g"},
         {"for(i=5;i<8;i++)$i*=1000/9.80665", 1, "the columns look like mg, not m/s^2"},
         {"for(i=2;i<5;i++)$i*=3.14159265358979/180", 1,
-         "the columns look like rad/s; correct the header to rad/s"},
+         "the columns look like rad/s; correct the unit in the header to rad/s"},
         {"$1*=1000", 1, "the times look like ms; add --time-unit ms, or correct the header"},
-        {"t=$2;$2=$3;$3=t", 1, "gyro_x and gyro_y look exchanged: only then do the turns"},
-        {"$3=-$3", 1, "gyro_y has the wrong sign against the others: the axes are mirrored"},
-        {"$5=\"nan\"", 1, "accel_x is never a number: nothing can be estimated from it"},
+        {"t=$2;$2=$3;$3=t", 1, "gyro_x and gyro_y look exchanged: the turns of the gyros lead"},
+        {"$3=-$3", 1,
+         "gyro_y has the wrong sign relative to the other axes: the axes are mirrored"},
+        {"$5=\"nan\"", 1, "accel_x never has a number: nothing can be estimated from this column"},
         {"$5=1.25", 1, "accelerometer x never changes its reading"},
         {"for(i=2;i<5;i++)$i=int($i*16.4);for(i=5;i<8;i++)$i=int($i*1670)", 1,
          "they look like counts; write [count] into the header (or add --accel-unit count)"},
@@ -263,16 +265,17 @@ static void bad_tests_are_explained(void **state)
         assert_int_equal(run(line), 0);
     }
     assert_int_equal(run("$I simulate unit.yaml --rate 100Hz --duration 60s -o rest.csv"), 0);
-    check_says("$I calibrate swing.csv " POSES, 1,
-               "swing.csv: the unit never stands still for long enough: 0 % of the log does");
+    check_says(
+        "$I calibrate swing.csv " POSES, 1,
+        "swing.csv: the unit is never stationary for long enough: it is stationary in 0 % of");
     check_says("$I calibrate rest.csv " POSES, 1,
-               "rest.csv: the unit stands still all the time, in one pose");
+               "rest.csv: the unit is stationary in one pose all the time");
     check_says("$I calibrate plane.csv " POSES, 1,
                "plane.csv: the poses all lie in one plane: gravity hardly ever acts along x; add "
                "poses with x up, with x down and with x at 45 deg");
-    check_says("$I calibrate few.csv " POSES, 1, "few.csv: 4 poses are there, ");
+    check_says("$I calibrate few.csv " POSES, 1, "few.csv: the log has 4 poses, ");
     check_says("$I calibrate rest.csv -p rate-table", 1,
-               "rest.csv: rate-table needs to know what the unit was exposed to");
+               "rest.csv: rate-table needs the rates or forces that acted on the unit");
     check_says("$I calibrate rest.csv -p thermal", 1,
                "rest.csv has no column temperature [degC], which thermal needs");
     sweep();

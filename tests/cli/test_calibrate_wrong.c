@@ -86,7 +86,7 @@ static void logs_too_short_for_the_options_are_named(void **state)
                "--initial-rest 500s is longer than turns.csv, which has 95 s");
     check_says("$I calibrate turns.csv " POSES " --window 1e9s", 2, "is longer than turns.csv");
     check_says("$I calibrate turns.csv " POSES " --minimum 40s", 1,
-               "never stands still for 40 s, which --minimum asks for");
+               "is never stationary for 40 s, which --minimum requires");
     assert_int_equal(run("head -2 turns.csv >one.csv"), 0);
     check_says("$I calibrate one.csv " POSES " --rate 100Hz", 1, "one.csv has one row of data");
     sweep();
@@ -102,8 +102,9 @@ static void temperatures_that_are_none_are_counted(void **state)
                      0);
     check_says(
         "$I calibrate cold.csv -p thermal", 1,
-        "cold.csv: of 200 rows the temperature is 0 K or less in 150 and no number in 50; at "
-        "least 96 need one: check the column temperature and its unit (--temperature-unit)");
+        "cold.csv: of 200 rows, 150 have a temperature of 0 K or less and 50 have no number; at "
+        "least 96 rows need a valid temperature: check the column temperature and its unit "
+        "(--temperature-unit)");
     sweep();
 }
 
@@ -114,7 +115,7 @@ static void rows_without_numbers_are_counted(void **state)
     assert_int_equal(run("awk -F, 'BEGIN{OFS=\",\"} NR>1&&NR%5==0{$5=\"\"} {print}' turns.csv "
                          ">sparse.csv"),
                      0);
-    check_says("$I calibrate sparse.csv " POSES, 1, "sparse.csv: 20 % of its rows have an empty");
+    check_says("$I calibrate sparse.csv " POSES, 1, "sparse.csv: 20 % of the rows have an empty");
     sweep();
 }
 

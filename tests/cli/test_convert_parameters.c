@@ -36,14 +36,13 @@ static void test_from_model(void **state)
     put("model.yaml", "imukit: 1\nname: a unit\ngyro:\n  noise: {angle_random_walk: 0.3 "
                       "deg/sqrt(h), bias_instability: 5 deg/h}\n");
     check_message("$I convert model.yaml out.yaml --to kalibr --rate 200Hz", 0,
-                  "imukit convert: warning: gyroscope_random_walk is 0, which kalibr and OpenVINS "
-                  "do not take: set it\n"
-                  "imukit convert: warning: gyro.noise.bias_instability is not held by the format "
-                  "kalibr\n");
+                  "imukit convert: warning: gyroscope_random_walk is 0, and kalibr and OpenVINS do "
+                  "not accept 0: set a value\nimukit convert: warning: gyro.noise.bias_instability "
+                  "is not held by the format kalibr\n");
     check_message("$I convert model.yaml out.sdf --to gazebo", 1,
-                  "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and "
-                  "the sample rate is not known; add --rate 200Hz (samples per second)\n"
-                  "Next: imukit convert model.yaml out.sdf --to gazebo --rate 200Hz\n");
+                  "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and the "
+                  "sampling rate is not known; add --rate 200Hz (samples per second)\nNext: imukit "
+                  "convert model.yaml out.sdf --to gazebo --rate 200Hz\n");
     check_message("$I convert ADIS16465 out.m --to navego --rate 200Hz 2>/dev/null", 0, "");
     check_message(
         "$I convert model.yaml out.x --to kalibra", 2,
@@ -51,8 +50,8 @@ static void test_from_model(void **state)
         "model|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter\n" TRY(
             "convert"));
     check_message("$I convert model.yaml /nowhere/out.yaml --to kalibr", 1,
-                  "imukit convert: error: /nowhere/out.yaml: the folder /nowhere does not "
-                  "exist; make it, or name another\n");
+                  "imukit convert: error: /nowhere/out.yaml: the folder /nowhere does not exist; "
+                  "create this folder, or choose another\n");
     assert_int_equal(sweep(), 3);
 }
 
@@ -62,15 +61,15 @@ static void test_refused(void **state)
     check_message("$I convert " CORPUS "vins.yaml' out.yaml | cat", 0,
                   "imukit convert: error: " SOURCE_DIRECTORY
                   "/fuzz/corpus/parameters/vins.yaml: acc_n: \"acc_n\" and the others are per "
-                  "sample or per sqrt(Hz), which is not known; add --rate 200Hz (if per sample, as "
-                  "VINS itself takes them; or --density two-sided if they are densities)\n"
-                  "Next: imukit convert " SOURCE_DIRECTORY
+                  "sample or per sqrt(Hz): the file does not say which; add --rate 200Hz (if the "
+                  "numbers are per sample, as VINS takes them; if they are densities, add "
+                  "--density two-sided)\nNext: imukit convert " SOURCE_DIRECTORY
                   "/fuzz/corpus/parameters/vins.yaml out.yaml --rate 200Hz\n");
     put("deg.yaml", "gyroscope_noise_density: 0.3\n");
     check_message(
         "$I convert deg.yaml out.yaml", 1,
         "imukit convert: error: deg.yaml:1:26: gyroscope_noise_density: \"0.3\" cannot be "
-        "in rad/s/sqrt(Hz), it looks like deg/sqrt(h); this format has rad/s/sqrt(Hz): "
+        "in rad/s/sqrt(Hz), it looks like deg/sqrt(h); this format uses rad/s/sqrt(Hz): "
         "write 8.72665e-05, or correct the value if it is wrong\n");
     put("two.yaml", "imu0: {gyroscope_noise_density: 1e-4}\nimu1: {gyroscope_noise_density: "
                     "2e-4}\n");
@@ -80,10 +79,10 @@ static void test_refused(void **state)
     assert_int_equal(run("$I convert world.sdf out.yaml"), 1);
     check_contains(err, "world.sdf: the file format is not recognised; expected a parameter file",
                    "world.sdf");
-    check_contains(err, "(--from says which)", "world.sdf");
+    check_contains(err, "(name the format with --from)", "world.sdf");
     check_message("$I convert missing.sdf out.yaml", 1,
                   "imukit convert: error: missing.sdf: the file cannot be opened: No such file or "
-                  "directory\n");
+                  "directory; check the path\n");
     put("log.csv", "time [s],gyro_x [deg/s]\n0,1\n0.1,2\n");
     assert_int_equal(run("$I convert log.csv out.csv --sensor a"), 2);
     check_contains(err, "are for parameter files", "log.csv");

@@ -104,7 +104,7 @@ static void test_without_gnuplot(void **state)
             snprintf(line, sizeof line, "%s %s --plot x.png", nothing, verb);
             check_says(line, 1,
                        "x.png: gnuplot is not installed; install it: apt install gnuplot-nox; a "
-                       "name ending in .svg needs nothing\n");
+                       "file ending in .svg needs no gnuplot\n");
             check_absent(line, "x.png");
             snprintf(line, sizeof line, "%s %s --plot term", nothing, verb);
             check_says(line, 1, "gnuplot is not installed; install it: apt install gnuplot-nox\n");
@@ -256,11 +256,11 @@ static void test_hung_gnuplot(void **state)
     char line[600];
     snprintf(line, sizeof line, "%s%s --plot x.png", hung, allan);
     check_message(line, 1,
-                  "imukit allan: error: plot: gnuplot was ended: it has not finished in 0.2 s; "
-                  "expected a working gnuplot, or more time: IMUKIT_GNUPLOT_SECONDS\n");
+                  "imukit allan: error: plot: gnuplot was stopped: it did not finish in 0.2 s; "
+                  "check that gnuplot works, or give it more time: IMUKIT_GNUPLOT_SECONDS\n");
     check_nothing_left(wait_for_gnuplot());
     snprintf(line, sizeof line, "%s%s --plot term", hung, allan);
-    check_says(line, 1, "gnuplot was ended");
+    check_says(line, 1, "gnuplot was stopped");
     check_nothing_left(wait_for_gnuplot());
 }
 
@@ -273,15 +273,16 @@ static void test_failing_gnuplot(void **state)
     static const struct {
         const char *program, *says;
     } bad[] = {
-        {"exit 1", "gnuplot failed with exit code 1; see whether it works by itself: gnuplot "
-                   "--version\n"},
-        {"exit 0", "gnuplot failed: there is no drawing; see whether it works by itself"},
+        {"exit 1",
+         "gnuplot failed with exit code 1; check that gnuplot works: gnuplot --version\n"},
+        {"exit 0", "gnuplot failed: there is no drawing; check that gnuplot works"},
         {"echo '<svg' >figure.out; echo first >&2; printf ' \\033]0;last\\007 words\n\n' >&2; exit "
          "3",
-         "plot: gnuplot failed with exit code 3; it said: ?]0;last? words\n"},
+         "plot: gnuplot failed with exit code 3; gnuplot printed: ?]0;last? words\n"},
         {"echo '<svg' >figure.out; kill -9 $$",
-         "plot: gnuplot was ended by signal 9 (Killed); see whether it works by itself"},
-        {"seq 100000 | tr '\n' ' ' >&2; exit 4", "gnuplot failed with exit code 4; it said: "},
+         "plot: gnuplot was ended by signal 9 (Killed); check that gnuplot works"},
+        {"seq 100000 | tr '\n' ' ' >&2; exit 4",
+         "gnuplot failed with exit code 4; gnuplot printed: "},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         char text[200], line[600];

@@ -195,8 +195,8 @@ static void test_refusals(void **state)
                   "--rate-limit and --force-limit: fixed point needs to know how large the numbers "
                   "are\n");
     check_message("$I compensate any.yaml --emit-c file", 1,
-                  "imukit compensate: error: file/imukit_unit.h: the file cannot be opened: "
-                  "Not a directory\n");
+                  "imukit compensate: error: file/imukit_unit.h: the file cannot be opened: Not a "
+                  "directory; check the path\n");
     assert_int_equal(run("$I compensate any.yaml --emit-c . --arithmetic fixed --rate-limit "
                          "300deg/s"),
                      0);

@@ -46,8 +46,8 @@ static void test_table(void **state)
                         "resolution                         1.00          0.00 … 1.00  deg/s\n"
                         "threshold                          1.00          0.00 … 1.00  deg/s\n"
                         "\n"
-                        "Every step gave its change down to the smallest that was tested and could "
-                        "be told from noise, 1 deg/s: the resolution is that or finer.\n");
+                        "Every step gave its change, down to 1 deg/s, the smallest tested step "
+                        "that exceeds the noise: the resolution is this step or finer.\n");
     sweep();
 }
 
@@ -123,12 +123,13 @@ static void test_options_without_use(void **state)
 {
     (void)state;
     static const char *const cases[][2] = {
-        {"--sensitivity garbage", "--sensitivity is of readings in counts, and there are none"},
-        {"--zero nan", "--zero is of --sensitivity: add it"},
-        {"--motion-offset infs", "--motion-offset is of --motion: add it"},
-        {"--motion missing.yaml", "--motion is of logs, and there are tables only"},
-        {"--section run", "--section is of logs, and there are tables only"},
-        {"--table-axis z", "--table-axis is of logs, and there are tables only"}};
+        {"--sensitivity garbage",
+         "--sensitivity is for readings in counts, and there are none: leave --sensitivity out"},
+        {"--zero nan", "--zero is used with --sensitivity only: add --sensitivity"},
+        {"--motion-offset infs", "--motion-offset is used with --motion only: add --motion"},
+        {"--motion missing.yaml", "--motion is for logs, and all files are tables: leave it out"},
+        {"--section run", "--section is for logs, and all files are tables: leave it out"},
+        {"--table-axis z", "--table-axis is for logs, and all files are tables: leave it out"}};
     char line[200], says[200];
     write_table("t.csv", "reading [deg/s]", 1);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -159,8 +160,8 @@ static void test_limits(void **state)
                   "mean \"hysteresis\"?\n" TRY("evaluate"));
     check_message(
         "$I evaluate t.csv --limit 'zero_repeatability 0.1 deg/s'", 2,
-        "imukit evaluate: error: --limit zero_repeatability: there is no such figure of "
-        "these files; it takes two runs: a column run, or a file for each\n" TRY("evaluate"));
+        "imukit evaluate: error: --limit zero_repeatability: these files do not give this figure; "
+        "it needs two runs: add a column run, or give a file for each run\n" TRY("evaluate"));
     assert_int_equal(run("$I evaluate t.csv --limit 'zero 0.1 g'"), 2);
     check_contains(err, "--limit zero of reading: \"0.1 g\" is ", err);
     /* Each limit must be of something, whatever the others are of. */

@@ -106,10 +106,9 @@ static void wrong_usage(void **state)
     put("a.h5", "not a results file");
     check_message("$I merge a.h5 b.h5 -o all.h5", 1,
                   "imukit merge: warning: a.h5: the file format is not recognised; expected a "
-                  "results file that imukit wrote (.h5)\n"
-                  "imukit merge: warning: b.h5: the file cannot be opened: No such file or "
-                  "directory\n"
-                  "imukit merge: error: no file is usable; give results files of one campaign\n");
+                  "results file that imukit wrote (.h5)\nimukit merge: warning: b.h5: the file "
+                  "cannot be opened: No such file or directory; check the path\nimukit merge: "
+                  "error: no file is usable; give results files of one campaign\n");
     sweep();
 }
 
@@ -120,11 +119,11 @@ static void results_through_a_pipe(void **state)
     (void)state;
     make_shards(2);
     check_message("cat s1.h5 | $I drift -", 1,
-                  "imukit drift: error: standard input: it is a results file of a campaign; give "
-                  "the file itself to imukit drift, with a name ending in .h5\n");
+                  "imukit drift: error: standard input: this is the results file of a campaign; "
+                  "give the file itself to imukit drift, with a name ending in .h5\n");
     check_message("mv s1.h5 s1; $I grade s1; mv s1 s1.h5", 0,
-                  "imukit grade: error: s1: it is a results file of a campaign; give "
-                  "the file itself to imukit drift, with a name ending in .h5\n");
+                  "imukit grade: error: s1: this is the results file of a campaign; give the file "
+                  "itself to imukit drift, with a name ending in .h5\n");
     check_message("cat s1.h5 | $I merge - s2.h5 -o x.h5", 1,
                   "imukit merge: warning: standard input: a results file cannot be read through a "
                   "pipe; give the file itself\n"
@@ -254,8 +253,8 @@ static void an_interrupt_says_how_to_go_on(void **state)
                    "command goes on from there\n",
                    "SIGINT");
     assert_int_equal(run("$I drift m.yaml --duration 1min --seed 4 --monte-carlo 400 -o x.h5"), 1);
-    assert_string_equal(err, "imukit drift: error: x.h5.part: the seed is 3, not 4; remove it to "
-                             "begin anew, or choose another name for the results\n");
+    assert_string_equal(err, "imukit drift: error: x.h5.part: the seed is 3, not 4; remove the "
+                             "file to begin anew, or choose another name for the results\n");
     assert_int_equal(run("$I drift m.yaml --duration 1min --seed 3 --monte-carlo 400 -o x.h5"), 0);
     check_contains(err, " of 400 runs are there already\n", "what the interrupt left");
     assert_int_equal(run("$I drift m.yaml --duration 1min --seed 3 --monte-carlo 400 -o x.h5"), 0);
@@ -272,7 +271,7 @@ static void a_full_disk(void **state)
     assert_int_equal(run("trap '' XFSZ; ulimit -f 16; " DRIFT "-o x.h5"), 1);
     check_contains(err,
                    "imukit drift: error: x.h5.part: the file cannot be written: File too large; "
-                   "make room: what was there before is kept\n",
+                   "make room: the runs computed before are kept\n",
                    "a limit on the size of files");
     assert_int_equal(access("x.h5", F_OK), -1);
     assert_int_equal(run(DRIFT "-o x.h5"), 0);

@@ -57,7 +57,7 @@ static void every_run_ends(void **state)
     put("x.h5.part", "a letter, which someone may want to keep");
     assert_int_equal(run(RANKS(2) DRIFT "-o x.h5"), 1);
     check_contains(err,
-                   "imukit drift: error: x.h5.part: it is not what an interrupted campaign leaves",
+                   "imukit drift: error: x.h5.part: the file is not from an interrupted campaign",
                    "a part of something else");
     sweep();
 }

@@ -402,7 +402,8 @@ static void test_refusals(void **state)
            "signal against another can move\n" TRY("physics")},
         {"fibre_optic --view 1 --plot a.svg --duration 1us", 2,
          E "--duration: 1e-06 s at 1e+06 points per second are no picture\n" TRY("physics")},
-        {"no.yaml", 1, E "no.yaml: the file cannot be opened: No such file or directory\n"},
+        {"no.yaml", 1,
+         E "no.yaml: the file cannot be opened: No such file or directory; check the path\n"},
         {"--reduce", 2,
          E "an operand is missing: imukit physics [INSTRUMENT|DESIGN.yaml]; imukit physics lists "
            "the instruments\n" TRY("physics")},
@@ -461,7 +462,7 @@ static void test_refusals(void **state)
         {"ring_laser -d 1s --output-rat 5Hz", 2,
          E "there is no option --output-rat; did you mean --output-rate?\n" TRY("physics")},
         {"ring_laser -d 1s -o no/a.csv", 1,
-         E "no/a.csv: the folder no does not exist; make it, or name another\n"},
+         E "no/a.csv: the folder no does not exist; create this folder, or choose another\n"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char line[400];
@@ -493,7 +494,7 @@ static void test_bad_designs(void **state)
          E "d.yaml:2:13: instrument: \"ring-lazer\" is not a known name; did you mean "
            "\"ring_laser\"?\n"},
         {"imukit: 1\ngyro: {}\n", E "d.yaml:1:1: \"instrument\" is missing; write instrument: "
-                                    "NAME, as imukit physics lists them\n"},
+                                    "NAME, with a name that imukit physics lists\n"},
     };
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         put("d.yaml", texts[i][0]);

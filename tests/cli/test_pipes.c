@@ -246,8 +246,8 @@ static void test_without_end(void **state)
         snprintf(line, sizeof line, "( ulimit -f 2048; %s )", lines[i]);
         assert_int_equal(run(line), 1);
         check_contains(err,
-                       "error: /dev/zero: it is neither text nor .npy, and not compressed by gzip "
-                       "or zstd\n",
+                       "error: /dev/zero: the file is neither text nor .npy, and not compressed by "
+                       "gzip or zstd\n",
                        line);
     }
     /* What ends, and can be read after a conversion, is told that. */
@@ -279,10 +279,9 @@ static void test_formats_that_seek(void **state)
 {
     (void)state;
     assert_int_equal(run("mkfifo x.npy x.h5"), 0);
-    check_message(
-        "cat x.npy & $I convert log.csv x.npy", 1,
-        "imukit convert: error: x.npy: this is not supported: a .npy of unknown length to "
-        "a pipe or compressed; write to a plain file, or a .csv\n");
+    check_message("cat x.npy & $I convert log.csv x.npy", 1,
+                  "imukit convert: error: x.npy: a .npy of unknown length cannot be compressed or "
+                  "go to a pipe; write a plain .npy file, or a .csv\n");
     check_message(
         "$I drift tactical -d 10s -r 1Hz -n 3 -o x.h5", 2,
         "imukit drift: error: -o x.h5: runs are kept in a file beside their results while "
@@ -290,7 +289,7 @@ static void test_formats_that_seek(void **state)
     assert_int_equal(run("$I drift tactical -d 10s -r 1Hz -n 3 -o runs.h5"), 0);
     check_message("$I merge runs.h5 -o x.h5", 1,
                   "imukit merge: error: x.h5: it is not a regular file; expected a regular file, "
-                  "for its checksum is written last\n");
+                  "because its checksum is written last\n");
     check_message("$I drift tactical -d 10s -r 1Hz -n 3 -o /dev/stdout", 2,
                   "imukit drift: error: -o -: runs are kept in a file beside their results while "
                   "they are made; give a name ending in .csv or .h5\n" TRY("drift"));

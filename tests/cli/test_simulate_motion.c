@@ -408,7 +408,7 @@ static void test_refusals(void **state)
     /* What is wrong with a file is no misuse; nothing is left behind. */
     check_message("$I simulate AHRS $D --truth nowhere/t.csv -o x.csv", 1,
                   "imukit simulate: error: nowhere/t.csv: the folder nowhere does not exist; "
-                  "make it, or name another\n");
+                  "create this folder, or choose another\n");
     check_message("$I simulate AHRS $D --runs 2 -o nowhere/x/", 1,
                   "imukit simulate: error: nowhere/x/: No such file or directory\n");
     check_message("sed '1s/ .s.//' log.csv >bare.csv; $I simulate AHRS --motion bare.csv", 1,
@@ -416,11 +416,11 @@ static void test_refusals(void **state)
                   "bare.csv NEW.csv --time-unit s (or ms, us, ns)\n");
     check_message("cut -d, -f1-5 log.csv >part.csv; $I simulate AHRS --motion part.csv", 1,
                   "imukit simulate: error: part.csv: accel_y: this column is missing; recorded "
-                  "motion has gyro_x, gyro_y, gyro_z, accel_x, accel_y and accel_z\n");
+                  "motion needs gyro_x, gyro_y, gyro_z, accel_x, accel_y and accel_z\n");
     put("poses.csv", "time [s],x [m],y [m],z [m],speed [m/s]\n0,0,0,0,1\n1,1,0,0,1\n");
     check_message("$I simulate AHRS --motion poses.csv --rate 1Hz -o x.csv", 0,
-                  "imukit simulate: warning: poses.csv: the table has no attitude: level, heading "
-                  "north; 1 column is not used\n");
+                  "imukit simulate: warning: poses.csv: the table has no attitude: the unit is "
+                  "level, heading north; 1 column is not used\n");
     assert_int_equal(sweep(), 8);
 }
 

@@ -127,12 +127,12 @@ static imk_status convert(const source *s, const imk_unit *unit, size_t count, d
         if (unit->offset != 0.0) /* adding 0 would lose the sign of -0 */
             values[i] += unit->offset;
         if (!isfinite(values[i]))
-            return refuse(s, IMK_ERROR_NOT_FINITE, s->begin, "is not finite", "finite numbers");
+            return refuse(s, IMK_ERROR_NOT_FINITE, s->begin, "is not finite", "a finite number");
     }
     for (size_t i = 0; i < sigma_count; i++) {
         sigmas[i] = sigmas[i] * unit->scale + 0.0; /* -0 is 0 */
         if (!isfinite(sigmas[i]))
-            return refuse(s, IMK_ERROR_NOT_FINITE, s->begin, "is not finite", "finite numbers");
+            return refuse(s, IMK_ERROR_NOT_FINITE, s->begin, "is not finite", "a finite number");
         if (!(sigmas[i] >= 0.0))
             return refuse(s, IMK_ERROR_RANGE, s->begin, "has a negative uncertainty",
                           "a 1-sigma value of 0 or more behind ±");

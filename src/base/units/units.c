@@ -89,7 +89,7 @@ static bool multiply(reader *r, product *result, const product *factor, int halv
             return fail_syntax(r, "a unit whose exponents are multiples of one half");
     }
     if (!isfinite(result->scale) || !(result->scale > 0.0))
-        return fail_syntax(r, "a unit of a size that can be represented");
+        return fail_syntax(r, "a unit of a size that a number can hold");
     return true;
 }
 
@@ -305,7 +305,7 @@ static bool read_product(reader *r, product *result)
         const bool times =
             !divide && (take(r, "*") || take(r, "·") || take(r, "⋅") || take(r, "×"));
         if (!divide && !times && (before == r->at || divided))
-            return fail_syntax(r, divided ? "brackets, or a / before each divisor"
+            return fail_syntax(r, divided ? "write brackets, or a / before each divisor"
                                           : "one of * / ^ between units");
         divided = divided || divide;
         r->at = imki_skip_blanks(r->at, r->end);
@@ -332,7 +332,7 @@ imk_status imk_unit_parse(const char *begin, const char *end, imk_unit *unit, im
     if (!read_product(&r, &result))
         return r.error->status;
     if (r.at != end) { /* a bracket closed that was never opened */
-        (void)fail_syntax(&r, "as many opening as closing brackets");
+        (void)fail_syntax(&r, "an opening bracket for each closing bracket");
         return r.error->status;
     }
     imk_unit parsed = {.scale = result.scale,

@@ -105,7 +105,7 @@ imk_status imki_record_make(const imk_campaign *campaign, uint64_t runs, const u
 {
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
     return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "this machine is big-endian",
-                         "use a little-endian one");
+                         "use a little-endian machine");
 #endif
     if (campaign->run_count == 0 || runs == 0 || runs > campaign->run_count ||
         campaign->time_count == 0 || campaign->state_count == 0)

@@ -129,7 +129,7 @@ static void contradict(merge *m, shard *s, uint64_t run, const char *other)
 {
     char found[96], expected[160];
     imk_error error;
-    snprintf(found, sizeof found, "run %llu has other numbers in another file",
+    snprintf(found, sizeof found, "run %llu has different numbers in another file",
              (unsigned long long)run);
     snprintf(expected, sizeof expected, "compute both again: this and %.100s", other);
     imk_error_set(&error, IMK_ERROR_CONFLICT, "", found, expected);

@@ -84,7 +84,7 @@ static imk_status write_head(imki_part *part, const imki_record *record, imk_err
 static imk_status belongs_elsewhere(const imki_part *part, const char *found, imk_error *error)
 {
     return imk_error_set(error, IMK_ERROR_CONFLICT, part->path, found,
-                         "remove it to begin anew, or choose another name for the results");
+                         "remove the file to begin anew, or choose another name for the results");
 }
 
 /* Say what another head is about. */
@@ -97,7 +97,7 @@ static imk_status compare_heads(const imki_part *part, const imki_record *there,
         return belongs_elsewhere(part, difference.found, error);
     if (there->head_size == own->head_size && memcmp(there->head, own->head, own->head_size) == 0)
         return IMK_OK;
-    snprintf(found, sizeof found, "it is the shard of runs %llu-%llu, not %llu-%llu",
+    snprintf(found, sizeof found, "the file is of the shard of runs %llu-%llu, not %llu-%llu",
              (unsigned long long)there->run[0], (unsigned long long)there->run[there->runs - 1],
              (unsigned long long)own->run[0], (unsigned long long)own->run[own->runs - 1]);
     return belongs_elsewhere(part, found, error);
@@ -114,7 +114,7 @@ static imk_status read_head(imki_part *part, const imki_record *own, uint64_t fi
     if (number != 0)
         return imki_read_error(number, part->path, error);
     if (memcmp(begin, magic, MAGIC) != 0)
-        return belongs_elsewhere(part, "it is not what an interrupted campaign leaves", error);
+        return belongs_elsewhere(part, "the file is not from an interrupted campaign", error);
     const uint64_t size = imki_get_number(begin + MAGIC, 8);
     if (size > file_size - FILE_HEAD - CRC)
         return IMK_ERROR_EMPTY;
@@ -137,7 +137,7 @@ static imk_status read_head(imki_part *part, const imki_record *own, uint64_t fi
         free(head);
     if (status != IMK_OK)
         return status == IMK_ERROR_MEMORY ? status
-                                          : belongs_elsewhere(part, "its head is damaged", error);
+                                          : belongs_elsewhere(part, "its header is damaged", error);
     status = compare_heads(part, &there, own, error);
     imki_record_free(&there);
     part->end = FILE_HEAD + size + CRC;
@@ -201,7 +201,7 @@ imk_status imki_part_add(imki_part *part, uint64_t first, uint64_t runs, const d
         (void)imki_system_error(error, IMK_ERROR_WRITE, part->path, number);
         if (error)
             snprintf(error->expected, sizeof error->expected,
-                     "make room: what was there before is kept");
+                     "make room: the runs computed before are kept");
         return IMK_ERROR_WRITE;
     }
     *at = part->end + RECORD_HEAD;
@@ -263,11 +263,12 @@ imk_status imki_part_open(const char *path, const imki_record *record, uint64_t 
     imk_status status = IMK_OK;
     if (number != 0) {
         part->file = -1;
-        status = number == EWOULDBLOCK
-                     ? imk_error_set(error, IMK_ERROR_CONFLICT, part->path,
-                                     "another process is writing it",
-                                     "wait for it, or choose another name for the results")
-                     : imki_system_error(error, IMK_ERROR_OPEN, part->path, number);
+        status =
+            number == EWOULDBLOCK
+                ? imk_error_set(
+                      error, IMK_ERROR_CONFLICT, part->path, "another process is writing this file",
+                      "wait until that process ends, or choose another name for the results")
+                : imki_system_error(error, IMK_ERROR_OPEN, part->path, number);
     }
     part->synced = now();
     if (status == IMK_OK)

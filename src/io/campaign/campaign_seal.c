@@ -44,9 +44,9 @@ static imk_status refuse_line(const char *block, size_t there, imk_error *error)
     if (there == 0)
         return damaged(error, "the file is empty");
     if (strncmp(block, under_way, sizeof under_way - 1) == 0)
-        return imk_error_set(
-            error, IMK_ERROR_FORMAT, "", "it is a campaign under way",
-            "give the command that was interrupted again, which makes the results file");
+        return imk_error_set(error, IMK_ERROR_FORMAT, "",
+                             "this is the file of an unfinished campaign",
+                             "run the interrupted command again: it makes the results file");
     const bool ours = strncmp(block, magic, MAGIC) == 0;
     if (ours && digits > 0 && block[MAGIC + digits] == ' ' && (digits > 1 || block[MAGIC] != '1')) {
         char found[24];

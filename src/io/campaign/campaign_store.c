@@ -21,7 +21,7 @@ bool imki_store_is_hdf5(const char *path)
 static imk_status refuse_stream(const char *path, imk_error *error)
 {
     return imk_error_set(error, IMK_ERROR_WRITE, path, "it is not a regular file",
-                         "a regular file, for its checksum is written last");
+                         "a regular file, because its checksum is written last");
 }
 
 imk_status imki_store_check(const char *path, imk_error *error)

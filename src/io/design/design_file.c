@@ -34,8 +34,8 @@ static const imk_instrument *read_instrument(imki_reading *r, const imk_instrume
 {
     char expected[sizeof r->error->expected], found[sizeof r->error->found];
     int node;
-    if (!imki_value_find(r, 0, "instrument", "write instrument: NAME, as imukit physics lists them",
-                         &node) ||
+    if (!imki_value_find(r, 0, "instrument",
+                         "write instrument: NAME, with a name that imukit physics lists", &node) ||
         !imki_value_require(r, node, IMKI_NODE_SCALAR, "the name of an instrument"))
         return NULL;
     const char *name = r->document->node[node].text;

@@ -195,7 +195,7 @@ static void read_group(const reader *r, int mapping, const char *prefix)
             continue;
         if (strchr(nodes[key].text, '.')) {
             imki_value_refuse(reading, key, IMK_ERROR_KEY_UNKNOWN, nodes[key].text,
-                              "nest the keys instead of dots: a: {b: …}");
+                              "nest the keys instead of writing dots: a: {b: …}");
             return;
         }
         const int length = snprintf(path, sizeof path - 1, "%s%s", prefix, nodes[key].text);

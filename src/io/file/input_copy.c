@@ -123,7 +123,7 @@ static imk_status look_at_begin(seen *s, const char *block, size_t size, const c
     if (s->text)
         return IMK_OK;
     char logs[96], found[200];
-    snprintf(found, sizeof found, "it is neither text%s, and not compressed by gzip or zstd",
+    snprintf(found, sizeof found, "the file is neither text%s, and not compressed by gzip or zstd",
              imk_log_formats_text(" nor ", false, sizeof logs, logs));
     return imk_error_set(error, IMK_ERROR_FORMAT, path, found, "");
 }
@@ -133,9 +133,10 @@ static imk_status look_at_line(seen *s, const char *block, size_t size, const ch
 {
     const char *feed = memrchr(block, '\n', size);
     s->line = feed ? (size_t)(block + size - feed - 1) : s->line + size;
-    return s->line <= IMKI_LINE_MAX ? IMK_OK
-                                    : imk_error_set(error, IMK_ERROR_FORMAT, path,
-                                                    "a line longer than 1 MiB", "a text in lines");
+    return s->line <= IMKI_LINE_MAX
+               ? IMK_OK
+               : imk_error_set(error, IMK_ERROR_FORMAT, path, "a line is longer than 1 MiB",
+                               "a text file with shorter lines");
 }
 
 static imk_status copy_all(int from, int to, const char *path, imk_error *error)

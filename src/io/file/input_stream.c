@@ -144,8 +144,9 @@ static imk_status read_gzip(imki_input *input, unsigned char *target, size_t cap
         if (result == Z_STREAM_END) {
             input->inside = false;
         } else if (result != Z_OK && result != Z_BUF_ERROR) {
-            status = result == Z_MEM_ERROR ? no_memory(input)
-                                           : damaged(input, z->msg ? z->msg : "damaged gzip data");
+            status = result == Z_MEM_ERROR
+                         ? no_memory(input)
+                         : damaged(input, z->msg ? z->msg : "the gzip data is damaged");
             return *got > 0 ? IMK_OK : status;
         } else if (*got == 0 && input->file_ended && input->raw_begin == input->raw_end) {
             return damaged(input, "the gzip data is cut short");
@@ -217,7 +218,7 @@ static imk_status read_zstd(imki_input *input, unsigned char *target, size_t cap
         /* libzstd does not look at this where the last block is empty. */
         if (!input->inside && input->frame_size < ZSTD_CONTENTSIZE_ERROR &&
             input->frame_size != input->frame_done)
-            return damaged(input, "the zstd data has another size than its frame says");
+            return damaged(input, "the size of the zstd data is not that in its frame header");
         *got = out.pos;
         if (*got == 0 && input->inside && in.pos == 0 && input->file_ended)
             return damaged(input, "the zstd data is cut short");

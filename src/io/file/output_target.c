@@ -159,18 +159,19 @@ static imk_status refuse_folder(const char *path, char *name, int number, imk_er
     char shown[40], found[sizeof reason.found];
     const size_t length = directory_length(name);
     if (name[length] == '\0')
-        return imk_error_set(error, IMK_ERROR_OPEN, path, "it is the name of a folder",
-                             "a name of a file");
+        return imk_error_set(error, IMK_ERROR_OPEN, path, "this is the name of a folder",
+                             "a file name");
     name[length > 1 ? length - 1 : length] = '\0';
     const char *folder = length > 0 ? name : ".";
     imk_utf8_shorten(folder, shown, sizeof shown);
     if (stat(folder, &about) != 0 && errno == ENOENT) {
         snprintf(found, sizeof found, "the folder %s does not exist", shown);
-        return imk_error_set(error, IMK_ERROR_OPEN, path, found, "make it, or name another");
+        return imk_error_set(error, IMK_ERROR_OPEN, path, found,
+                             "create this folder, or choose another");
     }
     (void)imki_system_error(&reason, IMK_ERROR_OPEN, "", number);
     snprintf(found, sizeof found, "the folder %s cannot be written: %.25s", shown, reason.found);
-    return imk_error_set(error, IMK_ERROR_OPEN, path, found, "");
+    return imk_error_set(error, IMK_ERROR_OPEN, path, found, "choose another folder");
 }
 
 imk_status imki_target_refuse(const char *path, int number, imk_error *error)

@@ -52,7 +52,7 @@ imk_status imki_text_file_read(const char *path, size_t limit, char **bytes, siz
     const imk_status status = imki_file_read(path, false, limit, &read, size, error);
     if (status == IMK_OK && begins_with(read, *size, IMKI_RESULTS_MAGIC)) {
         free(read);
-        return imk_error_set(error, IMK_ERROR_FORMAT, "", "it is a results file of a campaign",
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "this is the results file of a campaign",
                              "give the file itself to imukit drift, with a name ending in .h5");
     }
     if (status == IMK_OK)

@@ -116,7 +116,8 @@ static imk_status write_files(const char *directory, const char *name, const imk
     for (int i = 0; i < FILES && status == IMK_OK; i++) {
         const int length = snprintf(path[i], PATH_SIZE, "%s/%s%s", directory, name, endings[i]);
         status = length >= PATH_SIZE
-                     ? imk_error_set(error, IMK_ERROR_OPEN, directory, "the name is too long", "")
+                     ? imk_error_set(error, IMK_ERROR_OPEN, directory, "the name is too long",
+                                     "choose a shorter directory or --prefix")
                      : check_owner(path[i], error);
     }
     for (int i = 0; i < FILES && status == IMK_OK; i++) {

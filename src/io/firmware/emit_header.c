@@ -101,7 +101,7 @@ static void print_inputs(const imki_emission *e)
         imki_emit_decimal(out, f->temperature_minimum, 6);
         imki_text_add(out, " to ");
         imki_emit_decimal(out, f->temperature_maximum, 6);
-        imki_text_add(out, ", beyond stays the end\n");
+        imki_text_add(out, ", and stay constant beyond\n");
     }
 }
 
@@ -121,8 +121,8 @@ static void print_outputs(const imki_emission *e)
             imki_text_add(e->out, "[%s]", imki_emit_unit[sensor]);
         imki_text_add(e->out, "\n");
     }
-    imki_text_add(e->out,
-                  " *  returned     flags below; outputs may be the arrays of the inputs\n");
+    imki_text_add(
+        e->out, " *  returned     the flags below; the outputs may be the arrays of the inputs\n");
 }
 
 static void print_bound(const imki_emission *e)
@@ -140,7 +140,7 @@ static void print_bound(const imki_emission *e)
         imki_text_add(out, " *  %-12s ", imki_emit_motion[sensor]);
         imki_emit_decimal(out, f->bound[sensor], 2);
         imki_text_add(out, " %s, for motion up to %s", imki_emit_unit[sensor],
-                      f->limit_stated[sensor] ? "" : "(nothing stated) ");
+                      f->limit_stated[sensor] ? "" : "(no limit stated) ");
         imki_emit_decimal(out, limit, 4);
         imki_text_add(out, " %s\n", imki_emit_unit[sensor]);
     }
@@ -161,7 +161,7 @@ static void print_comment(const imki_emission *e)
     imk_term_keys taken_out, left_in;
     imki_text *out = e->out;
     imki_text_add(out, IMKI_EMIT_MARK ": change the model, not this file. */\n");
-    imki_text_add(out, "/* The errors of an inertial sensor, taken out of its readings: ");
+    imki_text_add(out, "/* Corrects the readings of an inertial sensor: ");
     imki_emit_plain(out, e->model->name[0] ? e->model->name : "a unit without a name");
     imki_text_add(out, "\n");
     if (e->model->description[0]) {
@@ -193,8 +193,8 @@ static void print_flags(const imki_emission *e)
     } flags[] = {
         {"SATURATED", "a reading at or beyond the range", IMK_FLAG_SATURATED},
         {"TEMPERATURE", "outside the valid range", IMK_FLAG_TEMPERATURE},
-        {"LIMIT", "motion beyond what the bound holds for", IMK_FLAG_LIMIT},
-        {"NOT_FINITE", "an input is NaN or infinite, and so what depends on it",
+        {"LIMIT", "motion beyond the limit up to which the bound holds", IMK_FLAG_LIMIT},
+        {"NOT_FINITE", "an input is NaN or infinite, and so is each output that depends on it",
          IMK_FLAG_NOT_FINITE},
     };
     imki_text_add(e->out, "/* Flags. */\nenum {\n");
@@ -221,8 +221,8 @@ void imki_emit_header(imki_emission *e)
     imki_emit_prototype(e);
     imki_text_add(
         out,
-        ";\n\n/* In %s_test.c, to be linked for a test only: how many of its %lu samples "
-        "the\n * function above does not correct within the bound, or flags otherwise. "
-        "*/\nunsigned long %s_self_test(void);\n\n#ifdef __cplusplus\n}\n#endif\n#endif\n",
+        ";\n\n/* In %s_test.c, to be linked for a test only: returns how many of its %lu samples\n "
+        "* the function above corrects outside the bound, or flags differently. */\nunsigned long "
+        "%s_self_test(void);\n\n#ifdef __cplusplus\n}\n#endif\n#endif\n",
         e->name, (unsigned long)e->vectors, e->name);
 }

@@ -161,7 +161,7 @@ static int choose(imki_parameters *p, const ardupilot_imu imus[IMUS])
             imki_choice_add(p, &choice, (char[2]){(char)('1' + i), '\0'}, i);
     if (choice.count == 0)
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "INS_ACCOFFS_X", "INS_ACCOFFS_X",
-                              "calibration parameters INS_ACC…, INS_GYR… or INS_TCAL…");
+                              "a file with calibration parameters INS_ACC…, INS_GYR… or INS_TCAL…");
     imki_choice_end(p, choice.found, choice.names, "NUMBER", "the file has several IMUs");
     return choice.chosen;
 }
@@ -193,7 +193,7 @@ static void fill_thermal(imki_parameters *p, const ardupilot_imu *imu, const ard
     if (!(imu->minimum < imu->maximum && imu->minimum >= -kelvin))
         imki_parameter_refuse_at(p, (imki_place){"TMIN", s->line, 0}, IMK_ERROR_RANGE,
                                  "TMIN and TMAX",
-                                 "temperatures from a lower to a higher one [degC]");
+                                 "a TMIN above absolute zero and below TMAX [degC]");
     const double calibrated = fmin(fmax(s->temperature, imu->minimum), imu->maximum);
     imk_temperature_polynomial about = {.order = order, .reference = thermal_reference + kelvin};
     for (int k = 0; k < order; k++)
@@ -309,11 +309,10 @@ void imki_ardupilot_write(imki_parameters *p)
         any = true;
     }
     if (any && !(minimum < maximum))
-        imki_parameter_refuse(
-            p, IMK_ERROR_UNSUPPORTED, "gyro.bias.temperature",
-            "gyros and accelerometers have no temperature in common, and ArduPilot has one "
-            "range for both",
-            "leave one of the polynomials out");
+        imki_parameter_refuse(p, IMK_ERROR_UNSUPPORTED, "gyro.bias.temperature",
+                              "the temperature ranges of gyros and accelerometers do not overlap; "
+                              "ArduPilot has one range",
+                              "remove one of the two polynomials");
     imki_text_add(
         &p->out, "# ArduPilot calibration of IMU 1: offsets [rad/s], [m/s^2], scale [1]; corrected "
                  "= (reading - thermal\n# - offset) scale; temperatures [degC], INS_TCAL1_…k [1e-6 "
@@ -328,8 +327,8 @@ void imki_ardupilot_write(imki_parameters *p)
             worst = fmax(worst, imki_cubic(t, i, thermal_reference + kelvin, cubic[i]));
         if (worst > 0)
             imki_note(p, true,
-                      "%s.bias.temperature: ArduPilot has cubics; the nearest one is up to %.2g %s "
-                      "off",
+                      "%s.bias.temperature: ArduPilot has cubic polynomials; the nearest one "
+                      "differs by up to %.2g %s",
                       imki_kind_names[kind], worst, imki_kind_units[kind]);
         write_sensor(p, kind, p->origin[kind], cubic, calibrated);
     }

@@ -190,7 +190,7 @@ static imk_status read_all(const char *path, bool reopened, char **text, size_t 
         return status;
     free(*text);
     *text = NULL;
-    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "a file longer than 1 MiB",
+    return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "the file is longer than 1 MiB",
                          "a parameter file");
 }
 
@@ -230,7 +230,7 @@ static imk_status check_density(const imk_parameter_settings *settings, imk_para
         format == IMK_PARAMETERS_MATLAB)
         return IMK_OK;
     char found[96];
-    snprintf(found, sizeof found, "one-sided: the format %s has two-sided densities",
+    snprintf(found, sizeof found, "the densities of the format %s are two-sided, not one-sided",
              formats[format].name);
     return imk_error_set(error, IMK_ERROR_CONFLICT, "density", found,
                          "leave --density out, or divide the numbers by sqrt(2) first");
@@ -264,9 +264,10 @@ static imk_status parse_text(const char *text, size_t size, const imk_parameter_
     if (format == IMK_PARAMETERS_UNKNOWN)
         format = recognise(text, size);
     if (format == IMK_PARAMETERS_UNKNOWN)
-        return imk_error_set(error, IMK_ERROR_FORMAT, "", "",
-                             "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, "
-                             "openvins, vins, px4, ardupilot or filter (--from says which)");
+        return imk_error_set(
+            error, IMK_ERROR_FORMAT, "", "",
+            "a parameter file of kalibr, gazebo, matlab, gnss-ins-sim, navego, openvins, vins, "
+            "px4, ardupilot or filter (name the format with --from)");
     p.status = check_density(settings, format, error);
     if (p.status == IMK_OK)
         p.status = check_sensor(settings, format, error);
@@ -334,9 +335,9 @@ static imk_status check_model(const imk_parameter_settings *settings, const imk_
     const imk_triad *triads[2] = {&model->gyro, &model->accel};
     for (int i = 0; i < 2; i++)
         if (triads[i]->present && triads[i]->axis_count != 3)
-            return imk_error_set(error, IMK_ERROR_UNSUPPORTED,
-                                 i == 0 ? "gyro.direction" : "accel.direction",
-                                 "the foreign formats have three axes, the model has others", "");
+            return imk_error_set(
+                error, IMK_ERROR_UNSUPPORTED, i == 0 ? "gyro.direction" : "accel.direction",
+                "the foreign formats have three axes, the model has another number of axes", "");
     return IMK_OK;
 }
 

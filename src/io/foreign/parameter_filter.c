@@ -244,8 +244,8 @@ static void note_what_is_lost(imki_parameters *p, const char *sensor,
                   worst->misfit_tau);
     if (quantized)
         imki_note(p, false,
-                  "%s: quantization is noise of each reading of the integral (R of a filter), not "
-                  "of the process: it is not in Q",
+                  "%s: quantization is measurement noise of the integral (R of a filter), not "
+                  "process noise: Q does not contain it",
                   sensor);
 }
 
@@ -300,7 +300,7 @@ static void write_sensor(tree_writer *w, int kind)
 }
 
 static const char explanation[] =
-    "# What a Kalman filter needs of a sensor model, per axis.\n"
+    "# What a Kalman filter needs from a sensor model, per axis.\n"
     "#\n"
     "# Error states: x0, the integral of the axis' error, and its biases b_i:\n"
     "#     dx0/dt = sum b_i + w,    db_i/dt = -b_i/T_i + w_i    (a random walk: no -b_i/T_i)\n"
@@ -311,8 +311,8 @@ static const char explanation[] =
     "# The sqrt(dt) trap: a continuous density is not a standard deviation per sample.\n"
     "#     white noise of a reading:   sigma_d  = sigma_c / sqrt(dt)    larger at a higher rate\n"
     "#     random walk of a bias:      sigma_bd = sigma_bc * sqrt(dt)   smaller at a higher rate\n"
-    "# Use either the continuous numbers and let the filter convert them, or those per sample, or\n"
-    "# Q_d; never convert twice. At another rate only the continuous ones still hold.\n"
+    "# Use the continuous numbers and let the filter convert them, or the numbers per sample, or\n"
+    "# Q_d; never convert twice. At another rate only the continuous numbers still hold.\n"
     "#\n"
     "# A gyro's Q_d is in rad^2, rad^2/s and rad^2/s^2, an accelerometer's in m^2/s^2, m^2/s^3 "
     "and\n"
@@ -323,7 +323,7 @@ void imki_filter_write(imki_parameters *p)
 {
     if (!(p->settings->rate > 0))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "rate",
-                              "\"Phi\" and \"Q_d\" depend on the sample rate, which is not known",
+                              "\"Phi\" and \"Q_d\" depend on the sampling rate, which is not known",
                               "add --rate 200Hz (samples per second)");
     tree_writer w = {.p = p};
     if (p->is_json)
@@ -336,7 +336,7 @@ void imki_filter_write(imki_parameters *p)
     imki_text_add(&p->out, " 1");
     put_key(&w, "rate");
     imki_text_add(&p->out, " %s", imki_shortest(p->settings->rate).text);
-    put_comment(&w, "Hz", "of the matrices and of what is per sample");
+    put_comment(&w, "Hz", "of the matrices and of the numbers per sample");
     for (int kind = 0; kind < 2; kind++)
         write_sensor(&w, kind);
     if (p->is_json)
@@ -367,7 +367,7 @@ static void read_state(imki_parameters *p, int node, int kind, imk_triad *triad)
         imki_note(p, true, "a state that stands for bias instability is not read");
     } else {
         imki_refuse_node(p, node, IMK_ERROR_SYNTAX, "from",
-                         "random_walk, gauss_markov or bias_instability");
+                         "one of random_walk, gauss_markov, bias_instability");
     }
 }
 

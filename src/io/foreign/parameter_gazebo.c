@@ -245,9 +245,10 @@ static double find_rate(imki_parameters *p, const sensor *s)
     for (int i = 0; i < 6; i++)
         white = white || s->noise[i / 3].value[STDDEV][i % 3] != 0;
     if (given > 0 && s->rate > 0 && given != s->rate)
-        imki_note(p, false,
-                  "stddev is taken per sample at %g Hz, the option, not at update_rate %g", given,
-                  s->rate);
+        imki_note(
+            p, false,
+            "stddev is taken per sample at %g Hz, as --rate says, not at the update_rate of %g Hz",
+            given, s->rate);
     if (white && !(rate > 0))
         imki_parameter_refuse_at(p, s->noise[s->noise[0].place[STDDEV].field ? 0 : 1].place[STDDEV],
                                  IMK_ERROR_KEY_MISSING,
@@ -284,7 +285,7 @@ static void fill(imki_parameters *p, const noise *n, int kind, double rate)
         }
         if (si[BIAS_MEAN][i] != 0)
             imki_note(p, false,
-                      "bias_mean is taken with its sign; Gazebo gives it either sign in each run");
+                      "bias_mean keeps its sign; Gazebo draws the sign at random in each run");
         if (si[DYNAMIC_STDDEV][i] != 0 && si[DYNAMIC_TIME][i] <= 0)
             imki_note(p, true, "dynamic_bias_stddev without a correlation time: Gazebo ignores it");
     }
@@ -347,7 +348,7 @@ void imki_gazebo_write(imki_parameters *p)
     const double rate = p->settings->rate;
     if (!(rate > 0) && (has_white(p->origin[0]) || has_white(p->origin[1])))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "stddev",
-                              "\"stddev\" is per sample, and the sample rate is not known",
+                              "\"stddev\" is per sample, and the sampling rate is not known",
                               "add --rate 200Hz (samples per second)");
     imki_text_add(&p->out, "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model "
                            "name=\"imu\">\n    <link name=\"link\">\n      <sensor name=\"imu\" "

@@ -37,8 +37,8 @@ static void read_triad(imki_parameters *p, int kind)
         const int node = imki_node_value(p, 0, key->name);
         if (node == IMKI_NONE && key->required)
             imki_refuse_node(p, 0, IMK_ERROR_KEY_MISSING, key->name,
-                             "the keys gyro_b, gyro_arw, gyro_b_stability, accel_b, accel_vrw, "
-                             "accel_b_stability");
+                             "a file with the keys gyro_b, gyro_arw, gyro_b_stability, accel_b, "
+                             "accel_vrw, accel_b_stability");
         imki_node_accept(p, 0, key->name, kind, key->quantity, key->unit, si[i]);
         if (node != IMKI_NONE)
             place = imki_node_place(p, node);

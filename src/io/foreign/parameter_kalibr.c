@@ -59,7 +59,7 @@ int imki_kalibr_imu(imki_parameters *p)
             imki_choice_add(p, &choice, p->document->node[key].text, p->document->node[key].next);
     if (choice.count == 0)
         imki_refuse_node(p, 0, IMK_ERROR_KEY_MISSING, "gyroscope_noise_density",
-                         "the noise of an IMU, at the top or under imu0:");
+                         "a file with the noise of an IMU, at the top or under imu0:");
     imki_choice_end(p, choice.found, choice.names, "NAME", "the file describes several IMUs");
     return choice.chosen;
 }
@@ -78,7 +78,7 @@ void imki_kalibr_noise_write(imki_parameters *p, const char *indent)
         imki_text_add(&p->out, "%s%s: %s  # [%s], two-sided\n", indent, imki_kalibr_noise_keys[i],
                       imki_shortest(largest).text, noise_units[i].name);
         if (largest == 0)
-            imki_note(p, true, "%s is 0, which kalibr and OpenVINS do not take: set it",
+            imki_note(p, true, "%s is 0, and kalibr and OpenVINS do not accept 0: set a value",
                       imki_kalibr_noise_keys[i]);
     }
 }
@@ -111,7 +111,8 @@ void imki_kalibr_note_setup(imki_parameters *p, int imu)
             snprintf(list + length, sizeof list - length, "%s%s", length > 0 ? ", " : "", names[i]);
     }
     if (list[0])
-        imki_note(p, true, "not of the sensor but of its set-up: %s", list);
+        imki_note(p, true, "these keys describe the set-up, not the sensor, and are not read: %s",
+                  list);
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
@@ -157,9 +158,9 @@ static void read_accelerometers(imki_parameters *p, int mapping)
         memcpy(accel->lever_arm.value[i], position, sizeof position);
         if (imki_any(position))
             imki_note(p, false,
-                      "lever arms: kalibr lets M mix the components of several places; here axis i "
-                      "senses all of them at its own (a difference of misalignment times lever "
-                      "arm)");
+                      "lever arms: in kalibr M mixes components that are sensed at several places; "
+                      "in the model axis i senses all components at its own place (they differ by "
+                      "misalignment times lever arm)");
     }
     imki_foreign_keys(p, mapping, 4, known);
     imki_response_set(p, imki_node_place(p, place), accel, m);

@@ -55,7 +55,7 @@ static noise_scale read_noise_type(imki_parameters *p, int sensor)
                          "a noise type: \"single-sided\" or \"double-sided\"");
     if (p->settings->density != IMK_DENSITY_UNSTATED) {
         single = p->settings->density == IMK_DENSITY_TWO_SIDED;
-        imki_note(p, false, "NoiseDensity is taken as %s, as the option says",
+        imki_note(p, false, "NoiseDensity is taken as %s, as --density says",
                   single ? "two-sided" : "one-sided");
     } else if (!single) {
         imki_note(p, false,
@@ -217,7 +217,7 @@ void imki_matlab_read(imki_parameters *p)
     for (int kind = 0; kind < 2; kind++)
         read_sensor(p, part, kind);
     if (imki_node_value(p, part, "Magnetometer") != IMKI_NONE)
-        imki_note(p, true, "Magnetometer: a model has none");
+        imki_note(p, true, "Magnetometer is not read: a model has none");
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -266,7 +266,7 @@ static void write_sensor(imki_parameters *p, int kind, const imk_triad *triad, b
     write_vector(p, "NoiseDensity", triad->noise.white.value, single ? 1 : sqrt(2.0));
     write_vector(p, "BiasInstability", triad->noise.bias_instability.value, 1);
     write_vector(p, "RandomWalk", triad->noise.random_walk.value, single ? 1 : sqrt(0.5));
-    imki_note(p, false, "NoiseDensity is %s N, right for NoiseType %s",
+    imki_note(p, false, "NoiseDensity is written as %s N, for NoiseType %s",
               single ? "the two-sided" : "sqrt(2)",
               single ? "single-sided: set it in MATLAB" : "double-sided, MATLAB's default");
     for (int i = 0; i < 3; i++)

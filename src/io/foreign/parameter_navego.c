@@ -124,7 +124,7 @@ static void take_field(imki_parameters *p, script *s, const char *structure, con
         snprintf(found, sizeof found, "%.*s", (int)(end - begin > 60 ? 60 : end - begin), begin);
         place.column += (size_t)(stop - begin);
         imki_parameter_refuse_at(p, place, IMK_ERROR_SYNTAX, found,
-                                 "a number or three: 2, [1 2 3], 2 .* ones(1,3)");
+                                 "one number or three: 2, [1 2 3], 2 .* ones(1,3)");
         return;
     }
     s->seen[kind][index] = true;
@@ -182,7 +182,7 @@ static void check_structure(imki_parameters *p, const script *s)
     const bool named = p->settings->sensor != NULL;
     if (s->structure_count == 0 && !(s->structure[0] && named))
         imki_parameter_refuse(p, IMK_ERROR_KEY_MISSING, "arw", "arw",
-                              "assignments such as imu.arw = 2 .* ones(1,3);");
+                              "a file with assignments such as imu.arw = 2 .* ones(1,3);");
     imki_choice_end(p, s->structure[0] && (named || s->structure_count == 1), s->others, "NAME",
                     "the file has several structures");
 }
@@ -201,7 +201,9 @@ static void fill(imki_parameters *p, script *s, int kind)
                               s->rate > 0 ? s->rate : p->settings->rate, "NaveGo", si[3], si[4]);
     imki_add_gauss_markov(triad, si[3], si[4]);
     if (imki_any(si[2]))
-        imki_note(p, false, "%s: NaveGo adds a random tenth of it in each run, which is left out",
+        imki_note(p, false,
+                  "%s: NaveGo adds a random tenth of this value in each run; the model leaves this "
+                  "part out",
                   fields[kind][2].name);
     if (imki_any(si[1]))
         imki_note(p, false,

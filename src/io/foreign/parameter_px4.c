@@ -146,7 +146,7 @@ static int choose(imki_parameters *p, const px4_file *file)
     if (choice.count == 0)
         imki_parameter_refuse(
             p, IMK_ERROR_KEY_MISSING, "CAL_GYRO0_XOFF", "CAL_GYRO0_XOFF",
-            "calibration parameters CAL_GYRO…, CAL_ACC…, TC_G… or TC_A… that are set");
+            "a file with calibration parameters CAL_GYRO…, CAL_ACC…, TC_G… or TC_A… that are set");
     imki_choice_end(p, choice.found, choice.names, "NUMBER", "the file has several IMUs");
     return choice.chosen;
 }
@@ -187,7 +187,7 @@ static void fill_thermal(imki_parameters *p, const px4_sensor *thermal, int kind
     if (order > 0 && !(thermal->minimum < thermal->maximum && thermal->minimum >= -kelvin))
         imki_parameter_refuse_at(p, (imki_place){"TMIN", thermal->line, 0}, IMK_ERROR_RANGE,
                                  "TMIN and TMAX",
-                                 "temperatures from a lower to a higher one [degC]");
+                                 "a TMIN above absolute zero and below TMAX [degC]");
     for (int i = 0; i < 3; i++)
         offset[i] += thermal->coefficient[0][i];
     polynomial->order = order;
@@ -257,7 +257,8 @@ static void write_thermal(imki_parameters *p, int kind, const imk_temperature_po
         worst = fmax(worst, imki_cubic(t, i, t->reference, cubic[i]));
     if (worst > 0)
         imki_note(p, true,
-                  "%s.bias.temperature: PX4 has cubics; the nearest one is up to %.2g %s off",
+                  "%s.bias.temperature: PX4 has cubic polynomials; the nearest one differs by up "
+                  "to %.2g %s",
                   imki_kind_names[kind], worst, imki_kind_units[kind]);
     for (int k = 0; k <= ORDER; k++)
         for (int i = 0; i < 3; i++) {

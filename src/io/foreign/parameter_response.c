@@ -67,7 +67,8 @@ void imki_response_set(imki_parameters *p, imki_place place, imk_triad *triad, d
         }
     }
     if (!small)
-        imki_note(p, false, "the matrices turn the axes by large angles: written as directions");
+        imki_note(p, false,
+                  "the matrices turn the axes by large angles: the model has them as directions");
 }
 
 /* Gram-Schmidt on the rows: exact where the matrix is lower triangular already. */
@@ -127,7 +128,7 @@ void imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *
         if (!(rate > 0)) {
             imki_parameter_refuse_at(
                 p, place, IMK_ERROR_KEY_MISSING,
-                "\"inf\" is white noise per sample, and the sample rate is not known",
+                "\"inf\" is white noise per sample, and the sampling rate is not known",
                 "add --rate 100Hz (samples per second)");
             return;
         }
@@ -135,8 +136,8 @@ void imki_white_where_infinite(imki_parameters *p, imki_place place, imk_triad *
         triad->noise.white.value[i] = sqrt(n * n + sigma[i] * sigma[i] / rate);
         sigma[i] = time[i] = 0;
         imki_note(p, false,
-                  "%s: with an infinite correlation time %s draws the drift anew for each sample: "
-                  "taken as white noise",
+                  "%s: with an infinite correlation time %s draws a new drift for each sample: the "
+                  "drift is taken as white noise",
                   place.field, program);
     }
 }

@@ -164,7 +164,7 @@ static void refuse_value(imki_parameters *p, imki_place place, int kind, imki_qu
         snprintf(found, sizeof found, "\"%s\" cannot be in %.24s, it looks like %s", number,
                  unit.name, name);
         snprintf(expected, sizeof expected,
-                 "this format has %.24s: write %s, or correct the value if it is wrong", unit.name,
+                 "this format uses %.24s: write %s, or correct the value if it is wrong", unit.name,
                  right);
     } else {
         snprintf(found, sizeof found, "\"%s\" cannot be in %.24s", number, unit.name);

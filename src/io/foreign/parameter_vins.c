@@ -91,8 +91,8 @@ static void write_response(imki_parameters *p, const imk_triad *triad, const cha
     write_matrix(p, r, rotation);
     if (triad == &p->source->accel && !imki_is_identity(rotation))
         imki_note(p, false,
-                  "R_IMUtoACC is no identity: OpenVINS' model kalibr keeps it and estimates "
-                  "R_IMUtoGYRO only");
+                  "R_IMUtoACC is not the identity: the model kalibr of OpenVINS keeps R_IMUtoACC "
+                  "as it is and estimates R_IMUtoGYRO only");
 }
 
 void imki_openvins_write(imki_parameters *p)
@@ -145,9 +145,9 @@ static double vins_scale(imki_parameters *p)
     else
         imki_parameter_refuse(
             p, IMK_ERROR_KEY_MISSING, "acc_n",
-            "\"acc_n\" and the others are per sample or per sqrt(Hz), which is not known",
-            "add --rate 200Hz (if per sample, as VINS itself takes them; or --density "
-            "two-sided if they are densities)");
+            "\"acc_n\" and the others are per sample or per sqrt(Hz): the file does not say which",
+            "add --rate 200Hz (if the numbers are per sample, as VINS takes them; if they are "
+            "densities, add --density two-sided)");
     return s->rate > 0 ? 1 / sqrt(s->rate) : one_sided ? sqrt(0.5) : 1;
 }
 

@@ -45,7 +45,7 @@ imk_status imki_log_axes_parse(const char *text, int body[3], double sign[3], im
     if (order * sign[0] * sign[1] * sign[2] < 0.0) {
         snprintf(found, sizeof found, "\"%.40s\" is a left-handed set", text);
         return imk_error_set(error, IMK_ERROR_CONFLICT, "axes", found,
-                             "a right-handed one: turn one direction round");
+                             "a right-handed set: reverse one direction");
     }
     return IMK_OK;
 }

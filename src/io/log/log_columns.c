@@ -275,10 +275,10 @@ static imk_status check_layout(const imki_log_layout_read *layout, const imk_log
     if (!known)
         return imk_error_set(error, IMK_ERROR_COLUMN, layout->column[0].name,
                              "no column has a known name",
-                             "time, gyro_x, dtheta_x, accel_x, dvel_x, temperature; add --columns "
-                             "with a name for each (- skips one)");
+                             "known are time, gyro_x, dtheta_x, accel_x, dvel_x, temperature; add "
+                             "--columns with a name for each column (- skips a column)");
     if (layout->time_column < 0 && settings->rate == 0.0)
-        return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time", "no column of time",
+        return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time", "the log has no time column",
                              "add --rate 100Hz (samples per second)");
     return IMK_OK;
 }
@@ -297,8 +297,9 @@ static imk_status add_cell(imki_log_layout_read *layout, size_t cell, imki_log_p
     if (status != IMK_OK)
         return status;
     if (is_doubled(layout, index))
-        return imk_error_set(error, IMK_ERROR_COLUMN, column->name, "this column is there twice",
-                             "one of each; add --columns with - for the one to skip");
+        return imk_error_set(error, IMK_ERROR_COLUMN, column->name,
+                             "this column is in the file twice",
+                             "remove one of the two, or skip it: - in its place in --columns");
     layout->cell_column[cell] = (int)index;
     layout->factor[index] = column->unit.scale;
     if (column->quantity == IMK_QUANTITY_TIME)
@@ -343,8 +344,9 @@ imk_status imki_log_first_rows(imk_log_reader *reader, uint64_t rows, const doub
     if (rows == 0)
         return imk_error_set(error, IMK_ERROR_EMPTY, "", none, due);
     if (rows < 2 && layout->has_increments && reader->rate == 0.0)
-        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "increments in a single row",
-                             "two rows; or add --rate 100Hz (samples per second)");
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "",
+                             "a single row of increments does not tell the sampling rate",
+                             "give two rows, or add --rate 100Hz (samples per second)");
     if (layout->time_column >= 0) {
         const double scale = layout->factor[layout->time_column];
         if (fabs(time[0]) * scale > 1e6)

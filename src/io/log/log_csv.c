@@ -25,9 +25,9 @@ static imk_status check_encoding(const char *begin, size_t size, imk_error *erro
                              "convert it: iconv -f UTF-16 -t UTF-8 FILE >NEW.csv");
     if (!imki_is_text(begin, size)) {
         char others[96], expected[160];
-        snprintf(expected, sizeof expected, "CSV (plain, .gz or .zst)%s",
+        snprintf(expected, sizeof expected, "a log as CSV (plain, .gz or .zst)%s",
                  imk_log_formats_text(" or ", false, sizeof others, others));
-        return imk_error_set(error, IMK_ERROR_FORMAT, "", "not a text log", expected);
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the file is not a text log", expected);
     }
     /* The newline of a last CR may not be seen yet. */
     if (memchr(begin, '\r', size - 1) && !memchr(begin, '\n', size))
@@ -94,9 +94,10 @@ static imk_status replace_names(const char *columns, bool has_header, size_t cou
         imki_log_split(columns, columns + strlen(columns), ',', IMK_LOG_COLUMNS_MAX, names);
     if (name_count != count) {
         char found[96], expected[96];
-        snprintf(found, sizeof found, "%zu name%s", name_count, name_count == 1 ? "" : "s");
-        snprintf(expected, sizeof expected, "%zu, one for each column of the log (- skips one)",
-                 count);
+        snprintf(found, sizeof found, "the list has %zu name%s", name_count,
+                 name_count == 1 ? "" : "s");
+        snprintf(expected, sizeof expected,
+                 "%zu, one for each column of the log (- skips a column)", count);
         return imk_error_set(error, IMK_ERROR_COLUMN, "columns", found, expected);
     }
     for (size_t i = 0; i < count; i++) {
@@ -128,14 +129,14 @@ static imk_status read_names(imk_log_reader *reader, imk_error *error)
     if (status != IMK_OK)
         return status;
     if (!found)
-        return imk_error_set(error, IMK_ERROR_EMPTY, "", "no header and no rows",
+        return imk_error_set(error, IMK_ERROR_EMPTY, "", "the log has no header and no rows",
                              "a header and rows of numbers");
     const size_t header_line = text->line - 1;
     const char separator = imki_log_find_separator(line.begin, line.end);
     const size_t count =
         imki_log_split(line.begin, line.end, separator, IMK_LOG_COLUMNS_MAX, cells);
     if (count > IMK_LOG_COLUMNS_MAX)
-        return imk_error_set(error, IMK_ERROR_COLUMN, "", "more than 64 columns",
+        return imk_error_set(error, IMK_ERROR_COLUMN, "", "the log has more than 64 columns",
                              "at most 64 columns");
     bool numbers = true;
     double value;
@@ -209,8 +210,8 @@ static imk_status look_at_rows(imk_log_reader *reader, imk_error *error)
         if (layout->time_column >= 0)
             time[rows] = values[layout->time_column];
     }
-    return imki_log_first_rows(reader, rows, time, "a header but no rows",
-                               "rows of numbers below the header", error);
+    return imki_log_first_rows(reader, rows, time, "the log has a header but no rows",
+                               "at least one row of numbers below the header", error);
 }
 
 static imk_status open_csv(imk_log_reader *reader, imk_error *error)

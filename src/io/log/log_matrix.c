@@ -63,9 +63,9 @@ static imk_status check_count(const imk_log_reader *reader, size_t count, uint64
     char found[96], expected[160], file[48];
     if (count == due)
         return IMK_OK;
-    snprintf(file, sizeof file, "a file FILE%s.columns; or ", reader->format->name);
-    snprintf(found, sizeof found, "%zu name%s for %llu columns", count, count == 1 ? "" : "s",
-             (unsigned long long)due);
+    snprintf(file, sizeof file, "give the names in FILE%s.columns, or ", reader->format->name);
+    snprintf(found, sizeof found, "%zu name%s given for %llu columns", count,
+             count == 1 ? " is" : "s are", (unsigned long long)due);
     snprintf(expected, sizeof expected,
              "%sadd --columns with %llu names (time,gyro_x,...; - skips one)",
              reader->settings.columns ? "" : file, (unsigned long long)due);
@@ -102,8 +102,8 @@ static imk_status look_at_rows(imk_log_reader *reader, const imki_matrix *matrix
             if (layout->cell_column[cell] >= 0 && layout->cell_column[cell] == layout->time_column)
                 time[row] = value_at(text->next + row * row_size + cell * matrix->value_size,
                                      matrix->value_size);
-    return imki_log_first_rows(reader, matrix->rows_left, time, "a matrix without rows",
-                               "rows of numbers", error);
+    return imki_log_first_rows(reader, matrix->rows_left, time, "the matrix has no rows",
+                               "at least one row of numbers", error);
 }
 
 imk_status imki_log_matrix_open(imk_log_reader *reader, uint64_t columns, uint64_t rows,
@@ -154,9 +154,9 @@ imk_status imki_log_matrix_read(imk_log_reader *reader, size_t max_rows, double 
     const size_t at_hand = (size_t)(text->end - text->next) / row_size;
     if (wanted > 0 && at_hand == 0) {
         char found[64];
-        snprintf(found, sizeof found, "the %s file ends in the middle", reader->format->name);
+        snprintf(found, sizeof found, "the %s file is cut short", reader->format->name);
         return imk_error_set(error, IMK_ERROR_FORMAT, "", found,
-                             "as many rows as its head says: copy the file again");
+                             "its header announces more rows: copy the file again");
     }
     if (wanted > at_hand)
         wanted = at_hand;

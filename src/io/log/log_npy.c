@@ -15,8 +15,9 @@ static imk_status open_npy(imk_log_reader *reader, imk_error *error)
     const bool whole = status == IMK_OK && text->end - text->next >= IMKI_NPY_PREFIX;
     const size_t header_size = whole ? imki_npy_header_size(text->next) : 0;
     if (status == IMK_OK && (header_size == 0 || header_size > IMKI_LINE_MAX))
-        status = imk_error_set(error, IMK_ERROR_FORMAT, "", "the head of the .npy file is damaged",
-                               "a file that numpy.save() wrote");
+        status =
+            imk_error_set(error, IMK_ERROR_FORMAT, "", "the header of the .npy file is damaged",
+                          "a file that numpy.save() wrote");
     if (status == IMK_OK)
         status = imki_log_text_need(text, header_size, error);
     if (status == IMK_OK)
@@ -25,7 +26,8 @@ static imk_status open_npy(imk_log_reader *reader, imk_error *error)
         return status;
     if (npy.columns == 0 || npy.columns > IMK_LOG_COLUMNS_MAX) {
         char found[96];
-        snprintf(found, sizeof found, "a matrix of %llu columns", (unsigned long long)npy.columns);
+        snprintf(found, sizeof found, "the matrix has %llu columns",
+                 (unsigned long long)npy.columns);
         return imk_error_set(error, IMK_ERROR_COLUMN, "", found, "1 to 64 columns");
     }
     text->next += npy.header_size;
@@ -36,8 +38,8 @@ static imk_status create(imki_log_output *log, const char *path, imk_error *erro
 {
     if (log->announced == 0 && !imki_output_file_can_replace(log->file))
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path,
-                             "a .npy of unknown length to a pipe or compressed",
-                             "write to a plain file, or a .csv");
+                             "a .npy of unknown length cannot be compressed or go to a pipe",
+                             "write a plain .npy file, or a .csv");
     return imki_log_matrix_create(log, path, error);
 }
 
@@ -55,7 +57,7 @@ static imk_status end(imki_log_output *log, imk_error *error)
         return IMK_OK;
     if (!imki_output_file_can_replace(log->file)) {
         char found[96];
-        snprintf(found, sizeof found, "%llu rows instead of the %llu announced",
+        snprintf(found, sizeof found, "%llu rows are written, but %llu were announced",
                  (unsigned long long)log->written, (unsigned long long)log->announced);
         return imk_error_set(error, IMK_ERROR_CONFLICT, "row_count", found, "");
     }

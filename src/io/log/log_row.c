@@ -138,8 +138,8 @@ static imk_status refuse_cut(imk_error *error, size_t count, size_t due, size_t 
 {
     char found[96];
     snprintf(found, sizeof found, "the last line is cut in the middle, %s",
-             count < due ? "cells are missing" : "its last number is not whole");
-    imk_error_set(error, IMK_ERROR_COLUMN, "", found, "delete that line, or copy the file again");
+             count < due ? "cells are missing" : "its last number is incomplete");
+    imk_error_set(error, IMK_ERROR_COLUMN, "", found, "delete this line, or copy the file again");
     if (error)
         error->line = line;
     return IMK_ERROR_COLUMN;
@@ -188,9 +188,10 @@ imk_status imki_log_row_read(imki_log_layout_read *layout, imki_log_piece line, 
         if (column->label) {
             const size_t label = find_label(cells[i], labels, label_count);
             if (label == IMKI_LABELS_MAX)
-                return refuse(error, IMK_ERROR_UNSUPPORTED, column->name, cells[i],
-                              "at most 4096 different labels; add --columns with - to skip it",
-                              line_number, place);
+                return refuse(
+                    error, IMK_ERROR_UNSUPPORTED, column->name, cells[i],
+                    "at most 4096 different labels; add --columns with - to skip this column",
+                    line_number, place);
             values[index] = (double)label;
             continue;
         }

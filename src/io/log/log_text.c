@@ -104,8 +104,8 @@ imk_status imki_log_text_need_line(imki_log_text *text, imk_error *error)
     }
     const size_t at_hand = (size_t)(text->end - text->next);
     if (at_hand > IMKI_LINE_MAX && !memchr(text->next, '\n', IMKI_LINE_MAX)) {
-        imk_error_set(error, IMK_ERROR_FORMAT, "", "a line longer than 1 MiB",
-                      "a text log, one row per line");
+        imk_error_set(error, IMK_ERROR_FORMAT, "", "a line is longer than 1 MiB",
+                      "a text log with one row per line");
         if (error)
             error->line = text->line;
         return IMK_ERROR_FORMAT;

@@ -43,12 +43,13 @@ static imk_status check_column(const imk_log_column *columns, size_t index, imk_
 {
     const imk_log_column *column = &columns[index];
     if (column->name[0] == '\0' || strpbrk(column->name, ",;\"#[]()\t\r\n"))
-        return imk_error_set(error, IMK_ERROR_COLUMN, "", column->name,
+        return imk_error_set(error, IMK_ERROR_COLUMN, column->name,
+                             "this is not a valid column name",
                              "a name without separators, quotes and brackets");
     for (size_t i = 0; i < index; i++)
         if (strcmp(columns[i].name, column->name) == 0)
-            return imk_error_set(error, IMK_ERROR_COLUMN, column->name, "two columns of one name",
-                                 "");
+            return imk_error_set(error, IMK_ERROR_COLUMN, column->name,
+                                 "two columns have this name", "");
     if (!(column->unit.scale > 0.0 && column->unit.scale <= DBL_MAX) ||
         !(column->unit.offset - column->unit.offset == 0.0) ||
         strpbrk(column->unit.text, ",;\"#[]\t\r\n"))
@@ -85,8 +86,8 @@ static imk_status set_format(imki_row_format *format, size_t column_count,
 static imk_status open_files(imk_log_writer *writer, const char *path, imk_error *error)
 {
     if (!writer->codec->format)
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path, "logs of this kind are only read",
-                             "write a .csv");
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, path,
+                             "imukit cannot write logs of this format", "write a .csv");
     const imk_status status = imk_output_file_open(path, &writer->log.file, error);
     if (status != IMK_OK || !writer->codec->create)
         return status;
@@ -212,7 +213,7 @@ static imk_status refuse_unit(const imk_log_writer *writer, imk_error *error)
              (unsigned long long)writer->beyond_row);
     snprintf(found, sizeof found, "\"%s\" is too small a unit: the number would be infinite",
              column->unit.text);
-    return imk_error_set(error, IMK_ERROR_NOT_FINITE, field, found, "write a larger one");
+    return imk_error_set(error, IMK_ERROR_NOT_FINITE, field, found, "choose a larger unit");
 }
 
 imk_status imk_log_write(imk_log_writer *writer, size_t rows, const double *const *columns,

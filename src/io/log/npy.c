@@ -152,7 +152,7 @@ imk_status imki_npy_header_read(const char *header, size_t size, imki_npy *npy, 
 {
     const size_t header_size = size >= IMKI_NPY_PREFIX ? imki_npy_header_size(header) : 0;
     if (header_size == 0 || header_size > size)
-        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the head of the .npy file is damaged",
+        return imk_error_set(error, IMK_ERROR_FORMAT, "", "the header of the .npy file is damaged",
                              "a file that numpy.save() wrote");
     cursor c = {header + (header[6] == 1 ? 10 : 12), header + header_size};
     dictionary d = {0};
@@ -162,17 +162,17 @@ imk_status imki_npy_header_read(const char *header, size_t size, imki_npy *npy, 
                              "a file that numpy.save() wrote");
     const bool float64 = strcmp(d.descr, "<f8") == 0, float32 = strcmp(d.descr, "<f4") == 0;
     if (!float64 && !float32) {
-        char found[48];
-        snprintf(found, sizeof found, "the type '%s' of the array", d.descr);
+        char found[64];
+        snprintf(found, sizeof found, "the array type '%s' is not supported", d.descr);
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found,
-                             "save it as float64: array.astype('<f8')");
+                             "save the array as float64: array.astype('<f8')");
     }
     if (d.fortran_order)
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "an array in Fortran order",
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the array is in Fortran order",
                              "save numpy.ascontiguousarray(array)");
     if (d.dimensions != 1 && d.dimensions != 2) {
-        char found[48];
-        snprintf(found, sizeof found, "an array of %zu dimensions", d.dimensions);
+        char found[64];
+        snprintf(found, sizeof found, "the array has %zu dimensions", d.dimensions);
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", found,
                              "a matrix of samples by columns");
     }

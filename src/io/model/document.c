@@ -83,7 +83,7 @@ static imk_status check_key(builder *b, int key, yaml_mark_t mark)
         const imki_node *other = &document->node[i];
         if (other->length == node->length && memcmp(other->text, node->text, node->length) == 0) {
             char expected[64];
-            snprintf(expected, sizeof expected, "it stands first in line %zu", other->line);
+            snprintf(expected, sizeof expected, "the first one is in line %zu", other->line);
             return imki_document_error(document, key, IMK_ERROR_KEY_DUPLICATE, node->text, expected,
                                        b->error);
         }
@@ -173,7 +173,7 @@ static imk_status add_scalar(builder *b, const yaml_event_t *event)
     node->text[node->length] = '\0';
     if (memchr(node->text, '\0', node->length))
         return mark_error(b, event->start_mark, IMK_ERROR_SYNTAX, "a zero character",
-                          "text without it");
+                          "a text without zero characters");
     return is_key ? check_key(b, index, event->start_mark) : IMK_OK;
 }
 
@@ -246,7 +246,7 @@ static imk_status parser_error(builder *b, const yaml_parser_t *parser)
     size_t byte = byte_of(b, parser->problem_mark.index);
     bool is_tab = byte < document->size && document->text[byte] == '\t';
     return mark_error(b, parser->problem_mark, IMK_ERROR_SYNTAX, "",
-                      is_tab ? "indent by blanks, not tabs" : parser->problem);
+                      is_tab ? "indent with blanks, not tabs" : parser->problem);
 }
 
 static imk_status build(builder *b)
@@ -302,7 +302,7 @@ imk_status imki_document_parse_as(const char *what, const char *head, const char
     char expected[64];
     snprintf(expected, sizeof expected, "a %s file", what);
     if (size > IMKI_DOCUMENT_SIZE_MAX)
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "a file longer than 1 MiB",
+        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "", "the file is longer than 1 MiB",
                              expected);
     imk_document *made = calloc(1, sizeof *made);
     if (made)

@@ -62,7 +62,7 @@ static imk_status check_texts(const imk_model *model, imk_error *error)
         while (*c) {
             size_t length = imk_utf8_length(c);
             if (length == 0)
-                return imk_error_set(error, IMK_ERROR_ARGUMENT, item.path, "", "text in UTF-8");
+                return imk_error_set(error, IMK_ERROR_ARGUMENT, item.path, "", "a text in UTF-8");
             c += length;
         }
     }

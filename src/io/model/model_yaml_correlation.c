@@ -76,8 +76,9 @@ static void read_values(imki_reading *r, int node, imk_correlation *into)
     }
     for (int i = 1, child = list->first; i < into->count; i++, child = nodes[child].next) {
         char expected[96];
-        snprintf(expected, sizeof expected, "a row of %d number%s, with the parameters before it",
-                 i, i == 1 ? "" : "s");
+        snprintf(expected, sizeof expected,
+                 "a row of %d number%s: the correlations with the parameters before it", i,
+                 i == 1 ? "" : "s");
         if (nodes[child].kind != IMKI_NODE_SCALAR ||
             !parse_row(&nodes[child], i, &into->value[i * (i - 1) / 2]))
             imki_refuse_value(r, child, IMK_ERROR_SYNTAX, expected);

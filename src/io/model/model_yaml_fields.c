@@ -76,15 +76,15 @@ static quantity read_quantity(imki_reader *r, int node, const char *si, unsigned
     quantity q = {.count = 0};
     imk_error error;
     imk_unit unit = {.scale = 0};
-    if (!imki_value_require(r->reading, node, IMKI_NODE_SCALAR, "numbers and their unit"))
+    if (!imki_value_require(r->reading, node, IMKI_NODE_SCALAR,
+                            "one or more numbers and their unit"))
         return q;
     const imki_node *n = imki_reader_node(r, node);
     if (says_infinite(n->text)) {
         bool is_time = imki_reader_node(r, n->key != IMKI_NONE ? n->key : node)->text[0] == 'c';
         const char *walk = r->kind == IMK_GYRO
-                               ? "a finite time; a bias that never forgets is a rate_random_walk"
-                               : "a finite time; a bias that never forgets is an "
-                                 "acceleration_random_walk";
+                               ? "a finite time; for an infinite one, use rate_random_walk"
+                               : "a finite time; for an infinite one, use acceleration_random_walk";
         imki_refuse_value(r->reading, node, IMK_ERROR_NOT_FINITE,
                           is_time ? walk : "a finite number");
         return q;

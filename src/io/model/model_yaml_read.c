@@ -244,7 +244,7 @@ imk_status imki_document_read_model(const imk_document *document, imk_model *mod
     imki_value_keys(&r, 0, sizeof names / sizeof names[0], names);
     if (imki_document_value(document, 0, "imukit") == IMKI_NONE)
         imki_value_refuse(&r, 0, IMK_ERROR_KEY_MISSING, "",
-                          "imukit: 1, the version of the format, in a model file");
+                          "write imukit: 1, the version of the format, in a model file");
     imki_value_version(&r, "imukit");
     imki_value_name(&r, "name", model->name, sizeof model->name);
     imki_value_name(&r, "description", model->description, sizeof model->description);

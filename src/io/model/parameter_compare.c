@@ -169,7 +169,7 @@ void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, 
     }
     if (had > 0 && kept == 0)
         imki_parameter_refuse(p, IMK_ERROR_UNSUPPORTED, "model",
-                              "nothing of the model fits into the format",
-                              "choose another with --to");
+                              "the format has no place for any term of the model",
+                              "choose another format with --to");
     free(models);
 }

@@ -81,8 +81,8 @@ static void read_step(imki_script_reader *r, int node)
 {
     imki_reading *reading = &r->reading;
     if (r->steps_read++ == IMKI_STEPS_MAX)
-        imki_value_refuse(reading, node, IMK_ERROR_UNSUPPORTED, "too many steps",
-                          "at most 100000 steps, repeats written out");
+        imki_value_refuse(reading, node, IMK_ERROR_UNSUPPORTED, "the file has too many steps",
+                          "at most 100000 steps, with every repetition counted");
     else if (reading->document->node[node].kind == IMKI_NODE_MAPPING)
         read_repeat(r, node);
     else if (imki_value_require(reading, node, IMKI_NODE_SCALAR, "a step such as hold 10 s"))
@@ -218,7 +218,7 @@ static void read_end(imki_script_reader *r, imk_motion_file *file)
     if (holds && !isinf(last))
         imki_value_refuse(&r->reading, node, IMK_ERROR_CONFLICT,
                           "the body is not at rest after the last step",
-                          "end with a step such as stop at 3 m/s^2, or write then: stop");
+                          "add a last step such as stop at 3 m/s^2, or write then: stop");
     file->duration = 0.0;
     for (size_t i = 0; i < r->step_count; i++)
         file->duration += imk_motion_step_duration(&r->script, i);

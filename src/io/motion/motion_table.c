@@ -19,9 +19,10 @@ static imk_status read_times(const imk_log *log, const imk_log_settings *setting
         time[i] =
             column >= 0 ? log->data[column][i] - log->data[column][0] : (double)i / settings->rate;
         if (i > 0 && !(time[i] > time[i - 1])) {
-            status = imki_table_row_error("time", IMK_ERROR_TIME_ORDER, i + 1,
-                                          "it is not later than the row before",
-                                          "remove one of the two, or put them in order", error);
+            status =
+                imki_table_row_error("time", IMK_ERROR_TIME_ORDER, i + 1,
+                                     "this time is not later than that of the row before",
+                                     "remove one of the two rows, or sort the rows by time", error);
         }
     }
     if (status == IMK_OK)
@@ -66,7 +67,7 @@ imk_status imki_motion_table_open(const char *path, const imk_log_settings *sett
     if (poses && sensors)
         return imk_error_set(error, IMK_ERROR_CONFLICT, "",
                              "the table has both poses, and rates or forces",
-                             "take one of them out, or skip its columns by --columns with -");
+                             "remove the columns of one of the two");
     if (!poses && !sensors)
         return imk_error_set(
             error, IMK_ERROR_COLUMN, "", "no column of a motion has a known name",
@@ -74,7 +75,7 @@ imk_status imki_motion_table_open(const char *path, const imk_log_settings *sett
             "or "
             "gyro_x … accel_z");
     if (file->log.rows < 2)
-        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "a single row is no motion",
+        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "", "a single row is not a motion",
                              "two rows or more");
     if (sensors)
         return imki_recorded_open(&file->log, how, file, error);

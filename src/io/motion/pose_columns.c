@@ -122,8 +122,8 @@ static imk_status take_set(const imk_log *log, const column_set *set, const doub
             return imk_error_set(error, IMK_ERROR_COLUMN, name, "this column is missing", expected);
         }
         if (twice)
-            return imk_error_set(error, IMK_ERROR_COLUMN, name, "this column is there twice",
-                                 "one of each; add --columns with - for the one to skip");
+            return imk_error_set(error, IMK_ERROR_COLUMN, name, "this column is in the table twice",
+                                 "remove one of the two columns");
         const imk_status status =
             imki_table_column_check(log, (size_t)found, set->column[i].si, error);
         if (status != IMK_OK)
@@ -143,10 +143,10 @@ static imk_status choose(const imk_log *log, set_kind first, set_kind last, set_
             continue;
         if (*chosen != SETS) {
             char found[96];
-            snprintf(found, sizeof found, "%s and %s are the %s twice",
+            snprintf(found, sizeof found, "%s and %s are two descriptions of the %s",
                      sets[*chosen].column[0].name[0], sets[i].column[0].name[0], sets[i].what);
             return imk_error_set(error, IMK_ERROR_CONFLICT, "", found,
-                                 "take one of them out, or skip its columns by --columns with -");
+                                 "remove the columns of one of the two");
         }
         *chosen = (set_kind)i;
     }
@@ -228,10 +228,11 @@ static imk_status check_turn(const pose_table *t, size_t row, imk_error *error)
     if (cosine >= half_turn_cosine)
         return IMK_OK;
     char found[64];
-    snprintf(found, sizeof found, "\"%.6g deg\" is the turn from the row before",
+    snprintf(found, sizeof found, "\"%.6g deg\" is the rotation since the row before",
              2.0 * acos(cosine) / degree);
     return imki_table_row_error("attitude", IMK_ERROR_RANGE, row + 1, found,
-                                "at most 120 deg from row to row, so that the way is known", error);
+                                "at most 120 deg from row to row, so that its direction is clear",
+                                error);
 }
 
 /* Numbers that no motion near the Earth has: an angle so large has lost its digits. */
@@ -310,9 +311,10 @@ static void note(const imk_log *log, const pose_table *t, imk_motion_file *file)
     if (others > 0)
         snprintf(ignored, sizeof ignored, "%zu column%s not used", others,
                  others == 1 ? " is" : "s are");
-    const char *assumed = t->position == SETS   ? "the table has no position: it stays at the place"
-                          : t->attitude == SETS ? "the table has no attitude: level, heading north"
-                                                : "";
+    const char *assumed =
+        t->position == SETS   ? "the table has no position: the unit stays at its place"
+        : t->attitude == SETS ? "the table has no attitude: the unit is level, heading north"
+                              : "";
     snprintf(file->note, sizeof file->note, "%s%s%s", assumed, assumed[0] && ignored[0] ? "; " : "",
              ignored);
 }
@@ -323,7 +325,7 @@ static imk_status refuse_step(imk_status status, imk_error *error)
     if (!error || status != IMK_ERROR_RANGE || strcmp(error->field, "time") != 0)
         return status;
     char found[64];
-    snprintf(found, sizeof found, "\"%g s\" is the step from the row before", error->value);
+    snprintf(found, sizeof found, "\"%g s\" is the time since the row before", error->value);
     return imki_table_row_error("time", status, (size_t)error->index + 1, found,
                                 "a step of time from 1 ns to 1e9 s", error);
 }
@@ -364,8 +366,8 @@ static imk_status check_way(const imk_trajectory *trajectory, imk_error *error)
         return IMK_OK;
     const size_t row = of_piece.index >= 0 ? (size_t)of_piece.index + 1 : 1;
     return imki_table_row_error("poses", IMK_ERROR_CONFLICT, row,
-                                "the rows about it cannot be joined by a smooth motion",
-                                "divide the table there, or fill the gap", error);
+                                "the rows around this one cannot be joined by a smooth motion",
+                                "split the table at this row, or fill the gap", error);
 }
 
 imk_status imki_poses_open(const imk_log *log, const double *time, const imk_geodetic *place,

@@ -41,14 +41,13 @@ static imk_status find_rate(const imk_log *log, const imk_log_settings *settings
     for (size_t i = 1; i < log->rows; i++) {
         const double step = time[i] - time[i - 1];
         if (!(fabs(step - interval) <= step_tolerance * interval)) {
-            char found[64];
-            snprintf(found, sizeof found, "it is %.6g s after the row before, not %.6g s", step,
-                     interval);
-            return imki_table_row_error(
-                "time", IMK_ERROR_GAP, i + 1, found,
-                "recorded rates and forces must be in equal steps; resample "
-                "them, or give a table of poses",
-                error);
+            char found[96];
+            snprintf(found, sizeof found, "the time since the row before is %.6g s, not %.6g s",
+                     step, interval);
+            return imki_table_row_error("time", IMK_ERROR_GAP, i + 1, found,
+                                        "recorded rates and forces must have equal time steps; "
+                                        "resample them, or give a table of poses",
+                                        error);
         }
     }
     if (!(settings->rate > 0.0))
@@ -82,9 +81,9 @@ static imk_status take_triad(const imk_log *log, imk_quantity quantity, const ch
         if (column < 0) {
             char missing[32];
             snprintf(missing, sizeof missing, "%s_%c", name, "xyz"[axis]);
-            return imk_error_set(error, IMK_ERROR_COLUMN, missing, "this column is missing",
-                                 "recorded motion has gyro_x, gyro_y, gyro_z, accel_x, accel_y and "
-                                 "accel_z");
+            return imk_error_set(
+                error, IMK_ERROR_COLUMN, missing, "this column is missing",
+                "recorded motion needs gyro_x, gyro_y, gyro_z, accel_x, accel_y and accel_z");
         }
         const bool increment = log->column[column].increment; /* divided by the interval since */
         const imk_status status =
@@ -107,7 +106,7 @@ static imk_status take_acceleration(const imk_log *log, const double *triad[3], 
         return IMK_OK;
     if (found < 3)
         return imk_error_set(error, IMK_ERROR_COLUMN, "angular_acceleration",
-                             "an axis of it is missing", "give all three axes or none");
+                             "the column of one axis is missing", "give all three axes or none");
     for (int axis = 0; axis < 3; axis++) {
         const imk_status status =
             imki_table_column_check(log, (size_t)column[axis], "rad/s^2", error);

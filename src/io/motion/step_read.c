@@ -141,7 +141,7 @@ static void read_product(const imki_step_text *s, imki_part part, const char *si
     const double rate = imki_step_text_number(s, part, si);
     if (rate == 0.0)
         imki_step_text_refuse(s, part, IMK_ERROR_RANGE,
-                              "a rate other than 0; write hold 10 s to go on as it is");
+                              "a rate other than 0; for no change, write hold 10 s");
     step->amount = rate * imki_step_text_positive(s, IMKI_PART_FOR, "s");
     step->rate = fabs(rate);
 }
@@ -177,7 +177,7 @@ static void read_speed(imki_script_reader *r, const imki_step_text *s)
     }
     if (brakes && step.amount > 0.0)
         imki_step_text_refuse(s, IMKI_PART_TO, IMK_ERROR_RANGE,
-                              "a speed below the one the body has here; or write accelerate");
+                              "a speed below the present one; to go faster, write accelerate");
     r->speed = by ? r->speed + step.amount : target;
     if (lasts)
         add_step(r, s->node, &step);

@@ -27,7 +27,7 @@ imk_status imki_table_column_check(const imk_log *log, size_t column, const char
                              "a column of numbers");
     /* An angle that says no unit could be in degrees or radians. A bare quaternion is right. */
     if (c->unit.text[0] == '\0' && si[0] != '1') {
-        snprintf(expected, sizeof expected, "write it in the header, as in %s [%s]", c->name,
+        snprintf(expected, sizeof expected, "write the unit in the header, as in %s [%s]", c->name,
                  strcmp(si, "rad") == 0 ? "deg" : si);
         return imk_error_set(error, IMK_ERROR_UNIT_MISSING, "", c->name, expected);
     }

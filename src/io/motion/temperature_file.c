@@ -92,8 +92,9 @@ static void read_step(imki_reading *r, int node, imk_temperature_file *file)
     const int kind = s.verb->kind;
     if ((count == 0) != (kind == START))
         imki_step_text_refuse(&s, IMKI_PARTS, IMK_ERROR_SYNTAX,
-                              count == 0 ? "start with a step such as start 25 degC"
-                                         : "start is the first step only; write step to 25 degC");
+                              count == 0
+                                  ? "start with a step such as start 25 degC"
+                                  : "start can only be the first step; write step to 25 degC");
     if (r->status != IMK_OK)
         return;
     double time = count > 0 ? file->time[count - 1] : 0.0;
@@ -164,14 +165,14 @@ static imk_status open_table(const char *path, imk_temperature_file *file, imk_e
     imk_status status = imk_log_load(path, &settings, NULL, log, error);
     if (status == IMK_ERROR_RATE_MISSING) /* here no rate can stand for the times */
         return imk_error_set(error, IMK_ERROR_COLUMN, "time", "this column is missing",
-                             "give time [s] and temperature [degC]");
+                             "give the columns time [s] and temperature [degC]");
     if (status != IMK_OK)
         return status;
     const int time = imk_log_find(log, IMK_QUANTITY_TIME, -1);
     const int temperature = imk_log_find(log, IMK_QUANTITY_TEMPERATURE, -1);
     if (temperature < 0)
         return imk_error_set(error, IMK_ERROR_COLUMN, "temperature", "this column is missing",
-                             "give time [s] and temperature [degC]");
+                             "give the columns time [s] and temperature [degC]");
     status = imki_table_column_check(log, (size_t)time, "s", error);
     if (status == IMK_OK)
         status = imki_table_column_check(log, (size_t)temperature, "K", error);
@@ -182,8 +183,8 @@ static imk_status open_table(const char *path, imk_temperature_file *file, imk_e
         log->data[time][i] -= first;
         if (i > 0 && !(log->data[time][i] >= log->data[time][i - 1]))
             return imki_table_row_error("time", IMK_ERROR_TIME_ORDER, i + 1,
-                                        "it is before the row before", "put the rows in order",
-                                        error);
+                                        "this time is before that of the row before",
+                                        "sort the rows by time", error);
         if (!(log->data[temperature][i] > 0.0)) {
             char found[64];
             snprintf(found, sizeof found, "\"%.6g K\" is not above absolute zero",

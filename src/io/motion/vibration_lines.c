@@ -56,8 +56,9 @@ static imk_vibration_line *room_for(const vibration_reader *r, int node, size_t 
 {
     const imk_trajectory *trajectory = &r->file->trajectory;
     if (trajectory->line_count + count > IMK_VIBRATION_LINES_MAX)
-        imki_value_refuse(r->reading, node, IMK_ERROR_UNSUPPORTED, "too many lines",
-                          "at most 512 lines in all; give the random ones fewer");
+        imki_value_refuse(r->reading, node, IMK_ERROR_UNSUPPORTED,
+                          "the file has too many vibration lines",
+                          "at most 512 lines in all; give the random vibrations fewer lines");
     return r->reading->status == IMK_OK ? r->file->line + trajectory->line_count : NULL;
 }
 

@@ -47,11 +47,11 @@ static imk_status draw_with_gnuplot(const imk_figure *figure, const char *path,
     imki_drawing drawing = {.terminal = terminal};
     const bool in_letters = terminal == IMKI_TERMINAL_TEXT;
     if (!imk_plot_available())
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, in_letters ? "plot" : path,
-                             "gnuplot is not installed",
-                             in_letters ? "install it: apt install gnuplot-nox"
-                                        : "install it: apt install gnuplot-nox; a name ending in "
-                                          ".svg needs nothing");
+        return imk_error_set(
+            error, IMK_ERROR_UNSUPPORTED, in_letters ? "plot" : path, "gnuplot is not installed",
+            in_letters
+                ? "install it: apt install gnuplot-nox"
+                : "install it: apt install gnuplot-nox; a file ending in .svg needs no gnuplot");
     if (in_letters) {
         const char *no_color = getenv("NO_COLOR");
         terminal_size(&drawing.width, &drawing.height, figure->panel_count);

@@ -126,11 +126,11 @@ static bool await(pid_t child, double limit, int *status)
 /* What happened, and in its own words why. */
 static imk_status refuse(const imki_scratch *s, const char *found, imk_error *error)
 {
-    char line[sizeof error->expected], expected[sizeof line + 12];
+    char line[sizeof error->expected], expected[sizeof line + 20];
     imki_scratch_last_line(s, IMKI_SCRATCH_SAID, line, sizeof line);
-    snprintf(expected, sizeof expected, "it said: %s", line);
+    snprintf(expected, sizeof expected, "gnuplot printed: %s", line);
     return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found,
-                         line[0] ? expected : "see whether it works by itself: gnuplot --version");
+                         line[0] ? expected : "check that gnuplot works: gnuplot --version");
 }
 
 static imk_status run(const char *program, const imki_scratch *s, imk_error *error)
@@ -150,9 +150,10 @@ static imk_status run(const char *program, const imki_scratch *s, imk_error *err
     imki_leftover_drop(slot);
     char found[sizeof error->found];
     if (!in_time) {
-        snprintf(found, sizeof found, "gnuplot was ended: it has not finished in %g s", limit);
-        return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "plot", found,
-                             "a working gnuplot, or more time: IMUKIT_GNUPLOT_SECONDS");
+        snprintf(found, sizeof found, "gnuplot was stopped: it did not finish in %g s", limit);
+        return imk_error_set(
+            error, IMK_ERROR_UNSUPPORTED, "plot", found,
+            "check that gnuplot works, or give it more time: IMUKIT_GNUPLOT_SECONDS");
     }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
         return IMK_OK;

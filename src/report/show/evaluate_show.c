@@ -212,21 +212,22 @@ static void show_remarks(const imk_evaluate_channel *c, imk_result *result)
 {
     const imk_evaluation *r = &c->result;
     if (r->source >= IMK_SCATTER_RESIDUALS)
-        imk_result_line(result, "No reading was repeated under the same conditions, so noise "
-                                "cannot be told from nonlinearity and hysteresis: these have no "
-                                "interval. Take every level at least twice from the same side.");
+        imk_result_line(result,
+                        "No reading was repeated under the same conditions, so noise cannot be "
+                        "separated from nonlinearity and hysteresis: these two have no interval. "
+                        "Take every level at least twice from the same side.");
     if (r->source == IMK_SCATTER_REPLICATES && r->precision.value == 0)
         imk_result_line(result, "Repeated readings are all equal: the output's resolution hides "
                                 "the noise, and the intervals do not contain it.");
     if (r->resolution.value <= r->smallest_step)
         imk_result_line(result,
-                        "Every step gave its change down to the smallest that was tested and could "
-                        "be told from noise, %.6g %s: the resolution is that or finer.",
+                        "Every step gave its change, down to %.6g %s, the smallest tested step "
+                        "that exceeds the noise: the resolution is this step or finer.",
                         r->smallest_step / c->reference_unit.scale, c->reference_unit.text);
     if (!c->settings.same_unit)
         imk_result_line(result,
-                        "Readings in %s have no error against a reference in %s: add --sensitivity "
-                        "(and --zero) for the accuracy.",
+                        "Readings in %s cannot be compared with a reference in %s: for the "
+                        "accuracy, add --sensitivity (and --zero).",
                         c->reading_unit.text, c->reference_unit.text);
     if (c->left_out > 0)
         imk_result_line(result, "%zu stretches about other axes are left out.", c->left_out);
@@ -298,16 +299,16 @@ static void show_definitions(const imk_evaluate_shown *v, imk_result *result)
             imk_table_row(table, "%s\t%s", sheets[s]->row[k].title, sheets[s]->row[k].definition);
     if (v->channel_count == 0)
         return;
-    imk_result_line(
-        result,
-        "Intervals hold the true figure with %g %% confidence: Student's and the chi-square "
-        "distribution for the figures of the line and the precision. Of figures that are the "
-        "largest of several differences, the interval is that of what a unit without noise "
-        "would show at the same levels; it holds it with at least about that confidence.",
-        100 * v->confidence);
-    imk_result_line(result, "Figures are those of the runs tested; how a further run would differ "
-                            "is the repeatability. The uncertainty of the reference is not "
-                            "contained.");
+    imk_result_line(result,
+                    "Intervals hold the true figure with %g %% confidence: Student's and the "
+                    "chi-square distribution for the figures of the line and the precision. For "
+                    "figures that are the largest of several differences, the interval is for the "
+                    "value that a unit without noise would show at the same levels, and holds this "
+                    "value with at least about the same confidence.",
+                    100 * v->confidence);
+    imk_result_line(result,
+                    "The figures describe the runs tested; the repeatability describes how a "
+                    "further run would differ. The uncertainty of the reference is not included.");
 }
 
 /* ---- all of it ------------------------------------------------------------------------------- */
@@ -335,11 +336,11 @@ static void show_channel(const imk_evaluate_shown *v, const imk_evaluate_channel
     imk_result_for(result, IMK_FOR_PAGE);
     if (c->result.levels > 1)
         imki_show_evaluate_panels(
-            c, imk_result_figure(result, "", c->result.hysteresis_level < 0 ? 1 : 2,
-                                 "Mean readings of each level less the least-squares line. "
-                                 "Dashes: the best line; tinted: the narrowest strip that holds "
-                                 "all means. Rising and falling: the mean readings of each "
-                                 "direction."));
+            c,
+            imk_result_figure(result, "", c->result.hysteresis_level < 0 ? 1 : 2,
+                              "Mean readings of each level minus the least-squares line. Dashes: "
+                              "the best line; tinted: the narrowest strip that holds all means. "
+                              "Rising and falling: the mean readings of each direction."));
 }
 
 /* All channels in one; a single panel keeps its own width, two stand side by side. */

@@ -295,7 +295,7 @@ static void unknown_units_are_refused_with_the_nearest(void **state)
         {"m/s^0.3", IMK_ERROR_SYNTAX, NULL, NULL},
         {"m^99", IMK_ERROR_SYNTAX, NULL, NULL},
         {"sqrt(sqrt(s))", IMK_ERROR_SYNTAX, NULL, NULL},
-        {"deg/h sqrt(Hz)", IMK_ERROR_SYNTAX, NULL, "brackets, or a / before each divisor"},
+        {"deg/h sqrt(Hz)", IMK_ERROR_SYNTAX, NULL, "write brackets, or a / before each divisor"},
         {"2 deg", IMK_ERROR_SYNTAX, NULL, NULL},
         {"10", IMK_ERROR_SYNTAX, NULL, NULL},
         {"1 Hz", IMK_ERROR_SYNTAX, NULL, NULL}, /* a quantity */

@@ -344,10 +344,10 @@ static void a_part_of_another_campaign_is_refused(void **state)
     imk_campaign_writer *writer;
     imk_error error;
     CHECK_STATUS(imk_campaign_create("x.h5", &campaign, 10, 20, &writer, &error), IMK_OK);
-    check_conflict(&campaign, 10, 20, "another process is writing it");
+    check_conflict(&campaign, 10, 20, "another process is writing this file");
     imk_campaign_stop(writer);
-    check_conflict(&campaign, 10, 21, "it is the shard of runs 10-29, not 10-30");
-    check_conflict(&campaign, 0, RUNS, "it is the shard of runs 10-29, not 0-136");
+    check_conflict(&campaign, 10, 21, "the file is of the shard of runs 10-29, not 10-30");
+    check_conflict(&campaign, 0, RUNS, "the file is of the shard of runs 10-29, not 0-136");
     other = campaign;
     other.seed = 43;
     check_conflict(&other, 10, 20, "the seed is 42, not 43");
@@ -371,7 +371,7 @@ static void a_part_of_another_campaign_is_refused(void **state)
     other.unit = units;
     check_conflict(&other, 10, 20, "the states are not the same");
     write_bytes("x.h5.part", (const unsigned char *)"a letter, which someone may want to keep", 41);
-    check_conflict(&campaign, 10, 20, "it is not what an interrupted campaign leaves");
+    check_conflict(&campaign, 10, 20, "the file is not from an interrupted campaign");
     assert_int_equal(access("x.h5.part", F_OK), 0);
 }
 

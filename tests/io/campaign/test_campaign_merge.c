@@ -214,7 +214,7 @@ static void contradictions_are_left_out(void **state)
     snprintf(names[3], sizeof names[0], "bad.h5");
     CHECK_STATUS(merge(4, false, &error), IMK_ERROR_CONFLICT);
     assert_int_equal(report.complaint_count, 2);
-    assert_string_equal(complaints[0].error.found, "run 51 has other numbers in another file");
+    assert_string_equal(complaints[0].error.found, "run 51 has different numbers in another file");
     assert_string_equal(report.missing, "46-91");
     assert_string_equal(report.shards, "2");
     assert_int_equal(report.shard_count, 3);
@@ -249,7 +249,7 @@ static void contradictions_behind_gaps_are_found(void **state)
     const char *some[] = {"ends.h5", "bad.h5", "good.h5", "rest.h5"};
     CHECK_STATUS(imk_campaign_merge(4, some, "all.h5", false, &report, &error), IMK_ERROR_CONFLICT);
     assert_int_equal(report.complaint_count, 2);
-    assert_string_equal(complaints[0].error.found, "run 20 has other numbers in another file");
+    assert_string_equal(complaints[0].error.found, "run 20 has different numbers in another file");
     assert_string_equal(report.missing, "2-49");
     /* And one that does not agree with a partial merge is found with others between them. */
     CHECK_STATUS(imk_campaign_create("odd.h5", &campaign, 120, 1, &writer, &error), IMK_OK);
@@ -328,7 +328,7 @@ static void nothing_usable(void **state)
     const char *some[] = {"empty.h5", "x.h5.part"};
     CHECK_STATUS(imk_campaign_merge(2, some, "all.h5", true, &report, &error), IMK_ERROR_EMPTY);
     assert_string_equal(complaints[0].error.found, "the file is empty");
-    assert_string_equal(complaints[1].error.found, "it is a campaign under way");
+    assert_string_equal(complaints[1].error.found, "this is the file of an unfinished campaign");
     assert_false(is_there("all.h5"));
 }
 

@@ -169,9 +169,9 @@ static void bad_files_are_refused_with_a_message(void **state)
          "blades"},
         {"rotor.inertia: 1 kg m^2\n", IMK_ERROR_KEY_UNKNOWN,
          "w.yaml:3:1: rotor.inertia: \"rotor.inertia\" is not a known key; nest the keys instead "
-         "of dots: a: {b: …}"},
+         "of writing dots: a: {b: …}"},
         {"sealed: yes\nsealed: no\n", IMK_ERROR_KEY_DUPLICATE,
-         "w.yaml:4:1: sealed: \"sealed\" is given twice; it stands first in line 3"},
+         "w.yaml:4:1: sealed: \"sealed\" is given twice; the first one is in line 3"},
         {"rotor: 3 rpm\n", IMK_ERROR_SYNTAX,
          "w.yaml:3:8: rotor: \"3 rpm\" cannot be read; expected a mapping: {key: value, …}"},
         {"rotor: {inertia: 3}\n", IMK_ERROR_UNIT_MISSING,
@@ -191,7 +191,7 @@ static void bad_files_are_refused_with_a_message(void **state)
          "one "
          "text"},
         {"rotor: {inertia: nan kg m^2}\n", IMK_ERROR_NOT_FINITE,
-         "w.yaml:3:18: rotor.inertia: \"nan kg m^2\" is not finite; finite numbers"},
+         "w.yaml:3:18: rotor.inertia: \"nan kg m^2\" is not finite; expected a finite number"},
         {"pickoff: {quality: inf}\n", IMK_ERROR_NOT_FINITE,
          "w.yaml:3:20: pickoff.quality: \"inf\" is not finite; expected a finite number"},
         {"rotor: {inertia: 0 kg m^2}\n", IMK_ERROR_RANGE,
@@ -255,8 +255,8 @@ static void heads_are_checked(void **state)
         {"imukit: 2\ninstrument: test_wheel\n", IMK_ERROR_VERSION,
          "w.yaml:1:9: imukit: \"2\" is not a supported version; version 1 of the format"},
         {"imukit: 1\n", IMK_ERROR_KEY_MISSING,
-         "w.yaml:1:1: \"instrument\" is missing; write instrument: NAME, as imukit physics lists "
-         "them"},
+         "w.yaml:1:1: \"instrument\" is missing; write instrument: NAME, with a name that imukit "
+         "physics lists"},
         {"imukit: 1\ninstrument: spinning_top\n", IMK_ERROR_NAME_UNKNOWN,
          "w.yaml:2:13: instrument: \"spinning_top\" is not a known name; expected a design file, "
          "or a name that imukit physics lists"},

@@ -45,8 +45,8 @@ static const message_of_status messages[] = {
     {IMK_ERROR_CONFLICT, "two settings exclude each other: X y", "two settings exclude each other"},
     {IMK_ERROR_VERSION, "\"X y\" is not a supported version",
      "the format version is not supported"},
-    {IMK_ERROR_UNINITIALISED, "the structure was not made by its _default: X y",
-     "the structure was not made by its _default"},
+    {IMK_ERROR_UNINITIALISED, "the structure was not initialised by its _default function: X y",
+     "the structure was not initialised by its _default function"},
     {IMK_ERROR_WORKSPACE, "the workspace is too small: X y", "the workspace is too small"},
     {IMK_ERROR_MEMORY, "memory is exhausted: X y", "memory is exhausted"},
     {IMK_ERROR_SINGULAR, "the matrix is singular or not positive definite: X y",
@@ -65,12 +65,13 @@ static const message_of_status messages[] = {
      "the file format is not recognised"},
     {IMK_ERROR_COMPRESSED, "the compressed data is damaged or cut short: X y",
      "the compressed data is damaged or cut short"},
-    {IMK_ERROR_COLUMN, "a column is missing, unknown or doubled: X y",
-     "a column is missing, unknown or doubled"},
-    {IMK_ERROR_RATE_MISSING, "the sample rate is not known: X y", "the sample rate is not known"},
+    {IMK_ERROR_COLUMN, "a column is missing, unknown or duplicated: X y",
+     "a column is missing, unknown or duplicated"},
+    {IMK_ERROR_RATE_MISSING, "the sampling rate is not known: X y",
+     "the sampling rate is not known"},
     {IMK_ERROR_UNSUPPORTED, "this is not supported: X y", "this is not supported"},
     {IMK_ERROR_NAME_UNKNOWN, "\"X y\" is not a known name", "the name is not known"},
-    {IMK_ERROR_CANCELLED, "the work was given up: X y", "the work was given up"},
+    {IMK_ERROR_CANCELLED, "the work was cancelled: X y", "the work was cancelled"},
 };
 
 static void every_status(void **state)

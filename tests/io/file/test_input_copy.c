@@ -170,7 +170,8 @@ static void check_refused(const char *path, const char *found)
 static void without_end(void **state)
 {
     (void)state;
-    check_refused("/dev/zero", "it is neither text nor .npy, and not compressed by gzip or zstd");
+    check_refused("/dev/zero",
+                  "the file is neither text nor .npy, and not compressed by gzip or zstd");
     int ends[2];
     char path[40];
     assert_int_equal(pipe(ends), 0);
@@ -184,7 +185,7 @@ static void without_end(void **state)
     }
     close(ends[1]);
     snprintf(path, sizeof path, "/dev/fd/%d", ends[0]);
-    check_refused(path, "a line longer than 1 MiB");
+    check_refused(path, "a line is longer than 1 MiB");
     close(ends[0]);
     int status;
     assert_int_equal(waitpid(child, &status, 0), child); /* by SIGPIPE */

@@ -222,7 +222,7 @@ static void short_zstd(void **state)
     memcpy(packed, head, sizeof head);
     memcpy(packed + sizeof head, text, 3);
     memcpy(packed + sizeof head + 3, "\1\0", 3); /* the last block */
-    check_damaged(path_of("damaged.zst"), sizeof head + 6, "another size");
+    check_damaged(path_of("damaged.zst"), sizeof head + 6, "the size of the zstd data");
 }
 
 /* A damaged frame of the format of 2016: libzstd says that it filled the whole buffer, which it did

@@ -205,7 +205,7 @@ static void refusals_name_the_reason(void **state)
     assert_int_equal(symlink("missing/a.csv", path_of("link")), 0);
     check_refused(path_of("link"), found);
     unlink(path_of("link"));
-    check_refused(path_of("missing/"), "it is the name of a folder");
+    check_refused(path_of("missing/"), "this is the name of a folder");
     check_refused(
         "/proc/imukit.csv",
         "the folder /proc cannot be written: No such file or directory"); /* a directory where even

@@ -176,9 +176,9 @@ static void test_higher_orders(void **state)
         for (int axis = 0; axis < 3; axis++)
             worst = fmax(worst, fabs(bias_at(&model.accel, axis, celsius) -
                                      bias_at(&back.accel, axis, celsius)));
-    assert_true(has_note(true, "accel.bias.temperature: ArduPilot has cubics"));
+    assert_true(has_note(true, "accel.bias.temperature: ArduPilot has cubic"));
     for (size_t i = 0; i < notes.count; i++) {
-        const char *at = strstr(notes.note[i].text, "accel.bias.temperature: ArduPilot has cubics");
+        const char *at = strstr(notes.note[i].text, "accel.bias.temperature: ArduPilot has cubic");
         if (at)
             assert_int_equal(sscanf(strstr(at, "up to"), "up to %lf", &stated), 1);
     }

@@ -196,7 +196,7 @@ static void test_gazebo(void **state)
     check_axes(&model.gyro.noise.gauss_markov[0].sigma, 2e-5 * 5, 0, 0); /* sqrt(50/2) = 5 */
     check_axes(&model.gyro.noise.gauss_markov[0].correlation_time, 50, 0, 0);
     check_axes(&model.accel.resolution, 0.001, 0, 0);
-    check_note(false, "either sign");
+    check_note(false, "draws the sign at random");
     CHECK_OK(read(sample("gazebo_old.sdf")));
     check_axes(&model.gyro.noise.white, 0.001, 0.001, 0.001);
     check_axes(&model.accel.bias.fixed, 0.1, 0.1, 0.1);
@@ -289,7 +289,7 @@ static void test_navego(void **state)
     check_axes(&model.gyro.noise.white, 2 * degree / 60, 2 * degree / 60, 2 * degree / 60);
     CHECK_STATUS(read("% a\nimu.arw = ref.arw;\n"), IMK_ERROR_SYNTAX);
     check_says("f:2:");
-    check_says("\"ref.arw\" cannot be read; expected a number or three");
+    check_says("\"ref.arw\" cannot be read; expected one number or three");
 }
 
 /* Values of single expressions, through one field [deg/s]. */
@@ -380,7 +380,7 @@ static const struct refusal {
 } refusals[] = {
     {"gyroscope_noise_density: 0.3\n", IMK_ERROR_RANGE,
      "f:1:26: gyroscope_noise_density: \"0.3\" cannot be in rad/s/sqrt(Hz), it looks like "
-     "deg/sqrt(h); this format has rad/s/sqrt(Hz): write 8.72665e-05, or correct the value"},
+     "deg/sqrt(h); this format uses rad/s/sqrt(Hz): write 8.72665e-05, or correct the value"},
     {"accelerometer_noise_density: 60\n", IMK_ERROR_RANGE, "looks like ug/sqrt(Hz)"},
     {"gyroscope_noise_density: -1e-4\n", IMK_ERROR_RANGE, "a number that is not negative"},
     {"gyroscope_noise_density: 1e-4 rad\n", IMK_ERROR_SYNTAX, "a number without a unit"},
@@ -414,7 +414,7 @@ static const struct refusal {
     {"CAL_ACC0_XSCALE 0\n", IMK_ERROR_RANGE, "a scale between 0.1 and 3"},
     {"CAL_ACC0_XOFF 50\n", IMK_ERROR_RANGE, "it looks like mg"},
     {"TC_A_ENABLE 1\nTC_A0_X1_0 0.1\nTC_A0_TMIN 50\nTC_A0_TMAX 10\n", IMK_ERROR_RANGE,
-     "from a lower to a higher one"},
+     "a TMIN above absolute zero and below TMAX"},
 };
 
 static void test_refusals(void **state)

@@ -452,7 +452,7 @@ static void npy_row_count(void **state)
                             &error));
     CHECK_OK(imk_log_write(writer, 2, columns, NULL));
     CHECK_STATUS(imk_log_commit(writer, &error), IMK_ERROR_CONFLICT);
-    assert_string_equal(error.found, "2 rows instead of the 3 announced");
+    assert_string_equal(error.found, "2 rows are written, but 3 were announced");
     assert_int_equal(access(path_of("a.npy.gz"), F_OK), -1);
     assert_int_equal(access(path_of("a.npy.gz.columns"), F_OK), -1);
 
@@ -502,15 +502,15 @@ static void npy_heads(void **state)
     check_npy_head("{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }\n", IMK_OK, "");
     check_npy_head("{\"shape\":(3,),\"fortran_order\":False,\"descr\":\"<f4\"}", IMK_OK, "");
     check_npy_head("{'descr': '>f8', 'fortran_order': False, 'shape': (3, 4), }",
-                   IMK_ERROR_UNSUPPORTED, "the type '>f8' of the array");
+                   IMK_ERROR_UNSUPPORTED, "the array type '>f8' is not supported");
     check_npy_head("{'descr': '<i8', 'fortran_order': False, 'shape': (3, 4), }",
-                   IMK_ERROR_UNSUPPORTED, "the type '<i8' of the array");
+                   IMK_ERROR_UNSUPPORTED, "the array type '<i8' is not supported");
     check_npy_head("{'descr': '<f8', 'fortran_order': True, 'shape': (3, 4), }",
-                   IMK_ERROR_UNSUPPORTED, "an array in Fortran order");
+                   IMK_ERROR_UNSUPPORTED, "the array is in Fortran order");
     check_npy_head("{'descr': '<f8', 'fortran_order': False, 'shape': (), }", IMK_ERROR_UNSUPPORTED,
-                   "an array of 0 dimensions");
+                   "the array has 0 dimensions");
     check_npy_head("{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4, 5), }",
-                   IMK_ERROR_UNSUPPORTED, "an array of 3 dimensions");
+                   IMK_ERROR_UNSUPPORTED, "the array has 3 dimensions");
     check_npy_head("{'descr': '<f8', 'fortran_order': False, }", IMK_ERROR_FORMAT, damaged);
     check_npy_head("{'descr': '<f8', 'fortran_order': False, 'shape': (3, x), }", IMK_ERROR_FORMAT,
                    damaged);

@@ -485,10 +485,10 @@ static const struct {
      "2 m/s^2, accelerate to 20 m/s in 10 s or accelerate 2 m/s^2 for 10 s"},
     {"steps: [accelerate 0 m/s^2 for 5 s]",
      "m.yaml:2:20: steps[0]: \"0 m/s^2\" is outside its valid range; expected a rate other than 0; "
-     "write hold 10 s to go on as it is"},
+     "for no change, write hold 10 s"},
     {"steps: [brake to 5 m/s at 1 m/s^2]",
-     "m.yaml:2:18: steps[0]: \"5 m/s\" is outside its valid range; expected a speed below the one "
-     "the body has here; or write accelerate"},
+     "m.yaml:2:18: steps[0]: \"5 m/s\" is outside its valid range; expected a speed below the "
+     "present one; to go faster, write accelerate"},
     {"steps: [brake -5 m/s at 1 m/s^2]",
      "m.yaml:2:15: steps[0]: \"-5 m/s\" is outside its valid range; expected a number above 0"},
     {"steps: [accelerate -5 m/s at 1 m/s^2]",
@@ -539,8 +539,8 @@ static const struct {
      "m.yaml:2:10: steps[0].repeats: \"repeats\" is not a known key; did you mean \"repeat\"?"},
     {"steps: [{repeat: {times: 1000, steps: [{repeat: {times: 1000, steps: [level at 1 "
      "deg/s]}}]}}]",
-     "m.yaml:2:71: steps[0].repeat.steps[0].repeat.steps[0]: this is not supported: too many "
-     "steps; expected at most 100000 steps, repeats written out"},
+     "m.yaml:2:71: steps[0].repeat.steps[0].repeat.steps[0]: the file has too many steps; expected "
+     "at most 100000 steps, with every repetition counted"},
     {"name: x", "m.yaml:1:1: \"steps\" is missing; expected a list of steps: [hold 10 s, …]"},
     {"step: [hold 1 s]", "m.yaml:2:1: step: \"step\" is not a known key; did you mean \"steps\"?"},
     {"start: {lattitude: 45 deg}\nsteps: [hold 1 s]",
@@ -565,7 +565,7 @@ static const struct {
     {"then: go\nsteps: [hold 1 s]",
      "m.yaml:2:7: then: \"go\" cannot be read; expected \"stop\" or \"hold\""},
     {"then: hold\nsteps: [accelerate to 3 m/s at 1 m/s^2]",
-     "m.yaml:2:7: then: the body is not at rest after the last step; end with a step such as stop "
+     "m.yaml:2:7: then: the body is not at rest after the last step; add a last step such as stop "
      "at 3 m/s^2, or write then: stop"},
     {"steps: [hold 1 s]\nvibration: [sine z 0.5 g]",
      "m.yaml:3:13: vibration[0]: \"sine z 0.5 g\" cannot be read; write sine z 0.5 g at 50 Hz, "
@@ -626,12 +626,12 @@ static const struct {
      "lines, from 8 to 512"},
     {"steps: [hold 1 s]\nvibration: [random: {axis: z, density: [1 Hz 1 g^2/Hz, 2 Hz 1 g^2/Hz], "
      "lines: 400}, random z 1 g^2/Hz from 1 Hz to 2 Hz]",
-     "m.yaml:3:85: vibration[1]: this is not supported: too many lines; expected at most 512 lines "
-     "in all; give the random ones fewer"},
+     "m.yaml:3:85: vibration[1]: the file has too many vibration lines; expected at most 512 lines "
+     "in all; give the random vibrations fewer lines"},
     {"steps: &x [hold 1 s]", "m.yaml:2:8: this is not supported: an anchor (&); write every value "
                              "out: motion files have no anchors and aliases"},
     {"steps: [hold 1 s]\nsteps: [hold 1 s]",
-     "m.yaml:3:1: steps: \"steps\" is given twice; it stands first in line 2"},
+     "m.yaml:3:1: steps: \"steps\" is given twice; the first one is in line 2"},
 };
 
 static void refusals_say_what_is_due(void **state)

@@ -190,7 +190,7 @@ static void what_is_missing_is_at_rest(void **state)
     imk_motion_file *file = table(
         "time [s],roll [deg],pitch [deg],heading [deg]\n0,0,0,0\n1,0,10,0\n2,0,10,20\n", &place);
     assert_string_equal(imk_motion_file_note(file),
-                        "the table has no position: it stays at the place");
+                        "the table has no position: the unit stays at its place");
     imk_motion_state at = state_at(file, 2.0);
     check_euler(&at, 0, 10, 20);
     CHECK_CLOSE(at.place.latitude, 0.5, 1e-15);
@@ -198,8 +198,9 @@ static void what_is_missing_is_at_rest(void **state)
     CHECK_CLOSE(imk_vector3_norm(at.velocity), 0, 0);
     imk_motion_file_free(file);
     file = table("time [s],north [m],east [m],down [m],note\n0,0,0,0,a\n1,1,0,0,b\n", &place);
-    assert_string_equal(imk_motion_file_note(file), "the table has no attitude: level, heading "
-                                                    "north; 1 column is not used");
+    assert_string_equal(
+        imk_motion_file_note(file),
+        "the table has no attitude: the unit is level, heading north; 1 column is not used");
     at = state_at(file, 0.0);
     check_euler(&at, 0, 0, 0);
     CHECK_CLOSE(at.velocity_ned.v[0], 1.0, 1e-9);
@@ -249,44 +250,43 @@ static const struct {
      "m.csv: no column of a motion has a known name; expected one of latitude, longitude, height, "
      "x, y, z, roll, pitch, yaw, q_w … q_z, or gyro_x … accel_z"},
     {"time [s]," ANGLES "\n0,1,2,3\n",
-     "m.csv: a single row is no motion; expected two rows or more"},
+     "m.csv: a single row is not a motion; expected two rows or more"},
     {"time [s]," ANGLES "\n0,1,2,3\n1,1,2,3\n1,1,2,3\n",
-     "m.csv: time, row 3: it is not later than the row before; remove one of the two, or put them "
-     "in order"},
+     "m.csv: time, row 3: this time is not later than that of the row before; remove one of the "
+     "two rows, or sort the rows by time"},
     {"time [s]," ANGLES "\n0,1,2,3\n1,1,2,3\n0.5,1,2,3\n",
-     "m.csv: time, row 3: it is not later than the row before; remove one of the two, or put them "
-     "in order"},
+     "m.csv: time, row 3: this time is not later than that of the row before; remove one of the "
+     "two rows, or sort the rows by time"},
     {"time [s]," ANGLES "\n0,1,2,3\n1,1,,3\n",
      "m.csv: pitch, row 2: nan is not finite; expected a number in every row"},
     {"time [s]," ANGLES "\n0,1,2,3\n1,1,2,153\n",
-     "m.csv: attitude, row 2: \"150 deg\" is the turn from the row before; expected at most 120 "
-     "deg from row to row, so that the way is known"},
+     "m.csv: attitude, row 2: \"150 deg\" is the rotation since the row before; expected at most "
+     "120 deg from row to row, so that its direction is clear"},
     {"time [s],roll [deg],pitch [deg]\n0,1,2\n1,1,2\n",
      "m.csv: yaw: this column is missing; the columns roll, pitch and yaw go together"},
     {"time [s],roll,pitch,yaw\n0,1,2,3\n1,1,2,3\n",
-     "m.csv: \"roll\" has no unit; write it in the header, as in roll [deg]"},
+     "m.csv: \"roll\" has no unit; write the unit in the header, as in roll [deg]"},
     {"time [s],roll [m],pitch [m],yaw [m]\n0,1,2,3\n1,1,2,3\n",
      "m.csv: roll: \"m\" is a length; expected an angle, such as deg, mrad, urad or arcsec"},
     {"time [s],yaw [deg],heading [deg],roll [deg],pitch [deg]\n0,1,2,3,4\n1,1,2,3,4\n",
-     "m.csv: yaw: this column is there twice; expected one of each; add --columns with - for the "
-     "one to skip"},
+     "m.csv: yaw: this column is in the table twice; remove one of the two columns"},
     {"time [s],q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0.5,0,0,0\n",
      "m.csv: q_w, row 2: \"0.5\" is the length of the quaternion; expected a length of 1, up to "
      "the rounding of the digits"},
     {"time [s],q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0.988,0,0,0\n",
      "m.csv: q_w, row 2: \"0.988\" is the length of the quaternion; expected a length of 1, up to "
      "the rounding of the digits"},
-    {"time [s]," ANGLES "\n0,0,0,0\n1,122,0,0\n", "m.csv: attitude, row 2: \"122 deg\" is the turn "
-                                                  "from the row before; expected at most 120 deg "
-                                                  "from row to row, so that the way is known"},
+    {"time [s]," ANGLES "\n0,0,0,0\n1,122,0,0\n",
+     "m.csv: attitude, row 2: \"122 deg\" is the rotation since the row before; expected at most "
+     "120 deg from row to row, so that its direction is clear"},
     {"time [s],q_w,q_x,q_z\n0,1,0,0\n1,1,0,0\n",
      "m.csv: q_y: this column is missing; the columns q_w, q_x, q_y and q_z go together"},
     {"time [s]," ANGLES ",q_w,q_x,q_y,q_z\n0,1,2,3,1,0,0,0\n1,1,2,3,1,0,0,0\n",
-     "m.csv: roll and q_w are the attitude twice; take one of them out, or skip its columns by "
-     "--columns with -"},
+     "m.csv: roll and q_w are two descriptions of the attitude; remove the columns of one of the "
+     "two"},
     {"time [s]," PLACES ",x [m],y [m],z [m]\n0,1,2,3,0,0,0\n1,1,2,3,0,0,0\n",
-     "m.csv: latitude and x are the position twice; take one of them out, or skip its columns by "
-     "--columns with -"},
+     "m.csv: latitude and x are two descriptions of the position; remove the columns of one of the "
+     "two"},
     {"time [s]," PLACES "\n0,1,2,3\n1,91,2,3\n",
      "m.csv: latitude, row 2: \"91 deg\" is beyond a pole; expected between -90 deg and 90 deg"},
     {"time [s]," PLACES "\n0,1,2,3\n1,1,2,1e160\n",
@@ -303,29 +303,29 @@ static const struct {
      "expected "
      "6340 km to 16400 km"},
     {"time [s]," ANGLES "\n0,1,2,3\n1e-320,1,2,3\n1,1,2,3\n",
-     "m.csv: time, row 2: \"9.99989e-321 s\" is the step from the row before; expected a step of "
-     "time "
-     "from 1 ns to 1e9 s"},
+     "m.csv: time, row 2: \"9.99989e-321 s\" is the time since the row before; expected a step of "
+     "time from 1 ns to 1e9 s"},
     {"time [s]," PLACES "," ANGLES "\n0,45,7,300,0,0,90\n1,45.0001,7,0,1,0,100\n"
      "2,45.0002,7.0001,302,3,0,110\n3,45.0003,7.0001,302,1,1,115\n"
      "404500,0.4,7.0002,302,0,1,120\n",
-     "m.csv: poses, row 4: the rows about it cannot be joined by a smooth motion; divide the table "
-     "there, or fill the gap"},
+     "m.csv: poses, row 4: the rows around this one cannot be joined by a smooth motion; split the "
+     "table at this row, or fill the gap"},
     {"time [s],lat [deg],lon [deg]\n0,1,2\n1,1,2\n",
      "m.csv: height: this column is missing; the columns latitude, longitude and height go "
      "together"},
     {"time [s]," ANGLES "," SIX "\n0,1,2,3,1,2,3,4,5,6\n",
-     "m.csv: the table has both poses, and rates or forces; take one of them out, or skip its "
-     "columns by --columns with -"},
+     "m.csv: the table has both poses, and rates or forces; remove the columns of one of the two"},
     {"time [s]," SIX "\n0,1,2,3,4,5,6\n0.01,1,2,3,4,5,6\n0.03,1,2,3,4,5,6\n0.04,1,2,3,4,5,6\n",
-     "m.csv: time, row 3: it is 0.02 s after the row before, not 0.01 s; recorded rates and forces "
-     "must be in equal steps; resample them, or give a table of poses"},
+     "m.csv: time, row 3: the time since the row before is 0.02 s, not 0.01 s; recorded rates and "
+     "forces "
+     "must have equal time steps; resample them, or give a table of poses"},
     {"time [s]," SIX "\n0,1,2,3,4,5,6\n0.01,1,2,3,4,5,6\n0.020120,1,2,3,4,5,6\n0.03,1,2,3,4,5,6\n",
-     "m.csv: time, row 3: it is 0.01012 s after the row before, not 0.01 s; recorded rates and "
-     "forces must be in equal steps; resample them, or give a table of poses"},
+     "m.csv: time, row 3: the time since the row before is 0.01012 s, not 0.01 s; recorded rates "
+     "and "
+     "forces must have equal time steps; resample them, or give a table of poses"},
     {"time [s],gyro_x [deg/s],gyro_y [deg/s]\n0,1,2\n1,1,2\n",
-     "m.csv: gyro_z: this column is missing; recorded motion has gyro_x, gyro_y, gyro_z, accel_x, "
-     "accel_y and accel_z"},
+     "m.csv: gyro_z: this column is missing; recorded motion needs gyro_x, gyro_y, gyro_z, "
+     "accel_x, accel_y and accel_z"},
     {"time [s]," SIX "\n0,1,2,3,4,5,nan\n1,1,2,3,4,5,6\n",
      "m.csv: accel_z, row 1: nan is not finite; expected a number in every row"},
     {"time [s],gyro_x [count],gyro_y [count],gyro_z [count],accel_x [g],accel_y [g],accel_z "
@@ -333,7 +333,7 @@ static const struct {
      "m.csv: gyro_x: \"count\" is a number of counts; expected an angular rate, such as deg/h, "
      "deg/s or rad/s"},
     {"time [s]," SIX ",angular_acceleration_x [deg/s^2]\n0,1,2,3,4,5,6,7\n1,1,2,3,4,5,6,7\n",
-     "m.csv: angular_acceleration: an axis of it is missing; give all three axes or none"},
+     "m.csv: angular_acceleration: the column of one axis is missing; give all three axes or none"},
     {"time [s],roll [deg],pitch [deg],yaw [deg]\n0,a,b,c\n1,a,b,c\n",
      "m.csv: roll: this column contains texts; expected a column of numbers"},
 };

@@ -126,8 +126,8 @@ static const struct {
         {HEAD "steps: [soak 30 min]\n", "t.yaml:2:9: steps[0]: \"soak 30 min\" cannot be read; "
                                         "start with a step such as start 25 degC"},
         {HEAD "steps: [start 25 degC, start 30 degC]\n",
-         "t.yaml:2:24: steps[1]: \"start 30 degC\" cannot be read; start is the first step only; "
-         "write step to 25 degC"},
+         "t.yaml:2:24: steps[1]: \"start 30 degC\" cannot be read; start can only be the first "
+         "step; write step to 25 degC"},
         {HEAD "steps: [start 25 degC, warm to 30 degC]\n",
          "t.yaml:2:24: steps[1]: \"warm\" is not a step; expected one of start, ramp, soak, step"},
         {HEAD "steps: [start 25 degC, ramp to 30 degC]\n",
@@ -170,10 +170,10 @@ static const struct {
 },
   bad_tables[] =
       {
-          {"time [s],x\n0,1\n",
-           "t.csv: temperature: this column is missing; give time [s] and temperature [degC]"},
+          {"time [s],x\n0,1\n", "t.csv: temperature: this column is missing; give the columns time "
+                                "[s] and temperature [degC]"},
           {"time [s],temperature [degC]\n0,1\n2,1\n1,1\n",
-           "t.csv: time, row 3: it is before the row before; put the rows in order"},
+           "t.csv: time, row 3: this time is before that of the row before; sort the rows by time"},
           {"time [s],temperature [degC]\n0,1\n1,\n",
            "t.csv: temperature, row 2: nan is not finite; expected a number in every row"},
           {"time [s],temperature [K]\n0,1\n1,-2\n",
@@ -183,7 +183,7 @@ static const struct {
            "t.csv: temperature: \"count\" is a number of counts; expected a temperature, such as "
            "degC or K"},
           {"temperature [K]\n1\n2\n",
-           "t.csv: time: this column is missing; give time [s] and temperature [degC]"},
+           "t.csv: time: this column is missing; give the columns time [s] and temperature [degC]"},
 },
   bad_quantities[] = {
       {"25", "--temperature: \"25\" has no unit; expected a unit such as degC or K"},
@@ -192,8 +192,8 @@ static const struct {
                       "temperature above 0 K, without uncertainty"},
       {"-300 degC", "--temperature: \"-300 degC\" is outside its valid range; expected a "
                     "temperature above 0 K, without uncertainty"},
-      {"nowhere.csv",
-       "--temperature: nowhere.csv: the file cannot be opened: No such file or directory"},
+      {"nowhere.csv", "--temperature: nowhere.csv: the file cannot be opened: No such file or "
+                      "directory; check the path"},
 };
 
 static void check_refused(const char *path, const char *source, const char *due)

@@ -209,7 +209,7 @@ static void test_without_gnuplot(void **state)
         const char *path = in_letters ? others[i] : path_in_directory(others[i]);
         CHECK_STATUS(imk_figure_write(&figure, path, &error), IMK_ERROR_UNSUPPORTED);
         assert_non_null(strstr(error.expected, "gnuplot-nox"));
-        assert_int_equal(strstr(error.expected, ".svg needs nothing") != NULL, !in_letters);
+        assert_int_equal(strstr(error.expected, ".svg needs no gnuplot") != NULL, !in_letters);
         assert_false(exists(path));
     }
     setenv("PATH", saved, 1);

@@ -88,19 +88,20 @@ static calibrate_message gravity_unit(const imk_calibrate_log *b, const imk_cali
         if (strcmp(units[k].unit, "ft/s^2") == 0)
             return say(IMK_FINDING_FAILURE, "gravity_unit",
                        "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: the columns "
-                       "look like ft/s^2; multiply them by 0.3048",
+                       "look like ft/s^2; multiply the readings by 0.3048",
                        force, b->calibration->gravity);
         return say(IMK_FINDING_FAILURE, "gravity_unit",
                    "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: the columns look "
                    "like %s, not %s; %s %s",
                    force, b->calibration->gravity, units[k].unit, found[0] ? found : "m/s^2",
-                   found[0] ? "correct the header to" : "add --accel-unit", units[k].unit);
+                   found[0] ? "correct the unit in the header to" : "add --accel-unit",
+                   units[k].unit);
     }
-    return say(
-        IMK_FINDING_FAILURE, "gravity_unit",
-        "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: no usual unit explains it; "
-        "check the unit of the accelerometer columns, or give raw counts with --accel-sensitivity",
-        force, b->calibration->gravity);
+    return say(IMK_FINDING_FAILURE, "gravity_unit",
+               "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: no usual unit "
+               "explains the difference; check the unit of the accelerometer columns; for raw "
+               "counts, use the unit count and --accel-sensitivity",
+               force, b->calibration->gravity);
 }
 
 static calibrate_message rate_unit(const imk_calibrate_record *log, double ratio)
@@ -111,13 +112,14 @@ static calibrate_message rate_unit(const imk_calibrate_record *log, double ratio
                                                      : NULL;
     if (!unit)
         return say(IMK_FINDING_FAILURE, "rate_unit",
-                   "the gyros turn %.4g times as far as the accelerometers saw the unit turned: "
-                   "check the unit of the gyro columns, and of the times",
+                   "the gyros measure turns %.4g times as large as the accelerometers do: check "
+                   "the units of the gyro columns and of the time column",
                    ratio);
     return say(IMK_FINDING_FAILURE, "rate_unit",
-               "the gyros turn %.4g times as far as the accelerometers saw the unit turned: the "
-               "columns look like %s; %s %s",
-               ratio, unit, unit_of_column(log, 0)[0] ? "correct the header to" : "add --gyro-unit",
+               "the gyros measure turns %.4g times as large as the accelerometers do: the columns "
+               "look like %s; %s %s",
+               ratio, unit,
+               unit_of_column(log, 0)[0] ? "correct the unit in the header to" : "add --gyro-unit",
                unit);
 }
 
@@ -130,12 +132,13 @@ static calibrate_message time_unit(const imk_calibrate_record *log, double facto
     const double rate = factor / log->record.dt;
     if (!unit)
         return say(IMK_FINDING_FAILURE, "time_unit",
-                   "the times are about %.3g times too long for what the gyros turned: check the "
-                   "unit of the time column",
+                   "the times are about %.3g times too long for the turns that the gyros measured: "
+                   "check the unit of the time column",
                    factor);
     return say(IMK_FINDING_FAILURE, "time_unit",
-               "the samples are %.4g s apart, far too long for what the gyros turned: the times "
-               "look like %s; add --time-unit %s, or correct the header (then the rate is %.4g Hz)",
+               "the samples are %.4g s apart, far too long for the turns that the gyros measured: "
+               "the times look like %s; add --time-unit %s, or correct the header (the sampling "
+               "rate is then %.4g Hz)",
                log->record.dt, unit, unit, rate);
 }
 
@@ -143,23 +146,24 @@ static calibrate_message few_poses(const imk_calibrate_log *b, const imk_calibra
                                    const imk_diagnostic_finding *d)
 {
     char poses[160];
-    imki_calibrate_poses(b, log, "; most would tell ", poses, sizeof poses);
-    return say(b->result ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE, "few_poses",
-               "%g poses are there, %g or more are needed: hold the unit still for some seconds "
-               "with each of its six faces down, and on edges and corners between%s",
-               d->value, d->limit, poses);
+    imki_calibrate_poses(b, log, "; the most informative further poses are ", poses, sizeof poses);
+    return say(
+        b->result ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE, "few_poses",
+        "the log has %g poses, %g or more are needed: keep the unit at rest for some seconds with "
+        "each of its six faces down, and on the edges and corners between the faces%s",
+        d->value, d->limit, poses);
 }
 
 static calibrate_message one_plane(const imk_calibrate_log *b, const imk_calibrate_record *log,
                                    const imk_diagnostic_finding *d)
 {
     char poses[160];
-    imki_calibrate_poses(b, log, "; most would tell ", poses, sizeof poses);
+    imki_calibrate_poses(b, log, "; the most informative further poses are ", poses, sizeof poses);
     const imk_finding_level level = b->result ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE;
     const char axis = imk_axis_letter(d->axis);
     if (d->axis < 0)
-        return say(level, "one_plane", "the poses all lie in one plane: add some far out of it%s",
-                   poses);
+        return say(level, "one_plane",
+                   "the poses all lie in one plane: add poses far out of this plane%s", poses);
     return say(level, "one_plane",
                "the poses all lie in one plane: gravity hardly ever acts along %c; add poses with "
                "%c up, with %c down and with %c at 45 deg%s",
@@ -190,52 +194,54 @@ static calibrate_message never_static(const imk_calibrate_log *b, const imk_cali
 {
     for (int sensor = 1; sensor >= 0; sensor--)
         if (!log->record.counts[sensor] && is_whole(log, sensor))
-            return say(IMK_FINDING_FAILURE, "counts",
-                       "no rest is found, and the %s readings are whole numbers: if they are "
-                       "counts, not %s, write [count] into the header (or give --%s-unit count)",
-                       imki_sensor_titles[sensor], unit_of_column(log, sensor),
-                       imki_sensor_keys[sensor]);
+            return say(
+                IMK_FINDING_FAILURE, "counts",
+                "no stationary interval is found, and the %s readings are whole numbers: if they "
+                "are counts, not %s, write [count] into the header (or add --%s-unit count)",
+                imki_sensor_titles[sensor], unit_of_column(log, sensor), imki_sensor_keys[sensor]);
     if (!isnan(b->settings.minimum))
         return say(IMK_FINDING_FAILURE, "never_static",
-                   "the unit never stands still for %.4g s, which --minimum asks for: shorten it, "
-                   "or rest longer in each pose",
+                   "the unit is never stationary for %.4g s, which --minimum requires: lower "
+                   "--minimum, or hold each pose longer",
                    b->settings.minimum);
-    return say(
-        IMK_FINDING_FAILURE, "never_static",
-        "the unit never stands still for long enough: %.2g %% of the log does, by windows of %.2g "
-        "s; put it down for 3 s or more in each pose (a hand is not still). If it did rest at the "
-        "beginning, add --initial-rest 10s, so that its noise is learnt there",
-        100 * log->stationary.standing, log->stationary.window);
+    return say(IMK_FINDING_FAILURE, "never_static",
+               "the unit is never stationary for long enough: it is stationary in %.2g %% of the "
+               "log, tested in windows of %.2g s; put the unit down for 3 s or more in each pose "
+               "(a hand moves too much); if the unit was at rest at the beginning, add "
+               "--initial-rest 10s, and the noise is estimated there",
+               100 * log->stationary.standing, log->stationary.window);
 }
 
 static calibrate_message swapped(const imk_diagnostic_finding *d)
 {
     const char *sensor = d->sensor >= 0 ? imki_sensor_keys[d->sensor] : "gyro";
     if (d->axis < 0 || d->other < 0)
-        return say(IMK_FINDING_FAILURE, "swapped_axes",
-                   "the axes of gyros and accelerometers are in different orders: the turns of the "
-                   "gyros do not lead from one attitude of the accelerometers to the next; put the "
-                   "columns in order with --columns, so that x, y, z mean the same for both");
+        return say(
+            IMK_FINDING_FAILURE, "swapped_axes",
+            "the axes of gyros and accelerometers are in different orders: the turns that the "
+            "gyros measure do not lead from one attitude of the accelerometers to the next; "
+            "reorder the columns with --columns, so that x, y, z mean the same for both");
     return say(IMK_FINDING_FAILURE, "swapped_axes",
-               "%s_%c and %s_%c look exchanged%s: only then do the turns of the gyros lead from "
-               "one attitude of the accelerometers to the next; exchange the two names, in the "
-               "header or by --columns",
+               "%s_%c and %s_%c look exchanged%s: the turns of the gyros lead from one attitude of "
+               "the accelerometers to the next only when these two are exchanged back; exchange "
+               "the two names, in the header or with --columns",
                sensor, imk_axis_letter(d->axis), sensor, imk_axis_letter(d->other),
-               d->sensor >= 0 ? "" : " (or those of the accelerometers), and signs are changed");
+               d->sensor >= 0 ? "" : " (or the same two accelerometers), and signs are changed");
 }
 
 static calibrate_message left_handed(const imk_diagnostic_finding *d)
 {
     if (d->axis < 0)
         return say(IMK_FINDING_FAILURE, "left_handed",
-                   "the gyros turn the wrong way round against the accelerometers, all three: "
+                   "all three gyros measure turns in the opposite direction to the accelerometers: "
                    "change the sign of all gyro columns");
     const char *sensor = d->sensor == 1 ? "accel" : "gyro";
-    return say(IMK_FINDING_FAILURE, "left_handed",
-               "%s_%c has the wrong sign against the others: the axes are mirrored (left-handed), "
-               "and the turns of the gyros lead from one attitude of the accelerometers to the "
-               "next only with its sign changed; change it in the log",
-               sensor, imk_axis_letter(d->axis));
+    return say(
+        IMK_FINDING_FAILURE, "left_handed",
+        "%s_%c has the wrong sign relative to the other axes: the axes are mirrored (left-handed), "
+        "and the turns of the gyros lead from one attitude of the accelerometers to the next only "
+        "with this sign changed; change the sign of this column in the log",
+        sensor, imk_axis_letter(d->axis));
 }
 
 static calibrate_message on_log(const imk_calibrate_log *b, const imk_calibrate_record *log,
@@ -247,8 +253,9 @@ static calibrate_message on_log(const imk_calibrate_log *b, const imk_calibrate_
         return never_static(b, log);
     case IMK_DIAGNOSTIC_NEVER_MOVES:
         return say(IMK_FINDING_FAILURE, "never_moves",
-                   "the unit stands still all the time, in one pose: turn it to others, each for "
-                   "some seconds; a log at rest is for imukit identify");
+                   "the unit is stationary in one pose all the time: turn the unit to other poses, "
+                   "and hold each for some seconds; to identify the noise of a log at rest, use "
+                   "imukit identify");
     case IMK_DIAGNOSTIC_FEW_POSES:
         return few_poses(b, log, d);
     case IMK_DIAGNOSTIC_ONE_PLANE:
@@ -258,17 +265,17 @@ static calibrate_message on_log(const imk_calibrate_log *b, const imk_calibrate_
     case IMK_DIAGNOSTIC_RATE_UNIT:
         return rate_unit(log, d->value);
     case IMK_DIAGNOSTIC_SATURATED:
-        return say(IMK_FINDING_WARNING, "saturated",
-                   "%s %c is at the end of its range in %.3g %% of the log; the %s it spoils are "
-                   "left out: choose a larger range in the device, or %s",
-                   sensor, imk_axis_letter(d->axis), 100 * d->value,
-                   d->sensor == 0 ? "turns" : "poses",
-                   d->sensor == 0 ? "turn more slowly" : "poses without this axis along gravity");
+        return say(
+            IMK_FINDING_WARNING, "saturated",
+            "%s %c is at the end of its range in %.3g %% of the log; the affected %s are left out: "
+            "choose a larger range in the device, or %s",
+            sensor, imk_axis_letter(d->axis), 100 * d->value, d->sensor == 0 ? "turns" : "poses",
+            d->sensor == 0 ? "turn more slowly" : "choose poses without this axis along gravity");
     case IMK_DIAGNOSTIC_COUNTS:
         return say(IMK_FINDING_FAILURE, "counts",
-                   "the %s readings are whole numbers, and at rest no usual unit makes gravity of "
-                   "them: they look like counts; write [count] into the header (or add --%s-unit "
-                   "count) and, if you know it, --%s-sensitivity",
+                   "the %s readings are whole numbers, and in no usual unit do they equal gravity "
+                   "at rest: they look like counts; write [count] into the header (or add "
+                   "--%s-unit count) and, if you know the sensitivity, add --%s-sensitivity",
                    sensor, imki_sensor_keys[d->sensor > 0], imki_sensor_keys[d->sensor > 0]);
     case IMK_DIAGNOSTIC_SWAPPED_AXES:
         return swapped(d);
@@ -278,8 +285,8 @@ static calibrate_message on_log(const imk_calibrate_log *b, const imk_calibrate_
         return time_unit(log, d->value);
     default:
         return say(IMK_FINDING_FAILURE, "stuck",
-                   "%s %c never changes its reading: the axis is dead, or its column is not what "
-                   "it is called",
+                   "%s %c never changes its reading: the axis is dead, or the column has the wrong "
+                   "name; check the device and the header",
                    sensor, imk_axis_letter(d->axis));
     }
 }
@@ -295,9 +302,9 @@ static calibrate_message correlated(const imk_calibrate_log *b, double correlati
             (void)imk_model_parameter_name(r->parameter[r->weakest_parameter[k]],
                                            k == 0 ? one : other);
     return say(IMK_FINDING_WARNING, "correlated",
-               "%s and %s are hardly told apart (correlation %.4f): what one has too much the "
-               "other has too little; their sum is known better than each. More differing poses or "
-               "turns tell them apart, or leave one out",
+               "%s and %s are strongly correlated (%.4f): an error in one balances an error in the "
+               "other, so only a combination of both is known well; add poses or turns that differ "
+               "more, or leave one of the two out (--estimate)",
                one, other, correlation);
 }
 
@@ -308,21 +315,21 @@ static calibrate_message on_solution(const imk_calibrate_log *b, const imk_diagn
         if (sqrt(d->value) > residual_alarm)
             return say(IMK_FINDING_WARNING, "residuals",
                        "the residuals are %.3g times what the noise within the holds explains: the "
-                       "model does not describe this log. Check the signs and order of the axes, "
-                       "labels, and that the log is of the procedure named",
+                       "model does not describe this log; check the signs and the order of the "
+                       "axes, the labels, and that the log is of the procedure named",
                        sqrt(d->value));
         return say(IMK_FINDING_NOTE, "residuals",
                    "the residuals are %.3g times what the noise within the holds explains "
                    "(chi-square per degree of freedom %.3g): the table, the hand or the sensor "
-                   "does more than the model says; all 1 sigma are widened by it",
+                   "does more than the model describes; every 1 sigma includes this excess",
                    sqrt(d->value), d->value);
     case IMK_DIAGNOSTIC_CORRELATED:
         return correlated(b, d->value);
     default:
         return say(IMK_FINDING_WARNING, "outliers",
                    "%.3g %% of the observations do not fit the others and are left out; --poses "
-                   "lists them. More than a few say that the unit moved during the holds, or that "
-                   "a unit or label is wrong",
+                   "lists them; if there are more than a few, the unit moved during the holds, or "
+                   "the unit of a column or a label is wrong",
                    100 * d->value);
     }
 }
@@ -375,25 +382,24 @@ static void add_thermal(imk_verdict *v, const imk_calibrate_record *log)
                 continue;
             const imk_unit unit =
                 imk_unit_readable(imk_unit_of(imki_sensor_units[sensor]).dimension, a->gap_largest);
-            add(v,
-                say(IMK_FINDING_WARNING, "hysteresis",
-                    "%s: %s %c reads differently while warming and while cooling, by up to %.3g "
-                    "%s: no polynomial of the temperature can follow it; what compensation leaves "
-                    "is %.3g %s rms",
-                    log->path, imki_sensor_titles[sensor], imk_axis_letter(i),
-                    a->gap_largest / unit.scale, unit.text, a->rms_compensated / unit.scale,
-                    unit.text));
+            add(v, say(IMK_FINDING_WARNING, "hysteresis",
+                       "%s: the readings of %s %c while warming and while cooling differ by up to "
+                       "%.3g %s: no polynomial of the temperature can describe this difference; "
+                       "the error after compensation is %.3g %s rms",
+                       log->path, imki_sensor_titles[sensor], imk_axis_letter(i),
+                       a->gap_largest / unit.scale, unit.text, a->rms_compensated / unit.scale,
+                       unit.text));
         }
     if (f && !f->both_directions)
         add(v, say(IMK_FINDING_NOTE, "one_direction",
-                   "%s: the temperature went one way only, so hysteresis may be there unseen: "
-                   "sweep up and down",
+                   "%s: the temperature changed in one direction only, which cannot show "
+                   "hysteresis: sweep up and down",
                    log->path));
     if (f && f->accel_shared)
         add(v, say(IMK_FINDING_NOTE, "one_pose",
-                   "%s: in one pose the bias of accelerometers over temperature cannot be told "
-                   "from that of their scale factor: the coefficients hold for this pose; sweep in "
-                   "several to tell them apart",
+                   "%s: one pose cannot separate the temperature effects on accelerometer bias and "
+                   "scale factor: the coefficients hold for this pose only; sweep the temperature "
+                   "in several poses to separate them",
                    log->path));
 }
 
@@ -424,8 +430,8 @@ static void add_undetermined(const imk_calibrate_log *b, const imk_calibrate_rec
     }
     if (names.bytes)
         add(v, say(IMK_FINDING_NOTE, "undetermined",
-                   "%s does not determine %s (on all axes): left as before. Inputs along other "
-                   "axes, or more levels, would",
+                   "%s does not determine %s (on all axes): the undetermined values are left as "
+                   "before; apply inputs along other axes, or more levels",
                    log->path, names.bytes));
     free(names.bytes);
 }

@@ -38,8 +38,8 @@ static size_t few_temperatures(const message *to, const imk_calibrate_record *lo
     if ((double)(log->record.count - cold - none) >= error->limit)
         return 0;
     return say(to,
-               "%s: of %zu rows the temperature is 0 K or less in %zu and no number in "
-               "%zu; at least %g need one: check the column temperature and its unit "
+               "%s: of %zu rows, %zu have a temperature of 0 K or less and %zu have no number; at "
+               "least %g rows need a valid temperature: check the column temperature and its unit "
                "(--temperature-unit)",
                log->path, log->record.count, cold, none, error->limit);
 }
@@ -52,12 +52,12 @@ static size_t too_short(const message *to, const imk_calibrate_record *log, cons
     const char *due = error->expected;
     for (size_t k = 0; k < 3; k++)
         if (strcmp(error->field, things[k]) == 0)
-            return say(to, "%s: %g of at least %g %s were found for %s%s%s", log->path,
-                       error->value, error->limit, many[k], name, due[0] ? ": " : "", due);
+            return say(to, "%s: %s needs at least %g %s, found %g%s%s", log->path, name,
+                       error->limit, many[k], error->value, due[0] ? ": " : "", due);
     if (strcmp(error->field, "temperature") == 0)
         return say(to,
-                   "%s: the temperature varies by %.3g K; at least %.3g K are needed to "
-                   "see what it does",
+                   "%s: the temperature varies by %.3g K; at least %.3g K are needed to estimate "
+                   "its effect",
                    log->path, error->value, error->limit);
     if (log->procedure == IMK_PROCEDURE_THERMAL && log->record.temperature)
         return few_temperatures(to, log, error);
@@ -68,12 +68,13 @@ static size_t key_missing(const message *to, const imk_calibrate_record *log,
                           const imk_error *error)
 {
     const char *name = imk_procedure_name(log->procedure);
+    const bool also = error->expected[0] && log->procedure == IMK_PROCEDURE_SPIN;
     if (strncmp(error->field, "reference", 9) == 0)
-        return say(to,
-                   "%s: %s needs to know what the unit was exposed to%s%s: add --motion "
-                   "PROGRAMME, or columns such as reference_rate_z [deg/s] and "
-                   "reference_force_x [g] to the log",
-                   log->path, name, error->expected[0] ? "; " : "", error->expected);
+        return say(
+            to,
+            "%s: %s needs the rates or forces that acted on the unit%s%s: add --motion PROGRAMME, "
+            "or add columns such as reference_rate_z [deg/s] and reference_force_x [g] to the log",
+            log->path, name, also ? "; " : "", also ? error->expected : "");
     if (strcmp(error->field, "temperature") == 0)
         return say(to, "%s has no column temperature [degC], which %s needs", log->path, name);
     if (strcmp(error->field, "section") == 0)
@@ -81,6 +82,14 @@ static size_t key_missing(const message *to, const imk_calibrate_record *log,
                    "%s: %s needs a column of texts that names the sections: add "
                    "--section NAME",
                    log->path, name);
+    const bool of_reference =
+        log->procedure == IMK_PROCEDURE_RATE_TABLE || log->procedure == IMK_PROCEDURE_SPIN;
+    for (int sensor = 0; sensor < 2 && of_reference; sensor++)
+        if (strcmp(error->field, imki_sensor_keys[sensor]) == 0)
+            return say(to,
+                       "%s: %s needs %s readings, which the log does not have: log them, or name "
+                       "their columns with --columns",
+                       log->path, name, imki_sensor_titles[sensor]);
     return say(to, "%s: %s needs %s", log->path, name,
                error->expected[0] ? error->expected : error->field);
 }
@@ -91,7 +100,7 @@ static size_t unit_missing(const message *to, const imk_calibrate_log *b,
     const int sensor = strncmp(error->field, "gyro", 4) == 0 ? 0 : 1;
     return say(
         to,
-        "%s: the %s readings are counts, and %s does not tell how many make a unit: add "
+        "%s: the %s readings are counts, and %s cannot determine the counts per unit: add "
         "--%s-sensitivity \"%s\" from the data sheet, or --model MODEL of an earlier calibration",
         log->path, imki_sensor_titles[sensor],
         b->settings.repeatability ? "repeatability" : imk_procedure_name(log->procedure),
@@ -108,19 +117,19 @@ static size_t not_finite(const message *to, const imk_calibrate_record *log)
                 row++;
             if (row == log->record.count)
                 return say(to,
-                           "%s: %s_%c is never a number: nothing can be estimated from "
-                           "it; look into the log, or name the columns with --columns",
+                           "%s: %s_%c never has a number: nothing can be estimated from this "
+                           "column; check the log, or name the columns with --columns",
                            log->path, imki_sensor_keys[sensor], imk_axis_letter(axis));
         }
     size_t first;
     const size_t missing = imk_test_record_missing(&log->record, &first);
     if (missing > 0)
-        return say(to,
-                   "%s: %.3g %% of its rows have an empty cell, or one that is no "
-                   "number, in a gyro or accelerometer column, and no stretch between "
-                   "them is long enough: log all sensors at one rate, or leave a sensor "
-                   "out by --columns (- skips a column)",
-                   log->path, 100 * (double)missing / (double)log->record.count);
+        return say(
+            to,
+            "%s: %.3g %% of the rows have an empty cell, or a cell that is not a number, in a gyro "
+            "or accelerometer column, and no stretch between these rows is long enough: log all "
+            "sensors at one rate, or leave a sensor out with --columns (- skips a column)",
+            log->path, 100 * (double)missing / (double)log->record.count);
     return 0;
 }
 
@@ -133,10 +142,9 @@ static size_t not_following(const message *to, const imk_calibrate_record *log,
     if (!of_axis)
         return 0;
     return say(to,
-               "%s: %s_%c changes by %.3g times what the reference changes by, where 1 "
-               "is due: check the unit, the signs and the order of the axes, and that "
-               "the log and the programme are of the same test and begin together "
-               "(--motion-offset auto)",
+               "%s: %s_%c changes by %.3g times the change of the reference, but 1 is expected: "
+               "check the unit, the signs and the order of the axes, and that the log and the "
+               "programme are of the same test and begin together (--motion-offset auto)",
                log->path, error->field, imk_axis_letter(error->index), error->value);
 }
 
@@ -179,16 +187,17 @@ static const char *remedy_for(const imk_model_parameter *parameter)
                    : "hold the unit in poses between the axes too, such as on its edges";
     case IMK_MODEL_G_SENSITIVITY:
     case IMK_MODEL_G2_SENSITIVITY:
-        return "hold the unit in more attitudes, each axis up and down, or leave it out: --without "
-               "g_sensitivity,g2_sensitivity";
+        return "hold the unit in more attitudes, each axis up and down, or leave these terms out: "
+               "--without g_sensitivity,g2_sensitivity";
     case IMK_MODEL_LEVER_ARM:
-        return "turn the unit fast about two axes at least";
+        return "turn the unit fast about at least two axes";
     case IMK_MODEL_BIAS_TEMPERATURE:
     case IMK_MODEL_SCALE_TEMPERATURE:
     case IMK_MODEL_TEMPERATURE_RATE:
-        return "sweep the temperature wider, or lower --temperature-order";
+        return "sweep a wider range of temperature, or lower --temperature-order";
     default:
-        return "apply more levels of it, of both signs, or leave it out: --without nonlinearity";
+        return "apply more levels of the input, of both signs, or leave the term out: --without "
+               "nonlinearity";
     }
 }
 
@@ -201,13 +210,14 @@ static size_t undetermined(const message *to, const imk_calibrate_log *b, const 
     const imk_triad *triad = imk_model_triad(&b->calibration->model, parameter.sensor);
     if (triad->axis_count > 3 && !b->settings.model)
         return say(to,
-                   "the log has %d %s axes, and where they point is not known: add "
-                   "--model MODEL that says so, as %s.direction",
+                   "the log has %d %s axes, and their directions are not known: add --model MODEL "
+                   "with the directions as %s.direction",
                    triad->axis_count, imki_sensor_titles[parameter.sensor],
                    imki_sensor_keys[parameter.sensor]);
     const imk_calibrate_record *log = b->count == 1 ? b->record : NULL;
     if (log && log->procedure == IMK_PROCEDURE_MULTIPOSITION)
-        imki_calibrate_poses(b, log, "; of further poses most would tell ", poses, sizeof poses);
+        imki_calibrate_poses(b, log, "; the most informative further poses are ", poses,
+                             sizeof poses);
     return say(to, "the logs do not determine %s: %s%s", error->field, remedy_for(&parameter),
                poses);
 }
@@ -224,21 +234,22 @@ static size_t of_solution(const message *to, const imk_calibrate_log *b, const i
         return unit_missing(to, b, &b->record[0], error);
     case IMK_ERROR_TOO_SHORT:
         return say(to,
-                   "%g observations%s%s are too few, %g are needed: add poses or turns "
-                   "that differ from those there are",
+                   "%g observations%s%s are too few, %g are needed: add poses or turns that differ "
+                   "from the present ones",
                    error->value, error->field[0] ? " of " : "", error->field, error->limit);
     case IMK_ERROR_NO_CONVERGENCE:
-        return say(to, "no set of parameters fits the logs: the estimate does not settle. "
-                       "Check units (--accel-unit, --gyro-unit), --gravity, and that each "
-                       "log is of the procedure named");
+        return say(
+            to,
+            "the iteration found no parameters that fit the logs: check the units (--accel-unit, "
+            "--gyro-unit), --gravity, and that each log is of the procedure named");
     case IMK_ERROR_NOT_FINITE:
         return say(to,
-                   "a reading that is no number came into the estimate%s%s: nothing is "
-                   "estimated from it",
+                   "a reading that is not a number entered the estimate%s%s: nothing is estimated; "
+                   "check the log",
                    error->field[0] ? ", in " : "", error->field);
     case IMK_ERROR_CONFLICT:
         if (strcmp(error->field, "frame") == 0)
-            return say(to, "--frame %s contradicts what is estimated: %s",
+            return say(to, "--frame %s contradicts the terms that are estimated: %s",
                        imk_triad_frame_name(b->calibration->frame),
                        error->expected[0] ? error->expected : "name another frame, or other terms");
         return 0;

@@ -16,11 +16,11 @@ typedef struct drawing {
 static void add_panel(drawing *d, const imk_panel *panel)
 {
     if (d->panels++ == 0)
-        d->figure = imk_result_figure(
-            d->result, "calibration", 1,
-            "Residuals of each observation, and for each log the scatter within a short window "
-            "over what noise allows: below the dashes it stands still. Tinted: the intervals "
-            "found.");
+        d->figure =
+            imk_result_figure(d->result, "calibration", 1,
+                              "Residuals of each observation, and for each log the scatter within "
+                              "a short window divided by the threshold from the noise: the unit is "
+                              "stationary below the dashed line. Tinted: the intervals found.");
     imk_figure_panel(d->figure, panel);
 }
 

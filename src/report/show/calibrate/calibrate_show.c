@@ -273,14 +273,13 @@ static void show_holds(const imk_calibrate_record *log, imk_result *result)
 {
     const imk_static_findings *f = &log->stationary;
     if (f->window > 0)
-        imk_result_line(
-            result,
-            "%s: windows of %.3g s; noise learnt from %.6g s to %.6g s; %.3g %% of the log stands "
-            "still, in %zu intervals; %zu stretches were too short, %zu samples saturated, %zu no "
-            "numbers.",
-            log->record.name, f->window, (double)f->rest_begin * log->record.dt,
-            (double)f->rest_end * log->record.dt, 100 * f->standing, f->intervals, f->too_short,
-            f->saturated, f->not_finite);
+        imk_result_line(result,
+                        "%s: windows of %.3g s; noise estimated from %.6g s to %.6g s; the unit is "
+                        "stationary in %.3g %% of the log, in %zu intervals; %zu stretches were "
+                        "too short, %zu samples were saturated, %zu were not numbers.",
+                        log->record.name, f->window, (double)f->rest_begin * log->record.dt,
+                        (double)f->rest_end * log->record.dt, 100 * f->standing, f->intervals,
+                        f->too_short, f->saturated, f->not_finite);
 }
 
 /* The rest of the page. */
@@ -315,11 +314,11 @@ void imk_show_calibrate_log(const imk_calibrate_log *b, const imk_verdict *v, bo
             imki_parameter_table(b, sensor, result);
     imk_result_for(result, IMK_FOR_PAGE);
     if (b->result)
-        imk_result_line(result, "Values with 1 sigma; below each the interval that holds the true "
-                                "value with 95 %% confidence (Student's distribution, with what "
-                                "the residuals show beyond the noise taken into account). A "
-                                "response \"misalignment, y\" is how much of the y component the "
-                                "axis sees.");
+        imk_result_line(result,
+                        "Each value has its 1 sigma; the interval below contains the true value "
+                        "with 95 %% confidence (Student's distribution; residuals beyond the noise "
+                        "are taken into account). A response \"misalignment, y\" is the share of "
+                        "the y component that the axis senses.");
     imki_calibrate_remarks(b, result);
     show_temperature(b, false, result);
     if (fitted)

@@ -132,7 +132,7 @@ void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
                                                   "turns between poses"};
     static const char *const si[IMK_GROUPS] = {"rad/s", "m/s^2", "rad"};
     imk_table *table = imk_result_table(result, 0);
-    imk_table_row(table, "fit\tobserved\tleft out\tchi^2 / dof\t1 sigma x\tresiduals (rms)");
+    imk_table_row(table, "fit\tobserved\tleft out\tchi^2 / dof\tsigma factor\tresiduals (rms)");
     for (int g = 0; g < IMK_GROUPS; g++) {
         const imk_group_fit *fit = &b->result->group[g];
         if (fit->count == 0)
@@ -258,7 +258,7 @@ static void add_number(imk_table *table, double value)
 static void add_loop(imk_table *table, const imk_thermal_findings *f, int sensor,
                      const imk_unit *unit, bool brief)
 {
-    imk_table_row(table, "warming and cooling differ by\t");
+    imk_table_row(table, "why warming and cooling differ\t");
     for (int i = 0; i < f->axis_count[sensor]; i++)
         imk_table_add(table, "%s", imk_thermal_cause_name(f->axis[sensor][i].cause));
     imk_table_row(table, "width of the loop\t%s", unit->text);
@@ -279,7 +279,7 @@ static void add_loop(imk_table *table, const imk_thermal_findings *f, int sensor
 void imki_thermal_table(const imk_calibrate_record *log, int sensor, bool brief, imk_result *result)
 {
     static const char *const rms[4] = {"scatter before", "after the polynomial",
-                                       "after compensation", "after all of it"};
+                                       "after compensation", "after the whole fit"};
     static const char *const titles[2] = {"gyro over temperature",
                                           "accelerometer over temperature"};
     const imk_thermal_findings *f = log->thermal;

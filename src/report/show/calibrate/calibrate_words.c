@@ -73,7 +73,7 @@ void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *v, ch
         snprintf(text, size, "Usable with care (%zu warning%s): %s%s.", warnings,
                  warnings == 1 ? "" : "s", known ? known : "see below", behind);
     else
-        snprintf(text, size, "Good: %s%s.", known ? known : "nothing speaks against these logs",
+        snprintf(text, size, "Good: %s%s.", known ? known : "no test found a fault in these logs",
                  behind);
     free(precision.bytes);
 }
@@ -121,7 +121,7 @@ static void show_frame(const imk_calibrate_log *b, imk_result *result)
         imk_result_line(result, "Frame %s: %s.%s", imk_triad_frame_name(frame), meaning[frame],
                         frame == IMK_FRAME_REFERENCE
                             ? ""
-                            : " Gravity does not tell how that stands in the housing.");
+                            : " Gravity does not show how these axes stand in the housing.");
 }
 
 static void show_gravity(const imk_calibrate_log *b, imk_result *result)
@@ -205,18 +205,18 @@ void imki_calibrate_remarks(const imk_calibrate_log *b, imk_result *result)
     show_frame(b, result);
     show_gravity(b, result);
     if (b->ferraris)
-        imk_result_line(result, "Closed form: 1 sigma is that of the scatter within the holds and "
-                                "of the angles of the turns; how well the faces were placed is not "
-                                "in it, nor the Earth's rotation.");
+        imk_result_line(result, "Closed form: 1 sigma contains the scatter within the holds and "
+                                "the uncertainty of the turn angles; it does not contain how well "
+                                "the faces were placed, nor the Earth's rotation.");
     show_fixtures(b, result);
     show_refused(b, result);
     for (size_t k = 0; k < b->count; k++) { /* a reference that never holds still may lead */
         const imk_procedure_findings *f = &b->record[k].findings;
         if (f->lag_sigma > 0)
-            imk_result_line(result,
-                            "%s: the readings come %.4g ± %.2g ms after the reference, which was "
-                            "allowed for.",
-                            b->record[k].path, f->lag * 1e3, f->lag_sigma * 1e3);
+            imk_result_line(
+                result,
+                "%s: the readings lag the reference by %.4g ± %.2g ms; this lag is corrected.",
+                b->record[k].path, f->lag * 1e3, f->lag_sigma * 1e3);
     }
     show_correlated(b, result);
 }

@@ -103,7 +103,7 @@ static void show_requirements(const imk_calibrate_plan *p, imk_result *result)
         else
             imk_table_add(table, "not determined");
         if (!w->reached && w->floor > 0)
-            imk_table_add(table, "not reached; no test goes below %.3g", w->floor / unit.scale);
+            imk_table_add(table, "not reached; no test can go below %.3g", w->floor / unit.scale);
         else
             imk_table_add(table, w->reached ? "reached" : "not reached");
     }
@@ -160,6 +160,6 @@ void imk_show_calibrate_plan(const imk_calibrate_plan *p, const char *model, imk
     if (p->settings.procedure == IMK_PROCEDURE_THERMAL)
         imk_result_line(result,
                         "Each temperature is held for %g s until the unit has settled (--soak), "
-                        "then measured; between them the chamber goes at 1 K/min.",
+                        "then measured; the chamber moves from one to the next at 1 K/min.",
                         p->settings.soak);
 }
