@@ -35,10 +35,11 @@ static void test_from_model(void **state)
     (void)state;
     put("model.yaml", "imukit: 1\nname: a unit\ngyro:\n  noise: {angle_random_walk: 0.3 "
                       "deg/sqrt(h), bias_instability: 5 deg/h}\n");
-    check_message("$I convert model.yaml out.yaml --to kalibr --rate 200Hz", 0,
-                  "imukit convert: warning: gyroscope_random_walk is 0, and kalibr and OpenVINS do "
-                  "not accept 0: set a value\nimukit convert: warning: gyro.noise.bias_instability "
-                  "is not held by the format kalibr\n");
+    check_message(
+        "$I convert model.yaml out.yaml --to kalibr --rate 200Hz", 0,
+        "imukit convert: warning: gyroscope_random_walk is 0, which kalibr and OpenVINS do "
+        "not accept: set a value\nimukit convert: warning: gyro.noise.bias_instability "
+        "is not held by the format kalibr\n");
     check_message("$I convert model.yaml out.sdf --to gazebo", 1,
                   "imukit convert: error: model.yaml: stddev: \"stddev\" is per sample, and the "
                   "sampling rate is not known; add --rate 200Hz (samples per second)\nNext: imukit "

@@ -78,7 +78,7 @@ void imki_kalibr_noise_write(imki_parameters *p, const char *indent)
         imki_text_add(&p->out, "%s%s: %s  # [%s], two-sided\n", indent, imki_kalibr_noise_keys[i],
                       imki_shortest(largest).text, noise_units[i].name);
         if (largest == 0)
-            imki_note(p, true, "%s is 0, and kalibr and OpenVINS do not accept 0: set a value",
+            imki_note(p, true, "%s is 0, which kalibr and OpenVINS do not accept: set a value",
                       imki_kalibr_noise_keys[i]);
     }
 }
