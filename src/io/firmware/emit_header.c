@@ -194,7 +194,7 @@ static void print_flags(const imki_emission *e)
         {"SATURATED", "a reading at or beyond the range", IMK_FLAG_SATURATED},
         {"TEMPERATURE", "outside the valid range", IMK_FLAG_TEMPERATURE},
         {"LIMIT", "motion beyond the limit up to which the bound holds", IMK_FLAG_LIMIT},
-        {"NOT_FINITE", "an input is NaN or infinite, and so is each output that depends on it",
+        {"NOT_FINITE", "an input is NaN or infinite, and each output made from it",
          IMK_FLAG_NOT_FINITE},
     };
     imki_text_add(e->out, "/* Flags. */\nenum {\n");

@@ -112,11 +112,11 @@ static calibrate_message rate_unit(const imk_calibrate_record *log, double ratio
                                                      : NULL;
     if (!unit)
         return say(IMK_FINDING_FAILURE, "rate_unit",
-                   "the gyros measure turns %.4g times as large as the accelerometers do: check "
-                   "the units of the gyro columns and of the time column",
+                   "the gyros show turns %.4g times as large as the accelerometers show: check the "
+                   "units of the gyro columns and of the time column",
                    ratio);
     return say(IMK_FINDING_FAILURE, "rate_unit",
-               "the gyros measure turns %.4g times as large as the accelerometers do: the columns "
+               "the gyros show turns %.4g times as large as the accelerometers show: the columns "
                "look like %s; %s %s",
                ratio, unit,
                unit_of_column(log, 0)[0] ? "correct the unit in the header to" : "add --gyro-unit",

@@ -132,7 +132,7 @@ void imki_fit_table(const imk_calibrate_log *b, imk_result *result)
                                                   "turns between poses"};
     static const char *const si[IMK_GROUPS] = {"rad/s", "m/s^2", "rad"};
     imk_table *table = imk_result_table(result, 0);
-    imk_table_row(table, "fit\tobserved\tleft out\tchi^2 / dof\tsigma factor\tresiduals (rms)");
+    imk_table_row(table, "fit\tobserved\tleft out\tchi^2 / dof\t1 sigma x\tresiduals (rms)");
     for (int g = 0; g < IMK_GROUPS; g++) {
         const imk_group_fit *fit = &b->result->group[g];
         if (fit->count == 0)
