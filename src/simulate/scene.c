@@ -14,10 +14,10 @@
 
 #include <string.h>
 
-static bool any(const imk_axes *axes, int count)
+static bool has(const imk_triad *triad, const imk_axes *numbers)
 {
-    for (int i = 0; i < count; i++)
-        if (axes->value[i] != 0.0)
+    for (int i = 0; triad->present && i < triad->axis_count; i++)
+        if (numbers->value[i] != 0.0)
             return true;
     return false;
 }
@@ -25,21 +25,6 @@ static bool any(const imk_axes *axes, int count)
 static bool moves(const imk_simulation *simulation)
 {
     return simulation->motion.recorded || simulation->motion.trajectory;
-}
-
-static bool has_bandwidth(const imk_triad *triad)
-{
-    return triad->present && any(&triad->bandwidth, triad->axis_count);
-}
-
-static bool has_warm_up(const imk_triad *triad)
-{
-    return triad->present && any(&triad->bias.warm_up_amplitude, triad->axis_count);
-}
-
-static bool has_hysteresis(const imk_triad *triad)
-{
-    return triad->present && any(&triad->bias.hysteresis, triad->axis_count);
 }
 
 static bool has_lever_arm(const imk_triad *triad)
@@ -56,19 +41,21 @@ size_t imki_substeps(const imk_model *model, const imk_simulation *simulation)
     /* Between its parts a signal that the filter sees is taken as constant: with eight of them the
      * amplitude at a twentieth of the sample rate is right to (pi 0.05/8)^2/3 = 1.3e-4. */
     enum { FILTERED = 8 };
+    const imk_triad *gyro = &model->gyro, *accel = &model->accel;
     size_t substeps = simulation->substeps;
     if (substeps > 0 || simulation->motion.recorded || !moves(simulation))
         return substeps > 0 ? substeps : 1;
     substeps = imk_trajectory_substeps(simulation->motion.trajectory, 1.0 / simulation->rate);
-    if ((has_bandwidth(&model->gyro) || has_bandwidth(&model->accel)) && substeps < FILTERED)
+    if ((has(gyro, &gyro->bandwidth) || has(accel, &accel->bandwidth)) && substeps < FILTERED)
         substeps = FILTERED;
     return substeps < IMK_SUBSTEPS_MAX ? substeps : IMK_SUBSTEPS_MAX;
 }
 
 bool imki_scene_varies(const imk_model *model, const imk_simulation *simulation)
 {
-    return moves(simulation) || simulation->temperature || has_warm_up(&model->gyro) ||
-           has_warm_up(&model->accel);
+    return moves(simulation) || simulation->temperature ||
+           has(&model->gyro, &model->gyro.bias.warm_up_amplitude) ||
+           has(&model->accel, &model->accel.bias.warm_up_amplitude);
 }
 
 /* ---- start ---- */
@@ -176,7 +163,7 @@ static imk_stimulus stimulus_of(const imki_scene *e, double *const *column, int 
 
 static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
 {
-    e->warm_up_present[sensor] = has_warm_up(triad);
+    e->warm_up_present[sensor] = has(triad, &triad->bias.warm_up_amplitude);
     e->warm_up_time[sensor] = triad->bias.warm_up_time.value;
     e->same_warm_up =
         e->warm_up_present[0] && e->warm_up_present[1] && e->warm_up_time[0] == e->warm_up_time[1];
@@ -185,7 +172,7 @@ static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
     for (size_t i = 0; needs_table && i < IMK_NOISE_BLOCK; i++)
         e->warm_up_table[(size_t)sensor * IMK_NOISE_BLOCK + i] =
             imk_exp(-((double)i * part) / e->warm_up_time[sensor]);
-    e->hysteresis_present[sensor] = has_hysteresis(triad);
+    e->hysteresis_present[sensor] = has(triad, &triad->bias.hysteresis);
     e->hysteresis[sensor] = imk_hysteresis_start(triad);
 }
 

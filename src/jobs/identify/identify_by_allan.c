@@ -41,12 +41,11 @@ void imki_store_fit(imk_identification *r, const imk_allan_fit *fit)
     }
 }
 
-static imk_status fit_channel(imk_identify_log *log, size_t channel, const imk_job *job,
-                              imk_error *error)
+static imk_status fit_channel(imk_identify_log *log, size_t channel, const char *name,
+                              const imk_job *job, imk_error *error)
 {
     imk_identification *r = &log->result[channel];
     const imk_allan_curve *curve = &log->curve[channel];
-    const char *name = imk_even_record_column(&log->record, channel)->name;
     size_t factor[IMK_ALLAN_FIT_FACTORS_MAX], count = 0;
     double variance[IMK_ALLAN_FIT_FACTORS_MAX];
     for (size_t k = 0; k < curve->count && count < IMK_ALLAN_FIT_FACTORS_MAX; k++) {
@@ -84,11 +83,11 @@ imk_status imki_identify_by_allan(imk_identify_log *log, const imk_job *job, imk
 {
     imk_status status = IMK_OK;
     for (size_t c = 0; c < log->record.count && status == IMK_OK; c++) {
+        const char *name = imk_even_record_column(&log->record, c)->name;
         if (log->result[c].missing > 0)
-            return imki_fail(&log->findings, error, IMK_ERROR_GAP, "allan_needs_all",
-                             imk_even_record_column(&log->record, c)->name,
+            return imki_fail(&log->findings, error, IMK_ERROR_GAP, "allan_needs_all", name,
                              IMKI_NUMBERS((double)log->result[c].missing));
-        status = fit_channel(log, c, job, error);
+        status = fit_channel(log, c, name, job, error);
     }
     return status;
 }
