@@ -14,13 +14,13 @@
  *  t) is taken out in a fixed number of steps, which imk_correction_start() has proven to be
  *  enough,
  *
- *      x <- W d - J+ n(x, t),
+ *      x <- W d - J+ n(x, t).
  *
  *  This is the iteration of correct.h in another order.
  *
  *  Terms that cannot be corrected sample by sample stay in the reading: lever arms (they need the
  *  angular acceleration), warm-up and the rate of temperature (they need time). Theory:
- *  docs/theory/compensation.md. firmware_file.h writes it as C code. */
+ *  docs/theory/compensation.md. firmware_file.h writes the list as C code. */
 #ifndef IMUKIT_FIRMWARE_H
 #define IMUKIT_FIRMWARE_H
 
