@@ -112,7 +112,7 @@ IMK_API void imk_spectrum_interval(double density, double degrees, double confid
  *  [SLEPIAN1978]: by bisection up to 640 samples; for longer ones refined from those by Rayleigh
  *  quotient iteration. Error of a value below 1e-11 up to 5000 samples, 1e-9 up to 300000.
  *  @param tapers          count * n values, one sequence after the other
- *  @param concentrations  count values
+ *  @param concentrations  count values: share of each sequence's energy within W
  *  @return IMK_ERROR_RANGE (n < 8, count < 1, count > 2 NW, NW outside 0.5 … n/4), _WORKSPACE */
 IMK_API imk_status imk_slepian_tapers(size_t n, double time_bandwidth, int count, double *tapers,
                                       double *concentrations, void *workspace,
