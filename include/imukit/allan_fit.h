@@ -88,9 +88,9 @@ typedef struct imk_allan_fit_settings {
     bool keep[IMK_NOISE_TERMS]; /**< terms that are always present; default none */
     double tolerance; /**< relative error of each deviation that is allowed beside its random error,
                          0 … 0.5; default 0 */
-    /** Where the model does not explain the table (chi-square's probability below 1e-6), leave
-     *  out the shortest tau: as few as bring the probability above 0.01, and at most half.
-     *  Filters, resonances and lines disturb the shortest tau. Default true */
+    /** Where the model does not explain the table (chi-square's probability below 1e-6), leave out
+     *  the shortest tau: as few as bring the probability above 0.01, and at most half. Filters,
+     *  resonances and lines disturb the shortest tau. Default true */
     bool trim;
     int gauss_markov_max; /**< Gauss-Markov terms looked for, 0 … IMK_TERMS_MAX; default 0 */
     imk_low_pass filter;  /**< known output filter; default none */

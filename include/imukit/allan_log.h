@@ -34,8 +34,8 @@ typedef struct imk_allan_log_settings {
     imk_allan_bias_removal bias;
     imk_allan_grid grid; /**< averaging times where `times` states none; default octaves */
     size_t time_count;   /**< number of `times`; default 0 */
-    /** ascending averaging times [s]; with one statistic all must be within its range, with
-     *  several statistics each leaves out those outside its range */
+    /** ascending averaging times [s]; with one statistic all must be within its range, with several
+     *  statistics each leaves out those outside its range */
     const double *times;
 } imk_allan_log_settings;
 

@@ -85,8 +85,8 @@ typedef struct imk_fibre_optic {
 
     double responsivity;    /**< R of the detector [A/W] */
     double load_resistance; /**< [ohm] */
-    /** Power above and below the operating point at which amplifier and converter saturate [W];
-     *  0: none. Open loop: amplitude of the harmonic */
+    /** Power above and below the operating point at which amplifier and converter saturate [W]; 0:
+     *  none. Open loop: amplitude of the harmonic */
     double converter_range;
     int converter_bits; /**< bits over twice that range; 0: continuous. Rounding needs noise as
                            dither; without noise there is no rounding */

@@ -167,9 +167,9 @@ IMK_API double imk_mems_accelerometer_limit(const imk_mems_accelerometer *design
 IMK_API double imk_mems_accelerometer_rectification(const imk_mems_accelerometer *design,
                                                     double frequency);
 
-/** Gains of the analog controller, acceleration of the mass per displacement: proportional wc^2 -
- *  wk^2, derivative 2 zeta wc - w0/Q (not below 0), integral wi wc^2; wk^2 is the stiffness left
- *  after softening by the carrier. */
+/** Gains of the analog controller, acceleration of the mass per displacement: proportional
+ *  wc^2 - wk^2, derivative 2 zeta wc - w0/Q (not below 0), integral wi wc^2; wk^2 is the stiffness
+ *  left after softening by the carrier. */
 typedef struct imk_mems_gains {
     double proportional; /**< [1/s^2] */
     double derivative;   /**< [1/s] */
@@ -195,8 +195,8 @@ IMK_API imk_mems_limit_cycle
 imk_mems_accelerometer_limit_cycle(const imk_mems_accelerometer *design);
 
 /** A sigma-delta loop with noise, with its quantizer replaced by a gain and white noise: for a
- *  normal input of standard deviation s the gain is sqrt(2/pi)/s and the variance of the noise 1 -
- *  2/pi [ARDALAN1987]; s follows from the linear loop, by iteration. */
+ *  normal input of standard deviation s the gain is sqrt(2/pi)/s and the variance of the noise
+ *  1 - 2/pi [ARDALAN1987]; s follows from the linear loop, by iteration. */
 typedef struct imk_mems_quantizer {
     double deviation;    /**< s of the compensated position [m] */
     double gain;         /**< loop gain at frequency 0 without integral term [1] */

@@ -38,8 +38,8 @@ typedef struct imk_navigate_log_settings {
     double attitude_sigma[3];
     const imk_model *model; /**< errors of the sensors; must outlive the result; NULL: not known */
     const char *model_name; /**< its name in findings; must outlive the result */
-    /** stops used for zero-velocity updates; needs a model; default IMK_STOPS_NONE. The
-     *  alignment shows what the readings at rest look like */
+    /** stops used for zero-velocity updates; needs a model; default IMK_STOPS_NONE. The alignment
+     *  shows what the readings at rest look like */
     imk_stop_policy stops;
     double stop_period, stop_length; /**< of the timetable [s] */
     double still_velocity; /**< 1 sigma of the velocity of a stationary unit, such as vibration

@@ -50,10 +50,10 @@ IMK_API void imk_random_words(imk_random source, uint64_t stream, uint64_t first
 
 /** Standard normals number first … first + count - 1 of a stream, by Box-Muller.
  *
- *  The layout is fixed for ever: normal i belongs to group i/32; lane l = i mod 8 and part p =
- *  (i/8) mod 4 of that group come from Philox block 8*(i/32) + l: parts 0 and 1 from its words 0
- *  and 1, parts 2 and 3 from its words 2 and 3. The 64-bit number made of two words (the first one
- *  is its upper half) gives a pair of normals, parts 0 and 1 (2 and 3):
+ *  The layout is fixed for ever: normal i belongs to group i/32; lane l = i mod 8 and part
+ *  p = (i/8) mod 4 of that group come from Philox block 8*(i/32) + l: parts 0 and 1 from its words
+ *  0 and 1, parts 2 and 3 from its words 2 and 3. The 64-bit number made of two words (the first
+ *  one is its upper half) gives a pair of normals, parts 0 and 1 (2 and 3):
  *
  *      bits 23-62  k, 40 bits:  u = (2k + 1)/2^41,  r = sqrt(-2 log u)
  *      bits 1-22   j, 22 bits:  a = pi/2 (2j + 1)/2^23, in the first quadrant

@@ -14,8 +14,8 @@
  *
  *  - open: no torquer; the reading is (C/H) times the change of the angle over a sample;
  *  - analog: T = K1 th + K2 integral of th; the reading is the mean of T/H;
- *  - ternary: once per pulse period the torquer gives a pulse +T, 0 or -T, depending on whether th
- *    + lead th' exceeds half a pulse; the reading is the sum of the pulses, each the angle T
+ *  - ternary: once per pulse period the torquer gives a pulse +T, 0 or -T, depending on whether
+ *    th + lead th' exceeds half a pulse; the reading is the sum of the pulses, each the angle T
  *    period/H;
  *  - binary: +T or -T, always one of the two, so the heating is the same at all rates.
  *
@@ -72,8 +72,8 @@ IMK_API imk_rate_integrating_gyro imk_rate_integrating_gyro_default(void);
 
 /** Check a design.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE (error.field: the path), _CONFLICT
- *          (impossible moments of inertia; an analog loop that oscillates, C K1 <= I K2 (k + K1 >
- *          0)) */
+ *          (impossible moments of inertia; an analog loop that oscillates, C K1 <= I K2 (k +
+ *          K1 > 0)) */
 IMK_API imk_status imk_rate_integrating_gyro_validate(const imk_rate_integrating_gyro *design,
                                                       imk_error *error);
 

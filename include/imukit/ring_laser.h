@@ -114,9 +114,9 @@ typedef struct imk_ring_laser {
  *  the limit of the glass ceramic such bodies are made of; a path length control of 2 um. */
 IMK_API imk_ring_laser imk_ring_laser_default(void);
 
-/** Check a design: every field must be in its range; the dither must exceed lock-in (dither.rate >
- *  lock_in.rate) or be 0; the path length control must reach a wavelength; temperatures must be in
- *  order.
+/** Check a design: every field must be in its range; the dither must exceed lock-in
+ *  (dither.rate > lock_in.rate) or be 0; the path length control must reach a wavelength;
+ *  temperatures must be in order.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
 IMK_API imk_status imk_ring_laser_validate(const imk_ring_laser *design, imk_error *error);
 

@@ -7,9 +7,9 @@
  *      N_1 = m x + M,  N_2 = -(m x + M):  x what the suspension makes of the specific force,
  *                                         M the stress of the mount
  *
- *  for a beam clamped at both ends: Rayleigh's quotient with its first mode gives 12.302/500.56 =
- *  0.02458, exact to first order in N [TIMOSHENKO1974]. kappa does not depend on the modulus, so
- *  temperature changes f_0 but not f_1^2 - f_2^2, if both beams are equal.
+ *  for a beam clamped at both ends: Rayleigh's quotient with its first mode gives
+ *  12.302/500.56 = 0.02458, exact to first order in N [TIMOSHENKO1974]. kappa does not depend on
+ *  the modulus, so temperature changes f_0 but not f_1^2 - f_2^2, if both beams are equal.
  *
  *  Case axes: x input; y and z across it have no effect here.
  *
