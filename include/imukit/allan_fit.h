@@ -79,7 +79,7 @@ IMK_API size_t imk_allan_covariance_workspace_size(size_t count, size_t terms);
 IMK_API imk_status imk_allan_covariance(const imk_allan_table *table, const imk_allan_noise *noise,
                                         double *covariance, void *workspace, size_t workspace_size);
 
-/** What to fit. Start from imk_allan_fit_default(), then change fields. */
+/** Settings of a fit. Start from imk_allan_fit_default(), then change fields. */
 typedef struct imk_allan_fit_settings {
     uint32_t cookie;
     double confidence;   /**< of the intervals; default 0.95 */

@@ -55,7 +55,7 @@ typedef struct imk_allan_log {
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_allan_log_free(), also after a failure, because it then holds
  *                 the findings; NULL if there was no memory for it
- *  @return what imk_even_record_load() returns; with a finding that says why: IMK_ERROR_CONSTANT,
+ *  @return errors of imk_even_record_load(); with a finding that says why: IMK_ERROR_CONSTANT,
  *          _TOO_SHORT, _GAP (a statistic that needs every sample), _RANGE (a time) */
 IMK_API imk_status imk_allan_log_run(const imk_record_source *source,
                                      const imk_allan_log_settings *settings, const imk_job *job,

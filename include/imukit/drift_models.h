@@ -104,7 +104,7 @@ typedef struct imk_drift_candidate {
 /** A factor between this and 1 counts as no improvement. */
 #define IMK_DRIFT_SAME 0.9995
 
-/** What would meet the requirement. */
+/** Ways to meet the requirement. */
 typedef struct imk_drift_answer {
     imk_drift_allocation allocation;
     size_t order_count; /**< number of terms that must improve */

@@ -77,7 +77,7 @@ IMK_API imk_status imk_free_gyro_validate(const imk_free_gyro *design, imk_error
  *
  *      bias       (Mi - D Mo/(H c))/(H c)        of each kind of torque, white noise included
  *      g          m (dx z - dz x)/(H c)          x, z: the inner gimbal's axes in case axes,
- *      g^2        m^2 (Cz - Cx) (x.f)(z.f)/(H c)    and what friction passes on of Mo likewise
+ *      g^2        m^2 (Cz - Cx) (x.f)(z.f)/(H c)    and the part of Mo that friction passes on
  *      cross axis D/(H c) along the inner axis, D the friction's slope at rest
  *      geometry   -tan b (case rate along the outer gimbal's z)
  *      scale      pick-off error, -(D/(H c))^2

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file job.h
- *  What all jobs have in common: memory, threads, progress, and findings as data.
+ *  Common parts of all jobs: memory, threads, progress, and findings as data.
  *
  *  A job does for a program what a verb of the command does for a person. It takes settings and a
  *  record source (record.h) and gives a result, which one function frees. It opens no file and

@@ -52,8 +52,8 @@ IMK_API size_t imk_least_squares_workspace_size(const imk_least_squares *problem
  *  @param result      may be NULL
  *  @return IMK_ERROR_NO_CONVERGENCE (x is then the best point found), IMK_ERROR_SINGULAR (x is the
  *          solution, covariance untouched), IMK_ERROR_ARGUMENT, IMK_ERROR_WORKSPACE,
- *          IMK_ERROR_UNINITIALISED, IMK_ERROR_NOT_FINITE (at the start, or a derivative), or what
- *          the residual function returned (x is the best point found) */
+ *          IMK_ERROR_UNINITIALISED, IMK_ERROR_NOT_FINITE (residuals at the start, or a derivative),
+ *          or what the residual function returned (x is the best point found) */
 IMK_API imk_status imk_least_squares_solve(const imk_least_squares *problem, double *x,
                                            double *covariance, imk_least_squares_result *result,
                                            void *workspace, size_t workspace_size);

@@ -200,7 +200,7 @@ IMK_API void imk_temperature_carry(const imk_temperature_profile *profile, doubl
 IMK_API void imk_temperature_at(const imk_temperature_profile *profile, size_t count,
                                 const double *time, double *temperature, double *rate);
 
-/* ---- what the simulator takes ------------------------------------------------------------------
+/* ---- input of the simulator --------------------------------------------------------------------
  */
 
 /** True rates and forces from another source: means over equal intervals. */

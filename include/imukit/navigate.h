@@ -115,7 +115,7 @@ IMK_API void imk_strapdown_invert(const imk_navigation_state *from, const imk_na
  * exact, with the coning and sculling of the straight lines through the two: of coning with phase x
  * per sample x^2/20 is missed. The Earth (gravity, Coriolis, its own turn, the vertical channel)
  * acts once per block. Errors are of fourth order in a pair and of third in a block: on the drive
- * of 10 minutes at 100 Hz some micrometres, and 1e-6 of what the sensors' errors do. */
+ * of 10 minutes at 100 Hz some micrometres, and 1e-6 of the effect of the sensors' errors. */
 
 /** Take `count` samples of equal length at once, in blocks; if `samples` is not 3, by
  *  imk_strapdown_step(). On return `state` is that after the last sample. The bits do not depend on

@@ -165,8 +165,8 @@ IMK_API double imk_flicker_sampled_allan_variance(double instability, double dt,
 /** Exact for the generated stages. */
 IMK_API double imk_flicker_sampled_spectrum(double instability, double dt, double frequency);
 /** Expected square, times dt, of cosine coefficient k (imk_cosine(), 1 <= k < n) of n samples: the
- *  spectrum at f = k/(2 n dt) less what the ends of a finite record take from it, which matters for
- *  processes with memories as long as the record: 22 % at k = 1, 1 % at k = 30. */
+ *  spectrum at f = k/(2 n dt) less an effect of the ends of a finite record. The effect matters for
+ *  processes that are correlated over the whole record: 22 % at k = 1, 1 % at k = 30. */
 IMK_API double imk_flicker_cosine_spectrum(double instability, double dt, size_t n, size_t k);
 
 enum { IMK_FLICKER_STAGES = 16, IMK_FLICKER_BUFFER = 64 };

@@ -114,7 +114,7 @@ IMK_API imk_status imk_procedure_observe(imk_procedure procedure, imk_calibratio
                                          imk_procedure_findings *findings, void *workspace,
                                          size_t workspace_size, imk_error *error);
 
-/* ---- what looks wrong ---------------------------------------------------------------------------
+/* ---- diagnostics --------------------------------------------------------------------------------
  */
 
 /** Diagnostics of a log or a solution. `value` and `limit` are those of imk_diagnostic_finding. */

@@ -72,7 +72,8 @@ IMK_API imk_status imk_repeatability_runs(const imk_test_record *record, double 
  *  @param counts          true: readings of gyros, of accelerometers are in counts
  *  @param attitude_sigma  1 sigma of the attitude about each level axis from run to run [rad],
  *                         whose effect is not counted as bias; 0: the unit is not moved
- *  @return as imk_repeatability_estimate(), IMK_ERROR_UNIT_MISSING (counts without sensitivity) */
+ *  @return errors of imk_repeatability_estimate(), IMK_ERROR_UNIT_MISSING (counts without
+ *          sensitivity) */
 IMK_API imk_status imk_repeatability_of_holds(const imk_model *model, const bool counts[2],
                                               size_t runs, const imk_static_interval *run,
                                               double attitude_sigma, double confidence,

@@ -30,8 +30,9 @@
  *  completes the right-handed triad.
  *
  *  Left out: the centrifugal term, which is equal for both modes and only changes the frequency, by
- *  a part (W/w)^2 (1e-7 at 1000 deg/s for 4 kHz), which the reference follows; the sensitivity to
- *  force, which for a balanced shell is of second order only; nonlinear elasticity. */
+ *  a part (W/w)^2 (1e-7 at 1000 deg/s for 4 kHz); the reference follows this change; the
+ *  sensitivity to force, which for a balanced shell is of second order only; nonlinear elasticity.
+ */
 #ifndef IMUKIT_SHELL_GYRO_H
 #define IMUKIT_SHELL_GYRO_H
 

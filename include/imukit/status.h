@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file status.h
- *  How every imukit function says whether it worked.
+ *  Statuses and errors: how every imukit function reports success or failure.
  *
  *  A function that can fail returns an imk_status; its outputs are untouched on error. Validators,
- *  parsers and solvers also fill a caller-owned imk_error, from which imk_error_text() (io.h)
- *  makes the message for a person. */
+ *  parsers and solvers also fill a caller-owned imk_error, from which imk_error_text() (io.h) makes
+ *  the message for a person. */
 #ifndef IMUKIT_STATUS_H
 #define IMUKIT_STATUS_H
 
@@ -77,7 +77,7 @@ typedef enum imk_status {
 #undef IMK_STATUS_ENUM
 } imk_status;
 
-/** What went wrong and where. Fields that do not apply are zero or "". */
+/** Details of a failure. Fields that do not apply are zero or "". */
 typedef struct imk_error {
     imk_status status;
     int index;          /**< axis, row or element; -1 when it does not apply */

@@ -19,7 +19,7 @@
  *  Notation: m mass, H = C spin the angular momentum, A and C the inertias across and about the
  *  axis of figure, f specific force; index k runs over the case axes.
  *
- *  The equations, their derivation and what is left out: docs/physics/suspended_rotor.md. */
+ *  Equations, derivation and simplifications: docs/physics/suspended_rotor.md. */
 #ifndef IMUKIT_SUSPENDED_ROTOR_H
 #define IMUKIT_SUSPENDED_ROTOR_H
 

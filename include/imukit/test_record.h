@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file test_record.h
- *  A log of a bench test in memory: what calibration and evaluation start from. */
+ *  A log of a bench test in memory, the input of calibration and evaluation. */
 #ifndef IMUKIT_TEST_RECORD_H
 #define IMUKIT_TEST_RECORD_H
 

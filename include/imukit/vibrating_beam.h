@@ -4,8 +4,8 @@
  *  a pair, and the beams' frequencies measure the force.
  *
  *      f_i^2 = f_0i^2 (1 + c_i (T - T_0)) + kappa N_i,   kappa N/f_0^2 = 0.02458 N L^2/(E I)
- *      N_1 = m x + M,  N_2 = -(m x + M):  x what the suspension makes of the specific force,
- *                                         M the stress of the mount
+ *      N_1 = m x + M,  N_2 = -(m x + M):  x: specific force as passed by the suspension,
+ *                                         M: stress of the mount
  *
  *  for a beam clamped at both ends: Rayleigh's quotient with its first mode gives
  *  12.302/500.56 = 0.02458, exact to first order in N [TIMOSHENKO1974]. kappa does not depend on

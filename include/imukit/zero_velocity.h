@@ -162,7 +162,7 @@ IMK_API imk_rest_readings imk_zero_velocity_rest(const imk_zero_velocity *filter
 /** Counts of updates up to now. */
 IMK_API imk_zero_velocity_counts imk_zero_velocity_counted(const imk_zero_velocity *filter);
 
-/* ---- does it stand? ---------------------------------------------------------------------------
+/* ---- detection of stops ---------------------------------------------------------------------------
  */
 
 enum { IMK_STANDSTILL_FIGURES = 4 };
