@@ -187,7 +187,7 @@ typedef struct imk_allan_point {
     double deviation, lower, upper; /**< [unit of the rate]; TDEV: times the interval */
     double edf;                     /**< equivalent degrees of freedom */
     size_t count;                   /**< squares averaged */
-    /** noise type used for edf; that of the last factor with enough clusters */
+    /** Noise type used for edf; that of the last factor with enough clusters. */
     imk_power_law type;
 } imk_allan_point;
 

@@ -107,7 +107,7 @@ typedef struct imk_calibration {
     imk_model model; /**< prior knowledge: nominal sensitivities, terms not estimated, slow noise;
                         the estimation of free parameters starts from here */
     size_t parameter_count;
-    /** The free parameters, which are estimated */
+    /** The free parameters, which are estimated. */
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     double prior_sigma[IMK_CORRELATED_MAX]; /**< prior 1 sigma about the model's value; 0: no prior
                                                knowledge */

@@ -17,7 +17,7 @@ IMK_BEGIN_C
 typedef struct imk_convert_log_settings {
     uint32_t cookie;
     const char *select; /**< columns to keep, in this order: "time,gyro_x"; NULL: all */
-    /** units written; scale 0: the unit that was read (for increments, that of the rate) */
+    /** Units written; scale 0: the unit that was read (for increments, that of the rate) */
     imk_unit time_unit, gyro_unit, accel_unit, temperature_unit;
     bool to_point;           /**< give the specific force at `point`; default false */
     imk_vector3 point;       /**< position of the point in body axes, from the accelerometers [m] */

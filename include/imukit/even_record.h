@@ -32,7 +32,7 @@ typedef struct imk_even_record {
      *  because their time is not later than that of the row before; not_finite: rows with a value
      *  that is not finite in some channel. */
     size_t missing, holes, longest_hole, unordered, not_finite;
-    /** of each row [K]; NULL without such a column, or after interpolation */
+    /** Of each row [K]; NULL without such a column, or after interpolation. */
     const double *temperature;
 } imk_even_record;
 

@@ -61,7 +61,7 @@ typedef struct imk_fibre_optic {
     double coil_expansion;   /**< relative change of L D [1/K] */
     double thermo_optic;     /**< dn/dT [1/K] */
     /** Share of the Shupe effect that the winding leaves when one half of the coil is warmed: 1
-     *  plain, 0 perfect, negative for the other half */
+     *  plain, 0 perfect, negative for the other half. */
     double winding_residual;
 
     double source_power;             /**< [W] */
@@ -86,7 +86,7 @@ typedef struct imk_fibre_optic {
     double responsivity;    /**< R of the detector [A/W] */
     double load_resistance; /**< [ohm] */
     /** Power above and below the operating point at which amplifier and converter saturate [W]; 0:
-     *  none. Open loop: amplitude of the harmonic */
+     *  none. Open loop: amplitude of the harmonic. */
     double converter_range;
     int converter_bits; /**< bits over twice that range; 0: continuous. Rounding needs noise as
                            dither; without noise there is no rounding */

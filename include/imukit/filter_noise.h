@@ -13,9 +13,9 @@
  *  sample. Between samples dt apart the same noises have these standard deviations:
  *
  *      | noise                | continuous            | per sample       |
- *      | white, of a reading  | N [unit/sqrt(Hz)]     | N/sqrt(dt)       |
- *      | white, of x0         | N                     | N sqrt(dt)       |
- *      | walk of a bias       | q [unit/s/sqrt(Hz)]   | q sqrt(dt)       |
+ *  | white, of a reading  | N [unit/sqrt(Hz)]     | N/sqrt(dt)       |
+ *  | white, of x0         | N                     | N sqrt(dt)       |
+ *  | walk of a bias       | q [unit/s/sqrt(Hz)]   | q sqrt(dt)       |
  *
  *  A filter that confuses the continuous number with the number per sample is wrong by sqrt(dt): at
  *  200 Hz by a factor of 14. See docs/filter-noise.md. */
@@ -60,7 +60,7 @@ typedef struct imk_filter_state {
     imk_filter_source source;
     double correlation_time; /**< T [s]; infinite: random walk */
     double driving;          /**< q, continuous [unit/s/sqrt(Hz)] = [unit/sqrt(s)] */
-    /** Part of `driving` that represents bias instability, for a random walk */
+    /** Part of `driving` that represents bias instability, for a random walk. */
     double flicker_walk;
     double sigma;   /**< stationary 1 sigma, q sqrt(T/2) [unit]; 0 for a random walk, which grows
                        without bound */

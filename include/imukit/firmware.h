@@ -81,7 +81,7 @@ typedef struct imk_firmware_term {
 typedef struct imk_firmware_operation {
     imk_firmware_kind kind;
     imk_firmware_role role;
-    /** step: number of the iteration, from 1, or power of t in a polynomial */
+    /** `step`: number of the iteration, from 1, or power of t in a polynomial. */
     int sensor, axis, step;
     int a, b;                      /**< operands of clip, size and product; else -1 */
     int first, count;              /**< terms of a sum */
@@ -115,7 +115,7 @@ enum { IMK_FIRMWARE_OPERATIONS_MAX = 768, IMK_FIRMWARE_TERMS_MAX = 4096 };
 typedef struct imk_firmware {
     uint32_t cookie;
     imk_firmware_arithmetic arithmetic;
-    /** The terms taken out: the model without the terms that cannot be corrected */
+    /** The terms taken out: the model without the terms that cannot be corrected. */
     imk_model model;
     imk_correction correction; /**< correction of that model, to the tolerance of the plan */
     int axis_count[2], output_count[2];

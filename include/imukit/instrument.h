@@ -111,7 +111,7 @@ typedef struct imk_view {
     double duration;            /**< [s] */
     double rate;                /**< sampling rate of the figure [Hz] */
     double settle;              /**< time simulated before the figure begins [s] */
-    /** Default input of the figure: rate [rad/s] or specific force [m/s^2] along x */
+    /** Default input of the figure: rate [rad/s] or specific force [m/s^2] along x. */
     double input;
     bool points; /**< drawn as separate points, because the signals jump */
 } imk_view;

@@ -49,7 +49,7 @@ typedef struct imk_laboratory {
     int frequencies;  /**< frequencies of the shaker; 0: none; default 16 */
     double lowest, highest; /**< [Hz]; 0: from 1/30 to 3 times the bandwidth that reduce states,
                                else 0.01 to 0.25 times the rate */
-    /** Length of the static record [s], at least 256 samples; 0: none; default 60 */
+    /** Length of the static record [s], at least 256 samples; 0: none; default 60. */
     double record;
 } imk_laboratory;
 

@@ -304,7 +304,8 @@ IMK_API imk_status imk_resonance_start(imk_arma_state *state, imk_resonance reso
 
 /* ---- quantization of the integrated output -------------------------------------------------- */
 
-/** 3 Q^2/tau^2 [unit^2], for Q = LSB/sqrt(12) [unit s] and an input that changes by many LSB. */
+/** 3 Q^2/tau^2 [unit^2], for Q = LSB/sqrt(12) [unit s] and an input busy enough to make the
+ *  rounding errors independent. */
 IMK_API double imk_quantization_allan_variance(double q, double tau);
 /** 3 Q^2/tau^2, exact for independent rounding errors of the integral. */
 IMK_API double imk_quantization_sampled_allan_variance(double q, double dt, size_t n);

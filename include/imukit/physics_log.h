@@ -14,7 +14,7 @@ IMK_BEGIN_C
 
 /** Exposure of the instrument as a function of time. */
 typedef struct imk_physics_input {
-    /** With a frequency, angular rate and specific force are amplitudes of a sine */
+    /** With a frequency, angular rate and specific force are amplitudes of a sine. */
     imk_exposure exposure;
     double frequency;        /**< frequency of the sine [Hz]; 0: rate and force are constant */
     double temperature_rate; /**< [K/s] */
@@ -34,7 +34,7 @@ typedef struct imk_physics_log_settings {
     imk_physics_input input;
     double duration;    /**< length of the run [s] */
     double signal_rate; /**< rate of the rows of signals [Hz]; 0: as the rows of outputs */
-    /** Length and sampling rate of views [s], [Hz]; 0: as each view states */
+    /** Length and sampling rate of views [s], [Hz]; 0: as each view states. */
     double view_duration, view_rate;
     bool view_input; /**< true: views use `input`; false: the input that each view states */
 } imk_physics_log_settings;
@@ -115,6 +115,7 @@ IMK_API bool imk_physics_view_moves(const imk_view *view);
 typedef struct imk_physics_sweep {
     imk_laboratory_result result;
     size_t count;
+    /** Figures by closed forms, and by experiments. */
     imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
     imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_sweep;

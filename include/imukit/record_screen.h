@@ -47,7 +47,7 @@ typedef struct imk_screen {
     size_t longest_stuck;   /**< samples in the longest run */
     size_t stuck_limit;     /**< longest run of one value that the noise allows [samples] */
     imk_screen_count saturated; /**< samples at an extreme value that occurs too often */
-    /** These extreme values; infinite where there is none */
+    /** These extreme values; infinite where there is none. */
     double saturation_low, saturation_high;
     double repeated;   /**< share of samples equal to the one before */
     double resolution; /**< smallest step between values; 0 when none is detected */

@@ -100,7 +100,7 @@ typedef struct imk_ring_laser {
     } readout;
     struct imk_ring_laser_temperature {
         double reference; /**< temperature at which null shift and path length are stated [K] */
-        /** Range of operation [K]; the null shift is constant beyond it */
+        /** Range of operation [K]; the null shift is constant beyond it. */
         double minimum, maximum;
     } temperature;
 } imk_ring_laser;

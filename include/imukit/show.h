@@ -88,7 +88,7 @@ typedef struct imk_identify_shown {
     const char *name, *label; /**< such as its path and the last part of the path */
     imk_verdict verdict;
     const imk_model *truth; /**< true model, for comparison; NULL: not known */
-    /** Simulated deviations per channel (imk_identify_log_twin()); NULL: none */
+    /** Simulated deviations per channel (imk_identify_log_twin()); NULL: none. */
     const imk_allan_curve *twin;
 } imk_identify_shown;
 

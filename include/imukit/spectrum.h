@@ -64,11 +64,11 @@ typedef struct imk_spectrum {
     double *harmonic; /**< count values: Thomson's F ratio, which tests for a line; NULL with
                          Welch's estimator */
     double harmonic_degrees[2]; /**< degrees of freedom of that ratio */
-    /** Samples of a segment, and from the start of one segment to that of the next */
+    /** Samples of a segment, and from the start of one segment to that of the next. */
     size_t length, hop;
     size_t segments; /**< number of segments used */
     size_t left_out; /**< segments with missing samples */
-    /** Fraction of the segments' samples used: 1 for a record without gaps */
+    /** Fraction of the segments' samples used: 1 for a record without gaps. */
     double fraction_used;
     double noise_bandwidth; /**< equivalent noise bandwidth of a bin [Hz] */
     double correlation;     /**< bins per independent value: a mean of m neighbouring bins has

@@ -51,11 +51,11 @@ typedef struct imk_static_findings {
     double effective[2][IMK_AXES_MAX]; /**< independent samples among those of a window */
     double threshold[2][IMK_AXES_MAX]; /**< threshold for the standard deviation within a window */
     double standing;                   /**< share of the log at rest [1] */
-    /** Number of intervals, and of stretches shorter than `minimum` */
+    /** Number of intervals, and of stretches shorter than `minimum`. */
     size_t intervals, too_short;
     size_t saturated, not_finite; /**< samples left out for these reasons */
     /** Smallest and largest ratio of a window's scatter to the threshold. If both are near 1 or
-     *  both below 1, the unit never moves or is never at rest */
+     *  both below 1, the unit never moves or is never at rest. */
     double quietest, loudest;
 } imk_static_findings;
 

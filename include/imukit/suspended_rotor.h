@@ -51,7 +51,7 @@ typedef struct imk_suspended_rotor {
     double readout_resolution;   /**< step of the direction cosines, 0: none [rad] */
     double readout_noise;        /**< 1 sigma of each direction cosine [rad] */
     double start_tilt, start_azimuth; /**< of the spin axis in the case [rad] */
-    /** angle between axis of figure and angular momentum at the start [rad] */
+    /** Angle between axis of figure and angular momentum at the start [rad]. */
     double start_wobble;
     double wobble_time; /**< time in which the wobble falls to 1/e [s], > 0 */
 } imk_suspended_rotor;

@@ -68,7 +68,7 @@ typedef struct imk_thermal_axis {
     bool lag_likelier; /**< a lag explains the log better than the cause, with fewer parameters */
     double refused;    /**< share of the log that was left out because it was disturbed */
     double scatter;    /**< standard deviation of the samples before any correction */
-    /** Rms of samples about the best single-valued polynomial of that order */
+    /** Rms of samples about the best single-valued polynomial of that order. */
     double rms_polynomial;
     double rms_compensated; /**< rms after compensation of polynomial and rate; hysteresis remains,
                                as a model does not know its state */

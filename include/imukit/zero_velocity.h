@@ -100,7 +100,7 @@ IMK_API imk_status imk_zero_velocity_aligned(const imk_alignment_result *alignme
 /** Estimate of the filter. */
 typedef struct imk_zero_velocity_estimate {
     imk_navigation_state state;
-    /** Of position, velocity and attitude errors; north, east, down at the estimated place */
+    /** Of position, velocity and attitude errors; north, east, down at the estimated place. */
     double covariance[IMK_NAVIGATION_ERRORS][IMK_NAVIGATION_ERRORS];
     imk_vector3 gyro_bias, accel_bias;             /**< sums of the parts; body axes */
     imk_vector3 gyro_bias_sigma, accel_bias_sigma; /**< 1 sigma of these biases */
@@ -162,7 +162,8 @@ IMK_API imk_rest_readings imk_zero_velocity_rest(const imk_zero_velocity *filter
 /** Counts of updates up to now. */
 IMK_API imk_zero_velocity_counts imk_zero_velocity_counted(const imk_zero_velocity *filter);
 
-/* ---- detection of stops ---------------------------------------------------------------------------
+/* ---- detection of stops
+ * ---------------------------------------------------------------------------
  */
 
 enum { IMK_STANDSTILL_FIGURES = 4 };
