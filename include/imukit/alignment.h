@@ -40,9 +40,9 @@ typedef struct imk_alignment_settings {
     imk_alignment_method method;
     imk_geodetic place; /**< of the unit at the start */
     double duration;    /**< planned length of the alignment [s], > 0; more samples are no error */
-    /** For weights and the covariance; must exist until the end. Take its known values out of
-     *  the samples before (correct.h): the errors are their sigmas, repeatability and noise.
-     *  NULL: noise from the scatter of the data, no biases */
+    /** For weights and the covariance; must exist until the end. Take its known values out of the
+     *  samples before (correct.h): the errors are their sigmas, repeatability and noise. NULL:
+     *  noise from the scatter of the data, no biases. */
     const imk_model *model;
 } imk_alignment_settings;
 

@@ -83,14 +83,12 @@ IMK_API size_t imk_allan_workspace_size(imk_allan_statistic statistic, size_t n,
  *  The other statistics follow their definitions; their bias is not removed. TVAR is in units of
  *  the rate times the sample interval: multiply the deviation by dt. Time per factor: O(n), for
  *  Theo1 O(n log^2 m).
- *  @param n                 rate samples; sums has n + 1 values
- *  @param factors           averaging factors in the statistic's range
+ *  @param n          rate samples; sums has n + 1 values
+ *  @param factors    averaging factors in the statistic's range
  *  @param variances,counts  factor_count values; counts (may be NULL): number of squares, or
- *                           stretches, averaged
- *  @param workspace         imk_allan_workspace_size() bytes for executor->threads threads; any
- *                           address
- *  @param executor          NULL for serial. Summation order is fixed: the result does not depend
- *                           on it
+ *                    stretches, averaged
+ *  @param workspace  imk_allan_workspace_size() bytes for executor->threads threads; any address
+ *  @param executor   NULL for serial. Summation order is fixed: the result does not depend on it
  *  @return IMK_ERROR_RANGE, IMK_ERROR_TOO_SHORT, IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_allan_compute(imk_allan_statistic statistic, size_t n, const double *sums,
                                      size_t factor_count, const size_t *factors, double *variances,
@@ -189,7 +187,7 @@ typedef struct imk_allan_point {
     double deviation, lower, upper; /**< [unit of the rate]; TDEV: times the interval */
     double edf;                     /**< equivalent degrees of freedom */
     size_t count;                   /**< squares averaged */
-    /** noise type used for edf; that of the last factor with enough clusters */
+    /** Noise type used for edf; that of the last factor with enough clusters. */
     imk_power_law type;
 } imk_allan_point;
 

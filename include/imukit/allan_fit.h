@@ -51,7 +51,7 @@ typedef struct imk_allan_table {
     double dt;             /**< sample interval [s] */
     size_t count;          /**< number of tau: 2 … IMK_ALLAN_FIT_FACTORS_MAX */
     const size_t *factors; /**< ascending averaging factors m, tau = m dt */
-    /** Variance at each tau [unit^2]; NULL if only a covariance is computed */
+    /** Variance at each tau [unit^2]; NULL if only a covariance is computed. */
     const double *variances;
     const size_t *strides; /**< samples from one second difference to the next, each a divisor of
                                 its factor; NULL: 1, full overlap (OAVAR). m: plain AVAR */
@@ -79,7 +79,7 @@ IMK_API size_t imk_allan_covariance_workspace_size(size_t count, size_t terms);
 IMK_API imk_status imk_allan_covariance(const imk_allan_table *table, const imk_allan_noise *noise,
                                         double *covariance, void *workspace, size_t workspace_size);
 
-/** What to fit. Start from imk_allan_fit_default(), then change fields. */
+/** Settings of a fit. Start from imk_allan_fit_default(), then change fields. */
 typedef struct imk_allan_fit_settings {
     uint32_t cookie;
     double confidence;   /**< of the intervals; default 0.95 */
@@ -88,9 +88,9 @@ typedef struct imk_allan_fit_settings {
     bool keep[IMK_NOISE_TERMS]; /**< terms that are always present; default none */
     double tolerance; /**< relative error of each deviation that is allowed beside its random error,
                          0 … 0.5; default 0 */
-    /** Where the model does not explain the table (chi-square's probability below 1e-6), leave
-     *  out the shortest tau: as few as bring the probability above 0.01, and at most half.
-     *  Filters, resonances and lines disturb the shortest tau. Default true */
+    /** Where the model does not explain the table (chi-square's probability below 1e-6), leave out
+     *  the shortest tau: as few as bring the probability above 0.01, and at most half. Filters,
+     *  resonances and lines disturb the shortest tau. Default true. */
     bool trim;
     int gauss_markov_max; /**< Gauss-Markov terms looked for, 0 … IMK_TERMS_MAX; default 0 */
     imk_low_pass filter;  /**< known output filter; default none */
@@ -122,9 +122,9 @@ typedef struct imk_allan_fit {
     double sigma[IMK_ALLAN_FIT_FACTORS_MAX]; /**< standard deviations of the measured variances */
     double chi_square;                       /**< (v - A a)^T C^-1 (v - A a) */
     int degrees;                             /**< tau used less fitted parameters */
-    /** probability of a larger chi-square by chance if variances were Gaussian. At long tau they
+    /** Probability of a larger chi-square by chance if variances were Gaussian. At long tau they
      *  are skewed, so 14 % of good fits to octaves have a value below 0.05, and 20 % with ten tau a
-     *  decade; the bootstrap gives a better value */
+     *  decade; the bootstrap gives a better value. */
     double probability;
 } imk_allan_fit;
 

@@ -34,8 +34,8 @@ typedef struct imk_allan_log_settings {
     imk_allan_bias_removal bias;
     imk_allan_grid grid; /**< averaging times where `times` states none; default octaves */
     size_t time_count;   /**< number of `times`; default 0 */
-    /** ascending averaging times [s]; with one statistic all must be within its range, with
-     *  several statistics each leaves out those outside its range */
+    /** Ascending averaging times [s]; with one statistic all must be within its range, with several
+     *  statistics each leaves out those outside its range. */
     const double *times;
 } imk_allan_log_settings;
 
@@ -46,7 +46,7 @@ IMK_API imk_allan_log_settings imk_allan_log_default(void);
 typedef struct imk_allan_log {
     imk_allan_log_settings settings; /**< settings used; the array `times` is still the caller's */
     imk_even_record record;          /**< the record; its samples were replaced by running sums */
-    /** [channel][statistic]; count 0: the statistic is not defined for the record */
+    /** [channel][statistic]; count 0: the statistic is not defined for the record. */
     imk_allan_curve curve[IMK_LOG_COLUMNS_MAX][IMK_ALLAN_STATISTICS];
     imk_findings findings;
 } imk_allan_log;
@@ -55,7 +55,7 @@ typedef struct imk_allan_log {
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_allan_log_free(), also after a failure, because it then holds
  *                 the findings; NULL if there was no memory for it
- *  @return what imk_even_record_load() returns; with a finding that says why: IMK_ERROR_CONSTANT,
+ *  @return errors of imk_even_record_load(); with a finding that says why: IMK_ERROR_CONSTANT,
  *          _TOO_SHORT, _GAP (a statistic that needs every sample), _RANGE (a time) */
 IMK_API imk_status imk_allan_log_run(const imk_record_source *source,
                                      const imk_allan_log_settings *settings, const imk_job *job,

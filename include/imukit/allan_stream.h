@@ -47,7 +47,7 @@ typedef struct imk_allan_stream {
     double sum, sum_error;   /**< sum of the samples, and its rounding error */
     double minimum, maximum; /**< infinite while there is no sample */
     double last[IMK_ALLAN_STREAM_TIERS][IMK_ALLAN_STREAM_BLOCKS]; /**< block b in b mod 8 */
-    /** the shard's first blocks */
+    /** The shard's first blocks. */
     double head[IMK_ALLAN_STREAM_TIERS][IMK_ALLAN_STREAM_BLOCKS - 1];
     struct imk_allan_stream_squares {
         uint64_t count;    /**< windows */

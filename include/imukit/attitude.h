@@ -58,7 +58,8 @@ IMK_API imk_quaternion imk_quaternion_conjugate(imk_quaternion a);
 IMK_API imk_quaternion imk_quaternion_normalise(imk_quaternion a);
 /** v rotated by the unit quaternion q, as imk_quaternion_to_matrix(q) rotates it. */
 IMK_API imk_vector3 imk_quaternion_rotate(imk_quaternion q, imk_vector3 v);
-/** Exact for a constant rotation vector [rad]; series where its norm is small. Bit-reproducible. */
+/** Quaternion of a rotation vector [rad], exact; by series where its norm is small.
+ *  Bit-reproducible. */
 IMK_API imk_quaternion imk_quaternion_from_rotation_vector(imk_vector3 rotation);
 /** The rotation vector [rad] of at most half a turn; q and -q give the same. Bit-reproducible. */
 IMK_API imk_vector3 imk_quaternion_to_rotation_vector(imk_quaternion q);

@@ -12,12 +12,12 @@
  *
  *      reading = sensitivity * distort(model, rate, force, temperature) + zero offset + noise
  *
- *  Observations and turns that do not fit are refused as a whole. The limit is one that all good
- *  ones pass in 99 of 100 calibrations. It is applied to a robust fit, which a minority of outliers
- *  cannot spoil (Huber's weights, then Tukey's biweight). The others have full weight. The scatter
- *  within a hold is not the whole uncertainty of its mean: so 1 sigma and intervals of each group
- *  of observations (readings of gyros, of accelerometers, turns) are multiplied by a factor from
- *  the group's residuals, if these have 3 degrees of freedom or more.
+ *  Observations and turns that do not fit are refused as a whole. The limit is chosen such that a
+ *  set without outliers passes in 99 of 100 calibrations. It is applied to a robust fit, which a
+ *  minority of outliers cannot spoil (Huber's weights, then Tukey's biweight). The others have full
+ *  weight. The scatter within a hold is not the whole uncertainty of its mean: so 1 sigma and
+ *  intervals of each group of observations (readings of gyros, of accelerometers, turns) are
+ *  multiplied by a factor from the group's residuals, if these have 3 degrees of freedom or more.
  *
  *  Slow noise is common to the observations of one record, so residuals do not show it. If the
  *  model states slow noise (bias_instability, random_walk, gauss_markov longer than a hold),
@@ -62,7 +62,7 @@ typedef enum imk_observation_group {
     IMK_GROUPS
 } imk_observation_group;
 
-/** The mean of some samples, and what the unit was exposed to. */
+/** The mean of some samples, and the motion and temperature of the unit. */
 typedef struct imk_observation {
     imk_input_knowledge knowledge;
     int record;                      /**< index in imk_calibration.record; -1: none, readings are
@@ -107,7 +107,7 @@ typedef struct imk_calibration {
     imk_model model; /**< prior knowledge: nominal sensitivities, terms not estimated, slow noise;
                         the estimation of free parameters starts from here */
     size_t parameter_count;
-    /** The free parameters, which are estimated */
+    /** The free parameters, which are estimated. */
     imk_model_parameter parameter[IMK_CORRELATED_MAX];
     double prior_sigma[IMK_CORRELATED_MAX]; /**< prior 1 sigma about the model's value; 0: no prior
                                                knowledge */

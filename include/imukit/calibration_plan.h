@@ -32,7 +32,7 @@ typedef struct imk_sigma_requirement {
     bool reached;
 } imk_sigma_requirement;
 
-/** What to plan. Start from imk_plan_default(procedure), then change fields. */
+/** Settings of a plan. Start from imk_plan_default(procedure), then change fields. */
 typedef struct imk_plan_settings {
     uint32_t cookie;
     imk_procedure procedure;

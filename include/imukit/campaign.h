@@ -89,7 +89,7 @@ IMK_API void imk_campaign_stop(imk_campaign_writer *writer);
 typedef struct imk_campaign_results {
     imk_campaign campaign; /**< texts and arrays are owned by these results */
     uint64_t runs;         /**< number of runs present */
-    /** Numbers of these runs, increasing; consecutive except after a partial merge */
+    /** Numbers of these runs, increasing; consecutive except after a partial merge. */
     const uint64_t *run;
     const double *values; /**< [run][time][state] */
 } imk_campaign_results;
@@ -115,7 +115,7 @@ typedef struct imk_campaign_merge_report {
     uint64_t run_count, present; /**< runs of the campaign, and how many of them are present */
     uint64_t shard_count;        /**< N when every good file is a shard i/N of the same N; or 0 */
     char missing[1000];          /**< missing runs, counted from 0: "17-32,65"; "" when complete */
-    /** Shards i of N that contain the missing runs, counted from 1: "3,17-19" */
+    /** Shards i of N that contain the missing runs, counted from 1: "3,17-19". */
     char shards[1000];
 } imk_campaign_merge_report;
 

@@ -63,7 +63,7 @@ typedef struct imk_compensator {
     bool limited[2];          /**< imk_correction.limit applies */
     bool depends_on_other[2]; /**< rates depend on readings of accelerometers; forces on those of
                                  gyros */
-    /** Level from which a reading counts as saturated; or infinity */
+    /** Level from which a reading counts as saturated; or infinity. */
     double range[2][IMK_AXES_MAX];
     double temperature_minimum, temperature_maximum;
     double warm_up_time[2];  /**< [s]; 0: no warm-up */

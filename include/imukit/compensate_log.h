@@ -27,7 +27,7 @@ typedef struct imk_compensate_log_settings {
     double temperature_time; /**< see imk_compensator.temperature_time [s]; default 30 */
     double powered_for;      /**< how long the unit was on before the first row [s]; default 0 */
     double rate_limit, force_limit; /**< see imk_correction_settings; default 0 */
-    /** units written; scale 0: the unit that was read, SI for counts */
+    /** Units written; scale 0: the unit that was read, SI for counts. */
     imk_unit gyro_unit, accel_unit;
     bool flags; /**< add a column of flags (IMK_FLAG_…); default false */
 } imk_compensate_log_settings;
@@ -37,8 +37,12 @@ IMK_API imk_compensate_log_settings imk_compensate_log_default(void);
 
 /** Counts of a run. Row numbers (first_…) count from 1; 0: none. */
 typedef struct imk_compensate_counts {
+    /** rows: rows read; any_flag: rows with a flag; stretches: parts between gaps in time;
+     *  first_gap: first row after a gap; temperatures_held: rows without temperature, for which the
+     *  last known one was used. */
     uint64_t rows, any_flag, stretches, first_gap, temperatures_held;
     uint64_t times_missing, first_time_missing; /**< rows whose time is not a number */
+    /** Rows with each flag, in the order of IMK_FLAG_…, and the first of them. */
     uint64_t flagged[IMK_FLAG_COUNT], first_flagged[IMK_FLAG_COUNT];
 } imk_compensate_counts;
 
@@ -59,10 +63,10 @@ typedef struct imk_compensate_log {
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_compensate_log_free(), also after a failure, because it then
  *                 holds the findings; NULL if there was no memory for it
- *  @return what the source returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (the sample interval);
- *          with a finding that says why: IMK_ERROR_COLUMN, _UNIT_MISSING, _DIMENSION, _KEY_MISSING,
- *          _EMPTY, and what imk_compensator_start() ("model_refused") and the sink ("not_written")
- *          return */
+ *  @return errors of the source; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (the sample interval); with a
+ *          finding that says why: IMK_ERROR_COLUMN, _UNIT_MISSING, _DIMENSION, _KEY_MISSING,
+ *          _EMPTY, and errors of imk_compensator_start() ("model_refused") and of the sink
+ *          ("not_written") */
 IMK_API imk_status imk_compensate_log_run(const imk_record_source *source, const imk_model *model,
                                           const imk_compensate_log_settings *settings,
                                           const imk_record_sink *sink, const imk_job *job,

@@ -17,12 +17,12 @@ IMK_BEGIN_C
 typedef struct imk_convert_log_settings {
     uint32_t cookie;
     const char *select; /**< columns to keep, in this order: "time,gyro_x"; NULL: all */
-    /** units written; scale 0: the unit that was read (for increments, that of the rate) */
+    /** Units written; scale 0: the unit that was read (for increments, that of the rate) */
     imk_unit time_unit, gyro_unit, accel_unit, temperature_unit;
-    bool to_point;     /**< give the specific force at `point`; default false */
-    imk_vector3 point; /**< position of the point in body axes, from the accelerometers [m] */
-    bool gravity_free; /**< give the acceleration relative to the Earth; default false */
-    double still;      /**< time at the start during which the unit is at rest [s]; default 10 */
+    bool to_point;           /**< give the specific force at `point`; default false */
+    imk_vector3 point;       /**< position of the point in body axes, from the accelerometers [m] */
+    bool gravity_free;       /**< give the acceleration relative to the Earth; default false */
+    double still;            /**< time at rest at the start [s]; default 10 */
     double latitude, height; /**< place, for gravity [rad], [m]; default NaN, 0 */
     double yaw;              /**< at the start, from north towards east [rad]; default 0 */
 } imk_convert_log_settings;
@@ -38,10 +38,10 @@ IMK_API imk_convert_log_settings imk_convert_log_default(void);
  *  attitude drifts.
  *  @param job       NULL: one thread, no progress, the memory of the C library
  *  @param findings  may be NULL
- *  @return what the source returns; IMK_ERROR_MEMORY, _CANCELLED; _RANGE (still, latitude, height);
+ *  @return errors of the source; IMK_ERROR_MEMORY, _CANCELLED; _RANGE (still, latitude, height);
  *          _DIMENSION (a unit; error.field is "gyro-unit" or another); _NOT_FINITE (no specific
  *          force while at rest); with a finding that says why: IMK_ERROR_COLUMN, _DIMENSION
- *          (counts), _EMPTY, and what the sink ("not_written") returns */
+ *          (counts), _EMPTY, and errors of the sink ("not_written") */
 IMK_API imk_status imk_convert_log_run(const imk_record_source *source,
                                        const imk_convert_log_settings *settings,
                                        const imk_record_sink *sink, const imk_job *job,

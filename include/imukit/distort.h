@@ -23,8 +23,8 @@
  *  linear combinations of twelve features of the motion (three components, six products, three more
  *  components), so that a model is compiled into weights once and applied to blocks of samples.
  *
- *  Outside a triad's valid temperature range, the polynomials keep their value at its end. Only + -
- *  * / are used, so the bits are the same everywhere. */
+ *  Outside a triad's valid temperature range, the polynomials keep their value at its end.
+ *  Only + - * / are used, so the bits are the same everywhere. */
 #ifndef IMUKIT_DISTORT_H
 #define IMUKIT_DISTORT_H
 

@@ -31,8 +31,8 @@ IMK_API double imk_chi_square_probability(double x, double degrees);
 IMK_API double imk_chi_square_quantile(double probability, double degrees);
 
 /** Regularised incomplete beta function I_x(a, b), a, b > 0, with y = 1 - x given as well, so that
- *  both ends are accurate; relative error of the smaller one of I and 1 - I < 1e-12 for a, b <=
- *  1e6. About 1 us, more with the square root of a and b. */
+ *  both ends are accurate; relative error of the smaller one of I and 1 - I < 1e-12 for a,
+ *  b <= 1e6. About 1 us, more with the square root of a and b. */
 IMK_API double imk_beta_lower(double a, double b, double x, double y);
 
 /** Probability that a ratio of mean squares with these degrees of freedom (F distribution) exceeds

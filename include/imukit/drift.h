@@ -217,8 +217,8 @@ typedef struct imk_drift_allocation {
     double all; /**< the requirement is met if every source is multiplied by this (> 1: margin) */
     double source[IMK_DRIFT_SOURCES_MAX]; /**< least effort: only sources above a common limit are
                                              reduced, by this factor (1: good enough) */
-    /** The requirement is met if this source alone is multiplied by this; 0: not even without
-     *  the source; 1 or more: it may be so much larger; infinite: it has no effect */
+    /** The requirement is met if this source alone is multiplied by this; 0: not even without the
+     *  source; 1 or more: it may be so much larger; infinite: it has no effect. */
     double alone[IMK_DRIFT_SOURCES_MAX];
 } imk_drift_allocation;
 

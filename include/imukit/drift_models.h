@@ -45,7 +45,7 @@ IMK_API void imk_drift_times_free(imk_drift_times *times);
 
 /** A requirement: a figure must not exceed a goal at a time of the table. */
 typedef struct imk_drift_wanted {
-    bool asked;
+    bool asked; /**< false: there is no requirement */
     imk_drift_requirement figure;
     double goal;   /**< SI */
     imk_unit unit; /**< unit in which the goal was stated */
@@ -104,11 +104,11 @@ typedef struct imk_drift_candidate {
 /** A factor between this and 1 counts as no improvement. */
 #define IMK_DRIFT_SAME 0.9995
 
-/** What would meet the requirement. */
+/** Ways to meet the requirement. */
 typedef struct imk_drift_answer {
     imk_drift_allocation allocation;
     size_t order_count; /**< number of terms that must improve */
-    /** Their indices, the term that must improve most first */
+    /** Their indices, the term that must improve most first. */
     size_t order[IMK_DRIFT_SOURCES_MAX];
     bool alone; /**< true: improving only one of them can be enough */
     size_t candidate_count;
@@ -127,8 +127,8 @@ typedef struct imk_drift_models {
     imk_drift_answer *answer; /**< NULL: there is no requirement */
     /** Monte Carlo of the last case, at the rows of the table; NULL: none. */
     uint64_t run_count;
-    imk_drift_figures *found, *low, *high;
-    size_t *used;
+    imk_drift_figures *found, *low, *high; /**< figures and their 95 % intervals */
+    size_t *used;                          /**< number of runs used */
 } imk_drift_models;
 
 /** Analyse models. The models, their names and the times must outlive the result.

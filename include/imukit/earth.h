@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file earth.h
- *  The Earth as inertial sensors see it: its rotation, and the normal gravity of the WGS84
- *  ellipsoid [NIMA-TR8350.2]. Real gravity differs from it by up to about 3e-3 m/s^2. */
+ *  The Earth's rotation and the normal gravity of the WGS84 ellipsoid [NIMA-TR8350.2]. Real gravity
+ *  differs from it by up to about 3e-3 m/s^2. */
 #ifndef IMUKIT_EARTH_H
 #define IMUKIT_EARTH_H
 
@@ -29,16 +29,16 @@ typedef struct imk_geodetic {
 /** Earth-centred, Earth-fixed coordinates [m]: x towards longitude 0, z along the axis. */
 IMK_API imk_vector3 imk_ecef_from_geodetic(imk_geodetic place);
 
-/** The inverse, bit-reproducible, for heights from -10 km to 10000 km: error below 1e-15 rad in the
- *  angles, and in height some units in the last place of the distance from the centre: 4e-9 m up
- *  to 100 km, 1e-8 m up to 10000 km. At the poles the longitude is that of the point, 0 on the axis
- *  itself. Bowring's formula [BOWRING1985]. */
+/** The inverse of imk_ecef_from_geodetic(), bit-reproducible, for heights from -10 km to 10000 km:
+ *  error below 1e-15 rad in the angles, and in height some units in the last place of the distance
+ *  from the centre: 4e-9 m up to 100 km, 1e-8 m up to 10000 km. At the poles the longitude is that
+ *  of the point, 0 on the axis itself. Bowring's formula [BOWRING1985]. */
 IMK_API imk_geodetic imk_geodetic_from_ecef(imk_vector3 position);
 
 /** Normal gravity (gravitation and centrifugal force together) at an ECEF position, in ECEF axes
  *  [m/s^2]: the magnitude of imk_normal_gravity(), along the ellipsoid's normal. Only + - * / sqrt.
- *  The one gravity of motion and navigation, so that they cannot disagree. Not for positions within
- *  6000 km of the centre. */
+ *  Motion and navigation both use this gravity, so they agree. Not valid within 6000 km of the
+ *  centre. */
 IMK_API imk_vector3 imk_gravity_ecef(imk_vector3 position);
 
 /** Radii of curvature of the ellipsoid in the meridian and in the prime vertical [m]. */

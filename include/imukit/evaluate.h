@@ -96,20 +96,20 @@ typedef struct imk_evaluation {
     imk_evaluation_figure hysteresis;     /**< largest |up - down| [1] */
     imk_evaluation_figure asymmetry;      /**< (K+ - K-)/mean, with sign, of lines that meet at
                                                reference 0 [1] */
-    /** Smallest step between successive levels such that it and all larger steps give at least
-     *  half of their change [reference]; lower: largest step that certainly does not, 0: none;
-     *  upper: smallest from which all certainly do, NaN: none */
+    /** Smallest step between successive levels such that it and all larger steps give at least half
+     *  of their change [reference]; lower: largest step that certainly does not, 0: none; upper:
+     *  smallest from which all certainly do, NaN: none. */
     imk_evaluation_figure resolution;
     imk_evaluation_figure threshold; /**< the same for steps from reference 0 */
-    /** Smallest ones tested that the noise allows to assess; NaN: none */
+    /** Smallest ones tested that the noise allows to assess; NaN: none. */
     double smallest_step, smallest_input;
-    /** least-squares line of all readings; minimax line of levels */
+    /** least-squares line of all readings; minimax line of levels. */
     imk_evaluation_line line, best;
-    /** Level with the largest deviation; -1: none */
+    /** Level with the largest deviation; -1: none. */
     int accuracy_level, linearity_level, hysteresis_level;
     int alternation[3]; /**< levels at which the minimax line has its largest deviation with
                            alternating sign, which proves that no line is better; -1: none */
-    /** Zero from run to run [reading]; its `runs` is 0 with fewer than two runs */
+    /** Zero from run to run [reading]; its `runs` is 0 with fewer than two runs. */
     imk_repeatability run_zero;
     imk_repeatability run_sensitivity;           /**< sensitivity from run to run, relative [1] */
     double run_line[IMK_EVALUATION_RUNS_MAX][2]; /**< zero and sensitivity of each; NaN: none */

@@ -32,16 +32,16 @@ typedef struct imk_even_record {
      *  because their time is not later than that of the row before; not_finite: rows with a value
      *  that is not finite in some channel. */
     size_t missing, holes, longest_hole, unordered, not_finite;
-    /** of each row [K]; NULL without such a column, or after interpolation */
+    /** Of each row [K]; NULL without such a column, or after interpolation. */
     const double *temperature;
 } imk_even_record;
 
 /** Read a whole source and make its channels equally spaced. Channels are gyros and accelerometers;
  *  if there are none, every other column. Numbers beyond IMK_READING_MAX count as missing. Free the
  *  record with imk_even_record_free(), also after an error.
- *  @return what the source returns; IMK_ERROR_MEMORY, _CANCELLED; and with a finding that says why:
- *          _EMPTY (no row), _COLUMN (no channel), _TOO_SHORT, _RATE_MISSING, _TIME_ORDER (the times
- *          are not equally spaced), _GAP (refused) */
+ *  @return errors of the source; IMK_ERROR_MEMORY, _CANCELLED; with a finding that says why: _EMPTY
+ *          (no row), _COLUMN (no channel), _TOO_SHORT, _RATE_MISSING, _TIME_ORDER (the times are
+ *          not equally spaced), _GAP (refused) */
 IMK_API imk_status imk_even_record_load(const imk_record_source *source, imk_gap_policy gaps,
                                         const imk_job *job, imk_even_record *record,
                                         imk_findings *findings, imk_error *error);

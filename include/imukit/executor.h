@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file executor.h
- *  How the caller lends its threads to the library, which makes none of its own. */
+ *  Lets the library use threads of the caller; the library makes none itself. */
 #ifndef IMUKIT_EXECUTOR_H
 #define IMUKIT_EXECUTOR_H
 
@@ -11,8 +11,8 @@ IMK_BEGIN_C
 /** One independent piece of work: item 0 … count - 1, in any order, on any thread. */
 typedef void (*imk_work)(void *work_context, size_t item);
 
-/** Runs work items and returns when all are done. A NULL executor is serial. io.h makes one from a
- *  pool of POSIX threads. */
+/** Runs work items and returns when all are done. A NULL executor is serial. thread_pool.h makes
+ *  one from POSIX threads. */
 typedef struct imk_executor {
     void (*run)(void *context, size_t count, imk_work work, void *work_context);
     void *context;

@@ -2,38 +2,39 @@
 /** @file fibre_optic.h
  *  The interferometric fibre-optic gyro, open or closed loop.
  *
- *  Light of a broadband source goes both ways round a coil of fibre. Rotation about the coil's axis
- *  lengthens one way and shortens the other by the Sagnac phase [SAGNAC1913, VALI1976]
+ *  Light of a broadband source travels both ways round a coil of fibre. Rotation about the coil's
+ *  axis lengthens one path and shortens the other, by the Sagnac phase [SAGNAC1913, VALI1976]
  *
  *      phi = K W,   K = 2 pi L D/(lambda c)
  *
- *  which the two waves show by interference on a detector:  P = P0/2 [1 + V cos(phi + delta)]. A
- *  phase modulator at one end of the coil is passed by one wave at once and by the other after the
- *  transit time tau = n L/c, so that it adds  delta(t) = m(t) - m(t - tau)  [LEFEVRE2014]:
+ *  The two waves interfere on a detector: P = P0/2 [1 + V cos(phi + delta)]. One wave passes a
+ *  phase modulator at one end of the coil at once, the other after the transit time tau = n L/c, so
+ *  the modulator adds delta(t) = m(t) - m(t - tau) [LEFEVRE2014]:
  *
- *   - open loop: m is a sine of the proper frequency 1/(2 tau), delta = b cos(w t), and the first
- *     harmonic of the detected power is  -P0 V J1(b) sin(phi): the reading is sin(K W)/K;
- *   - closed loop: m is a square wave, delta = +b and -b in turn, each for one transit. The
- *     difference of the two powers drives the step of a digital ramp, which falls back by 2 pi
- *     when it overflows. The ramp's step per transit is the phase that cancels the Sagnac phase:
- *     the reading is -step/K, linear and independent of power.
+ *  - open loop: m is a sine of the proper frequency 1/(2 tau), delta = b cos(w t), and the first
+ *    harmonic of the detected power is -P0 V J1(b) sin(phi): the reading is sin(K W)/K;
+ *  - closed loop: m is a square wave, delta = +b and -b in turn, each for one transit. The
+ *    difference of the two powers drives the step of a digital ramp, which falls back by 2 pi when
+ *    it overflows. The ramp's step per transit is the phase that cancels the Sagnac phase: the
+ *    reading is -step/K, linear and independent of power.
  *
- *  Case axes: x is the axis of the coil, y and z lie in its plane; the gyro feels only x.
+ *  Case axes: x is the axis of the coil, y and z lie in its plane; the gyro senses only x.
  *
  *  Levels: IMK_LEVEL_FULL computes each transit (closed loop) or 16 instants of each period of the
  *  modulation (open loop), with the detector's noise at the power of that moment, the rounding of
- *  the converters, the ramp and its resets. IMK_LEVEL_SLOW is the loop linearised about its lock:
- *  first order, solved exactly over a sample, with white phase noise in continuous time; fringes
- *  are kept. A sample may have any length; the exposure of a sample acts from its first whole
- *  transit on. Between two samples the rate may not jump by more than half a fringe, pi/K, or the
- *  loop locks on another fringe, as a real one would.
+ *  the converters, the ramp and its resets. IMK_LEVEL_SLOW is the loop linearised about its
+ *  operating point: first order, solved exactly over a sample, with white phase noise in continuous
+ *  time; fringes remain. A sample may have any length; the exposure of a sample takes effect from
+ *  its first whole transit on. Between two samples the rate may not jump by more than half a
+ *  fringe, pi/K, else the loop locks on another fringe, as a real one would.
  *
  *  The default design has the optics of [MOELLER1989], whose published figures are: 1 km of
  *  polarization-preserving fibre on a radius of 16 cm; insertion loss 14 dB; angle random walk
  *  3.2e-4 deg/sqrt(h); bias within 0.03 deg/h over three days; scale factor within 32 ppm over 12
  *  days. "Within" is taken as 3 sigma. That gyro was read open loop; the closed loop is our choice,
- *  and so is all that was not published: the wavelength of 1550 nm, the depth of 120 degrees, the
- *  source's power, and its linewidth, such that the angle random walk is the published one. */
+ *  and so are all figures that were not published: the wavelength of 1550 nm, the depth of 120
+ *  degrees, the source's power, and its linewidth, such that the angle random walk is the published
+ *  one. */
 #ifndef IMUKIT_FIBRE_OPTIC_H
 #define IMUKIT_FIBRE_OPTIC_H
 
@@ -47,8 +48,8 @@ typedef enum imk_fibre_optic_loop {
     IMK_FIBRE_OPTIC_OPEN = 1    /**< sine modulation, first harmonic */
 } imk_fibre_optic_loop;
 
-/** Design. Start from imk_fibre_optic_default(), then change fields. Where a field is an `error`
- *  it is a departure that the instrument's electronics do not know of. */
+/** Design. Start from imk_fibre_optic_default(), then change fields. A field named `error` is a
+ *  deviation that the instrument's electronics do not know. */
 typedef struct imk_fibre_optic {
     uint32_t cookie;
     int loop; /**< imk_fibre_optic_loop */
@@ -59,8 +60,9 @@ typedef struct imk_fibre_optic {
     double coil_attenuation; /**< of power [1/m]; 1 dB/km is 2.303e-4 */
     double coil_expansion;   /**< relative change of L D [1/K] */
     double thermo_optic;     /**< dn/dT [1/K] */
-    double winding_residual; /**< what the winding leaves of the Shupe effect of a coil of which one
-                                half is warmed: 1 plain, 0 perfect, negative for the other half */
+    /** Share of the Shupe effect that the winding leaves when one half of the coil is warmed: 1
+     *  plain, 0 perfect, negative for the other half. */
+    double winding_residual;
 
     double source_power;             /**< [W] */
     double power_error;              /**< relative [1]: scales the open-loop reading */
@@ -71,27 +73,30 @@ typedef struct imk_fibre_optic {
     double linewidth;                /**< equivalent width of the spectrum [m] */
     double intensity_noise;          /**< relative, one-sided [1/Hz]; 0: 2/linewidth in Hz, that of
                                         polarized thermal light */
-    double optics_loss; /**< source to detector but for the fibre, as exponent ln(10)/10 per dB */
+    double optics_loss; /**< loss from source to detector without the fibre, as exponent: ln(10)/10
+                           per dB */
     double visibility;  /**< V of the fringes, 0 … 1 */
 
     double modulation_depth; /**< b [rad], 0 … 3.1 */
     double depth_error;      /**< relative [1] */
     double reset_error;      /**< relative error of the reset against 2 pi [1]; closed loop */
     double gain_error; /**< of the ramp's phase, relative [1]: half-wave voltage; closed loop */
-    int ramp_bits;     /**< of the converter that makes the ramp, to 2 pi; 0: continuous */
+    int ramp_bits;     /**< bits of the ramp's converter over 2 pi; 0: continuous */
 
     double responsivity;    /**< R of the detector [A/W] */
     double load_resistance; /**< [ohm] */
-    double converter_range; /**< of power above and below the operating point, where amplifier and
-                               converter saturate [W]; 0: none. Open loop: of the harmonic */
-    int converter_bits;     /**< to twice that range; 0: continuous. Needs noise as its dither, and
-                               does not round without */
+    /** Power above and below the operating point at which amplifier and converter saturate [W]; 0:
+     *  none. Open loop: amplitude of the harmonic. */
+    double converter_range;
+    int converter_bits; /**< bits over twice that range; 0: continuous. Rounding needs noise as
+                           dither; without noise there is no rounding */
     double demodulation_error; /**< relative error of the demodulator's gain [1] */
 
-    double loop_gain; /**< g: share of the phase error that a step takes away, once per 2 tau */
-    double crosstalk; /**< phase error in step with the ramp, amplitude [rad]: a dead zone */
+    double loop_gain; /**< g: share of the phase error that a step corrects, once per 2 tau */
+    double crosstalk; /**< amplitude of the phase error synchronous with the ramp, which causes a
+                         dead zone [rad] */
     double range;     /**< [rad/s]; closed loop: below 2 pi/K; open loop: at most pi/(2 K) */
-    int output_bits;  /**< counts of the angle to one fringe 2 pi tau/K; 0: not rounded */
+    int output_bits;  /**< bits of the angle's counts for one fringe 2 pi tau/K; 0: not rounded */
 
     double phase_fixed;         /**< nonreciprocal phase at 293.15 K [rad] */
     double phase_temperature;   /**< [rad/K] */
@@ -102,8 +107,9 @@ typedef struct imk_fibre_optic {
 /** The design described above. */
 IMK_API imk_fibre_optic imk_fibre_optic_default(void);
 
-/** Every field in its range, and the gyro possible: at least one turn, light on the detector, a
- *  stable loop (effective gain below 2), a range within the fringe, a noise well below it.
+/** Check a design: every field must be in its range, and the gyro possible: at least one turn,
+ *  light on the detector, a stable loop (effective gain below 2), a range within the fringe, and
+ *  noise well below the fringe.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT */
 IMK_API imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_error *error);
 
@@ -116,20 +122,20 @@ IMK_API imk_status imk_fibre_optic_validate(const imk_fibre_optic *design, imk_e
  *      dead band        crosstalk/K (beyond it the reading is sqrt(W^2 - W_x^2))
  *      quantization     2 pi tau/(K 2^bits sqrt 12)
  *
- *  Open loop: all times the gain of the harmonic, K3 = -gain K^2/6, K2 = -gain K phase/2, no
- *  bandwidth, no dead band. */
+ *  Open loop: all terms are multiplied by the gain of the harmonic, K3 = -gain K^2/6, K2 = -gain K
+ *  phase/2, no bandwidth, no dead band. */
 IMK_API void imk_fibre_optic_reduce(const imk_fibre_optic *design, imk_model *model);
 
 /* ---- closed forms: of the nominal design, errors and temperature aside --------------------------
  */
 
-/** L/(pi D). */
+/** Number of turns, L/(pi D). */
 IMK_API double imk_fibre_optic_turns(const imk_fibre_optic *design);
-/** K = 2 pi L D/(lambda c) [s]: phase per rate [LEFEVRE2014]. */
+/** Phase per rate, K = 2 pi L D/(lambda c) [s] [LEFEVRE2014]. */
 IMK_API double imk_fibre_optic_scale(const imk_fibre_optic *design);
-/** tau = n L/c [s]. */
+/** Transit time, tau = n L/c [s]. */
 IMK_API double imk_fibre_optic_transit_time(const imk_fibre_optic *design);
-/** 1/(2 tau) [Hz]. */
+/** Proper frequency of the coil, 1/(2 tau) [Hz]. */
 IMK_API double imk_fibre_optic_proper_frequency(const imk_fibre_optic *design);
 /** Rate between neighbouring fringes, 2 pi/K [rad/s]. */
 IMK_API double imk_fibre_optic_fringe_rate(const imk_fibre_optic *design);
@@ -154,7 +160,8 @@ IMK_API double imk_fibre_optic_intensity_noise(const imk_fibre_optic *design);
 IMK_API double imk_fibre_optic_phase_noise(const imk_fibre_optic *design);
 /** Angle random walk N [rad/sqrt(s)], phase noise/(sqrt 2 K). */
 IMK_API double imk_fibre_optic_angle_random_walk(const imk_fibre_optic *design);
-/** Effective loop gain: g times the departures of power, demodulator and sin b. Stable below 2. */
+/** Effective loop gain: g times the actual over the nominal power, demodulator gain and sin b. The
+ *  loop is stable below 2. */
 IMK_API double imk_fibre_optic_effective_gain(const imk_fibre_optic *design);
 /** Pole of the loop -ln(1 - g)/(4 pi tau) [Hz], g the effective gain below 1: the error decays by
  *  1 - g in 2 tau. */
@@ -163,7 +170,8 @@ IMK_API double imk_fibre_optic_loop_pole(const imk_fibre_optic *design);
  *
  *      cos(4 pi f tau) = (1 + (1 - g)^2 - 2 g^2)/(2 (1 - g))
  *
- *  0 when the loop reaches half the sampling of 1/(2 tau) without losing 3 dB; open loop 0. */
+ *  0 if the loop loses less than 3 dB up to half the sampling rate 1/(2 tau); also 0 for an open
+ *  loop. */
 IMK_API double imk_fibre_optic_bandwidth(const imk_fibre_optic *design);
 /** First harmonic of an open loop per sine of the phase: actual/nominal P0 J1(b) [1]. */
 IMK_API double imk_fibre_optic_harmonic_gain(const imk_fibre_optic *design);
@@ -176,7 +184,7 @@ IMK_API double imk_fibre_optic_shupe_rate(const imk_fibre_optic *design, size_t 
 /** Apparent rate per rate of temperature [rad/s/(K/s)]: winding_residual n dn/dT L/(4 D). */
 IMK_API double imk_fibre_optic_shupe_coefficient(const imk_fibre_optic *design);
 
-/** This kind of instrument; design struct imk_fibre_optic. Outputs: the rate; resets per second. */
+/** The instrument; its design is a struct imk_fibre_optic. Outputs: the rate; resets per second. */
 IMK_API extern const imk_instrument imk_fibre_optic_instrument;
 
 IMK_END_C

@@ -24,7 +24,7 @@ IMK_API bool imk_plot_available(void);
 IMK_API imk_status imk_figure_write(const imk_figure *figure, const char *path, imk_error *error);
 
 /** Write an animation to a file whose name ends in .svg.
- *  @return as imk_animation_svg(); IMK_ERROR_FORMAT (another ending), _OPEN, _WRITE */
+ *  @return errors of imk_animation_svg(); IMK_ERROR_FORMAT (another ending), _OPEN, _WRITE */
 IMK_API imk_status imk_animation_write(const imk_animation *animation, const char *path,
                                        imk_error *error);
 

@@ -14,13 +14,13 @@
  *  t) is taken out in a fixed number of steps, which imk_correction_start() has proven to be
  *  enough,
  *
- *      x <- W d - J+ n(x, t),
+ *      x <- W d - J+ n(x, t).
  *
  *  This is the iteration of correct.h in another order.
  *
  *  Terms that cannot be corrected sample by sample stay in the reading: lever arms (they need the
  *  angular acceleration), warm-up and the rate of temperature (they need time). Theory:
- *  docs/theory/compensation.md. firmware_file.h writes it as C code. */
+ *  docs/theory/compensation.md. firmware_file.h writes the list as C code. */
 #ifndef IMUKIT_FIRMWARE_H
 #define IMUKIT_FIRMWARE_H
 
@@ -81,7 +81,7 @@ typedef struct imk_firmware_term {
 typedef struct imk_firmware_operation {
     imk_firmware_kind kind;
     imk_firmware_role role;
-    /** step: number of the iteration, from 1, or power of t in a polynomial */
+    /** `step`: number of the iteration, from 1, or power of t in a polynomial. */
     int sensor, axis, step;
     int a, b;                      /**< operands of clip, size and product; else -1 */
     int first, count;              /**< terms of a sum */
@@ -115,7 +115,7 @@ enum { IMK_FIRMWARE_OPERATIONS_MAX = 768, IMK_FIRMWARE_TERMS_MAX = 4096 };
 typedef struct imk_firmware {
     uint32_t cookie;
     imk_firmware_arithmetic arithmetic;
-    /** The terms taken out: the model without the terms that cannot be corrected */
+    /** The terms taken out: the model without the terms that cannot be corrected. */
     imk_model model;
     imk_correction correction; /**< correction of that model, to the tolerance of the plan */
     int axis_count[2], output_count[2];

@@ -62,8 +62,8 @@ typedef struct imk_graded {
     imk_grade next;  /**< the next better class; IMK_GRADE_NONE: it is the best */
     double next_all; /**< the next class is reached if every source is multiplied by this */
     size_t need_count;
-    /** Sources that reach it alone, each with the factor by which it must be reduced, the
-     *  largest factor first */
+    /** Sources that reach it alone, each with the factor by which it must be reduced, the largest
+     *  factor first. */
     imk_grade_share need[IMK_GRADE_SHARES];
     size_t need_more; /**< number of further such sources */
     size_t omitted_count;

@@ -33,9 +33,9 @@ IMK_API imk_identify_curve_settings imk_identify_curve_default(void);
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_identify_log_free(), also after a failure, because it then holds
  *                 the findings; NULL if there was no memory for it
- *  @return what the source returns; IMK_ERROR_MEMORY, IMK_ERROR_RANGE (rate, duration); with a
- *          finding that says why: IMK_ERROR_FORMAT (not such a table), IMK_ERROR_TOO_SHORT (fewer
- *          than four tau), and what imk_allan_fit_table() returns */
+ *  @return errors of the source; IMK_ERROR_MEMORY, IMK_ERROR_RANGE (rate, duration); with a finding
+ *          that says why: IMK_ERROR_FORMAT (not such a table), IMK_ERROR_TOO_SHORT (fewer than four
+ *          tau), and errors of imk_allan_fit_table() */
 IMK_API imk_status imk_identify_curve_run(const imk_record_source *source,
                                           const imk_identify_curve_settings *settings,
                                           const imk_job *job, imk_identify_log **result,

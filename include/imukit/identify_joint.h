@@ -22,7 +22,7 @@ IMK_API size_t imk_spectral_summary_size(void);
 
 /** How well the records agree with the joint model. */
 typedef struct imk_joint_agreement {
-    /** twice the gain in log-likelihood when each record has its own strengths */
+    /** Twice the gain in log-likelihood when each record has its own strengths. */
     double chi_square;
     size_t degrees;     /**< number of common strengths x (records - 1) */
     double probability; /**< probability of a chi-square this large by chance */
@@ -63,9 +63,9 @@ typedef struct imk_population {
     double mean, mean_lower, mean_upper;       /**< mean of the population, and its interval */
     double spread, spread_lower, spread_upper; /**< standard deviation between the members; upper is
                                                     infinite where nothing bounds it */
-    /** of the members about a common value, with count - 1 degrees of freedom */
+    /** Of the members about a common value, with count - 1 degrees of freedom. */
     double chi_square;
-    /** probability of a chi-square this large by chance if there is no spread */
+    /** Probability of a chi-square this large by chance if there is no spread. */
     double probability;
 } imk_population;
 

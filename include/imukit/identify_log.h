@@ -35,7 +35,7 @@ typedef struct imk_identify_log_settings {
 /** 95 % intervals, terms at 1 % significance, gaps kept as gaps, all faults taken out. */
 IMK_API imk_identify_log_settings imk_identify_log_default(void);
 
-/** What the figures were identified from. */
+/** Origin of the figures. */
 typedef enum imk_identify_origin {
     IMK_IDENTIFY_RECORD = 0,
     IMK_IDENTIFY_RECORDS, /**< several records together (identify_several.h): samples are not
@@ -61,9 +61,9 @@ typedef struct imk_identify_log {
  *  @param job     NULL: one thread, no progress, the memory of the C library
  *  @param result  free it with imk_identify_log_free(), also after a failure, because it then holds
  *                 the findings; NULL if there was no memory for it
- *  @return as imk_even_record_load(), imk_identify_channel() (error.field: the channel); with a
- *          finding that says why: IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP (from_allan needs every
- *          sample) */
+ *  @return errors of imk_even_record_load(), imk_identify_channel() (error.field: the channel);
+ *          with a finding that says why: IMK_ERROR_CONSTANT, _TOO_SHORT, _GAP (from_allan needs
+ *          every sample) */
 IMK_API imk_status imk_identify_log_run(const imk_record_source *source,
                                         const imk_identify_log_settings *settings,
                                         const imk_job *job, imk_identify_log **result,

@@ -81,7 +81,7 @@ typedef struct imk_identify_requirement {
     int term;        /**< imk_noise_term, or IMK_NOISE_TERMS + i for Gauss-Markov term i */
     bool time;       /**< true: the correlation time of a Gauss-Markov term, not its sigma */
     double relative; /**< required sigma/value; 0: no such requirement */
-    /** Required probability of being called present, < 1; 0: no such requirement */
+    /** Required probability of being called present, < 1; 0: no such requirement. */
     double detection;
 } imk_identify_requirement;
 

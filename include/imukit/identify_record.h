@@ -20,7 +20,7 @@ IMK_BEGIN_C
 
 enum {
     IMK_IDENTIFY_RECORD_LEAST = 1 << 19, /**< least number of samples of a record */
-    /** up to so many samples, use imk_identify_channel() */
+    /** Up to so many samples, use imk_identify_channel() */
     IMK_IDENTIFY_RECORD_ADVISED = 1 << 21
 };
 

@@ -17,7 +17,7 @@ IMK_BEGIN_C
  *  term is absent. */
 typedef struct imk_device_strength {
     bool present;
-    double value, sigma, bound;
+    double value, sigma, bound; /**< bound: upper bound, if the term is absent */
     double square, square_sigma;
 } imk_device_strength;
 
@@ -38,7 +38,7 @@ typedef struct imk_device_term {
 typedef struct imk_identify_several {
     bool runs; /**< true: runs of one sensor; false: different sensors */
     size_t count;
-    /** logs compared; they belong to the caller */
+    /** Logs compared; they belong to the caller. */
     const imk_identify_log *log[IMK_JOINT_RECORDS_MAX];
     /** Channels of the first record, number of rows of the longest, total duration of all. For runs
      *  also the joint estimate and the pooled Allan deviations. */

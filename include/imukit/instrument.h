@@ -29,9 +29,9 @@ IMK_BEGIN_C
 
 enum { IMK_INSTRUMENT_OUTPUTS_MAX = 8, IMK_INSTRUMENT_SIGNALS_MAX = 16, IMK_VIEW_CURVES_MAX = 4 };
 
-/** What an instrument is exposed to, in the axes of its case: x is the input axis of a single-axis
- *  instrument; each header names y and z. It is constant over a step. A step does not check the
- *  ranges: beyond them the readings are meaningless, but a step takes no longer. */
+/** Motion and temperature of an instrument, in the axes of its case: x is the input axis of a
+ *  single-axis instrument; each header names y and z. It is constant over a step. A step does not
+ *  check the ranges: beyond them the readings are meaningless, but a step takes no longer. */
 typedef struct imk_exposure {
     double angular_rate[3];         /**< of the case in inertial space, up to 1e6 [rad/s] */
     double angular_acceleration[3]; /**< [rad/s^2] */
@@ -111,7 +111,7 @@ typedef struct imk_view {
     double duration;            /**< [s] */
     double rate;                /**< sampling rate of the figure [Hz] */
     double settle;              /**< time simulated before the figure begins [s] */
-    /** Default input of the figure: rate [rad/s] or specific force [m/s^2] along x */
+    /** Default input of the figure: rate [rad/s] or specific force [m/s^2] along x. */
     double input;
     bool points; /**< drawn as separate points, because the signals jump */
 } imk_view;

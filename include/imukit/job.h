@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file job.h
- *  What all jobs have in common: memory, threads, progress, and findings as data.
+ *  Common parts of all jobs: memory, threads, progress, and findings as data.
  *
  *  A job does for a program what a verb of the command does for a person. It takes settings and a
  *  record source (record.h) and gives a result, which one function frees. It opens no file and
@@ -29,13 +29,14 @@ typedef bool (*imk_job_progress)(void *context, const char *stage, const char *u
 /** How a job runs. A structure of zeros is valid: one thread, the memory of the C library, no
  *  progress and no limit. */
 typedef struct imk_job {
-    imk_allocator allocator;
+    imk_allocator allocator;      /**< memory of results and workspaces */
     const imk_executor *executor; /**< NULL: one thread */
     imk_job_progress progress;    /**< NULL: progress is not reported */
     void *progress_context;
     size_t memory; /**< bytes that a record may take as a whole; 0: no limit */
 } imk_job;
 
+/** Severity of a finding. */
 typedef enum imk_finding_level {
     IMK_FINDING_GOOD = 0,
     IMK_FINDING_NOTE,
@@ -50,10 +51,11 @@ typedef struct imk_finding {
     const char *code; /**< "jitter", "compensate:gaps"; a constant string */
     imk_finding_level level;
     char name[96]; /**< the channel concerned, or another word; may be "" */
-    /** numbers of the message; the code decides their meaning */
+    /** Numbers of the message; the code decides their meaning. */
     double number[IMK_FINDING_NUMBERS];
 } imk_finding;
 
+/** The findings of a job in the order in which it noticed them. */
 typedef struct imk_findings {
     size_t count;
     imk_finding item[IMK_FINDINGS_MAX];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file memory_limit.h
- *  How much memory there is. */
+ *  How much memory the process may use. */
 #ifndef IMUKIT_MEMORY_LIMIT_H
 #define IMUKIT_MEMORY_LIMIT_H
 

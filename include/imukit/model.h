@@ -81,7 +81,7 @@ typedef struct imk_nonlinearity {
     imk_rows cross_products; /**< accelerometer: Kip, Kio, Kpo of input, pendulous, output axes
                                 [1/unit] */
     /** Pendulous axis for cross_products, in the body frame, unit norm, perpendicular to the
-     *  direction; zeros: default axis, see distort.h. The output axis is pendulous x input */
+     *  direction; zeros: default axis, see distort.h. The output axis is pendulous x input. */
     double pendulous_axis[IMK_AXES_MAX][3];
 } imk_nonlinearity;
 
@@ -152,7 +152,7 @@ typedef struct imk_interval {
     char key[48]; /**< dotted path in the triad: "noise.bias_instability" */
     int instance; /**< index in a list term ("noise.gauss_markov.sigma"), from 0; else 0 */
     /** Ends of the interval, in value[] [unit of the parameter]; for an axis without the term,
-     *  lower is 0 and upper the bound. sigma[] is not used */
+     *  lower is 0 and upper the bound. sigma[] is not used. */
     imk_axes lower, upper;
 } imk_interval;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file motion.h
- *  True motion and temperature: trajectories, and what perfect sensors on them read.
+ *  True motion and temperature: trajectories, and the readings of perfect sensors on them.
  *
  *  A trajectory is a chain of pieces, each a polynomial in time of the position in Earth-fixed axes
  *  and of the attitude quaternion. Everything else follows by differentiation, so the truth is
@@ -9,11 +9,11 @@
  *
  *      w = C_be w_ie + 2 vec(q* q')/|q|^2,       f = C_be (r'' + 2 w_ie x r' - g(r)),
  *
- *  q being q_eb up to its norm, and g the normal gravity of earth.h. Scripts (motion_script.h) and
- *  tables of poses compile into pieces; a body at rest is one piece.
+ *  where q is q_eb up to its norm and g is the normal gravity of earth.h. Scripts (motion_script.h)
+ *  and tables of poses compile into pieces; a body at rest is one piece.
  *
- *  Time is a pure argument: samples may be taken at any times, in any order, on any thread, and the
- *  bits do not depend on it. Only + - * / sqrt (and imk_sin, imk_cos for vibration). */
+ *  Functions of time have no state: samples may be taken at any times, in any order, on any thread,
+ *  with the same bits. Only + - * / sqrt (and imk_sin, imk_cos for vibration) are used. */
 #ifndef IMUKIT_MOTION_H
 #define IMUKIT_MOTION_H
 
@@ -88,31 +88,31 @@ IMK_API imk_status imk_trajectory_standstill(imk_geodetic place, const double ro
                                              bool earth, imk_trajectory_piece *piece,
                                              imk_trajectory *trajectory, imk_error *error);
 
-/** Check numbers, order and continuity of pieces, and lines. What may jump where pieces meet is far
- *  above rounding and below what sensors see: 1e-7 rad, 1e-6 m, m/s and rad/s, 1e-4 m/s^2, and a
- *  part of 1e-9 (position, velocity), 1e-6 or 1e-4 of the quantity.
+/** Check numbers, order and continuity of pieces, and lines. The jumps allowed where pieces meet
+ *  are far above rounding errors and below the resolution of sensors: 1e-7 rad, 1e-6 m, m/s and
+ *  rad/s, 1e-4 m/s^2, and a part of 1e-9 (position, velocity), 1e-6 or 1e-4 of the quantity.
  *  @return IMK_ERROR_EMPTY, _NOT_FINITE, _RANGE, _TIME_ORDER, _CONFLICT (a jump), _ARGUMENT (too
  *          many lines); error.index is the piece or line */
 IMK_API imk_status imk_trajectory_validate(const imk_trajectory *trajectory, imk_error *error);
 
-/** First and last instant [s]; an endless one ends at infinity. */
+/** First and last instant of a trajectory [s]; an endless trajectory ends at infinity. */
 IMK_API void imk_trajectory_span(const imk_trajectory *trajectory, double *first, double *last);
 
-/** State at one instant; before the start and after the end the body rests where it began or
- *  stopped (attitude and position held). At the end itself it is still under way. Without Earth,
- *  place is zero and c_nb, velocity_ned are in the axes of the trajectory. About 0.4 us. */
+/** State at one instant; before the start and after the end the body is at rest where it began or
+ *  stopped. At the end itself it is still moving. Without Earth, place is zero and c_nb,
+ *  velocity_ned are in the axes of the trajectory. About 0.4 us. */
 IMK_API void imk_trajectory_state(const imk_trajectory *trajectory, double time,
                                   imk_motion_state *state);
 
-/** What perfect sensors read over intervals: means of angular rate and specific force, and of the
+/** Readings of perfect sensors over intervals: means of angular rate and specific force, and of the
  *  angular acceleration (the difference of the rates at the ends, divided by the interval).
  *
  *  Integrated by Gauss-Lobatto quadrature with five nodes between the ends of intervals and pieces:
  *  the relative error is below 1e-12 when in an interval the body turns less than 0.3 rad, travels
  *  less than 1 km and vibrates less than a sixteenth of a cycle (imk_trajectory_substeps(); at a
- *  quarter it is 3e-8). A constant is met exactly: a body at rest reads what
- *  imk_trajectory_state() says, to the bit. The bits of a sample do not depend on the others asked
- *  for with it. At rest outside the span the lines of vibration go on.
+ *  quarter it is 3e-8). A constant is met exactly: a body at rest reads what imk_trajectory_state()
+ *  says, to the bit. The bits of a sample do not depend on the other samples of the call. Before
+ *  the start and after the end, vibration continues.
  *
  *  Cost at 2.7 GHz: 50 ns a sample with AVX-512, 75 with AVX2, 155 scalar, and 40, 60, 125 where no
  *  power is above the third, as in tables of poses; about twice that where each sample has its own
@@ -126,24 +126,25 @@ IMK_API void imk_trajectory_means(const imk_trajectory *trajectory, imk_kernel k
                                   const double *boundary, double *const rate[3],
                                   double *const acceleration[3], double *const force[3]);
 
-/** Into how many equal parts an interval `dt` must be divided so that each vibration is resolved:
- *  at least 16 per cycle of the highest line, 1 without vibration. */
+/** Number of equal parts into which an interval `dt` must be divided to resolve each vibration: at
+ *  least 16 per cycle of the highest line, 1 without vibration. */
 IMK_API size_t imk_trajectory_substeps(const imk_trajectory *trajectory, double dt);
 
 /* ---- tables of poses --------------------------------------------------------------------------
  */
 
-/** Pieces through a table of poses: C2 cubic splines of the Earth-fixed position (relative to the
- *  first one, so no digits are lost) and of the quaternion components, natural ends ("not-a-knot"
- *  from four poses on).
+/** Make the pieces of a trajectory through a table of poses: C2 cubic splines of the Earth-fixed
+ *  position (relative to the first one, so no digits are lost) and of the quaternion components,
+ *  natural ends ("not-a-knot" from four poses on).
  *
- *  @param time       count increasing times [s], 1e-9 … 1e9 apart
- *  @param position   3 arrays, Earth-fixed relative to `origin` [m]
- *  @param attitude   count unit quaternions q_eb; signs do not matter
- *  @param piece      count - 1 pieces
+ *  @param time      count increasing times [s], 1e-9 … 1e9 apart
+ *  @param position  3 arrays, Earth-fixed relative to `origin` [m]
+ *  @param attitude  count unit quaternions q_eb; signs do not matter
+ *  @param piece     count - 1 pieces
  *  @return IMK_ERROR_TOO_SHORT (fewer than two), IMK_ERROR_TIME_ORDER (error.index: the row),
- *          IMK_ERROR_NOT_FINITE, IMK_ERROR_WORKSPACE, IMK_ERROR_RANGE (a step of time; two
- *          attitudes more than 120 deg apart: the turn between them is not known) */
+ *          IMK_ERROR_NOT_FINITE, IMK_ERROR_WORKSPACE, IMK_ERROR_RANGE (a time step; or two
+ *          successive attitudes differ by more than 120 deg, so the turn between them is not known)
+ */
 IMK_API imk_status imk_trajectory_from_poses(size_t count, const double *time,
                                              const double *const position[3],
                                              const imk_quaternion *attitude,
@@ -155,16 +156,17 @@ IMK_API size_t imk_trajectory_poses_workspace_size(size_t count);
 /* ---- vibration ---------------------------------------------------------------------------------
  */
 
-/** Lines that stand for a random vibration of a one-sided acceleration density, given at corner
- *  frequencies and log-log straight between them (as in MIL-STD-810). The band is cut into parts of
- *  equal power; each part is one line at a random frequency within it, with random phase, so that
- *  the record never repeats and its density is the given one at the resolution of the parts.
+/** Make vibration lines that represent a random vibration. Its one-sided acceleration density is
+ *  given at corner frequencies, with straight lines between them on log-log axes (as in
+ *  MIL-STD-810). The band is cut into parts of equal power; each part is one line at a random
+ *  frequency within it, with random phase, so the record never repeats, and its density is as
+ *  given, at the resolution of the parts.
  *
- *  @param axis       0 … 2
- *  @param corners    >= 2; frequency [Hz] increasing, 1e-6 … 1e9; density [(m/s^2)^2/Hz], 1e-100 …
- *                    1e100
- *  @param line_count how many lines to make, 8 … IMK_VIBRATION_LINES_MAX
- *  @param stream     of the random source: another one is another draw */
+ *  @param axis        0 … 2
+ *  @param corners     >= 2; frequency [Hz] increasing, 1e-6 … 1e9; density [(m/s^2)^2/Hz], 1e-100 …
+ *                     1e100
+ *  @param line_count  how many lines to make, 8 … IMK_VIBRATION_LINES_MAX
+ *  @param stream      stream of the random source: each stream is another draw */
 IMK_API imk_status imk_vibration_from_density(int axis, size_t corners, const double *frequency,
                                               const double *density, imk_random random,
                                               uint64_t stream, size_t line_count,
@@ -173,35 +175,35 @@ IMK_API imk_status imk_vibration_from_density(int axis, size_t corners, const do
 /* ---- temperature --------------------------------------------------------------------------------
  */
 
-/** Temperature of a unit: surroundings that are straight lines between points, followed with a
- *  time constant, T' = (surroundings - T)/time_constant, or at once when it is 0. It starts in
- *  balance with the first point; before it and after the last point the surroundings are constant.
- */
+/** Temperature of a unit. The temperature of the surroundings is linear between points and constant
+ *  before the first and after the last one. The unit follows with a time constant, T' =
+ *  (surroundings - T)/time_constant, or at once when it is 0. It starts in equilibrium with the
+ *  first point. */
 typedef struct imk_temperature_profile {
     size_t point_count;        /**< >= 1 */
     const double *time;        /**< increasing [s]; equal times are a step */
     const double *temperature; /**< [K], > 0 */
     double time_constant;      /**< [s], 0 or >= 1e-9 */
-    const double *carried;     /**< NULL, or what imk_temperature_carry() made, for long profiles */
+    const double *carried;     /**< result of imk_temperature_carry(), for long profiles; or NULL */
 } imk_temperature_profile;
 
 /** Check numbers and order of the points. */
 IMK_API imk_status imk_temperature_validate(const imk_temperature_profile *profile,
                                             imk_error *error);
-/** Temperature of the unit at each point, point_count values, for `carried`: then every call of
- *  imk_temperature_at() finds its first point at once. The values are the same without. */
+/** Compute the temperature of the unit at each point, point_count values, for `carried`. It makes
+ *  imk_temperature_at() faster, with the same values. */
 IMK_API void imk_temperature_carry(const imk_temperature_profile *profile, double *carried);
 
-/** Temperature [K] and its rate [K/s] at `count` increasing times. The solution is carried exactly
- *  from point to point: from the first one in each call, unless the profile has it `carried`. At
- *  the time of a step the surroundings are those after it. @param rate may be NULL */
+/** Temperature [K] and its rate [K/s] at `count` increasing times. The solution is exact from point
+ *  to point; each call starts at the first point, unless the profile has `carried`. At the time of
+ *  a step, the surroundings are those after the step. @param rate  may be NULL */
 IMK_API void imk_temperature_at(const imk_temperature_profile *profile, size_t count,
                                 const double *time, double *temperature, double *rate);
 
-/* ---- what the simulator takes ------------------------------------------------------------------
+/* ---- input of the simulator --------------------------------------------------------------------
  */
 
-/** True rates and forces from elsewhere: means over equal intervals. */
+/** True rates and forces from another source: means over equal intervals. */
 typedef struct imk_recorded_motion {
     size_t count;
     double rate; /**< [Hz] */

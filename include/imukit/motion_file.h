@@ -10,7 +10,7 @@
 
 IMK_BEGIN_C
 
-/** What a file holds. Owns everything its motion points to. */
+/** The content of a motion file. It owns everything that its motion points to. */
 typedef struct imk_motion_file imk_motion_file;
 
 typedef enum imk_motion_kind {
@@ -22,13 +22,13 @@ typedef enum imk_motion_kind {
 /** Read a motion file: a script when the name ends in .yaml, .yml or .json or the content begins as
  *  one, else a log with columns
  *
- *   - time, latitude, longitude, height (or x, y, z: local north-east-down [m] with the place given
- *     in `place`; or ecef_x …), and roll, pitch, yaw or q_w, q_x, q_y, q_z (q_nb): poses. Without
- *     positions the body stays at the place, without attitudes it is level and heads north; other
- *     columns are ignored: imk_motion_file_note() says so;
- *   - gyro_x … accel_z (any names imk_log_open() knows): true rates and forces, in equal steps.
+ *  - time, latitude, longitude, height (or x, y, z: local north-east-down [m] with the place given
+ *    in `place`; or ecef_x …), and roll, pitch, yaw or q_w, q_x, q_y, q_z (q_nb): poses. Without
+ *    positions the body stays at the place, without attitudes it is level and heads north; other
+ *    columns are ignored, as imk_motion_file_note() tells;
+ *  - gyro_x … accel_z (any names imk_log_open() knows): true rates and forces, in equal steps.
  *
- *  Time 0 of the motion is the first row of a table, which its column of time need not call 0.
+ *  Time 0 of the motion is the first row of a table, whatever its time column says.
  *
  *  @param settings  how to read a table; NULL: from its header
  *  @param place     of local coordinates and default of a script; NULL: 45 deg north, 0 deg east
@@ -37,39 +37,40 @@ typedef enum imk_motion_kind {
 IMK_API imk_status imk_motion_read(const char *path, const imk_log_settings *settings,
                                    const imk_geodetic *place, uint64_t seed, imk_motion_file **file,
                                    imk_error *error);
-/** A script from memory. */
+/** As imk_motion_read(), for a script in memory. */
 IMK_API imk_status imk_motion_parse(const char *text, size_t size, const imk_geodetic *place,
                                     uint64_t seed, imk_motion_file **file, imk_error *error);
 /** Free a file and everything its motion points to; NULL is allowed. */
 IMK_API void imk_motion_file_free(imk_motion_file *file);
 
-/** What the file turned out to be. */
+/** Kind of the file. */
 IMK_API imk_motion_kind imk_motion_file_kind(const imk_motion_file *file);
-/** What the simulator takes; lives as long as the file. */
+/** Motion for the simulator; valid until the file is freed. */
 IMK_API const imk_motion *imk_motion_file_motion(const imk_motion_file *file);
-/** Length [s]; infinite when it ends at rest and is a script that says `then: hold`; else where the
- *  script or table ends. */
+/** Length of the motion [s]: end of the script or table; infinite for a script that ends at rest
+ *  with `then: hold`. */
 IMK_API double imk_motion_file_duration(const imk_motion_file *file);
 /** Name of a script ("" when it has none). */
 IMK_API const char *imk_motion_file_name(const imk_motion_file *file);
 
-/** Text of a script as it was read; NULL of a table. */
+/** Text of a script as it was read; NULL for a table. */
 IMK_API const char *imk_motion_file_text(const imk_motion_file *file);
 
-/** What was assumed for columns that are missing, and that columns were not used; "" when nothing
- *  was. */
+/** A note about assumptions for missing columns, and about columns not used; "" if there is none.
+ */
 IMK_API const char *imk_motion_file_note(const imk_motion_file *file);
 
 /** A temperature profile. */
 typedef struct imk_temperature_file imk_temperature_file;
-/** Read one: a YAML script of the steps start, ramp, soak, step; a log with the columns time (0 is
- *  its first row) and temperature; or, when `path` is a quantity such as "25degC" and no file, a
- *  constant. @return errors of the readers with line and column, of tables with the row */
+/** Read a temperature profile: a YAML script of the steps start, ramp, soak, step; a log with the
+ *  columns time (0 is its first row) and temperature; or, if `path` is a quantity such as "25degC"
+ *  and not a file, a constant. @return errors of the readers with line and column, of tables with
+ *  the row */
 IMK_API imk_status imk_temperature_read(const char *path, imk_temperature_file **file,
                                         imk_error *error);
 /** Free a file and its profile; NULL is allowed. */
 IMK_API void imk_temperature_file_free(imk_temperature_file *file);
-/** What imk_temperature_at() takes; lives as long as the file. */
+/** Profile for imk_temperature_at(); valid until the file is freed. */
 IMK_API const imk_temperature_profile *
 imk_temperature_file_profile(const imk_temperature_file *file);
 

@@ -109,13 +109,14 @@ IMK_API void imk_strapdown_invert(const imk_navigation_state *from, const imk_na
 
 /* ---- many samples at once ----------------------------------------------------------------------
  *
- * In two speeds [SAVAGE1998a, SAVAGE1998b]: samples are gathered into blocks of 2 to 32, up to
- * 0.4 s where that is two or more, in axes that keep the attitude the body had when the block
- * began. There its turn and the integrals of the force are found pair by pair of samples, the turn
- * exact, with the coning and sculling of the straight lines through the two: of coning with phase x
- * per sample x^2/20 is missed. The Earth (gravity, Coriolis, its own turn, the vertical channel)
- * acts once per block. Errors are of fourth order in a pair and of third in a block: on the drive
- * of 10 minutes at 100 Hz some micrometres, and 1e-6 of what the sensors' errors do. */
+ * The computation has two speeds [SAVAGE1998a, SAVAGE1998b]. Samples are gathered into blocks of 2
+ * to 32 samples, up to 0.4 s where that is two or more. Within a block, the axes are those of the
+ * body at the block's start. In these axes the rotation and the integrals of the force are computed
+ * for each pair of samples, with exact rotations, and with the coning and sculling of straight
+ * lines through the two samples: of coning with phase x per sample, x^2/20 is missed. The Earth
+ * (gravity, Coriolis, its rotation, the vertical channel) acts once per block. Errors are of fourth
+ * order in a pair and of third in a block: on the drive of 10 minutes at 100 Hz some micrometres,
+ * and 1e-6 of the effect of the sensors' errors. */
 
 /** Take `count` samples of equal length at once, in blocks; if `samples` is not 3, by
  *  imk_strapdown_step(). On return `state` is that after the last sample. The bits do not depend on

@@ -38,8 +38,8 @@ typedef struct imk_navigate_log_settings {
     double attitude_sigma[3];
     const imk_model *model; /**< errors of the sensors; must outlive the result; NULL: not known */
     const char *model_name; /**< its name in findings; must outlive the result */
-    /** stops used for zero-velocity updates; needs a model; default IMK_STOPS_NONE. The
-     *  alignment shows what the readings at rest look like */
+    /** Stops used for zero-velocity updates; needs a model; default IMK_STOPS_NONE. The alignment
+     *  shows what the readings at rest look like. */
     imk_stop_policy stops;
     double stop_period, stop_length; /**< of the timetable [s] */
     double still_velocity; /**< 1 sigma of the velocity of a stationary unit, such as vibration
@@ -49,7 +49,7 @@ typedef struct imk_navigate_log_settings {
     int samples;           /**< samples of the coning and sculling algorithms, 1 … 4; default 3 */
     double interval;       /**< between rows of the track [s]; default 1 */
     double standard_gravity; /**< the value of g in columns in g, mg or ug; default 9.80665 m/s^2 */
-    /** the track written as a record includes the acceleration; default false */
+    /** The track written as a record includes the acceleration; default false. */
     bool gravity_free;
 } imk_navigate_log_settings;
 

@@ -17,9 +17,9 @@
  *
  *  It is fixed for ever which normal random number drives which sample. Recursions run over 16
  *  segments of a block of 512 samples at a time, so white noise, random walk, Gauss-Markov and the
- *  two fastest flicker stages drive sample 512 b + 32 s + i (s < 16, i < 32) by normal 512 b + 16 i
- *  + s; the ARMA sequences drive sample k by normal k. Normals 2^63 and up of the same stream draw
- *  stationary starting values, words 3 * 2^62 and up starting phases.
+ *  two fastest flicker stages drive sample 512 b + 32 s + i (s < 16, i < 32) by normal 512 b + 16
+ *  i + s; the ARMA sequences drive sample k by normal k. Normals 2^63 and up of the same stream
+ *  draw stationary starting values, words 3 * 2^62 and up starting phases.
  *
  *  Every `_start` takes dt [s] > 0 and returns IMK_ERROR_NOT_FINITE for a parameter that is not
  *  finite and IMK_ERROR_RANGE for one outside its range; the state is then unchanged. The formulas
@@ -130,16 +130,16 @@ typedef struct imk_low_pass {
     double damping;   /**< damping ratio of a second-order filter, 0.05 … 50; 0: first order */
 } imk_low_pass;
 
-/** Allan variance at tau = n dt of the filtered noise. Relative error < 1e-9 for bandwidth * dt >
- *  1e-5. Takes about 5 us. */
+/** Allan variance at tau = n dt of the filtered noise. Relative error < 1e-9 for bandwidth *
+ *  dt > 1e-5. Takes about 5 us. */
 IMK_API double imk_filtered_white_sampled_allan_variance(double density, imk_low_pass filter,
                                                          double dt, size_t n);
 /** Spectrum of the filtered noise. Every call designs the sequence anew (about 5 us); for many
  *  frequencies call imk_filtered_white_arma() once and imk_arma_spectrum() for each. */
 IMK_API double imk_filtered_white_sampled_spectrum(double density, imk_low_pass filter, double dt,
                                                    double frequency);
-/** Design the ARMA sequence of the filtered noise. @return IMK_ERROR_RANGE unless 1e-6 <= bandwidth
- *  * dt <= 1e6 or bandwidth is 0 */
+/** Design the ARMA sequence of the filtered noise. @return IMK_ERROR_RANGE unless
+ *  1e-6 <= bandwidth * dt <= 1e6 or bandwidth is 0 */
 IMK_API imk_status imk_filtered_white_arma(double density, imk_low_pass filter, double dt,
                                            imk_arma *arma);
 /** Start the filtered noise, stationary from sample 0; get samples by imk_arma_add(). @return
@@ -165,8 +165,8 @@ IMK_API double imk_flicker_sampled_allan_variance(double instability, double dt,
 /** Exact for the generated stages. */
 IMK_API double imk_flicker_sampled_spectrum(double instability, double dt, double frequency);
 /** Expected square, times dt, of cosine coefficient k (imk_cosine(), 1 <= k < n) of n samples: the
- *  spectrum at f = k/(2 n dt) less what the ends of a finite record take from it, which matters for
- *  processes with memories as long as the record: 22 % at k = 1, 1 % at k = 30. */
+ *  spectrum at f = k/(2 n dt) less an effect of the ends of a finite record. The effect matters for
+ *  processes that are correlated over the whole record: 22 % at k = 1, 1 % at k = 30. */
 IMK_API double imk_flicker_cosine_spectrum(double instability, double dt, size_t n, size_t k);
 
 enum { IMK_FLICKER_STAGES = 16, IMK_FLICKER_BUFFER = 64 };
@@ -304,7 +304,8 @@ IMK_API imk_status imk_resonance_start(imk_arma_state *state, imk_resonance reso
 
 /* ---- quantization of the integrated output -------------------------------------------------- */
 
-/** 3 Q^2/tau^2 [unit^2], for Q = LSB/sqrt(12) [unit s] and an input that changes by many LSB. */
+/** 3 Q^2/tau^2 [unit^2], for Q = LSB/sqrt(12) [unit s] and an input busy enough to make the
+ *  rounding errors independent. */
 IMK_API double imk_quantization_allan_variance(double q, double tau);
 /** 3 Q^2/tau^2, exact for independent rounding errors of the integral. */
 IMK_API double imk_quantization_sampled_allan_variance(double q, double dt, size_t n);

@@ -2,10 +2,9 @@
 /** @file parameter_file.h
  *  Sensor parameters in the formats of other programs, read into a model and written from one.
  *
- *  None of these formats carries units, and some leave open whether a density is one- or two-sided,
- *  a standard deviation per sample or per root hertz. What each value is taken for is said in the
- *  notes; what a format cannot hold is listed, never dropped silently. Docs: docs/other-formats.md.
- */
+ *  None of these formats states units. Some do not tell whether a density is one- or two-sided, or
+ *  whether a standard deviation is per sample or per root hertz. The notes say how each value was
+ *  interpreted, and list every value that a format cannot hold. See docs/other-formats.md. */
 #ifndef IMUKIT_PARAMETER_FILE_H
 #define IMUKIT_PARAMETER_FILE_H
 
@@ -32,21 +31,22 @@ typedef enum imk_parameter_format {
 /** Name of a format ("kalibr", "gazebo", "matlab", "gnss-ins-sim", "navego", "openvins", "vins",
  *  "px4", "ardupilot", "filter"); NULL beyond the last. */
 IMK_API const char *imk_parameter_format_name(imk_parameter_format format);
-/** Format of a name; IMK_PARAMETERS_UNKNOWN when there is none. */
+/** Format by its name; IMK_PARAMETERS_UNKNOWN when there is none. */
 IMK_API imk_parameter_format imk_parameter_format_find(const char *name);
-/** Format of a file by its name and content, IMK_PARAMETERS_UNKNOWN when it is none of them, or not
- *  there. A pipe is copied to a temporary file, which the next opening in this process reads.
+/** Detect the format of a file by its name and content: IMK_PARAMETERS_UNKNOWN if it has none of
+ *  these formats or does not exist. A pipe is copied to a temporary file, which is read when this
+ *  process opens the pipe next.
  *  @return IMK_ERROR_OPEN, IMK_ERROR_READ, IMK_ERROR_MEMORY */
 IMK_API imk_status imk_parameter_format_detect(const char *path, imk_parameter_format *format,
                                                imk_error *error);
 
 enum { IMK_PARAMETER_NOTES_MAX = 64 };
 
-/** What was assumed or left out: one message each. */
+/** Assumptions made and values left out: one message each. */
 typedef struct imk_parameter_notes {
     size_t count;
     struct imk_parameter_note {
-        bool lost; /**< left out; else assumed */
+        bool lost; /**< true: a value was left out; false: an assumption was made */
         char text[240];
     } note[IMK_PARAMETER_NOTES_MAX];
 } imk_parameter_notes;
@@ -54,43 +54,45 @@ typedef struct imk_parameter_notes {
 /** How to read or write. Start from imk_parameter_default(). */
 typedef struct imk_parameter_settings {
     uint32_t cookie;
-    imk_parameter_format format; /**< UNKNOWN: detect (reading); needed for writing */
-    /** [Hz], 1e-9 … 1e9; 0: not given. Needed where a format states noise per sample (Gazebo
-     *  without update_rate) or an infinite correlation time means white noise per sample
-     *  (gnss-ins-sim, NaveGo). In a VINS file it says that the numbers are per sample. */
+    imk_parameter_format format; /**< UNKNOWN: detected when reading; must be set for writing */
+    /** Sampling rate [Hz], 1e-9 … 1e9; 0: not given. Required if a format states noise per sample
+     *  (Gazebo without update_rate), or if an infinite correlation time means white noise per
+     *  sample (gnss-ins-sim, NaveGo). For a VINS file, a rate means that the numbers are per
+     *  sample. */
     double rate;
-    /** Of formats that leave it open: VINS (the numbers are densities, not per sample) and MATLAB
-     *  (instead of what imuSensor makes of them). UNSTATED: as the format's program takes it; where
-     *  that is not settled, refuse, naming the options. */
+    /** Kind of density in formats that do not state it: VINS (the numbers are then densities, not
+     *  per sample) and MATLAB (instead of the interpretation of imuSensor). UNSTATED: as the
+     *  format's program interprets it; if that is not defined, reading fails and names the options.
+     */
     imk_density density;
-    const char *sensor; /**< which of several sensors in the file; NULL: the only one */
+    const char *sensor; /**< name of one of several sensors in the file; NULL: there is only one */
     imk_filter_noise_settings filter; /**< writing FILTER: how bias instability is approximated */
 } imk_parameter_settings;
 /** Detect the format; no rate, density not stated; imk_filter_noise_default(). */
 IMK_API imk_parameter_settings imk_parameter_default(void);
 
-/** Read. @return IMK_ERROR_FORMAT (none of the formats), _KEY_MISSING (error.expected: the option
- *  to add), _KEY_UNKNOWN, _SYNTAX, _RANGE (a value that cannot be in the unit of the format: the
- *  message says which unit it looks like), … with line */
+/** Read a parameter file into a model.
+ *  @return IMK_ERROR_FORMAT (none of the formats), _KEY_MISSING (error.expected: the option to
+ *          add), _KEY_UNKNOWN, _SYNTAX, _RANGE (a value cannot be in the unit of the format; the
+ *          message names the likely unit), … with line */
 IMK_API imk_status imk_parameters_read(const char *path, const imk_parameter_settings *settings,
                                        imk_model *model, imk_parameter_notes *notes,
                                        imk_error *error);
-/** The same from memory. */
+/** As imk_parameters_read(), for a text in memory. */
 IMK_API imk_status imk_parameters_parse(const char *text, size_t size,
                                         const imk_parameter_settings *settings, imk_model *model,
                                         imk_parameter_notes *notes, imk_error *error);
-/** Write; comments in the file state every unit where the format has comments.
+/** Write a model as a parameter file. Comments state every unit, if the format has comments.
  *
- *  What was written is read back and compared with the model: whatever does not come back is noted
- *  as lost.
+ *  The file is read back and compared with the model; differences are noted as lost.
  *  @return IMK_ERROR_UNSUPPORTED when nothing of the model fits, _KEY_MISSING (error.expected: the
  *          option to add); errors of validation and of writing */
 IMK_API imk_status imk_parameters_write(const char *path, const imk_parameter_settings *settings,
                                         const imk_model *model, imk_parameter_notes *notes,
                                         imk_error *error);
 
-/** The same into memory obtained from malloc(), which the caller frees. `path` decides only
- *  between JSON (.json) and YAML where a format has both; NULL is YAML. */
+/** As imk_parameters_write(), into memory obtained from malloc(), which the caller frees. `path`
+ *  only decides between JSON (.json) and YAML if a format has both; NULL: YAML. */
 IMK_API imk_status imk_parameters_print(const char *path, const imk_parameter_settings *settings,
                                         const imk_model *model, char **text, size_t *size,
                                         imk_parameter_notes *notes, imk_error *error);

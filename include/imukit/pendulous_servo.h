@@ -9,13 +9,14 @@
  *      current i:  M_c = K_t i (1 + a i),    reading = i K_t,nominal/P
  *
  *  Case axes: x input, z pendulous (from the hinge to the mass at phi = 0), y = z x x output: the
- *  hinge. phi is positive when the mass is displaced towards -x, as a positive force does. The
- *  origin is the hinge, so that the reading is that of a point J/P along z, the centre of
- *  percussion. [LAWRENCE1998, IEEE1293]
+ *  hinge. phi is positive when the mass is displaced towards -x, as by a positive force. The origin
+ *  is the hinge, so the reading is the force at a point J/P along z, the centre of percussion.
+ *  [LAWRENCE1998, IEEE1293]
  *
- *  Full level: the linear loop by its exact propagator, the angle's part of the torque by symmetric
- *  kicks (error of second order in step x loop frequency, of the small part only). Slow level: the
- *  linear loop exactly, one step per sample; what the angle does to the torque is left out. */
+ *  Full level: the linear loop by its exact propagator, the torques that depend on the angle by
+ *  symmetric kicks (error of second order in step x loop frequency, of this small part only). Slow
+ *  level: the linear loop exactly, one step per sample; torques that depend on the angle are left
+ *  out. */
 #ifndef IMUKIT_PENDULOUS_SERVO_H
 #define IMUKIT_PENDULOUS_SERVO_H
 
@@ -47,18 +48,20 @@ typedef struct imk_pendulous_servo {
     double readout_step;          /**< of the sampled current [A], >= 0 */
     double pickoff_noise;         /**< n, two-sided [rad/sqrt(Hz)], >= 0 */
     double misalignment_y, misalignment_z; /**< of the input axis towards case y and z [rad] */
-    double temperature;                    /**< of the gas, and where errors are stated [K], > 0 */
+    double temperature; /**< temperature of the gas, at which errors are stated [K], > 0 */
 } imk_pendulous_servo;
 
 /** A quartz-flexure accelerometer of navigation grade, by the datasheet of Honeywell's QA-3000: 60
  *  g, 1.3 mA/g, bias 4 mg and 15 ug/K, repeatable to 40 ug, scale factor 120 ppm/K and 80 ppm,
- *  bandwidth above 300 Hz. Pendulum and loop are not published; they are chosen to give that. */
+ *  bandwidth above 300 Hz. Pendulum and loop are not published; they are chosen to give these
+ *  figures. */
 IMK_API imk_pendulous_servo imk_pendulous_servo_default(void);
 
-/** See imk_instrument. Besides single fields: the loop must be stable (K_i/(K_p + K_h) below b/J,
- *  by Routh's criterion, field controller.integral); the torquer holds the hinge's torque, its
- *  torque grows with the current, and its constant keeps its sign in every run: IMK_ERROR_CONFLICT.
- */
+/** Check a design: every field must be in its range, and the design possible: the loop must be
+ *  stable (K_i/(K_p + K_h) below b/J, by Routh's criterion, field controller.integral); the torquer
+ *  must balance the hinge's torque, its torque must grow with the current, and its constant must
+ *  keep its sign in every run.
+ *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
 IMK_API imk_status imk_pendulous_servo_validate(const imk_pendulous_servo *design,
                                                 imk_error *error);
 
@@ -68,10 +71,10 @@ IMK_API double imk_pendulous_servo_scale(const imk_pendulous_servo *design);
 /** Natural frequency of the captured pendulum, sqrt((K_p + K_h)/J)/(2 pi) [Hz]. */
 IMK_API double imk_pendulous_servo_frequency(const imk_pendulous_servo *design);
 
-/** Gain |M_c/(P f)| of the loop at a frequency [Hz]: 1 at 0 with integral action. */
+/** Gain |M_c/(P f)| of the loop at a frequency [Hz]: with integral action it is 1 at 0 Hz. */
 IMK_API double imk_pendulous_servo_gain(const imk_pendulous_servo *design, double frequency);
 
-/** Frequency at which that gain has fallen to 1/sqrt(2) [Hz]. */
+/** Bandwidth: frequency at which imk_pendulous_servo_gain() has fallen to 1/sqrt(2) [Hz]. */
 IMK_API double imk_pendulous_servo_bandwidth(const imk_pendulous_servo *design);
 
 /** Vibropendulous rectification: the mean reading of forces A cos(w t) along both x and z, divided
@@ -83,19 +86,19 @@ IMK_API double imk_pendulous_servo_rectification(const imk_pendulous_servo *desi
  *  2 k T b, readout, and pickoff against the hinge. */
 IMK_API double imk_pendulous_servo_noise(const imk_pendulous_servo *design);
 
-/** Q of the reading [m/s]: what the pickoff's noise and the Brownian torque leave in the pendulum's
- *  momentum, standard deviation of (J phi' + b phi)/P. The torque of a sample is the force's plus
- *  the difference of that between its ends, which is quantization noise by another cause. A model
- *  has either this or a resolution; reduce states the resolution where there is one. */
+/** Q of the reading [m/s]: standard deviation of (J phi' + b phi)/P, the momentum of the pendulum
+ *  caused by the pickoff's noise and the Brownian torque. The mean torque of a sample contains the
+ *  difference of this momentum between its ends, which acts as quantization noise. A model has
+ *  either this or a resolution; `reduce` states the resolution if there is one. */
 IMK_API double imk_pendulous_servo_quantization(const imk_pendulous_servo *design);
 
-/** See imk_instrument. Stated: fixed bias and what it does, scale factor, K2 of the torquer, the
- *  lever arm J/P, noise, bandwidth, range, resolution; where there is no integral action the share
- *  K_p/K of all that acts on the pendulum, K_ip, and the hinge torque's part of the misalignment.
- */
+/** The error model; the design must be valid. It states the fixed bias and its effects, scale
+ *  factor, K2 of the torquer, the lever arm J/P, noise, bandwidth, range and resolution. Without
+ *  integral action also: the share K_p/K of all that acts on the pendulum, K_ip, and the hinge
+ *  torque's part of the misalignment. */
 IMK_API void imk_pendulous_servo_reduce(const imk_pendulous_servo *design, imk_model *model);
 
-/** Output 1 is the current [A]; signals: angle, torque, current. */
+/** The instrument. Output 1 is the current [A]; signals: angle, torque, current. */
 IMK_API extern const imk_instrument imk_pendulous_servo_instrument;
 
 IMK_END_C

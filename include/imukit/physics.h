@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file physics.h
- *  Everything of libimukit-physics: the instruments and their laboratory. An instrument is here
- *  twice: with its header, and in the list of all. */
+ *  Everything of libimukit-physics: the instruments and their laboratory. Each instrument appears
+ *  twice: with its header, and in the list of all instruments. */
 #ifndef IMUKIT_PHYSICS_H
 #define IMUKIT_PHYSICS_H
 
@@ -21,8 +21,8 @@
 #include "imukit/tuning_fork.h"
 #include "imukit/vibrating_beam.h"
 
-/** Each kind by its name, imk_NAME_instrument being its description; in the order of the lecture:
- *  spinning mass, optical, vibratory, accelerometers. */
+/** List of all instruments by name; imk_NAME_instrument is the description. Order: spinning mass,
+ *  optical, vibratory, accelerometers. */
 #define IMK_INSTRUMENT_LIST(kind)                                                                  \
     kind(free_gyro) kind(rate_gyro) kind(rate_integrating_gyro) kind(tuned_gyro)                   \
         kind(suspended_rotor) kind(fibre_optic) kind(ring_laser) kind(tuning_fork)                 \

@@ -12,9 +12,9 @@
 
 IMK_BEGIN_C
 
-/** What the instrument is exposed to, as a function of time. */
+/** Exposure of the instrument as a function of time. */
 typedef struct imk_physics_input {
-    /** With a frequency, angular rate and specific force are amplitudes of a sine */
+    /** With a frequency, angular rate and specific force are amplitudes of a sine. */
     imk_exposure exposure;
     double frequency;        /**< frequency of the sine [Hz]; 0: rate and force are constant */
     double temperature_rate; /**< [K/s] */
@@ -25,7 +25,7 @@ typedef struct imk_physics_input {
 IMK_API imk_exposure imk_physics_input_at(const imk_physics_input *input, double rate,
                                           uint64_t index);
 
-/** An instrument, and what is done with it. Start from imk_physics_log_default(). */
+/** An instrument, and the settings of its jobs. Start from imk_physics_log_default(). */
 typedef struct imk_physics_log_settings {
     uint32_t cookie;
     const imk_instrument *instrument;
@@ -34,7 +34,7 @@ typedef struct imk_physics_log_settings {
     imk_physics_input input;
     double duration;    /**< length of the run [s] */
     double signal_rate; /**< rate of the rows of signals [Hz]; 0: as the rows of outputs */
-    /** Length and sampling rate of views [s], [Hz]; 0: as each view states */
+    /** Length and sampling rate of views [s], [Hz]; 0: as each view states. */
     double view_duration, view_rate;
     bool view_input; /**< true: views use `input`; false: the input that each view states */
 } imk_physics_log_settings;
@@ -69,9 +69,9 @@ typedef struct imk_physics_log {
  *  @param job              NULL: one thread, no progress, the memory of the C library
  *  @param result           free it with imk_physics_log_free(), also after a failure, because it
  *                          then holds the findings; NULL if there was no memory for it
- *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
+ *  @return errors of the instrument's init; IMK_ERROR_MEMORY, _CANCELLED, _RANGE (error.field
  *          "duration": no sample fits); with a finding that says why: IMK_ERROR_NOT_FINITE
- *          ("output_not_finite") and what the sinks return ("not_written") */
+ *          ("output_not_finite") and errors of the sinks ("not_written") */
 IMK_API imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                        const imk_record_sink *outputs,
                                        const imk_record_sink *signals, const imk_job *job,
@@ -98,8 +98,8 @@ typedef struct imk_physics_view {
 
 /** Run the instrument as its view `index` (from 0) states.
  *  @param view  free it with imk_physics_view_free(), also after a failure
- *  @return what the instrument's init returns; IMK_ERROR_MEMORY, _RANGE (error.field "view": too
- *          few points, or too many) */
+ *  @return errors of the instrument's init; IMK_ERROR_MEMORY, _RANGE (error.field "view": too few
+ *          points, or too many) */
 IMK_API imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t index,
                                         const imk_job *job, imk_physics_view *view,
                                         imk_error *error);
@@ -115,6 +115,7 @@ IMK_API bool imk_physics_view_moves(const imk_view *view);
 typedef struct imk_physics_sweep {
     imk_laboratory_result result;
     size_t count;
+    /** Figures by closed forms, and by experiments. */
     imk_laboratory_figure computed[IMK_LABORATORY_FIGURES_MAX], found[IMK_LABORATORY_FIGURES_MAX];
     imk_allocator allocator; /**< allocator of this structure */
 } imk_physics_sweep;

@@ -45,9 +45,9 @@ typedef struct imk_procedure_settings {
                                [rad]; 0: exact */
     double fixture_sigma;   /**< all procedures with a reference: 1 sigma of the unit's mounting on
                                its fixture or table [rad]; 0: exact */
-    /** Time left out at each end of a stretch of constant reference [s]; default 0.2 */
+    /** Time left out at each end of a stretch of constant reference [s]; default 0.2. */
     double trim;
-    /** Further time left out at the beginning, for filters to settle [s]; default 0 */
+    /** Further time left out at the beginning, for filters to settle [s]; default 0. */
     double settle;
     double steady_rate;  /**< largest variation of the reference within a stretch, per axis [rad/s];
                             default 1e-4 */
@@ -114,7 +114,7 @@ IMK_API imk_status imk_procedure_observe(imk_procedure procedure, imk_calibratio
                                          imk_procedure_findings *findings, void *workspace,
                                          size_t workspace_size, imk_error *error);
 
-/* ---- what looks wrong ---------------------------------------------------------------------------
+/* ---- diagnostics --------------------------------------------------------------------------------
  */
 
 /** Diagnostics of a log or a solution. `value` and `limit` are those of imk_diagnostic_finding. */

@@ -19,6 +19,7 @@ IMK_BEGIN_C
 
 enum { IMK_LOG_COLUMNS_MAX = 64 };
 
+/** What a column measures. */
 typedef enum imk_quantity {
     IMK_QUANTITY_OTHER = 0,
     IMK_QUANTITY_TIME,
@@ -50,13 +51,13 @@ typedef struct imk_log_findings {
     size_t not_finite, first_not_finite; /**< rows with a NaN, an infinity or an empty cell */
     size_t reversals, first_reversal;    /**< time steps < 0 */
     size_t repeats, first_repeat;        /**< time steps = 0 */
-    /** steps that leave samples out (imk_step_is_gap()); number of missing samples */
+    /** Steps that leave samples out (imk_step_is_gap()); number of missing samples. */
     size_t gaps, first_gap, missing;
     double interval;              /**< median time step, or 1/rate [s] */
     double jitter;                /**< rms deviation of the steps from the interval [s] */
     double first_time, last_time; /**< [s] */
     /** [s] subtracted from the times: the first one if beyond 1e6 s (clocks that count from an
-     *  epoch), so that microseconds keep their resolution; else 0 */
+     *  epoch), so that microseconds keep their resolution; else 0. */
     double time_origin;
 } imk_log_findings;
 
@@ -87,7 +88,7 @@ IMK_API int imk_record_find(const imk_record_source *source, imk_quantity quanti
  *  @return the column; its quantity is IMK_QUANTITY_OTHER for a name that is not known */
 IMK_API imk_log_column imk_record_column(const char *name);
 
-/** Rows in memory as a source. The arrays belong to the caller. */
+/** Rows in memory as a source. The arrays belong to the caller; the other fields are internal. */
 typedef struct imk_array_source {
     imk_log_column column[IMK_LOG_COLUMNS_MAX];
     const double *data[IMK_LOG_COLUMNS_MAX];

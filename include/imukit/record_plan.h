@@ -44,9 +44,10 @@ typedef struct imk_plan_parameter {
     double low, high; /**< smallest and largest value of the axes that have the term [SI] */
 } imk_plan_parameter;
 
+/** A requirement of settings.want. */
 typedef struct imk_plan_requirement {
-    char text[96];
-    size_t parameter;
+    char text[96];              /**< as it was stated */
+    size_t parameter;           /**< index in imk_record_plan.parameter */
     double relative, detection; /**< see imk_identify_requirement */
     double duration; /**< shortest record that meets the requirement [s]; infinite: none does */
 } imk_plan_requirement;
@@ -54,8 +55,8 @@ typedef struct imk_plan_requirement {
 /** How accurate the parameters from a record of one length will be. */
 typedef struct imk_plan_record {
     double duration; /**< length of the record [s] */
-    bool planned;
-    bool told; /**< false: too short or too long; the accuracy is then not known */
+    bool planned;    /**< true: the record of the planned length */
+    bool told;       /**< false: too short or too long; the accuracy is then not known */
     double relative[IMK_PLAN_PARAMETERS_MAX], detection[IMK_PLAN_PARAMETERS_MAX];
 } imk_plan_record;
 
@@ -67,9 +68,9 @@ typedef struct imk_record_plan {
     size_t parameter_count, requirement_count, record_count, curve_count;
     imk_plan_parameter parameter[IMK_PLAN_PARAMETERS_MAX]; /**< the gyros' first */
     imk_plan_requirement requirement[IMK_PLAN_REQUIREMENTS_MAX];
-    /** records of ten minutes to a day, and the planned one */
+    /** Records of ten minutes to a day, and the planned one. */
     imk_plan_record record[IMK_PLAN_RECORDS_MAX];
-    imk_plan_record curve[IMK_PLAN_CURVE];
+    imk_plan_record curve[IMK_PLAN_CURVE]; /**< with settings.curve: a minute to a week */
     imk_findings findings;
 } imk_record_plan;
 

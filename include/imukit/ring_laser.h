@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file ring_laser.h
- *  The ring laser gyro: two beams round one cavity, their beat, lock-in, and the dither against it.
+ *  The ring laser gyro: two beams in one cavity, their beat, lock-in, and the dither that overcomes
+ *  lock-in.
  *
  *  Rotation makes the path longer for one beam and shorter for the other, so their frequencies
  *  differ. A little light scattered from each beam into the other pulls the two together; the phase
@@ -12,18 +13,18 @@
  *  lock-in rate W_L, the area A, the perimeter P and the wavelength lambda. The readout counts the
  *  fringes: floor(psi/2 pi), or half or quarter fringes.
  *
- *  Below W_L the undithered gyro reads nothing. Dither carries it through that band twice a cycle;
- *  each passage kicks the phase by up to K W_L sqrt(2 pi/(K W_d w)). Under a pure sine the kicks
- *  repeat and small dead bands stay; with an amplitude that differs at random from half cycle to
- *  half cycle they are independent and become angle random walk.
+ *  Below W_L the undithered gyro reads 0. Dither carries it through that band twice a cycle; each
+ *  passage kicks the phase by up to K W_L sqrt(2 pi/(K W_d w)). Under a pure sine the kicks repeat
+ *  and small dead bands stay; if the amplitude varies at random from half cycle to half cycle, the
+ *  kicks are independent and become angle random walk.
  *
  *  Levels. IMK_LEVEL_FULL integrates the equation through every passage, about 24 sqrt(K th_d)
  *  steps to a cycle of the dither. IMK_LEVEL_SLOW takes one kick for each half cycle; it needs a
  *  dither of at least 20 rad of phase and kicks below 0.5 rad, and is not accurate where the input
  *  rate comes within a twentieth of the peak rate of the dither, where two passages merge.
  *
- *  Without noise (settings.noise false) the dither has a constant amplitude, so that its dead band
- *  is there.
+ *  Without noise (settings.noise false) the dither has a constant amplitude, so its dead band
+ *  appears.
  *
  *  Axes of the case: x is the normal of the beams' plane, y points to a mirror, z completes them.
  */
@@ -40,14 +41,14 @@ typedef enum imk_ring_laser_shape {
     IMK_RING_LASER_SQUARE = 1
 } imk_ring_laser_shape;
 
-/** What is counted. */
+/** What the readout counts. */
 typedef enum imk_ring_laser_decoding {
     IMK_RING_LASER_FRINGES = 0, /**< one count a fringe */
     IMK_RING_LASER_HALVES = 1,  /**< both edges of one detector */
     IMK_RING_LASER_QUARTERS = 2 /**< both edges of two detectors a quarter fringe apart */
 } imk_ring_laser_decoding;
 
-/** How the motion of the dither is taken out of the reading. */
+/** How the motion of the dither is removed from the reading. */
 typedef enum imk_ring_laser_stripping {
     IMK_RING_LASER_PICKOFF = 0, /**< the angle that a pickoff on the dither spring measures is
                                    subtracted */
@@ -63,7 +64,7 @@ typedef struct imk_ring_laser {
         double perimeter;  /**< P [m] */
         double wavelength; /**< lambda [m] */
         double loss;       /**< part of a beam's energy lost in one round trip [1] */
-        double power;      /**< circulating in each beam [W] */
+        double power;      /**< power circulating in each beam [W] */
     } cavity;
     struct imk_ring_laser_lock_in {
         double rate;  /**< W_L [rad/s]: without dither, rates below read 0 */
@@ -95,11 +96,12 @@ typedef struct imk_ring_laser {
         imk_ring_laser_decoding decoding;
         imk_ring_laser_stripping stripping;
         double pickoff_error; /**< gain of the dither pickoff less 1 */
-        double range;         /**< larger rates are put out as this [rad/s] */
+        double range;         /**< limit of the output [rad/s] */
     } readout;
     struct imk_ring_laser_temperature {
-        double reference;        /**< [K] where null shift and path length are set */
-        double minimum, maximum; /**< [K] of operation; the null shift stays constant beyond */
+        double reference; /**< temperature at which null shift and path length are stated [K] */
+        /** Range of operation [K]; the null shift is constant beyond it. */
+        double minimum, maximum;
     } temperature;
 } imk_ring_laser;
 
@@ -112,18 +114,19 @@ typedef struct imk_ring_laser {
  *  the limit of the glass ceramic such bodies are made of; a path length control of 2 um. */
 IMK_API imk_ring_laser imk_ring_laser_default(void);
 
-/** Every field in its range, and: a dither that outruns lock-in (dither.rate > lock_in.rate) or
- *  none; a path length control that can move by a wavelength; temperatures in order.
+/** Check a design: every field must be in its range; the dither must exceed lock-in
+ *  (dither.rate > lock_in.rate) or be 0; the path length control must reach a wavelength;
+ *  temperatures must be in order.
  *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the path */
 IMK_API imk_status imk_ring_laser_validate(const imk_ring_laser *design, imk_error *error);
 
-/** The error model. Bias: null shift. Scale factor: error, repeatability, and with temperature the
- *  steps of the mode hops as a straight line, where operation reaches them. Noise: N =
- *  sqrt(N_lock^2 + N_q^2), B of the null shift, Q = count/sqrt(12). Dead band:
- *  imk_ring_laser_dead_band() where it outweighs the noise, 2 b/(K N^2) > 1; below that noise
- *  carries the phase through it. Not there: the square-root law just outside the dead band, the
- *  bands at multiples of the dither frequency, the error of the pickoff
- *  (imk_ring_laser_dither_residual()). */
+/** The error model; the design must be valid. Bias: null shift. Scale factor: error, repeatability,
+ *  and with temperature the steps of the mode hops as a straight line, where operation reaches
+ *  them. Noise: N = sqrt(N_lock^2 + N_q^2), B of the null shift, Q = count/sqrt(12). Dead band:
+ *  imk_ring_laser_dead_band() if it dominates the noise, 2 b/(K N^2) > 1; else noise carries the
+ *  phase through it. Not in the model: the square-root law just outside the dead band, the bands at
+ *  multiples of the dither frequency, the error of the pickoff (imk_ring_laser_dither_residual()).
+ */
 IMK_API void imk_ring_laser_reduce(const imk_ring_laser *design, imk_model *model);
 
 /* ---- closed forms; the design must be valid -------------------------------------------------- */
@@ -142,7 +145,7 @@ IMK_API double imk_ring_laser_dither_angle(const imk_ring_laser *design);
 /** Half width of the band around zero that reads 0 [rad/s]: W_L without dither, else
  *  W_L |J_0(K th_d)| e^(-(K th_d r)^2/2), r the randomness [CHOW1985]. */
 IMK_API double imk_ring_laser_dead_band(const imk_ring_laser *design);
-/** Mean reading under a pure sine dither [rad/s], null shift and errors of scale aside.
+/** Mean reading under a pure sine dither [rad/s], without null shift and scale errors.
  *
  *  By Fourier's series sin(psi + K th_d sin w t) = sum J_n(K th_d) sin(psi + n w t) there is a band
  *  like the one at zero at every rate W_n = n w/K, of half width b_n = W_L |J_n|. The nearest acts
@@ -153,12 +156,13 @@ IMK_API double imk_ring_laser_dead_band(const imk_ring_laser *design);
  *  Higher orders are left out: with a lock-in rate of a thousandth of W_d they are 0.3 % of the
  *  largest correction. For |W| < W_d; about 1 ms. */
 IMK_API double imk_ring_laser_dithered_rate(const imk_ring_laser *design, double rate);
-/** Rate of the n-th band [rad/s]: n w/K. Half width to *half_width unless NULL. */
+/** Rate of the n-th band [rad/s]: n w/K. Its half width goes to *half_width, unless that is NULL.
+ */
 IMK_API double imk_ring_laser_band(const imk_ring_laser *design, int n, double *half_width);
 
-/** Angle random walk that the random dither makes of lock-in [rad/s/sqrt(Hz)]:
- *  W_L/sqrt(K W_d) sqrt(1 - e^(-(K th_d r)^2)); 0 without dither. A kick of W_L K sqrt(2 pi/(K W_d
- *  w)) times a sine of random phase at every half cycle pi/w has this variance. */
+/** Angle random walk caused by lock-in under random dither [rad/s/sqrt(Hz)]: W_L/sqrt(K W_d) sqrt(1
+ *  - e^(-(K th_d r)^2)); 0 without dither. A kick of W_L K sqrt(2 pi/(K W_d w)) times a sine of
+ *  random phase at every half cycle pi/w has this variance. */
 IMK_API double imk_ring_laser_lock_in_noise(const imk_ring_laser *design);
 /** Decay rate of the light in the cavity [1/s]: Gamma = c loss/P. Gamma/2 pi is its linewidth [Hz].
  */
@@ -169,14 +173,14 @@ IMK_API double imk_ring_laser_decay_rate(const imk_ring_laser *design);
 IMK_API double imk_ring_laser_quantum_noise(const imk_ring_laser *design);
 /** Relative change of scale when the cavity hops to the next mode: lambda/P. */
 IMK_API double imk_ring_laser_mode_hop(const imk_ring_laser *design);
-/** Change of temperature from the reference at which the first hop comes [K]: half the stroke by
+/** Change of temperature from the reference to the first mode hop [K]: half the stroke divided by
  *  the expansion of the perimeter; infinite without expansion. */
 IMK_API double imk_ring_laser_hop_temperature(const imk_ring_laser *design);
-/** Largest error of a sample of 1/rate because the pickoff's gain is wrong [rad/s]:
- *  |error| 2 th_d |sin(pi f/rate)| rate: nothing where the rate divides the dither frequency. */
+/** Largest error of a sample of 1/rate caused by the error of the pickoff's gain [rad/s]: |error| 2
+ *  th_d |sin(pi f/rate)| rate. It is 0 where the rate divides the dither frequency. */
 IMK_API double imk_ring_laser_dither_residual(const imk_ring_laser *design, double rate);
 
-/** Outputs: the rate [rad/s]; the counts of the sample, dither included. */
+/** The instrument. Outputs: the rate [rad/s]; the counts of the sample, dither included. */
 IMK_API extern const imk_instrument imk_ring_laser_instrument;
 
 IMK_END_C

@@ -82,13 +82,13 @@ IMK_API imk_verdict imk_several_verdict(const imk_identify_several *several,
 /** True when a message of the verdict is a warning. */
 IMK_API bool imk_verdict_warns(const imk_verdict *verdict);
 
-/** Results of one record, or of several together, and what is shown with them. */
+/** Results of one record, or of several together, and related data that are shown, too. */
 typedef struct imk_identify_shown {
     const imk_identify_log *log;
     const char *name, *label; /**< such as its path and the last part of the path */
     imk_verdict verdict;
     const imk_model *truth; /**< true model, for comparison; NULL: not known */
-    /** Simulated deviations per channel (imk_identify_log_twin()); NULL: none */
+    /** Simulated deviations per channel (imk_identify_log_twin()); NULL: none. */
     const imk_allan_curve *twin;
 } imk_identify_shown;
 
@@ -139,7 +139,7 @@ IMK_API size_t imk_calibrate_failure(const imk_calibrate_log *session, const imk
  *  runs that differ. All are warnings. */
 IMK_API imk_verdict imk_drift_verdict(const imk_drift_models *r, imk_result *result);
 
-/** What is shown beside the figures. */
+/** Data shown with the figures. */
 typedef struct imk_drift_shown {
     const char *motion; /**< name of the motion; NULL: at rest */
     uint64_t seed;      /**< seed of the Monte Carlo runs */

@@ -11,17 +11,17 @@
  *      -> resolution -> counts
  *
  *  Some conventions:
- *  - row k is stamped k/rate. It covers the interval that ends there: a motion starts at time 0
- *    with row 0, which still shows the body as it was before;
+ *  - row k has the timestamp k/rate. It covers the interval that ends there: a motion starts at
+ *    time 0 with row 0, which shows the body before the start;
  *  - samples are means. Terms that are not linear are applied to the mean of each of `substeps`
  *    parts of a sample;
  *  - the bandwidth shapes the white noise, exactly, and the deterministic signal; the slower noise
  *    terms are defined at the output, after the filter;
  *  - the dead band sets a sample within +-dead_band to 0 and does not change others;
  *  - without a temperature profile the temperature terms are zero;
- *  - timing: the sample clock runs fast by rate_error, so that samples are shorter than they say;
- *    each boundary between two samples is off by jitter (normal); accelerometers show what happened
- *    `skew` earlier than the gyros; a row is lost with the probability `drops`. Stamps stay k/rate;
+ *  - timing: the sample clock is too fast by rate_error, so samples are shorter than 1/rate; each
+ *    boundary between two samples has a random error `jitter` (normal); accelerometers lag the
+ *    gyros by `skew`; a row is lost with the probability `drops`. Timestamps are always k/rate;
  *  - with a sensitivity the output is whole counts, round(sensitivity * x + zero_offset);
  *  - every term of every axis has its own random stream, so that changing one changes no other:
  *    axes 0-7 are gyros, 8-15 accelerometers. Repeatabilities are normal 0 of the term
@@ -38,15 +38,15 @@ IMK_BEGIN_C
 
 enum { IMK_SUBSTEPS_MAX = 512 };
 
-/** What to simulate. Start from imk_simulation_default(), then change fields. */
+/** Settings of a simulation. Start from imk_simulation_default(), then change fields. */
 typedef struct imk_simulation {
     uint32_t cookie;
     double rate; /**< [Hz], > 0 */
     uint64_t seed;
     uint32_t run; /**< run number: each run draws other noise and other run-to-run constants from
                      the same model */
-    imk_motion motion; /**< if it states neither of its two kinds (default), the unit is at rest as
-                          follows */
+    imk_motion motion; /**< trajectory or recorded motion; if both are NULL (default), the unit is
+                          at rest as follows */
     bool earth;        /**< Earth rate and gravity at the place below (default true) */
     double latitude;   /**< geodetic [rad]; default 45 deg */
     double height;     /**< above the ellipsoid [m], -1e4 … 1e5 */

@@ -27,7 +27,7 @@ typedef struct imk_spectrum_log_settings {
     double from, to;   /**< range of the fit of noise parameters [Hz]; 0 (default): the lowest, the
                           highest frequency */
     double confidence; /**< of the two-sided intervals; default 0.95 */
-    /** chance that a line is found in a channel without lines; default 0.001 */
+    /** Chance that a line is found in a channel without lines; default 0.001. */
     double false_alarm;
     bool one_sided; /**< show one-sided densities (those of the result are always two-sided);
                        default false */

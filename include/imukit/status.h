@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file status.h
- *  How every imukit function says whether it worked.
+ *  Statuses and errors: how every imukit function reports success or failure.
  *
  *  A function that can fail returns an imk_status; its outputs are untouched on error. Validators,
- *  parsers and solvers also fill a caller-owned imk_error, from which imk_error_text() (io.h)
- *  makes the message for a person. */
+ *  parsers and solvers also fill a caller-owned imk_error, from which imk_error_text() (io.h) makes
+ *  the message for a person. */
 #ifndef IMUKIT_STATUS_H
 #define IMUKIT_STATUS_H
 
@@ -32,10 +32,10 @@ IMK_BEGIN_C
 #define IMK_VERSION_MINOR 1
 #define IMK_VERSION_PATCH 0
 #define IMK_VERSION "0.1.0"
-/** Of the library that is linked, where IMK_VERSION is that of the header: "0.1.0". */
+/** Version of the linked library, "0.1.0"; IMK_VERSION is that of the header. */
 IMK_API const char *imk_version(void);
 
-/** Every status there is: name, value (fixed for ever), and what it means. */
+/** All statuses: name, value (fixed for ever) and meaning. */
 #define IMK_STATUS_LIST(X)                                                                         \
     X(IMK_OK, 0, "done")                                                                           \
     X(IMK_ERROR_ARGUMENT, -1, "an argument is not valid")                                          \
@@ -77,17 +77,17 @@ typedef enum imk_status {
 #undef IMK_STATUS_ENUM
 } imk_status;
 
-/** What went wrong and where. Fields that do not apply are zero or "". */
+/** Details of a failure. Fields that do not apply are zero or "". */
 typedef struct imk_error {
     imk_status status;
     int index;          /**< axis, row or element; -1 when it does not apply */
     double value;       /**< the offending number */
-    double limit;       /**< the limit it passed */
+    double limit;       /**< the limit that it exceeds */
     size_t line;        /**< in a text, from 1; 0 when it does not apply */
     size_t column;      /**< in that line, from 1 */
     char field[96];     /**< dotted path of the parameter, or name of the column or file */
-    char found[96];     /**< what stood there, shortened */
-    char expected[160]; /**< what is due there, or what to do: the end of a message */
+    char found[96];     /**< the text found, shortened */
+    char expected[160]; /**< what is expected there, or what to do: the end of a message */
 } imk_error;
 
 /** Name of a status ("IMK_ERROR_RANGE"); "unknown" for a value not in the list. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file test_record.h
- *  A log of a bench test in memory: what calibration and evaluation start from. */
+ *  A log of a bench test in memory, the input of calibration and evaluation. */
 #ifndef IMUKIT_TEST_RECORD_H
 #define IMUKIT_TEST_RECORD_H
 
@@ -8,10 +8,11 @@
 
 IMK_BEGIN_C
 
-/** The samples of one log, the caller's arrays. Sample k is the mean over the interval that ends at
- *  its time. Everything is SI but readings, which are in counts where the unit outputs counts. */
+/** The samples of one log. The arrays belong to the caller. Sample k is the mean over the interval
+ *  that ends at its time. All values are SI, but readings are in counts if the unit outputs counts.
+ */
 typedef struct imk_test_record {
-    const char *name; /**< of the log, for messages */
+    const char *name; /**< name of the log, for messages */
     size_t count;
     double dt;          /**< usual sample interval [s] */
     const double *time; /**< increasing [s]; NULL: k dt. A step above 1.5 dt is a gap */
@@ -19,9 +20,9 @@ typedef struct imk_test_record {
     const double *reading[2][IMK_AXES_MAX]; /**< NaN: missing */
     bool counts[2];                         /**< readings are counts */
     const double *temperature;              /**< [K]; NULL: not known */
-    /** What the body was exposed to, as the table, the dividing head or the programme says: means
-     *  over the samples, nominal body axes; rate in inertial space [rad/s], specific force
-     *  [m/s^2], gravity included. NULL: not known. */
+    /** Reference motion of the body, from the table, the dividing head or the programme: means over
+     *  the samples, nominal body axes; rate in inertial space [rad/s], specific force, gravity
+     *  included [m/s^2]. NULL: not known. */
     const double *reference_rate[3], *reference_force[3];
     const double *reference_acceleration[3]; /**< angular [rad/s^2]; NULL: zero */
     const int *section; /**< per sample: index of the label of a section, -1: none; NULL: none */

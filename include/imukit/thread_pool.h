@@ -10,21 +10,21 @@ IMK_BEGIN_C
 
 typedef struct imk_thread_pool imk_thread_pool;
 
-/** Start `threads` - 1 workers (the caller is the other); 0 takes one per processor this process
- *  may use (its affinity mask, as taskset and containers set it). Workers sleep while there is no
- *  work and block all signals but SIGPIPE, so that handlers run on the caller's threads. Each has a
- *  stack of 1 MiB, whatever the limits of the process are.
- *  @return NULL when so many threads cannot be made */
+/** Start `threads` - 1 workers; the calling thread works, too. 0: one thread per processor that
+ *  this process may use (its affinity mask, as set by taskset and containers). Workers sleep while
+ *  there is no work and block all signals but SIGPIPE, so that handlers run on the caller's
+ *  threads. Each has a stack of 1 MiB, independent of the limits of the process.
+ *  @return NULL when the threads cannot be created */
 IMK_API imk_thread_pool *imk_thread_pool_create(size_t threads);
-/** Ends the workers and waits for them. NULL is allowed. */
+/** End the workers and wait for them. NULL is allowed. */
 IMK_API void imk_thread_pool_destroy(imk_thread_pool *pool);
-/** Number of threads of a pool, its creator's included; 1 for NULL. */
+/** Number of threads of a pool, including the caller's; 1 for NULL. */
 IMK_API size_t imk_thread_pool_threads(const imk_thread_pool *pool);
 
-/** Executor of a pool, valid while the pool lives; of NULL a serial one. Items are taken from a
- *  common counter, so unequal items balance; everything an item wrote is visible to the caller when
- *  imk_execute() returns. Not reentrant: one imk_execute() at a time, and none from inside a work
- *  item. */
+/** Executor of a pool, valid while the pool exists; for NULL a serial one. Threads take items from
+ *  a common counter, so unequal items are balanced; everything an item wrote is visible to the
+ *  caller when imk_execute() returns. Not reentrant: one imk_execute() at a time, and none from
+ *  inside a work item. */
 IMK_API imk_executor imk_thread_pool_executor(imk_thread_pool *pool);
 
 IMK_END_C

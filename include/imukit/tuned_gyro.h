@@ -3,8 +3,8 @@
  *  The dynamically tuned gyro: a rotor on a Hooke joint that turns with the shaft.
  *
  *  The joint is two pairs of flexures with a small gimbal between them. Its springs would pull the
- *  rotor after the case; but the gimbal nods twice in a turn when the rotor is tilted, and what
- *  that takes has the opposite sign. At one speed, the tuned one,
+ *  rotor along with the case. But when the rotor is tilted, the gimbal nods twice in a turn, and
+ *  this causes a torque of the opposite sign. At one speed, the tuned speed,
  *
  *      N^2 = (kx + ky)/J,   J = Ag + Bg - Cg,   nearly,
  *
@@ -21,11 +21,12 @@
  *      A f2'' + d f2' + [(C - A) N^2 + ky] f2 - (C - 2A) N f1' = T2 - A W2' + (C - A) N W1
  *
  *  A and C are the inertias of the rotor across and along its axis, Ag, Bg, Cg those of the gimbal
- *  about 1, 2 and the shaft, kx, ky the flexures of the shaft and of the rotor, d their damping. A
- *  rate about the shaft turns with a tilted rotor: w_x - w_z th_y, w_y + w_z th_x.
+ *  about 1, 2 and the shaft, kx, ky the flexures of the shaft and of the rotor, d their damping.
+ *  With a tilted rotor, a rate about the shaft couples in: w_x - w_z th_y, w_y + w_z th_x.
  *
  *  Case axes: x and y input, z along the shaft. Output 0 is the rate about x, output 1 about y;
- *  their slow errors and noise are independent. Tilts are small: nothing here limits them.
+ *  their slow errors and noise are independent. Tilts are assumed small; the model does not limit
+ *  them.
  *
  *  Levels: full, as above, each step exact; slow, the mean over a turn of the shaft without delay.
  *
@@ -55,38 +56,40 @@ typedef struct imk_tuned_gyro {
     double hinge_damping;       /**< d of either pair [N m s/rad] */
     double mass;                /**< of the rotor [kg] */
     double axial_offset;        /**< of its centre of mass from the joint, along z [m] */
-    double quadrature_offset;   /**< effective, of the torque along the force [m] */
+    double quadrature_offset;   /**< effective offset for a torque along the force [m] */
     double axial_compliance;    /**< shift of the rotor per force along z [m/N] */
-    double radial_compliance;   /**< and across [m/N] */
+    double radial_compliance;   /**< shift per force across z [m/N] */
     imk_error_torque torque;    /**< on each axis; positive torques read as positive rates */
     double pickoff_noise;       /**< two-sided density [rad/sqrt(Hz)] */
-    double pickoff_offset_x;    /**< reading at no tilt about x [rad] */
-    double pickoff_offset_y;    /**< about y [rad] */
+    double pickoff_offset_x;    /**< reading without tilt about x [rad] */
+    double pickoff_offset_y;    /**< reading without tilt about y [rad] */
     double pickoff_range;       /**< largest reading [rad]; the stops are twice as far */
     double torquer_limit;       /**< largest torque [N m] */
-    double torquer_error;       /**< the torque per current is larger than known by that [1] */
-    double torquer_temperature; /**< of it [1/K] */
+    double torquer_error;       /**< relative error of the torque per current [1] */
+    double torquer_temperature; /**< change of that error with temperature [1/K] */
     bool captured;              /**< false: no loop; the reading is minus the change of the tilt */
     double loop_frequency;      /**< natural frequency w/2pi; the loop commands the rate
                                    -(2 z w th + w^2 integral of th) [Hz] */
-    double loop_damping;        /**< z */
-    double loop_filter;         /**< corner of the second-order Butterworth filter of the pickoffs,
-                                   which keeps the nutation from being driven [Hz] */
+    double loop_damping;        /**< damping ratio z of the loop */
+    double loop_filter; /**< corner of the second-order Butterworth filter of the pickoffs, so that
+                           the loop does not drive the nutation [Hz] */
 } imk_tuned_gyro;
 
 /** The design described above, exactly tuned. */
 IMK_API imk_tuned_gyro imk_tuned_gyro_default(void);
 
-/** See imk_instrument. IMK_ERROR_CONFLICT: moments of inertia that no body has; a gimbal with J <=
- * 0, which no speed tunes; a loop that drives the nutation or oscillates. */
+/** Check a design.
+ *  @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE (error.field: the path), _CONFLICT
+ *          (impossible moments of inertia; a gimbal with J <= 0, which has no tuned speed; a loop
+ *          that drives the nutation or oscillates) */
 IMK_API imk_status imk_tuned_gyro_validate(const imk_tuned_gyro *design, imk_error *error);
 
-/** The speed of the textbooks, sqrt((kx + ky)/(Ag + Bg - Cg)) [rad/s]. */
+/** Tuned speed by the textbook formula, sqrt((kx + ky)/(Ag + Bg - Cg)) [rad/s]. */
 IMK_API double imk_tuned_gyro_first_speed(const imk_tuned_gyro *design);
-/** The speed at which the residual spring is 0 [rad/s]: off the first by about
- *  J/(8 (2A - C)) of it, because the gimbal also drives the rotor at 2N. */
+/** Exact tuned speed, at which the residual spring is 0 [rad/s]: it differs from the textbook value
+ *  by a part of about J/(8 (2A - C)), because the gimbal also drives the rotor at 2N. */
 IMK_API double imk_tuned_gyro_tuned_speed(const imk_tuned_gyro *design);
-/** Speed as it is [rad/s]. */
+/** Actual speed, with its error [rad/s]. */
 IMK_API double imk_tuned_gyro_speed(const imk_tuned_gyro *design);
 /** Angular momentum at a speed, the steady torque per rate of the case, nearly
  *  N (C + (Ag - Bg + Cg)/2) [N m s]. */
@@ -94,15 +97,16 @@ IMK_API double imk_tuned_gyro_momentum(const imk_tuned_gyro *design, double spee
 /** Residual spring, the steady torque per tilt of the rotor, nearly (kx + ky - J N^2)/2 [N m/rad].
  */
 IMK_API double imk_tuned_gyro_residual_spring(const imk_tuned_gyro *design);
-/** Time in which a tilted free rotor comes back to the shaft, H/(N d) [s]; infinite without d. */
+/** Time constant with which a tilted free rotor returns to the shaft, H/(N d) [s]; infinite without
+ *  d. */
 IMK_API double imk_tuned_gyro_time_constant(const imk_tuned_gyro *design);
-/** Figure of merit C/J: drift of a mistuned rotor is N (dN/N) times the tilt over it. */
+/** Figure of merit C/J: the drift of a mistuned rotor is N (dN/N) times the tilt, divided by it. */
 IMK_API double imk_tuned_gyro_figure_of_merit(const imk_tuned_gyro *design);
 /** Nutation H/(A + Ag/2), nearly [rad/s]. */
 IMK_API double imk_tuned_gyro_nutation(const imk_tuned_gyro *design);
 /** Drift per amplitude of an angular vibration of the case at twice the spin frequency, in the
- * worst phase: nearly J N/(8 H), an eighth of the inverse figure of merit. The loop must be slow
- * against 2N. */
+ *  worst phase: nearly J N/(8 H), an eighth of the inverse figure of merit. Holds for a loop that
+ *  is slow against 2N. */
 IMK_API double imk_tuned_gyro_vibration_drift(const imk_tuned_gyro *design);
 
 /** Error model of the x axis by closed forms, with the tilt th = -pickoff offset that the loop
@@ -119,7 +123,7 @@ IMK_API double imk_tuned_gyro_vibration_drift(const imk_tuned_gyro *design);
  *  the derivative of a bounded angle. */
 IMK_API void imk_tuned_gyro_reduce(const imk_tuned_gyro *design, imk_model *model);
 
-/** "tuned_gyro" */
+/** The instrument; name "tuned_gyro". */
 IMK_API extern const imk_instrument imk_tuned_gyro_instrument;
 
 IMK_END_C

@@ -1,35 +1,35 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file tuning_fork.h
  *  The planar vibratory gyro: a mass (in practice two, swinging against each other like the tines
- *  of a tuning fork) is kept vibrating along a drive axis; a rate about the input axis makes it
- *  vibrate along the sense axis as well, in phase with its velocity.
+ *  of a tuning fork) vibrates along a drive axis. A rate about the input axis makes it vibrate also
+ *  along the sense axis, in phase with its velocity.
  *
  *      x'' + (wd/Qd) x' + wd^2 x = ux + 2 k (W - Wc) y' - (q - k W') y
  *      y'' + (ws/Qs) y' + ws^2 y = uy - 2 k (W + Wc) x' - (q + k W') x - asymmetry f
  *      q = 2 k wd Wq
  *
- *  [SHKEL2006]; [LYNCH1995]: W the rate, k the angular gain, Wq the quadrature error and Wc the
- *  damping coupling, both stated as the rate that they look like; ux and uy the forces of the
- *  electronics and of the molecules per mass. An amplitude control holds x at the amplitude x0, a
- *  phase-locked loop gives the reference phase th, x = x0 cos th. The motion along y is multiplied
- *  with cos th and sin th; its part in phase with the velocity is the rate.
+ *  [SHKEL2006]; [LYNCH1995]: W is the rate and k the angular gain. Wq is the quadrature error and
+ *  Wc the damping coupling, both stated as the rate with the same effect. ux and uy are the forces
+ *  per mass of the electronics and of thermal noise. An amplitude control holds x at the amplitude
+ *  x0, a phase-locked loop gives the reference phase th, x = x0 cos th. The motion along y is
+ *  multiplied with cos th and sin th; its part in phase with the velocity is the rate.
  *
- *  Two arrangements, as a chip is usually drawn, the case axis x being the input axis in both:
+ *  There are two arrangements; the case axis x is the input axis in both:
  *
  *      in-plane      the input axis is the normal of the chip; drive z and sense y lie in its plane
  *      out-of-plane  the input axis x and the drive axis y lie in the plane of the chip; the mass
- *                    answers along its normal z
+ *                    responds along its normal z
  *
- *  A steady specific force f along the sense axis bends the springs of both tines alike, by
- *  f/wc^2 in the common mode. Of tines that are equal nothing is seen of it; a relative asymmetry
- *  of the masses lets that part of the deflection turn the drive force by asymmetry f/(wc^2 gap),
- *  which reads as a rate.
+ *  A steady specific force f along the sense axis bends the springs of both tines alike, by f/wc^2
+ *  in the common mode. If both tines are equal, this has no effect. With a relative asymmetry of
+ *  the masses, that part of the deflection turns the drive force by asymmetry f/(wc^2 gap), which
+ *  reads as a rate.
  *
  *  Levels: full, every step of the carrier by the exact propagator, the electronics once a cycle;
  *  slow, the envelope of y with the drive locked. A run of the full level begins at rest: the loops
- *  of the drive need some 10 ms. Exposures are held over a sample; with more than fd/4 samples a
- *  second one is taken per cycle, so vibration at the carrier itself is not followed. Theory, with
- *  every key of the design: docs/physics/tuning_fork.md. */
+ *  of the drive need some 10 ms. Exposures are constant over a sample; with more than fd/4 samples
+ *  a second, one exposure is taken per cycle, so vibration at the carrier is not simulated. Theory,
+ *  with every key of the design: docs/physics/tuning_fork.md. */
 #ifndef IMUKIT_TUNING_FORK_H
 #define IMUKIT_TUNING_FORK_H
 
@@ -44,8 +44,8 @@ typedef enum imk_tuning_fork_arrangement {
 
 typedef enum imk_tuning_fork_loop {
     IMK_TUNING_FORK_OPEN = 0,  /**< the motion along y is measured */
-    IMK_TUNING_FORK_CLOSED = 1 /**< forces keep y at rest, both its rate and its quadrature part,
-                                  and are measured */
+    IMK_TUNING_FORK_CLOSED = 1 /**< forces cancel the motion along y, both its rate and its
+                                  quadrature part, and are measured */
 } imk_tuning_fork_loop;
 
 /** Design. Start from imk_tuning_fork_default(), then change fields. Values at 293.15 K; densities
@@ -58,9 +58,9 @@ typedef struct imk_tuning_fork {
     struct imk_tuning_fork_drive {
         double frequency;               /**< wd/2pi [Hz] */
         double q;                       /**< Qd, > 1/2 */
-        double amplitude;               /**< x0, what the electronics believe [m] */
-        double amplitude_error;         /**< relative error of the amplitude held [1] */
-        double amplitude_repeatability; /**< the same, 1 sigma, another in each run [1] */
+        double amplitude;               /**< x0 as assumed by the electronics [m] */
+        double amplitude_error;         /**< relative error of the actual amplitude [1] */
+        double amplitude_repeatability; /**< 1 sigma of that error from run to run [1] */
         double loop_bandwidth;          /**< of amplitude control and phase lock [Hz] */
         double force_limit;             /**< largest amplitude of the drive force [N] */
         double force_angle;   /**< of the drive force from the drive axis; positive reads as a
@@ -78,7 +78,7 @@ typedef struct imk_tuning_fork {
     double damping_coupling; /**< Wc [rad/s] */
     struct imk_tuning_fork_phase {
         double error; /**< of demodulation and modulation; turns quadrature into rate [rad] */
-        double repeatability; /**< 1 sigma, another in each run [rad] */
+        double repeatability; /**< 1 sigma from run to run [rad] */
         double instability;   /**< flicker B [rad] */
     } phase;
     struct imk_tuning_fork_tines {
@@ -88,11 +88,11 @@ typedef struct imk_tuning_fork {
     } tines;
     struct imk_tuning_fork_temperature {
         double frequency; /**< of both modes, relative [1/K] */
-        double split;     /**< besides [Hz/K] */
+        double split;     /**< additional change of the split [Hz/K] */
         double q;         /**< of both, relative [1/K] */
         double amplitude; /**< held, relative [1/K] */
         double phase;     /**< [rad/K] */
-    } temperature;        /**< straight lines from 233.15 to 398.15 K, level beyond */
+    } temperature;        /**< linear from 233.15 to 398.15 K, constant beyond */
     struct imk_tuning_fork_output {
         double bandwidth;  /**< of the low-pass filter, -3 dB; 0: none [Hz] */
         double damping;    /**< of a filter of second order; 0: first order [1] */
@@ -109,7 +109,8 @@ typedef struct imk_tuning_fork {
  *  pickoff noise, the asymmetry and the instability of the phase that give those figures. */
 IMK_API imk_tuning_fork imk_tuning_fork_default(void);
 
-/** @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the key */
+/** Check a design. @return IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT; error.field the
+ *  key */
 IMK_API imk_status imk_tuning_fork_validate(const imk_tuning_fork *design, imk_error *error);
 
 /** The error model of one axis; the design must be valid. Bias, scale factor and their temperature
@@ -146,12 +147,12 @@ IMK_API double imk_tuning_fork_pickoff_noise(const imk_tuning_fork *design);
  *
  *      |G|,   G(s) = (p^2 + g s)/(s^2 + 2 g s + p^2),   g = ws/2Qs,  p^2 = (ws - wd)^2 + g^2
  *
- *  two sidebands of the carrier, one nearer the sense resonance than the other. It peaks at the
- *  split; a matched gyro has G = g/(s + g). */
+ *  from the two sidebands of the carrier, one of which is nearer to the sense resonance. It peaks
+ *  at the split; a matched gyro has G = g/(s + g). */
 IMK_API double imk_tuning_fork_gain(const imk_tuning_fork *design, double frequency);
 
-/** Frequency [Hz] up to which that gain stays within 3 dB of 1: 0.54 |split| of a split much wider
- *  than the resonance, ws/(4 pi Qs) matched. */
+/** Frequency [Hz] up to which imk_tuning_fork_gain() is within 3 dB of 1: 0.54 |split| for a split
+ *  much wider than the resonance, ws/(4 pi Qs) matched. */
 IMK_API double imk_tuning_fork_bandwidth(const imk_tuning_fork *design);
 
 /** Cubic coefficient of the scale factor of an open loop [1/(rad/s)^2]: -(k D/(D^2 + g^2))^2, D =
@@ -162,13 +163,13 @@ IMK_API double imk_tuning_fork_cubic(const imk_tuning_fork *design);
 /** Force that holds the amplitude [N]: m wd^2 x0/Qd. */
 IMK_API double imk_tuning_fork_drive_force(const imk_tuning_fork *design);
 
-/** Rate [rad/s] that an anisotropic property looks like whose principal axes are turned by `angle`
- *  [rad]: difference sin(2 angle)/(2 k). With the difference of the angular eigenfrequencies it is
- *  the quadrature error, with the difference of 2/tau (of the energy decay rates w/Q) the damping
+/** Rate [rad/s] with the same effect as an anisotropic property whose principal axes are turned by
+ *  `angle` [rad]: difference sin(2 angle)/(2 k). For the difference of the angular eigenfrequencies
+ *  it is the quadrature error; for the difference of 2/tau (the energy decay rates w/Q) the damping
  *  coupling [LYNCH1995]. */
 IMK_API double imk_tuning_fork_coupling(double difference, double angle, double angular_gain);
 
-/** Outputs: rate, quadrature [rad/s]. */
+/** The instrument. Outputs: rate, quadrature [rad/s]. */
 IMK_API extern const imk_instrument imk_tuning_fork_instrument;
 
 IMK_END_C

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file units.h
- *  Units of measurement, checked by dimension. Everything inside imukit is SI; units exist where
- *  text comes in or goes out. */
+ *  Units of measurement, checked by dimension. Everything inside imukit is SI; units are used only
+ *  where text is read or written. */
 #ifndef IMUKIT_UNITS_H
 #define IMUKIT_UNITS_H
 
@@ -11,8 +11,8 @@
 
 IMK_BEGIN_C
 
-/** Exponents of the base dimensions, in halves (so that 1/sqrt(Hz), time^{1/2}, is 1): metre,
- *  second, radian, kelvin, count, kilogram, ampere. The angle is a dimension here: deg/s and Hz
+/** Exponents of the base dimensions, in halves (so that 1/sqrt(Hz), time^{1/2}, has the number 1):
+ *  metre, second, radian, kelvin, count, kilogram, ampere. Here angle is a dimension: deg/s and Hz
  *  must not be mixed, and a torsional stiffness is in N*m/rad. */
 typedef struct imk_dimension {
     int8_t half[7];
@@ -25,7 +25,7 @@ typedef struct imk_unit {
     double scale;
     double offset;
     imk_dimension dimension;
-    bool per_root_hertz; /**< written per sqrt(Hz): a density that needs one-/two-sided said */
+    bool per_root_hertz; /**< written per sqrt(Hz): a density, which may be one- or two-sided */
     char text[48];       /**< as it was written */
 } imk_unit;
 
@@ -36,29 +36,30 @@ typedef struct imk_unit {
  *  count/(rad/s), deg/h/g^2, ppm, %, degC, degC/min, arcsec, 1 (dimensionless).
  *
  *  `*`, `·` and `/` work from left to right, a/b/c = a/(b c); a blank multiplies, but is refused
- *  behind a `/`, where it can be read both ways. Exponents are ^2, ^-1, ^0.5, ^1/2, ², ³, ½, ⁻¹ and
- *  s2; roots are sqrt(…), √, rt- and root-. Only listed multiples exist (mg is a thousandth of g,
- *  min a minute); names are case-sensitive. degC has its offset only by itself: in degC/min it is a
- *  kelvin. g, mg and ug are accelerations: a mass is in kg, gram, milligram or microgram. dB is
- *  that of a power, ln(10)/10 in the exponent, so that dB/km is an attenuation.
+ *  after a `/`, where it is ambiguous. Exponents are ^2, ^-1, ^0.5, ^1/2, ², ³, ½, ⁻¹ and s2; roots
+ *  are sqrt(…), √, rt- and root-. Only listed multiples exist (mg is a thousandth of g, min a
+ *  minute); names are case-sensitive. degC has its offset only if it stands alone: in degC/min it
+ *  is a kelvin. g, mg and ug are accelerations: a mass is in kg, gram, milligram or microgram. dB
+ *  refers to power: ln(10)/10 in the exponent, so dB/km is an attenuation.
  *
- *  @param begin,end  the text, blanks around it allowed
- *  @return IMK_ERROR_UNIT_MISSING for blank text, IMK_ERROR_UNIT_UNKNOWN (error.found is the part
- *          not known, error.expected the nearest known spelling) or IMK_ERROR_SYNTAX (also for more
+ *  @param begin,end  the text; blanks around it are allowed
+ *  @return IMK_ERROR_UNIT_MISSING for blank text, IMK_ERROR_UNIT_UNKNOWN (error.found: the unknown
+ *          part, error.expected: the nearest known spelling) or IMK_ERROR_SYNTAX (also for more
  *          than 47 bytes) */
 IMK_API imk_status imk_unit_parse(const char *begin, const char *end, imk_unit *unit,
                                   imk_error *error);
 
-/** Read a unit known to be right, in a string literal of the caller; scale 0 if it is not. */
+/** Read a unit that is known to be valid, such as a string literal; the scale is 0 if it is not
+ *  valid. */
 IMK_API imk_unit imk_unit_of(const char *text);
 
 /** True when all exponents are the same. */
 IMK_API bool imk_dimension_equal(imk_dimension a, imk_dimension b);
 
-/** What a dimension is called: "an angular rate", "a white-noise density of angular rate", … and
- *  the usual units for it: "deg/h, deg/s or rad/s". Both are never NULL. */
+/** Name of a dimension: "an angular rate", "a white-noise density of angular rate" …; never NULL.
+ */
 IMK_API const char *imk_dimension_name(imk_dimension dimension);
-/** The usual units of a dimension, never NULL. */
+/** The usual units of a dimension: "deg/h, deg/s or rad/s"; never NULL. */
 IMK_API const char *imk_dimension_examples(imk_dimension dimension);
 
 /** The SI base units of a dimension as text: "rad/s", "kg*m^2/s^3".
@@ -68,13 +69,14 @@ IMK_API size_t imk_dimension_si(imk_dimension dimension, char *text, size_t size
 /** Read `number… [± sigma…] unit`, a quantity of the model file: 1 or up to max_count numbers, then
  *  optionally ± (or +-) and as many 1-sigma values (or one for all), then the unit.
  *
- *  @param expected  dimension due; IMK_ERROR_DIMENSION says what was found and what is due. The
- *                   unit may never be missing, not even for 0; a ratio has the unit 1.
- *  @param max_count 1 … 64
+ *  @param expected       required dimension; IMK_ERROR_DIMENSION says what was found and what is
+ *                        required. The unit may never be missing, not even for 0; a ratio has the
+ *                        unit 1.
+ *  @param max_count      1 … 64
  *  @param values,sigmas  max_count doubles, SI; sigmas 0 where not given. An uncertainty has no
- *                   offset: 25 ± 2 degC is 298.15 K and 2 K
- *  @param count     how many numbers stood there
- *  @param unit      the unit found (may be NULL)
+ *                        offset: 25 ± 2 degC is 298.15 K and 2 K
+ *  @param count          receives how many numbers were found
+ *  @param unit           the unit found (may be NULL)
  *  @return IMK_ERROR_EMPTY, _SYNTAX, _UNIT_MISSING, _UNIT_UNKNOWN, _DIMENSION, _NOT_FINITE, _RANGE
  *          (negative uncertainty), _ARGUMENT (max_count) */
 IMK_API imk_status imk_quantity_parse(const char *begin, const char *end, imk_dimension expected,
@@ -88,9 +90,9 @@ IMK_API imk_status imk_quantity_parse(const char *begin, const char *end, imk_di
 IMK_API size_t imk_quantity_format(const double *values, const double *sigmas, size_t count,
                                    const imk_unit *unit, char *text, size_t text_size);
 
-/** Best-readable unit among the usual ones of a dimension for a typical magnitude (SI): for 5e-8
- *  rad/s "deg/h", for 3 rad/s "deg/s". The unit of a temperature is degC from 150 K (a reading),
- *  K below (a difference). SI for a dimension without a name. */
+/** Most readable of the usual units of a dimension for a magnitude (SI): "deg/h" for 5e-8 rad/s,
+ *  "deg/s" for 3 rad/s. A temperature has degC from 150 K on (a reading), K below (a difference). A
+ *  dimension without a name has its SI unit. */
 IMK_API imk_unit imk_unit_readable(imk_dimension dimension, double magnitude);
 
 IMK_END_C
