@@ -67,12 +67,12 @@ IMK_API size_t imk_allan_covariance_workspace_size(size_t count, size_t terms);
  *
  *      cov(v1, v2) = 1/(4 m1^2 m2^2 M1 M2) sum_l W(l) [2 rho12(l)^2 + 4 rho12(l) mu12(l)]
  *
- *  rho12 being the cross-covariance of the Gaussian part of the second differences, from the
- *  generalised autocovariance of the running sums [GREENHALL2003], mu12 the mean product of the
- *  deterministic part (ramp and sinusoids, averaged over phase), W(l) the number of pairs at lag l.
- *  Lags are summed one by one between close kinks of rho12 and by Gauss-Legendre quadrature
+ *  where rho12 is the cross-covariance of the Gaussian part of the second differences, from the
+ *  generalised autocovariance of the running sums [GREENHALL2003], mu12 is the mean product of the
+ *  deterministic part (ramp and sinusoids, averaged over phase), and W(l) is the number of pairs at
+ *  lag l. Lags are summed one by one between close kinks of rho12 and by Gauss-Legendre quadrature
  *  elsewhere: within 1 % of the full sum; the time does not depend on the record's length.
- *  Resonances are taken as narrow against the rest of the spectrum: within 10 % for q >= 5.
+ *  Resonances are assumed narrow against the rest of the spectrum: within 10 % for q >= 5.
  *  @param covariance  count x count, row-major
  *  @return IMK_ERROR_RANGE, IMK_ERROR_TOO_SHORT (a factor that fits in no record),
  *          IMK_ERROR_ARGUMENT, IMK_ERROR_NOT_FINITE, IMK_ERROR_WORKSPACE */

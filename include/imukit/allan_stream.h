@@ -67,9 +67,9 @@ IMK_API void imk_allan_stream_start(imk_allan_stream *stream, uint64_t first);
  *  samples is missing, too. */
 IMK_API void imk_allan_stream_add(imk_allan_stream *stream, size_t count, const double *samples);
 
-/** Join a shard and the one that follows it: the same windows and counts as one pass over both, and
- *  sums that differ from it by no more than their last digit. Shards may be joined in any grouping.
- *  @param stream  samples a … b; afterwards a … c
+/** Join a shard and the shard that follows it. Windows and counts are the same as for one pass over
+ *  both; sums differ by no more than their last digit. Shards may be joined in any grouping.
+ *  @param stream     samples a … b; afterwards a … c
  *  @param following  samples b … c
  *  @return IMK_ERROR_ARGUMENT when `following` does not start where `stream` ends */
 IMK_API imk_status imk_allan_stream_join(imk_allan_stream *stream,

@@ -15,8 +15,8 @@
  *  Observations and turns that do not fit are refused as a whole. The limit is chosen such that a
  *  set without outliers passes in 99 of 100 calibrations. It is applied to a robust fit, which a
  *  minority of outliers cannot spoil (Huber's weights, then Tukey's biweight). The others have full
- *  weight. The scatter within a hold is not the whole uncertainty of its mean: so 1 sigma and
- *  intervals of each group of observations (readings of gyros, of accelerometers, turns) are
+ *  weight. The scatter within a hold is not the whole uncertainty of its mean. Therefore 1 sigma
+ *  and intervals of each group of observations (readings of gyros, of accelerometers, turns) are
  *  multiplied by a factor from the group's residuals, if these have 3 degrees of freedom or more.
  *
  *  Slow noise is common to the observations of one record, so residuals do not show it. If the

@@ -103,7 +103,7 @@ typedef struct imk_evaluation {
     imk_evaluation_figure threshold; /**< the same for steps from reference 0 */
     /** Smallest ones tested that the noise allows to assess; NaN: none. */
     double smallest_step, smallest_input;
-    /** least-squares line of all readings; minimax line of levels. */
+    /** Least-squares line of all readings; minimax line of levels. */
     imk_evaluation_line line, best;
     /** Level with the largest deviation; -1: none. */
     int accuracy_level, linearity_level, hysteresis_level;

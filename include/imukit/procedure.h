@@ -123,8 +123,8 @@ typedef enum imk_diagnostic {
     IMK_DIAGNOSTIC_NEVER_MOVES,      /**< there is only one pose */
     IMK_DIAGNOSTIC_FEW_POSES,        /**< too few different poses: value found, limit needed */
     IMK_DIAGNOSTIC_ONE_PLANE,    /**< all poses are in one plane or on a cone about `axis`: value is
-                                    their spread along it over gravity (0.58 at best), limit the spread
-                                    needed */
+                                    their spread along this axis over gravity (0.58 at best), limit the
+                                    spread needed */
     IMK_DIAGNOSTIC_GRAVITY_UNIT, /**< |force| at rest is not gravity: value is |force| [m/s^2],
                                     limit the factor that would correct it: 9.80665 (forces are in
                                     g), 9.80665e-3 (mg, or Gal), 9.80665e-6 (ug), 1/9.80665

@@ -58,7 +58,7 @@ typedef struct imk_repeatability_result {
 
 /** Find the runs of a log: each stretch of one section, or the whole log if it has no sections.
  *  Ends are left out: `trim` at both ends, and `settle` also at the beginning [s].
- *  @param count  how many there are, also beyond the capacity
+ *  @param count  number of runs found, also beyond the capacity
  *  @return IMK_ERROR_TOO_SHORT (there is no run at all; runs shorter than `minimum` [s] are left
  *          out) */
 IMK_API imk_status imk_repeatability_runs(const imk_test_record *record, double trim, double settle,

@@ -31,7 +31,7 @@ typedef struct imk_thermal_settings {
     double significance; /**< probability that hysteresis, rate or lag is found where there is none;
                             default 1e-3 */
 } imk_thermal_settings;
-/** The values named above. */
+/** The defaults stated above. */
 IMK_API imk_thermal_settings imk_thermal_default(void);
 
 /** Cause of a difference between warming and cooling. */

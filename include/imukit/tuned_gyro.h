@@ -6,7 +6,7 @@
  *  rotor along with the case. But when the rotor is tilted, the gimbal nods twice in a turn, and
  *  this causes a torque of the opposite sign. At one speed, the tuned speed,
  *
- *      N^2 = (kx + ky)/J,   J = Ag + Bg - Cg,   nearly,
+ *      N^2 = (kx + ky)/J,   J = Ag + Bg - Cg   (nearly),
  *
  *  both cancel and the rotor is free [CRAIG1972]: two input axes from one wheel. A rebalance loop
  *  keeps the rotor in line with the shaft by torques about the other axis, and these are the

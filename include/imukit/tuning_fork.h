@@ -123,8 +123,8 @@ IMK_API void imk_tuning_fork_reduce(const imk_tuning_fork *design, imk_model *mo
  *
  *      Im[ rho e^{i phase} ( i (W + Wc + angle wd/(2 k Qd)) + Wq ) ]
  *
- *  rho the response relative to the one that the electronics assume: x0 wd H(wd) of an open loop,
- *  x0 wd of a closed one. H(w) = 1/(ws^2 - w^2 + i w ws/Qs). */
+ *  where rho is the response relative to the one that the electronics assume: x0 wd H(wd) for an
+ *  open loop, x0 wd for a closed loop. H(w) = 1/(ws^2 - w^2 + i w ws/Qs). */
 IMK_API double imk_tuning_fork_reading(const imk_tuning_fork *design, double rate,
                                        double specific_force, double temperature);
 
