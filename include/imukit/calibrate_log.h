@@ -35,53 +35,59 @@ enum {
     IMK_CALIBRATE_GYRO_TURNS = 16
 };
 
-/** Settings of a calibration. Start from imk_calibrate_log_default(): in every double NaN, which
- *  means "not given". What is pointed to must live as long as the calibration. */
+/** Settings of a calibration. Start from imk_calibrate_log_default(). NaN (the default of most
+ *  numbers) means "not given". Everything that is pointed to must live as long as the calibration.
+ */
 typedef struct imk_calibrate_log_settings {
     uint32_t cookie;
     /* the place */
-    bool place_known;
-    imk_geodetic place; /**< of the test: gives gravity and the Earth's rotation */
-    double gravity;     /**< [m/s^2], 9.5 to 10.1; wins over that of the place. Default: that of
-                             45 deg at sea level */
-    bool no_earth;      /**< the references contain no rotation of the Earth */
-    int frame;          /**< imk_triad_frame; -1 (default): chosen by the procedures */
+    bool place_known;   /**< `place` is given; default false */
+    imk_geodetic place; /**< of the test: sets gravity and the Earth's rotation */
+    double gravity;     /**< [m/s^2], 9.5 to 10.1; replaces that of the place. Default NaN: of the
+                             place, or of 45 deg at sea level */
+    bool no_earth;      /**< the references do not contain the Earth's rotation; default false */
+    int frame;          /**< imk_triad_frame; default -1: chosen by the procedures */
     /* known before */
-    const imk_model *model; /**< sensitivities and terms that are not estimated; NULL: nothing */
-    imk_calibrate_counts
-        sensitivity[2]; /**< nominal, gyro [count/(rad/s)], accel [count/(m/s^2)] */
-    imk_calibrate_counts zero_offset[2]; /**< gyro, accel [count] */
+    const imk_model *model; /**< sensitivities, and terms that are not estimated; default NULL */
+    /** Nominal sensitivity of gyros [count/(rad/s)] and accelerometers [count/(m/s^2)]. */
+    imk_calibrate_counts sensitivity[2];
+    imk_calibrate_counts zero_offset[2]; /**< readings at zero of gyros, accelerometers [count] */
     /* what is estimated */
-    const char *estimate;   /**< names of terms with commas between, as imk_calibrate_terms() takes
-                                 them; NULL: what the procedures determine */
-    unsigned with, without; /**< procedures look for these terms besides, or not; not together with
-                                 estimate */
-    bool repeatability;     /**< compare the records, each a power cycle, instead of calibrating */
-    bool closed_form;       /**< solve one ferraris record without iteration */
-    bool least_squares;     /**< outliers count as much as the rest; default: robust */
-    /* how records are looked at; defaults of imk_procedure_default() */
-    const char *section; /**< column of texts that names holds, turns or runs */
-    double placement;    /**< 1 sigma of a placement on a face [rad] */
-    double mounting;     /**< 1 sigma of the unit on its fixture or table [rad] */
-    double turn_angle;   /**< ferraris: of each turn about its axis, with sign [rad] */
-    double initial_rest; /**< at rest at the beginning [s] */
-    double window;       /**< within which rest is detected [s] */
+    const char *estimate; /**< names of terms as of imk_calibrate_terms(), separated by commas;
+                               default NULL: the terms that the procedures determine */
+    unsigned with;        /**< terms to estimate in addition, IMK_CALIBRATE_… bits; default 0 */
+    unsigned without;     /**< terms not to estimate; default 0. Neither goes with `estimate` */
+    bool repeatability;   /**< compare the records, each a power cycle, instead of calibrating */
+    bool closed_form;     /**< solve one ferraris record without iteration */
+    bool least_squares;   /**< give outliers full weight; default false: robust */
+    /* how records are observed; default NaN: of imk_procedure_default() */
+    const char *section; /**< name of the column of texts that names holds, turns or runs; default
+                              NULL: the only column of texts, if there is one */
+    double placement;    /**< 1 sigma of the attitude of a face on the plate [rad] */
+    double mounting;     /**< 1 sigma of the attitude of the unit on its fixture or table [rad] */
+    double turn_angle;   /**< ferraris: angle of each turn about its axis, with sign [rad] */
+    double initial_rest; /**< duration of the rest at the beginning [s] */
+    double window;       /**< length of the window in which rest is detected [s] */
     double minimum;      /**< shortest rest, step or run [s] */
-    double trim, settle; /**< left out at both ends of a stretch; at its beginning besides [s] */
-    double reference_temperature; /**< thermal: where the polynomials vanish [K] */
-    int temperature_order; /**< of the bias, 1 to IMK_TEMPERATURE_ORDER_MAX; 0 (default): chosen */
-    /* what the unit was exposed to */
-    const imk_motion *motion; /**< programme that the table ran; NULL: columns of the records */
-    double motion_offset;     /**< time of a record at which the programme begins [s]; 0 */
-    bool find_offset;         /**< find the motion_offset of each record instead */
-    int table_axis; /**< of the unit, about which a column table_rate turns it; -1 (default) */
-    bool activity;  /**< say of each sample whether it is at rest */
+    double trim;         /**< time left out at both ends of a stretch [s] */
+    double settle;       /**< time left out at the beginning of a stretch in addition [s] */
+    double reference_temperature; /**< thermal: temperature at which the polynomials are 0 [K] */
+    int temperature_order;        /**< thermal: of the bias, 1 to IMK_TEMPERATURE_ORDER_MAX; default
+                                       0: chosen by cross-validation */
+    /* reference motion */
+    const imk_motion *motion; /**< programme that the table ran; default NULL: columns of the
+                                   records */
+    double motion_offset;     /**< time of a record at which the programme begins [s]; default 0 */
+    bool find_offset;         /**< find the offset of each record instead; default false */
+    int table_axis; /**< axis of the unit about which a column table_rate turns it, 0 to 2;
+                         default -1: not known */
+    bool activity;  /**< keep for each sample whether it is at rest; default false */
 } imk_calibrate_log_settings;
 
 /** The defaults named above. */
 IMK_API imk_calibrate_log_settings imk_calibrate_log_default(void);
 
-/** A record of a test, and what was found in it. */
+/** A record of a test, with the findings about it. */
 typedef struct imk_calibrate_record {
     const char *path; /**< name of the record in findings and reports; the caller's */
     imk_log log;      /**< owns the columns */
@@ -91,7 +97,7 @@ typedef struct imk_calibrate_record {
     const char **section_name;
     double *reference; /**< IMK_CALIBRATE_REFERENCES columns: rate, force, angular acceleration */
     double motion_offset; /**< time of the record at which the programme begins [s] */
-    imk_findings loaded;  /**< what imk_calibrate_record_load() found */
+    imk_findings loaded;  /**< findings of imk_calibrate_record_load() */
     imk_procedure procedure;
     imk_procedure_settings settings;
     imk_procedure_findings findings;
@@ -104,14 +110,14 @@ typedef struct imk_calibrate_record {
     imk_thermal_findings *thermal; /**< of the procedure "thermal", else NULL */
 } imk_calibrate_record;
 
-/** A calibration: its records, and what was found. */
+/** A calibration: its records and its result. */
 typedef struct imk_calibrate_log {
     imk_calibrate_log_settings settings;
     size_t count;
     imk_calibrate_record *record; /**< `count` of them; settings may be changed before the run */
     bool nominal[2];              /**< sensitivities were found, not given: gyro, accel */
     imk_calibration *calibration;
-    imk_model *before; /**< what was known before the run, with the axes of the records */
+    imk_model *before; /**< the model known before the run, with the axes of the records */
     imk_calibration_result *result;
     imk_ferraris *ferraris;         /**< of the closed form, else NULL */
     imk_repeatability_result *runs; /**< of the repeatability, else NULL */
@@ -137,10 +143,10 @@ typedef struct imk_calibrate_input {
  *
  *  The same as imk_calibrate_log_create(), then imk_calibrate_log_load() of each, then
  *  imk_calibrate_log_run().
- *  @param job      NULL: as if all zeros
+ *  @param job      NULL: one thread, memory of the C library, no progress
  *  @param session  NULL only if imk_calibrate_log_create() failed: else it tells, also after a
  *                  failure, what was found, and is freed by imk_calibrate_log_free()
- *  @return as these three */
+ *  @return errors of these three functions */
 IMK_API imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *input,
                                       const imk_calibrate_log_settings *settings,
                                       const imk_job *job, imk_calibrate_log **session,
@@ -148,7 +154,7 @@ IMK_API imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *i
 
 /** A calibration whose records are to be loaded.
  *  @param procedure  of each record
- *  @param job        NULL: as if all zeros
+ *  @param job        NULL: one thread, memory of the C library, no progress
  *  @return IMK_ERROR_RANGE ("count": 0, or more than IMK_TEST_RECORDS_MAX; "procedure"; "gravity":
  *          value), IMK_ERROR_CONFLICT ("frame": gravity alone does not tell the reference frame;
  *          "closed_form": not one ferraris record; "estimate": with or without beside it), _MEMORY
@@ -157,12 +163,12 @@ IMK_API imk_status imk_calibrate_log_create(size_t count, const imk_procedure *p
                                             const imk_calibrate_log_settings *settings,
                                             const imk_job *job, imk_calibrate_log **session,
                                             imk_error *error);
-/** Free it with its records; NULL is allowed. */
+/** Free a calibration with its records; NULL is allowed. */
 IMK_API void imk_calibrate_log_free(imk_calibrate_log *session);
 
-/** Load record number `index`; what it showed is in its `loaded`.
- *  @param name  what findings and reports call it; must live as long as the calibration
- *  @return as imk_calibrate_record_load() */
+/** Load record number `index`. Findings are in session->record[index].loaded.
+ *  @param name  of the record in findings and reports; must live as long as the calibration
+ *  @return IMK_ERROR_RANGE (index); errors of imk_calibrate_record_load() */
 IMK_API imk_status imk_calibrate_log_load(imk_calibrate_log *session, size_t index,
                                           const char *name, const imk_record_source *source,
                                           imk_error *error);
@@ -200,14 +206,14 @@ IMK_API imk_status imk_calibrate_terms(const imk_calibration *calibration, int t
 /** Name of a term without sensor and axis: "nonlinearity.k2". @return false: it has none */
 IMK_API bool imk_calibrate_term_path(int sensor, int term, char path[IMK_MODEL_PARAMETER_NAME]);
 
-/** What the unit is exposed to is known. */
+/** Does the procedure know what the unit is exposed to? */
 IMK_API bool imk_procedure_is_known(imk_procedure procedure);
 
-/** Index of a parameter of the solution, or -1. */
+/** Index of a parameter in session->result, or -1. */
 IMK_API int imk_calibrate_find(const imk_calibrate_log *session, imk_model_parameter parameter);
 
-/** The poses that would tell most about the accelerometers, given the rests that were found.
- *  @return false where they are not known, or memory is exhausted */
+/** Find the poses that would improve the accelerometers' parameters most, given the rests found.
+ *  @return false if they cannot be computed, or memory is exhausted */
 IMK_API bool imk_calibrate_advise(const imk_calibrate_log *session, const imk_calibrate_record *log,
                                   const imk_allocator *allocator,
                                   imk_pose_advice advice[IMK_CALIBRATE_POSES]);
@@ -224,12 +230,14 @@ typedef struct imk_calibrate_plan {
     struct imki_arena *memory;
 } imk_calibrate_plan;
 
-/** Plan a test (calibration_plan.h). @param job  NULL: as if all zeros
- *  @return as imk_plan_make(); IMK_ERROR_MEMORY */
+/** Plan a test (calibration_plan.h).
+ *  @param calibration  its model states the noise of the unit
+ *  @param job          NULL: one thread, memory of the C library, no progress
+ *  @return errors of imk_plan_make(); IMK_ERROR_MEMORY */
 IMK_API imk_status imk_calibrate_plan_run(imk_calibration *calibration,
                                           const imk_plan_settings *settings, const imk_job *job,
                                           imk_calibrate_plan **plan, imk_error *error);
-/** Free it and all it holds; NULL is allowed. */
+/** Free a plan; NULL is allowed. */
 IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
 /** @} */
 
@@ -241,7 +249,7 @@ IMK_API void imk_calibrate_plan_free(imk_calibrate_plan *plan);
  *  @param settings  section, motion, motion_offset, find_offset and table_axis are looked at, and
  *                   whether the record is long enough for initial_rest, window and minimum
  *  @param name      what it is called in findings; must live as long as the record
- *  @param job       NULL: as if all zeros
+ *  @param job       NULL: one thread, memory of the C library, no progress
  *  @param record    zeroed, or one of a calibration; filled. Free it also after a failure;
  *                   record->loaded says what was found
  *  @return with a finding, IMK_ERROR_ARGUMENT (settings that do not fit it), _EMPTY, _TOO_SHORT,
@@ -253,22 +261,22 @@ IMK_API imk_status imk_calibrate_record_load(const imk_calibrate_log_settings *s
                                              imk_error *error);
 /** Free columns, sections and references of a record that is none of a calibration. */
 IMK_API void imk_calibrate_record_free(imk_calibrate_record *log);
-/** When a row was taken [s]. */
+/** Time of a row [s]. */
 IMK_API double imk_test_record_time(const imk_test_record *record, size_t row);
-/** Rows with a reading or a temperature that is no number. @param first  set when there are some */
+/** Count the rows in which a reading or the temperature is not a number.
+ *  @param first  index of the first such row; untouched if there is none */
 IMK_API size_t imk_test_record_missing(const imk_test_record *record, size_t *first);
 /** @} */
 
-/** @name Words and units
- *  In which sensors and parameters are shown and written.
+/** @name Names and units of parameters
  *  @{ */
-/** x, y, z, 3 … 7; ? below 0 */
+/** Letter of an axis: x, y, z, 3 … 7; ? below 0. */
 IMK_API char imk_axis_letter(int axis);
-/** The unit a person reads a number of this size in. */
+/** The unit in which a number of this size is easy to read. */
 IMK_API imk_unit imk_parameter_unit(imk_model_parameter parameter, double magnitude);
-/** As in the model file, whatever the size. */
+/** The unit of a parameter in the model file. */
 IMK_API const char *imk_parameter_file_unit(imk_model_parameter parameter);
-/** "scale factor error", "misalignment, y": without sensor and axis. */
+/** Title of a parameter without sensor and axis: "scale factor error", "misalignment, y". */
 IMK_API void imk_parameter_title(imk_model_parameter parameter, char *text, size_t size);
 /** @} */
 

@@ -11,59 +11,67 @@
 
 IMK_BEGIN_C
 
-/** What is asked. Start from imk_evaluate_log_default(). */
+/** Settings of the job. Start from imk_evaluate_log_default(). */
 typedef struct imk_evaluate_log_settings {
     uint32_t cookie;
-    double confidence;            /**< of intervals, 0.95 */
-    double minimum, trim, settle; /**< of stretches of constant reference, as of
-                                     imk_procedure_settings [s]; NaN: as there */
-    bool sections;                /**< each section of a record is a run of its own; false */
+    double confidence;            /**< of intervals; default 0.95 */
+    double minimum, trim, settle; /**< of stretches of constant reference [s], see
+                                       imk_procedure_settings; default NaN: the default there */
+    bool sections;                /**< each section of a record is a run of its own; default
+                                       false */
 } imk_evaluate_log_settings;
 
-/** As the comments above say. */
+/** The defaults named above. */
 IMK_API imk_evaluate_log_settings imk_evaluate_log_default(void);
 
+/** Result of the job. */
 typedef struct imk_evaluate_log {
     imk_evaluate_log_settings settings;
     size_t run_count, channel_count, rest_count;
     imk_evaluate_channel channel[IMK_EVALUATE_CHANNELS];
     imk_evaluate_rest rest[IMK_EVALUATE_CHANNELS];
     imk_findings findings;
-    void *memory; /**< its own */
+    void *memory; /**< of the result; not for the caller */
 } imk_evaluate_log;
 
-/** An evaluation without channels. @param job  its allocator is used; NULL: as if all zeros
+/** Begin an evaluation, without channels.
+ *  @param job  its allocator is used; NULL: memory of the C library
  *  @return IMK_ERROR_UNINITIALISED, _MEMORY */
 IMK_API imk_status imk_evaluate_log_create(const imk_evaluate_log_settings *settings,
                                            const imk_job *job, imk_evaluate_log **result,
                                            imk_error *error);
-/** Free it and its channels; NULL is allowed. */
+/** Free an evaluation with its channels; NULL is allowed. */
 IMK_API void imk_evaluate_log_free(imk_evaluate_log *result);
 
-/** A table has the columns reference and reading, or reading_x and so on. */
+/** Is this a table of readings: are there columns reference and reading, or reading_x and so on? */
 IMK_API bool imk_evaluate_is_table(size_t column_count, const imk_log_column *columns);
-/** Add the readings of a table, with the columns direction (up, down), run and sigma where it has
- *  them: one run, or those of its column.
- *  @return with a finding, IMK_ERROR_COLUMN, _EMPTY, _UNIT_MISSING, _DIMENSION, _SYNTAX, _RANGE,
- *          _NOT_FINITE; IMK_ERROR_MEMORY */
+/** Add the readings of a table, and its columns direction (up, down), run and sigma if there are
+ *  any. A table without a column run is one run.
+ *  @return with a finding in evaluation->findings, IMK_ERROR_COLUMN, _EMPTY, _UNIT_MISSING,
+ *          _DIMENSION, _SYNTAX, _RANGE, _NOT_FINITE; IMK_ERROR_MEMORY */
 IMK_API imk_status imk_evaluate_table(imk_evaluate_log *evaluation, const imk_log *table,
                                       imk_error *error);
-/** Add the readings of a record with a reference, as the mean of every stretch in which it is
- *  constant.
- *  @return with a finding, IMK_ERROR_KEY_MISSING (no reference), _EMPTY (none that changes, or that
- *          stays), _DIMENSION, _RANGE; else what imk_reference_stretches() returns */
+/** Add the readings of a record of a test with a reference: the mean of every stretch in which the
+ *  reference is constant.
+ *  @param record  from imk_calibrate_record_load()
+ *  @return with a finding in evaluation->findings, IMK_ERROR_KEY_MISSING (no reference), _EMPTY
+ *          (no reference changes, or none stays constant), _DIMENSION, _RANGE; errors of
+ *          imk_reference_stretches() */
 IMK_API imk_status imk_evaluate_record(imk_evaluate_log *evaluation,
                                        const imk_calibrate_record *record, imk_error *error);
-/** Identify the channels of a record at rest, and fill their sheets. One that fails is a finding.
- */
+/** Identify the noise of a record at rest and fill the sheets of its channels. A channel that
+ *  cannot be identified gives a finding.
+ *  @return IMK_ERROR_MEMORY */
 IMK_API imk_status imk_evaluate_at_rest(imk_evaluate_log *evaluation, const imk_even_record *record,
                                         imk_error *error);
-/** Readings in counts as what they stand for [counts per SI unit of the reference, counts]. */
+/** Convert the readings of a channel from counts to the unit of its reference.
+ *  @param sensitivity  [counts per SI unit of the reference]
+ *  @param zero         reading at zero [counts] */
 IMK_API void imk_evaluate_scale(imk_evaluate_channel *channel, double sensitivity, double zero);
-/** Settings of a channel that has all its readings: those of the figures, which may be changed. */
+/** Set channel->settings, which may then be changed. The channel must have all its readings. */
 IMK_API void imk_evaluate_channel_settings(const imk_evaluate_log *evaluation,
                                            imk_evaluate_channel *channel);
-/** Evaluate a channel and fill its sheet. @return as imk_evaluate() */
+/** Evaluate a channel and fill its sheet. @return errors of imk_evaluate(), IMK_ERROR_MEMORY */
 IMK_API imk_status imk_evaluate_channel_run(imk_evaluate_log *evaluation,
                                             imk_evaluate_channel *channel, imk_error *error);
 

@@ -10,35 +10,40 @@
 
 IMK_BEGIN_C
 
-/** What is asked. Start from imk_simulate_log_default(). */
+/** Settings of the job. Start from imk_simulate_log_default(). */
 typedef struct imk_simulate_log_settings {
     uint32_t cookie;
-    imk_simulation simulation;      /**< motion, temperature, rate, seed and run */
-    uint64_t rows;                  /**< > 0 */
-    double start;                   /**< [s] stamp of the first row; 0 */
-    bool increments;                /**< of the integrals, over the row; false: rates */
-    imk_unit gyro_unit, accel_unit; /**< as the columns are called; scale 0: the usual ones */
+    imk_simulation simulation;      /**< motion, temperature, rate, seed and run number */
+    uint64_t rows;                  /**< length of the log, > 0 */
+    double start;                   /**< time of the first row [s]; default 0 */
+    bool increments;                /**< increments of the integrals over a row instead of rates and
+                                         forces; default false */
+    imk_unit gyro_unit, accel_unit; /**< units of the columns; scale 0 (default): deg/s and m/s^2,
+                                       or their increments */
 } imk_simulate_log_settings;
 
-/** As imk_simulation_default(), rates in the usual units. */
+/** Settings of imk_simulation_default(), with rates in the usual units. */
 IMK_API imk_simulate_log_settings imk_simulate_log_default(void);
 
-/** The number in the name of the column for each sensor of a triad: up to three along body axes are
- *  called by them, others are numbered. */
+/** Find the number by which the column of each sensor of a triad is named: 0 to 2 (x to z) for up
+ *  to three sensors along the body axes, consecutive numbers for others. */
 IMK_API void imk_triad_axes(const imk_triad *triad, int axis[IMK_AXES_MAX]);
 
-/** One run: time, gyros, accelerometers, and the temperature where there is a profile. Rows that
- *  are lost (timing.drops) are left out. A model with a sensitivity makes counts.
- *  @param stage  what the progress says
- *  @return as imk_simulator_start(), the sink; IMK_ERROR_MEMORY, _CANCELLED */
+/** Simulate one run: time, gyros, accelerometers, and the temperature if there is a profile. Rows
+ *  that are lost (timing.drops) are left out. A model with a sensitivity gives counts.
+ *  @param sink   takes the rows
+ *  @param stage  text for the progress, such as "simulating"
+ *  @param job    NULL: one thread, memory of the C library, no progress
+ *  @return errors of imk_simulator_start() and of the sink; IMK_ERROR_MEMORY, _CANCELLED */
 IMK_API imk_status imk_simulate_log_run(const imk_model *model,
                                         const imk_simulate_log_settings *settings,
                                         const imk_record_sink *sink, const char *stage,
                                         const imk_job *job, imk_error *error);
 
-/** The truth behind every run, row by row: where the unit was at the stamp (not of a recorded
- *  motion), its true time, and what perfect sensors would have read over the row.
- *  @return likewise */
+/** Write the truth behind every run, row by row: position, velocity and attitude at the time of the
+ *  row (not for a recorded motion), the true time, and what perfect sensors would have read over
+ *  the row.
+ *  @return errors of imk_simulate_log_run() */
 IMK_API imk_status imk_simulate_truth_run(const imk_model *model,
                                           const imk_simulate_log_settings *settings,
                                           const imk_record_sink *sink, const imk_job *job,
