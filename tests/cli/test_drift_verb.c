@@ -132,10 +132,10 @@ static void test_no_position(void **state)
 {
     (void)state;
     check_message("$I drift tactical -d 24h", 0,
-                  "imukit drift: warning: tactical: at 8 h the error is beyond a tenth of the "
-                  "Earth's radius: no longer a position\n");
+                  "imukit drift: warning: tactical: at 8 h the error exceeds a tenth of the "
+                  "Earth's radius: this is no longer a position\n");
     check_contains(out, "no position", "24 h");
-    check_contains(out, "What makes it after 4 h", "the last that is one");
+    check_contains(out, "Contributions after 4 h", "the last that is one");
     assert_null(strstr(out, "1 d          "));
 }
 
@@ -376,8 +376,8 @@ static void test_omitted(void **state)
     (void)state;
     put("band.yaml", "imukit: 1\nname: band\ngyro: {dead_band: 0.1 deg/h}\naccel: {}\n");
     check_message("$I drift band.yaml -d 1min", 0,
-                  "imukit drift: warning: band.yaml: left out by the linear theory: "
-                  "gyro.dead_band; --monte-carlo has all that needs no temperature\n");
+                  "imukit drift: warning: band.yaml: the linear theory leaves out gyro.dead_band; "
+                  "--monte-carlo includes everything that needs no temperature\n");
     sweep();
 }
 

@@ -105,7 +105,7 @@ static void show_tables(const imk_allan_log *a, imk_result *result)
         /* What a statistic cannot be taken of is said, not left out in silence. */
         imk_result_for(result, IMK_FOR_TERMINAL);
         if (a->curve[0][k].count == 0)
-            imk_result_line(result, "%s: the record allows no such averaging time\n",
+            imk_result_line(result, "%s: the record allows none of these averaging times\n",
                             imk_allan_title(a->settings.statistic[k]));
         for (imk_channel_kind kind = IMK_CHANNEL_GYRO; kind < IMK_CHANNEL_KINDS; kind++)
             show_table(a, kind, k, result);

@@ -146,10 +146,10 @@ static void show_attitude(const imk_navigate_log *n, imk_result *result)
         "  force %.6f of normal gravity, rotation %.4f of the Earth's, sway %.2g m/s",
         n->record.dt * (double)n->first, method_names[n->method],
         !n->settings.method_given && n->method == IMK_ALIGNMENT_MEANS
-            ? ", as the gyros read more than the Earth's rotation"
+            ? ", because the gyros read more than the Earth's rotation"
             : "",
         angles_text(n->attitude, text), n->settings.heading_given ? " (yaw given)" : "", tilt,
-        north, n->settings.model ? "" : " (scatter alone; --model counts the biases in)",
+        north, n->settings.model ? "" : " (from the scatter alone; --model includes the biases)",
         n->alignment.gravity_ratio, n->alignment.earth_rate_ratio, n->alignment.disturbance);
 }
 
@@ -311,8 +311,8 @@ static void show_rest(const imk_navigate_log *n, imk_result *result)
     show_drift(n, 0, result);
     if (c->accepted + c->refused > 0)
         imk_result_line(result,
-                        "Zero-velocity updates: %llu, refused %llu; innovations squared %.2f of "
-                        "what the model says",
+                        "Zero-velocity updates: %llu, refused %llu; innovations squared %.2f times "
+                        "what the model predicts",
                         (unsigned long long)c->accepted, (unsigned long long)c->refused,
                         c->degrees > 0 ? c->chi_square / (double)c->degrees : 0.0);
 }

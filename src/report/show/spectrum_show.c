@@ -95,8 +95,8 @@ static void show_line(const imk_spectrum_log *s, size_t channel, size_t index, i
 static void show_lines(const imk_spectrum_log *s, imk_result *result)
 {
     imk_table *table = imk_result_table(result, 0);
-    imk_table_row(table, "channel\tfrequency [Hz]\tamplitude\tover floor\tchance of it\tkind\t"
-                         "multiple of");
+    imk_table_row(table,
+                  "channel\tfrequency [Hz]\tamplitude\tover floor\tfalse alarm\tkind\tmultiple of");
     for (size_t c = 0; c < s->record.count; c++)
         for (size_t i = 0; i < s->channel[c].line_count; i++)
             show_line(s, c, i, table);

@@ -242,7 +242,7 @@ void imki_drift_show_figure(const imk_drift_models *r, bool shares, imk_result *
     d.figure = imk_result_figure(
         result, r->model_count > 1 ? "Comparison" : r->name[0], any ? 1 + r->case_count : 1,
         "CEP is the radius of the circle that holds half of all outcomes, R95 that of 95 %. Shares "
-        "are of the variance: a term with 25 % makes half as much error as the whole.");
+        "refer to the variance: a term with 25 % causes half as much error as all terms together.");
     show_growth(&d);
     if (shares && any)
         show_shares(&d);

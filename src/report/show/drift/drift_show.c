@@ -186,10 +186,10 @@ static void show_deciding(const imk_drift_models *r, imk_result *result)
         const imk_drift_case *one = &r->cases[c];
         char text[IMKI_DRIFT_TIME];
         if (one->share_count > 0 && one->share[0].share > 0)
-            imk_result_line(result, "%s: after %s %s makes %.0f %% of the variance", one->label,
-                            imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, text),
-                            one->analysis->source[one->share[0].source].text,
-                            100 * one->share[0].share);
+            imk_result_line(
+                result, "%s: after %s %s contributes %.0f %% of the variance", one->label,
+                imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, text),
+                one->analysis->source[one->share[0].source].text, 100 * one->share[0].share);
     }
 }
 

@@ -212,15 +212,15 @@ void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one
     const imk_audience audience = r->model_count > 1 ? IMK_FOR_PAGE : IMK_FOR_BOTH;
     char title[240], time[IMKI_DRIFT_TIME];
     imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, time);
-    snprintf(title, sizeof title, "What makes it after %s: %s", time, one->label);
+    snprintf(title, sizeof title, "Contributions after %s: %s", time, one->label);
     imk_result_for(result, IMK_FOR_PAGE);
     if (shares)
         imk_result_heading(result, title);
     imk_result_for(result, audience & IMK_FOR_TERMINAL);
     if (!shares && !shifts)
-        imk_result_line(result, "\nNo term of %s makes an error of position.", one->label);
+        imk_result_line(result, "\nNo term of %s causes a position error.", one->label);
     else
-        imk_result_line(result, "\nWhat makes it after %s%s", time,
+        imk_result_line(result, "\nContributions after %s%s", time,
                         r->case_count == 1          ? ""
                         : one->settings.compensated ? ", after calibration"
                                                     : ", before calibration");

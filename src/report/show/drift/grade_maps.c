@@ -87,9 +87,9 @@ static const grade_map maps[IMK_GRADE_MAPS] = {
      "stability of the bias [deg/h]",
      {1, 1e5},
      {1e-4, 1e4},
-     "Bands are applications, whose source says nothing of scale factors; boxes are classes of "
-     "gyros. The columns at the left edge are technologies by bias alone: their place along the "
-     "axis means nothing.",
+     "Bands are applications; their source states no scale factors. Boxes are classes of gyros. "
+     "The columns at the left edge are technologies by bias alone: their place along the axis has "
+     "no meaning.",
      REGIONS(gyro_regions)},
     {"Accelerometers: applications and technologies",
      "stability of the scale factor [ppm]",
@@ -103,8 +103,8 @@ static const grade_map maps[IMK_GRADE_MAPS] = {
      "cost of a unit [dollars]",
      {1, 2e6},
      {1, 2e6},
-     "A model states no cost: it is a line at its computed CEP. Published figures that are one "
-     "number are drawn as a factor of two to either side.",
+     "A model states no cost, so it is drawn as a line at its computed CEP. A published single "
+     "number is drawn as a range of a factor of two to either side.",
      REGIONS(cost_regions)},
 };
 

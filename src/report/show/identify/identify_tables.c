@@ -80,7 +80,7 @@ static void record_rows(imk_table *table, const imk_identify_log *log, const siz
     imk_table_row(table, "model holds from tau =\ts");
     for (size_t k = 0; k < members; k++)
         from_cell(table, log->result[member[k]].valid_from);
-    imk_table_row(table, "the five terms alone from\ts");
+    imk_table_row(table, "five terms hold from tau =\ts");
     for (size_t k = 0; k < members; k++)
         from_cell(table, log->result[member[k]].five_terms_from);
 }

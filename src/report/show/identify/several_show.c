@@ -270,12 +270,12 @@ static void show_joint(const imk_identify_shown *joint, imk_result *result)
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_line(result, "One set of terms for all logs, by maximum likelihood on their spectra "
                             "together. Each log has its own mean, ramp and lines.");
-    imki_identify_figure(joint,
-                         "Points: the Allan deviations of all logs, pooled, with confidence "
-                         "intervals. Line: the joint model. Below: how improbable the difference "
-                         "of each point from it is, as standard deviations of a normal "
-                         "distribution.",
-                         result);
+    imki_identify_figure(
+        joint,
+        "Points: the Allan deviations of all logs, pooled, with confidence intervals. Line: the "
+        "joint model. Below: the difference of each point from the model, converted by its "
+        "probability to standard deviations of a normal distribution.",
+        result);
 }
 
 static void show_bias(const imk_identify_several *s, const imk_identify_shown *joint,
@@ -283,9 +283,10 @@ static void show_bias(const imk_identify_several *s, const imk_identify_shown *j
 {
     bias_table(s, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_line(result, "Noise within a run: how far the means of two runs without a break "
-                            "between them would differ, by the joint model. What the means differ "
-                            "by beyond it comes from run to run.");
+    imk_result_line(
+        result,
+        "Noise within a run: the difference that the joint model predicts between the means of two "
+        "runs without a break. Any further difference is a change from run to run.");
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (joint->truth)
         imki_truth_table(joint, result);

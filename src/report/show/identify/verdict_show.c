@@ -119,7 +119,7 @@ static bool find_warm_up(const imk_identify_log *log, size_t channel, imki_text 
     const imk_screen *s = &log->screen[channel];
     const imk_unit unit = unit_for(log, channel, s->warm_up_amplitude);
     imki_text_add(
-        detail, "%s %s at the start, falling with %s s",
+        detail, "%s %s at the start, time constant %s s",
         imki_plus_minus(s->warm_up_amplitude, s->warm_up_amplitude_sigma, unit.scale).text,
         unit.text, imki_plus_minus(s->warm_up_time, s->warm_up_time_sigma, 1).text);
     return s->warm_up;
@@ -247,8 +247,8 @@ static const struct concern {
      "longer",
      NULL},
     {IMK_VERDICT_COARSE, find_resolution, 0, IMK_FINDING_WARNING, "coarse",
-     "the output step is larger than the noise: the white noise is doubtful; log with more digits "
-     "or a smaller range",
+     "the output step is larger than the noise, so the white noise is unreliable; log with more "
+     "digits or a smaller range",
      NULL},
     {IMK_VERDICT_SATURATED, NULL, 0, IMK_FINDING_WARNING, "saturated",
      "samples stick at an extreme value: the range is too small or the sensor was moved", NULL},
@@ -257,15 +257,17 @@ static const struct concern {
      "log's",
      NULL},
     {IMK_VERDICT_WARM_UP, NULL, 0, IMK_FINDING_WARNING, "warm_up",
-     "the start drifts unlike the rest: switch on earlier, or leave the first minutes out", NULL},
+     "the start drifts differently from the rest; switch the sensor on earlier, or leave out the "
+     "first minutes",
+     NULL},
     {IMK_VERDICT_MISFIT, find_validity, 0, IMK_FINDING_WARNING, "misfit",
-     "the model explains the record only over these averaging times; the log holds something else "
-     "as well (vibration, filtering, another process)",
+     "the model explains the record only over these averaging times; the log also contains "
+     "something else (vibration, filtering, another process)",
      NULL},
     {IMK_VERDICT_LINES, find_lines, 0, IMK_FINDING_NOTE, "lines",
-     "spectral lines, from vibration or interference, are modelled apart as sinusoids", NULL},
+     "spectral lines, from vibration or interference, are modelled separately as sinusoids", NULL},
     {IMK_VERDICT_RESONANCE, find_resonance, 0, IMK_FINDING_NOTE, "resonance",
-     "a resonance of the structure or the sensor is modelled apart", NULL},
+     "a resonance of the structure or the sensor is modelled separately", NULL},
     {IMK_VERDICT_FILTERED, find_filter, 0, IMK_FINDING_NOTE, "filtered",
      "the output is low-pass filtered within the band; the filter is in the model", NULL},
 };
@@ -328,12 +330,12 @@ static void assess_gravity(imk_verdict *v, const imk_identify_log *log)
     if (unit)
         imki_verdict_add(v, IMK_FINDING_WARNING, "gravity",
                          "|accel| is %.4g m/s^2 at rest: the numbers look like %s; write %s into "
-                         "the header, or add --accel-unit %s where it has none.",
+                         "the header, or add --accel-unit %s if it has no unit.",
                          magnitude, unit, unit, unit);
     else
         imki_verdict_add(v, IMK_FINDING_WARNING, "gravity",
-                         "|accel| is %.4g m/s^2 at rest, not gravity (9.78 to 9.83), and no usual "
-                         "unit makes it so: was gravity removed, or did the sensor move?",
+                         "|accel| is %.4g m/s^2 at rest, not gravity (9.78 to 9.83), and no common "
+                         "unit explains this value: was gravity removed, or did the sensor move?",
                          magnitude);
 }
 
@@ -362,12 +364,11 @@ static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
             }
         imki_text_put(&list, any ? ")" : "cause not known)");
     }
-    imki_verdict_list(
-        v, IMK_FINDING_NOTE, "five_terms",
-        "white noise, bias instability, random walk, ramp and quantization alone explain the log "
-        "only from some averaging time on. At shorter times other terms, which the model has too, "
-        "shape it: ",
-        &list, ".");
+    imki_verdict_list(v, IMK_FINDING_NOTE, "five_terms",
+                      "white noise, bias instability, random walk, ramp and quantization alone "
+                      "explain the log only from some averaging time on. At shorter times other "
+                      "terms of the model dominate the log: ",
+                      &list, ".");
 }
 
 static void assess_length(imk_verdict *v, const imk_identify_log *log)
@@ -381,10 +382,10 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
             to = fmin(to, log->result[c].valid_to);
         }
     if (from > 0)
-        imki_verdict_add(v, imk_verdict_warns(v) ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, "length",
-                         "%s at %.6g Hz: the model speaks for averaging times from %.3g s to %.3g "
-                         "s.",
-                         length.text, 1 / record->dt, from, to);
+        imki_verdict_add(
+            v, imk_verdict_warns(v) ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, "length",
+            "%s at %.6g Hz: the model is valid for averaging times from %.3g s to %.3g s.",
+            length.text, 1 / record->dt, from, to);
     else
         imki_verdict_add(v, IMK_FINDING_NOTE, "length", "%s at %.6g Hz.", length.text,
                          1 / record->dt);
@@ -418,8 +419,8 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
     assess_gravity(&v, log);
     if (!log->screened)
         imki_verdict_add(&v, IMK_FINDING_NOTE, "not_screened",
-                         "the log is longer than what is held in memory: outliers, steps, the "
-                         "warm-up and the temperature were not looked for.");
+                         "the log is too long to be held in memory, so it was not searched for "
+                         "outliers, steps, a warm-up or an effect of temperature.");
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
         if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
             assess_concern(&v, log, &concerns[k]);
@@ -430,6 +431,6 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
                          "%zu of %zu samples were bridged by straight lines.", log->record.bridged,
                          log->record.rows);
     if (!imk_verdict_warns(&v))
-        imki_verdict_add(&v, IMK_FINDING_GOOD, "good", "Nothing speaks against this record.");
+        imki_verdict_add(&v, IMK_FINDING_GOOD, "good", "No test found a fault in this record.");
     return v;
 }
