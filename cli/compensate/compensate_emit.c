@@ -14,12 +14,12 @@ const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
     {"emit-c", OPTION_FILE, AT(directory), .value = "DIR",
      .help = "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c"},
     {"arithmetic", OPTION_CHOICE, AT(arithmetic), .value = "KIND", .choices = "float|double|fixed",
-     .help = "of that code: float (default), double, or fixed: 32-bit integers, for parts without "
-             "an FPU"},
+     .help = "arithmetic of the code: float (default), double, or fixed: 32-bit integers, for "
+             "parts without an FPU"},
     {"prefix", OPTION_TEXT, AT(prefix), .value = "NAME",
-     .help = "of its files and names; default: imukit_ and the name of the model"},
+     .help = "prefix of its files and names; default: imukit_ and the name of the model"},
     {"vectors", OPTION_INTEGER, AT(vectors), .value = "N", .choices = "1-1000000",
-     .help = "samples in its self-test, 1 to 1000000; default 64"},
+     .help = "number of samples in its self-test, 1 to 1000000; default 64"},
 };
 
 static const char *const arithmetics[3] = {"float", "double", "fixed"};

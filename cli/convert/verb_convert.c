@@ -27,13 +27,13 @@ static const option convert_option_table[] = {
     {"select", OPTION_TEXT, AT(to.select), .value = "NAMES",
      .help = "columns to keep, in this order, such as time,gyro_x; default: all"},
     {"to-gyro-unit", OPTION_UNIT, AT(to.gyro_unit), .value = "UNIT",
-     .help = "of the gyro columns written; default: as read"},
+     .help = "unit of the gyro columns written; default: as read"},
     {"to-accel-unit", OPTION_UNIT, AT(to.accel_unit), .value = "UNIT",
-     .help = "of the accelerometer columns written; default: as read"},
+     .help = "unit of the accelerometer columns written; default: as read"},
     {"to-time-unit", OPTION_UNIT, AT(to.time_unit), .value = "UNIT",
-     .help = "of the time column written; default: as read"},
+     .help = "unit of the time column written; default: as read"},
     {"to-temperature-unit", OPTION_UNIT, AT(to.temperature_unit), .value = "UNIT",
-     .help = "of the temperature column written; default: as read"},
+     .help = "unit of the temperature column written; default: as read"},
     DECIMALS_OPTION(AT(decimals)),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
@@ -44,13 +44,13 @@ static const option motion_option_table[] = {
              "accelerometers, such as \"0.1 0 -0.05 m\""},
     {"gravity-free", OPTION_FLAG, AT(to.gravity_free),
      .help = "acceleration relative to the Earth instead of specific force; needs --latitude, and "
-             "a unit that is still at first"},
+             "a unit that is at rest at the start"},
     {"still", OPTION_QUANTITY, AT(to.still), .value = "TIME", .unit = "s",
-     .help = "how long it is still, for roll and pitch; default 10s"},
-    LATITUDE_OPTION(AT(to.latitude), "geodetic, for gravity"),
+     .help = "time at rest at the start, to find roll and pitch; default 10s"},
+    LATITUDE_OPTION(AT(to.latitude), "geodetic latitude, for gravity"),
     HEIGHT_OPTION(AT(to.height)),
     TURN_OPTION("yaw", AT(to.yaw),
-                "at first, from north to east, for the Earth's rotation; default 0deg"),
+                "heading at the start, from north to east, for the Earth's rotation; default 0deg"),
 };
 
 /* What each end is. A name without an ending tells nothing of what is read: its content is looked
@@ -191,19 +191,18 @@ const verb convert_verb = {
     .last_is_written = true,
     .examples =
         {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
-          "a log without units becomes one that says everything"},
+          "a log without units becomes a log that states its units"},
          {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
-          "a model becomes a parameter file of another program; without --to the way back"}},
+          "a model becomes a parameter file of another program; without --to a parameter file "
+          "becomes a model"}},
     .description =
         "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
-        "Increments "
-        "become rates. Values keep their units unless an option changes them.\n\n"
-        "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
-        "Parameter files of "
-        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and "
-        "ardupilot "
-        "are recognised by their content; what was assumed about units and densities, and what a "
-        "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
+        "Increments become rates. Values keep their units unless an option changes them.\n\nA "
+        "model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
+        "Parameter files of kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, "
+        "openvins, vins, px4 and ardupilot are recognised by their content; assumptions about "
+        "units and densities, and values that a format cannot hold, are reported on standard "
+        "error. docs/other-formats.md describes the formats.",
     .groups = {OPTION_GROUP("Options", convert_option_table, 0),
                {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
                OPTION_GROUP("Another point, without gravity", motion_option_table, 0),

@@ -143,15 +143,14 @@ const verb merge_verb = {
     .operands_minimum = 1,
     .operands_maximum = FILES_MAX,
     .examples = {{"imukit merge shard-*.h5 -o all.h5",
-                  "the file, byte for byte, of the campaign computed in one piece"},
+                  "the same file, byte for byte, as of a campaign computed in one piece"},
                  {"imukit merge shard-*.h5 -o some.h5 --partial",
-                  "the runs that are there, with their numbers; the rest can be merged later"}},
-    .description =
-        "SHARD is a results file of imukit drift --monte-carlo … --shard i/N, or of a merge "
-        "before. The order does not matter.\n\n"
-        "A file that is damaged, or of another campaign, seed or version than most, is named and "
-        "left out. When runs are missing then, nothing is written, and the shards to compute again "
-        "are named; --partial writes what there is.\n\n"
-        "docs/clusters.md shows campaigns on many machines, docs/campaign-file.md the format.",
+                  "the existing runs, with their numbers; the others can be merged later"}},
+    .description = "SHARD is a results file of imukit drift --monte-carlo … --shard i/N, or of an "
+                   "earlier merge. The order does not matter.\n\nA file that is damaged, or of "
+                   "another campaign, seed or version than most, is reported and left out. If runs "
+                   "are then missing, nothing is written, and the shards to compute again are "
+                   "listed; --partial writes the existing runs.\n\ndocs/clusters.md shows "
+                   "campaigns on many machines, docs/campaign-file.md the format.",
     .groups = {OPTION_GROUP("Options", merge_option_table, 0)},
     .run = run};

@@ -18,16 +18,15 @@ enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
 void command_welcome(FILE *out)
 {
     const char *bold = command_color(out, COLOR_BOLD), *reset = command_color(out, COLOR_RESET);
-    fprintf(out,
-            "imukit %s: the errors of gyros and accelerometers, from logs, in logs\n\n"
-            "%sFirst result%s (no sensor needed)\n"
-            "  imukit simulate AHRS --rate 100Hz --duration 1h --seed 1 -o static.csv\n"
-            "  imukit identify static.csv -o model.yaml --report report.html\n\n"
-            "%sWith your own sensor%s: leave it still for an hour or more, log it, and run\n"
-            "  imukit identify LOG.csv -o model.yaml --report report.html\n"
-            "The message names the option to add if the units or the rate are not in the file.\n\n"
-            "%sVerbs%s\n",
-            imk_version(), bold, reset, bold, reset, bold, reset);
+    fprintf(
+        out,
+        "imukit %s: find, simulate and correct the errors of gyros and accelerometers\n\n%sFirst "
+        "result%s (no sensor needed)\n  imukit simulate AHRS --rate 100Hz --duration 1h --seed 1 "
+        "-o static.csv\n  imukit identify static.csv -o model.yaml --report report.html\n\n%sWith "
+        "your own sensor%s: leave it at rest for an hour or more, log it, and run\n  imukit "
+        "identify LOG.csv -o model.yaml --report report.html\nThe message names the option to add "
+        "if the units or the rate are not in the file.\n\n%sVerbs%s\n",
+        imk_version(), bold, reset, bold, reset, bold, reset);
     for (size_t i = 0; i < VERB_COUNT; i++)
         fprintf(out, "  %-10s %s\n", verbs[i]->name, verbs[i]->summary);
     fprintf(out, "\n  imukit VERB --help   examples and options of a verb\n"
@@ -57,9 +56,9 @@ static int unknown_verb(const char *name)
 /* The page imukit(1), which lists the verbs. */
 static void main_manual(void)
 {
-    printf(".TH IMUKIT 1 \"\" \"imukit %s\" \"imukit\"\n.SH NAME\n"
-           "imukit \\- the errors of gyros and accelerometers, from logs, in logs\n"
-           ".SH SYNOPSIS\n.B imukit\n.I VERB\n[operands] [options]\n.SH VERBS\n",
+    printf(".TH IMUKIT 1 \"\" \"imukit %s\" \"imukit\"\n.SH NAME\nimukit \\- find, simulate and "
+           "correct the errors of gyros and accelerometers\n.SH SYNOPSIS\n.B imukit\n.I "
+           "VERB\n[operands] [options]\n.SH VERBS\n",
            imk_version());
     for (size_t i = 0; i < VERB_COUNT; i++)
         printf(".TP\n.BR imukit\\-%s (1)\n%s\n", verbs[i]->name, verbs[i]->summary);

@@ -72,8 +72,7 @@ static const struct message {
      "column {name} has missing samples, and only oadev of rates allows gaps; leave out "
      "--statistic and --type, or use --gaps bridge or --gaps longest"},
     {"statistic_failed", "column {name}: {0a}: {1t}"},
-    {"averaging_time",
-     "{0g} s is outside the averaging times of this record, {1g} s to {2g} s"},
+    {"averaging_time", "{0g} s is outside the averaging times of this record, {1g} s to {2g} s"},
     /* identify_log.c, identify_by_allan.c */
     {"constant_identify", "column {name} is constant in all {0} rows: there is no noise to "
                           "identify; leave it out with --columns, or check the log"},
