@@ -104,7 +104,7 @@ static double *parse_times(const char *text, size_t *count, int *code)
             status = imk_quantity_parse(item, item + length, imk_unit_of("s").dimension, 1, &tau,
                                         &sigma, &numbers, NULL, &error);
         if (status != IMK_OK || !isfinite(tau))
-            *code = command_misused("--tau %s: \"%.*s\" is no averaging time; expected octave, "
+            *code = command_misused("--tau %s: \"%.*s\" is not an averaging time; expected octave, "
                                     "decade, many, all or a list such as 1,10,100 in seconds",
                                     text, (int)length, item);
         else if (*count > 0 && !(tau > times[*count - 1]))

@@ -32,7 +32,7 @@ static void catch_signals(const char *path)
     struct sigaction action = {.sa_handler = interrupted};
     snprintf(farewell, sizeof farewell,
              "%simukit: interrupted: the runs computed so far are kept in %.800s.part, and the "
-             "same command goes on from there\n",
+             "same command continues from there\n",
              isatty(STDERR_FILENO) ? "\r\033[K" : "", path);
     sigemptyset(&action.sa_mask);
     for (int i = 0; i < ENDING_SIGNALS; i++)
@@ -127,8 +127,8 @@ int campaign_job_open(campaign_job *job, const imk_campaign *campaign, uint64_t 
     }
     if (job->writer) {
         if (job->due < runs)
-            command_note("%llu of %llu runs are there already",
-                         (unsigned long long)(runs - job->due), (unsigned long long)runs);
+            command_note("%llu of %llu runs exist already", (unsigned long long)(runs - job->due),
+                         (unsigned long long)runs);
         catch_signals(path);
     }
     job->line = progress_begin("Monte Carlo", "runs", 1);

@@ -33,8 +33,8 @@ static void warn_of_terms(const imk_term_keys *left_in)
         for (size_t k = 0; k < sizeof needs_time / sizeof needs_time[0]; k++)
             if (strstr(left_in->key[i], needs_time[k]))
                 command_warn("left_in",
-                             "%s stays in: it needs more than one sample; imukit compensate LOG "
-                             "MODEL takes it out of a log",
+                             "the code does not correct %s, which needs more than one sample; "
+                             "imukit compensate LOG MODEL takes it out of a log",
                              left_in->key[i]);
 }
 
@@ -70,10 +70,10 @@ static void show_summary(const char *directory, const char *name, const imk_firm
 {
     for (int sensor = 0; sensor < 2; sensor++)
         if (plan->axis_count[sensor] > 0)
-            imk_result_line(result, "The %s is within %.2g %s of the exact correction%s",
-                            motions[sensor], plan->bound[sensor], units[sensor],
-                            plan->limit_stated[sensor] ? ""
-                                                       : " (no range is stated: of small motions)");
+            imk_result_line(
+                result, "The %s is within %.2g %s of the exact correction%s", motions[sensor],
+                plan->bound[sensor], units[sensor],
+                plan->limit_stated[sensor] ? "" : " (no range is stated: for small motions)");
     imk_result_line(result, "%d multiplications, %d additions, %d comparisons a sample",
                     plan->cost.multiplications, plan->cost.additions, plan->cost.comparisons);
     imk_result_line(result,

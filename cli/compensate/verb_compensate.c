@@ -75,8 +75,8 @@ static int check_axes(const compensate_options *o, const imk_model *model,
                                                                                    : NULL;
         if (triad && triad->present && triad->sensitivity.value[0] != 0 &&
             imk_dimension_equal(column->unit.dimension, counts))
-            return command_misused("--axes turns numbers round, and counts have a zero offset: "
-                                   "compensate first, then imukit convert --axes");
+            return command_misused("--axes changes signs, and counts have a zero offset; "
+                                   "compensate first, then use imukit convert --axes");
     }
     return -1;
 }

@@ -111,8 +111,8 @@ static int read_source(const parameter_options *o, const imk_parameter_settings 
     *format = reading.format;
     const bool is_model = reading.format == IMK_PARAMETERS_UNKNOWN && !only_parameters(in);
     if (is_model && o->sensor)
-        return command_misused("--sensor is of a parameter file with several, and %s is a model",
-                               in);
+        return command_misused(
+            "--sensor is for a parameter file with several sensors, and %s is a model", in);
     if (is_model)
         return command_model(in, model, NULL);
     if (imk_parameters_read(in, &reading, model, notes, &error) != IMK_OK)

@@ -99,8 +99,8 @@ static int set_up(convert_options *o)
     o->to.to_point = o->to_point != NULL;
     int code = o->to_point ? parse_point(o->to_point, o->to.point.v) : -1;
     if (code < 0 && o->to.gravity_free && isnan(o->to.latitude))
-        code = command_misused("--gravity-free: gravity differs from place to place: add "
-                               "--latitude 45deg and, off the sea, --height 500m");
+        code = command_misused("--gravity-free: gravity depends on the place; add --latitude 45deg "
+                               "and, away from sea level, --height 500m");
     return code;
 }
 
@@ -165,8 +165,8 @@ static int run(int count, char **words)
     if (wanted)
         return convert_parameters(&o.parameters, o.log.file.rate, operands[0], operands[1]);
     if (o.parameters.json || o.parameters.sensor || o.parameters.density)
-        return command_misused("%s: --json, --sensor and --density are for parameter files; "
-                               "--from says which kind it is",
+        return command_misused("%s: --json, --sensor and --density are for parameter files; state "
+                               "the format with --from",
                                operands[0]);
     bool from_model, to_model;
     find_kinds(operands[0], operands[1], &from_model, &to_model);

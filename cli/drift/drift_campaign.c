@@ -194,8 +194,8 @@ static int show(const imk_drift_models *r, const imk_campaign_results *file, con
     list_free(&words);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (there < whole)
-        imk_result_line(result,
-                        "\nA part of the campaign; the whole: imukit merge PART.h5... -o WHOLE.h5");
+        imk_result_line(result, "\nThis is a part of the campaign. All parts together: imukit "
+                                "merge PART.h5... -o WHOLE.h5");
     imk_result_for(result, IMK_FOR_PAGE);
     show_origin(result);
     return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},

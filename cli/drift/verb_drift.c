@@ -85,12 +85,12 @@ static bool is_csv(const char *path)
 static int check_runs(const drift_options *o, size_t models)
 {
     if (models > 1)
-        return command_misused("--monte-carlo is of one model at a time");
+        return command_misused("--monte-carlo takes one model at a time");
     if (o->shard && !o->output)
         return command_misused("--shard makes a part for imukit merge: add -o PART.h5");
     if (o->output && !is_csv(o->output) && command_is_stream(o->output))
-        return command_misused("-o %s: runs are kept in a file beside their results while they are "
-                               "made; give a name ending in .csv or .h5",
+        return command_misused("-o %s: the runs are kept in a file beside the results while they "
+                               "are computed; give a name ending in .csv or .h5",
                                o->output);
     if (o->output && !imk_has_ending(o->output, ".h5") && !is_csv(o->output))
         return command_misused("-o %s: expected a name ending in .h5, .csv, .csv.gz or .csv.zst",
@@ -106,14 +106,14 @@ static int check(const drift_options *o, bool runs, size_t models)
     if (code >= 0)
         return code;
     if (!runs && o->shard)
-        return command_misused("--shard is a part of --monte-carlo N: add it");
+        return command_misused("--shard selects a part of --monte-carlo N; add that option");
     if (!runs && o->output && !is_csv(o->output) && !command_is_stream(o->output))
-        return command_misused(
-            "-o %s: figures against time are written as .csv (%s holds runs: add "
-            "--monte-carlo 1000)",
-            o->output, imk_has_ending(o->output, ".h5") ? ".h5" : "a results file");
+        return command_misused("-o %s: figures against time are written as .csv; %s is for runs: "
+                               "add --monte-carlo 1000",
+                               o->output,
+                               imk_has_ending(o->output, ".h5") ? ".h5" : "a results file");
     if (o->want && models > 1)
-        return command_misused("--want is of one model at a time");
+        return command_misused("--want takes one model at a time");
     return -1;
 }
 
@@ -152,7 +152,8 @@ static void show_requirement(const imk_drift_models *r, imk_result *result)
     const bool whole_hours = hours == floor(hours), whole_minutes = minutes == floor(minutes);
     if (!(f->cep > 0) || imk_drift_validity_of(f) == IMK_DRIFT_LOST)
         return;
-    imk_result_line(result, "\nNext: what would halve it?  %s --want \"CEP %s @ %.8g%s\"",
+    imk_result_line(result,
+                    "\nNext, to see what would halve the error: %s --want \"CEP %s @ %.8g%s\"",
                     command_line(), imk_readable_figure(IMK_REQUIRED_CEP, 0.5 * f->cep, length),
                     whole_hours     ? hours
                     : whole_minutes ? minutes
@@ -271,13 +272,12 @@ static int run(int count, char **words)
         return code;
     for (size_t m = 0; m < models && models > 1; m++)
         if (imk_has_ending(w.name[m], ".h5"))
-            return command_misused("%s: a results file is shown by itself; several parts of a "
-                                   "campaign are put together by imukit merge",
+            return command_misused("%s: a results file is shown alone; combine several parts of a "
+                                   "campaign with imukit merge",
                                    w.name[m]);
     if (models == 1 && imk_has_ending(w.name[0], ".h5"))
-        return runs ? command_misused("%s holds runs that were made already: leave --monte-carlo "
-                                      "out",
-                                      w.name[0])
+        return runs ? command_misused(
+                          "%s contains runs that exist already; leave --monte-carlo out", w.name[0])
                     : drift_results(&o, w.name[0]);
     code = open_models(&w);
     if (code < 0)

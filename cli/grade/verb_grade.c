@@ -77,7 +77,7 @@ static int show(const grading *g, const grade_options *o)
         &(show_options){.report = o->report, .plot = stands ? o->plot : NULL, .json = o->json},
         EXIT_DONE);
     return code == EXIT_DONE && o->plot && !stands
-               ? command_failed("--map: nothing of the model stands on this map")
+               ? command_failed("--map: the model has no value for this map")
                : code;
 }
 
@@ -89,7 +89,7 @@ static int run(int count, char **words)
     if (code < 0)
         code = command_check_plot(o.plot);
     if (code < 0 && o.map > 0 && !o.plot)
-        code = command_misused("--map is of a drawing: add --plot FILE.svg");
+        code = command_misused("--map selects a drawing; add --plot FILE.svg");
     if (code < 0)
         code = grade(&g);
     if (code < 0)

@@ -147,13 +147,13 @@ static int identify_log(identification *i, const imk_executor *executor)
 static int check_allan(const identify_options *o)
 {
     if (o->curve && (!(o->log.file.rate > 0) || !(o->duration > 0)))
-        return command_misused("a curve does not say how long and how fast was recorded: give "
+        return command_misused("a curve does not state the rate and the length of its record; add "
                                "--rate and --duration, such as --rate 100Hz --duration 3h");
     if (o->curve && (o->keep || o->twin))
-        return command_misused("%s is about the samples of a log; a curve has none",
+        return command_misused("%s needs the samples of a log, and a curve has none",
                                o->keep ? "--keep" : "--twin");
     if (o->duration > 0 && !o->curve)
-        return command_misused("--duration goes with --plan or --curve: a log has its own");
+        return command_misused("--duration goes with --plan or --curve; a log has its own length");
     if (o->plain && !o->curve)
         return command_misused("--plain goes with --curve");
     if ((o->tolerance > 0 || o->gauss_markov.given) && !o->curve && o->method != METHOD_ALLAN)
@@ -175,14 +175,15 @@ static int check_request(const identify_options *o, size_t logs)
                                "--strict; the other options are about a log");
     if (o->plan)
         return logs == 0 ? -1
-                         : command_misused("--plan is for a record that is not made yet: leave the "
-                                           "log out, or --plan");
+                         : command_misused("--plan is for a record that does not exist yet; leave "
+                                           "out the log, or --plan");
     if (o->want)
-        return command_misused("--want says what a record is to tell: it goes with --plan MODEL");
+        return command_misused("--want states requirements for a planned record; add --plan MODEL");
     if (logs == 0)
         return command_misused("an operand is missing: imukit identify LOG..., or --plan MODEL");
     if (o->runs && o->devices)
-        return command_misused("--runs are of one sensor, --devices are different ones: which?");
+        return command_misused(
+            "--runs means one sensor, --devices means different ones; leave one out");
     if (logs > 1 && !o->runs && !o->devices)
         return command_misused("%zu logs are given: add --runs when they are of one sensor (one "
                                "joint model), or --devices when they are of different ones (their "

@@ -43,8 +43,8 @@ imk_log_settings log_input_settings(const log_input *input)
 int log_input_check(const log_input *input)
 {
     if (input->gaps == IMK_GAPS_KEEP && !input->missing_allowed)
-        return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
-                               "bridge or --gaps longest");
+        return command_misused(
+            "--gaps keep: this verb needs every sample; use --gaps bridge or --gaps longest");
     return -1;
 }
 

@@ -51,8 +51,8 @@ static void describe_missing(const imk_campaign_merge_report *r, growing_list *t
 {
     list_add(text, "runs %s of %llu are missing", r->missing, (unsigned long long)r->run_count);
     if (has_unreadable(r))
-        list_add(text, ", which may be in a file that could not be read: merge again with files "
-                       "that can");
+        list_add(text,
+                 "; they may be in a file that could not be read: merge again with readable files");
     else if (r->shard_count > 0 && r->shards[0])
         list_add(text,
                  "; compute again with --shard i/%llu for i = %s (Slurm: sbatch --array=%s), then "
@@ -102,7 +102,7 @@ static int merge(const merge_options *o, size_t count, const char *const *paths,
     warn_complaints(&report);
     describe_missing(&report, &missing);
     if (status == IMK_ERROR_CONFLICT && report.missing[0])
-        code = command_failed("%s (--partial merges what there is)", missing.text);
+        code = command_failed("%s (--partial merges the existing runs)", missing.text);
     else if (status != IMK_OK)
         code = command_error(&error, NULL);
     else if (report.missing[0])

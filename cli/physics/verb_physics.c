@@ -105,7 +105,7 @@ static int check_tasks(const physics_options *o, const char *operand)
         return command_misused("%s: there is no run to write; add --duration TIME",
                                o->output ? "-o" : "--signals");
     if (!runs && !models && !o->plot && !o->report && !o->animate && (o->rate || o->acceleration))
-        return command_misused("--%s: how long? add --duration TIME",
+        return command_misused("--%s: the length is missing; add --duration TIME",
                                o->rate ? "rate" : "acceleration");
     if (o->animate && (runs || models))
         return command_misused("--animate draws a view of the instrument: leave --%s out",

@@ -284,8 +284,8 @@ static void test_grids(void **state)
     assert_int_equal(run("$I allan b.csv --tau 0.1s"), 1);
     check_contains(err, "the clock may have jumped", "a leap");
     check_message("$I spectrum b.csv --gaps keep", 2,
-                  "imukit spectrum: error: --gaps keep: what this verb does needs every sample; "
-                  "use --gaps bridge or --gaps longest\n" TRY("spectrum"));
+                  "imukit spectrum: error: --gaps keep: this verb needs every sample; use --gaps "
+                  "bridge or --gaps longest\n" TRY("spectrum"));
     sweep();
 }
 

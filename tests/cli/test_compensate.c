@@ -92,8 +92,8 @@ static void test_refusals(void **state)
                   "columns are copied as they are\nimukit compensate: error: rates.yaml describes "
                   "none of the sensors in accel.csv\n");
     check_message("$I compensate log.csv unit.yaml --axes right-forward-up", 2,
-                  "imukit compensate: error: --axes turns numbers round, and counts have a zero "
-                  "offset: compensate first, then imukit convert --axes\n" TRY("compensate"));
+                  "imukit compensate: error: --axes changes signs, and counts have a zero offset; "
+                  "compensate first, then use imukit convert --axes\n" TRY("compensate"));
     check_message("$I compensate gyro.csv rates.yaml --json", 2,
                   "imukit compensate: error: --json and the log cannot both go to standard output: "
                   "add -o LOG\n" TRY("compensate"));
@@ -264,8 +264,8 @@ static void test_gravity_free(void **state)
     for (const char *line = out; *line; line = strchr(line, '\n') + 1)
         CHECK_CLOSE(strtod(line, NULL), 0, 1e-9);
     check_message("$I convert tilted.csv - --gravity-free", 2,
-                  "imukit convert: error: --gravity-free: gravity differs from place to place: add "
-                  "--latitude 45deg and, off the sea, --height 500m\n" TRY("convert"));
+                  "imukit convert: error: --gravity-free: gravity depends on the place; add "
+                  "--latitude 45deg and, away from sea level, --height 500m\n" TRY("convert"));
     sweep();
 }
 

@@ -179,8 +179,8 @@ static void test_parts_of_a_unit(void **state)
     assert_true(cep(way_of(models, 0, "given"), 1) > 0);
     json_decref(document);
     check_message("$I grade g.yaml --map cost", 2,
-                  "imukit grade: error: --map is of a drawing: add --plot FILE.svg\n"
-                  "Try: imukit grade --help\n");
+                  "imukit grade: error: --map selects a drawing; add --plot FILE.svg\nTry: imukit "
+                  "grade --help\n");
     sweep();
 }
 
@@ -200,7 +200,7 @@ static void test_maps(void **state)
     check_contains(out, "Comparison", "page");
     put("g.yaml", "imukit: 1\ngyro: {bias: {repeatability: 0.01 deg/h}}\n");
     assert_int_equal(run("$I grade g.yaml --map cost --plot c.svg"), 1);
-    check_contains(err, "--map: nothing of the model stands on this map", err);
+    check_contains(err, "--map: the model has no value for this map", err);
     assert_int_equal(access("c.svg", F_OK), -1);
     if (imk_plot_available()) {
         assert_int_equal(run("$I grade tactical --plot term"), 0);

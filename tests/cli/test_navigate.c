@@ -59,7 +59,7 @@ static void test_refusals(void **state)
     put_models();
     write_rest();
     check_message("$I navigate rest.csv --align 10s", 2,
-                  "imukit navigate: error: the place of the start is missing: add --position "
+                  "imukit navigate: error: the position at the start is missing: add --position "
                   "\"LATITUDE deg, LONGITUDE deg, HEIGHT m\"\n" TRY("navigate"));
     check_message("$I navigate rest.csv --align 10s --position '45 deg, 10 deg'", 2,
                   "imukit navigate: error: --position \"45 deg, 10 deg\": the height is "
@@ -69,19 +69,20 @@ static void test_refusals(void **state)
                   "imukit navigate: error: rest.csv: no sample falls into --align 10s: the rows "
                   "are 100000 s apart; align for longer, or correct --rate or the timestamps\n");
     check_message("$I navigate rest.csv --align 10s --position '95 deg, 10 deg, 0 m'", 2,
-                  "imukit navigate: error: --position \"95 deg, 10 deg, 0 m\": the latitude is "
-                  "within 90 deg, the longitude within 360 deg\n" TRY("navigate"));
-    check_message("$I navigate rest.csv " PLACE, 2,
-                  "imukit navigate: error: the attitude at the start is missing: add --align 300s "
-                  "if the unit stands still that long first, or --attitude \"ROLL PITCH YAW "
-                  "deg\"\n" TRY("navigate"));
+                  "imukit navigate: error: --position \"95 deg, 10 deg, 0 m\": the latitude must "
+                  "be within 90 deg, the longitude within 360 deg\n" TRY("navigate"));
+    check_message(
+        "$I navigate rest.csv " PLACE, 2,
+        "imukit navigate: error: the attitude at the start is missing: add --align 300s if the "
+        "unit is at rest for that time at the start, or --attitude \"ROLL PITCH YAW deg\"\n" TRY(
+            "navigate"));
     check_message("$I navigate rest.csv " PLACE " --align 10s --attitude '0 0 0 deg'", 2,
                   "imukit navigate: error: --align finds the attitude that --attitude gives: leave "
                   "one out\n" TRY("navigate"));
-    check_message("$I navigate rest.csv " PLACE " --align 10s --zero-velocity auto", 2,
-                  "imukit navigate: error: --zero-velocity needs to know how good the sensors are: "
-                  "add --model MODEL, one from imukit identify or a name from imukit "
-                  "devices\n" TRY("navigate"));
+    check_message(
+        "$I navigate rest.csv " PLACE " --align 10s --zero-velocity auto", 2,
+        "imukit navigate: error: --zero-velocity needs the errors of the sensors; add --model "
+        "MODEL, one from imukit identify or a name from imukit devices\n" TRY("navigate"));
     check_message("$I navigate rest.csv " PLACE " --align 10s --zero-velocity 4 --model unit.yaml",
                   2,
                   "imukit navigate: error: --zero-velocity 4: expected auto, or the time from stop "
@@ -125,21 +126,22 @@ static void test_company(void **state)
     check_message("$I navigate rest.csv " options, 2,                                              \
                   "imukit navigate: error: " message "\n" TRY("navigate"))
     REFUSED(PLACE " --attitude '0 0 0 deg' --align-method fine",
-            "--align-method is of --align, which --attitude leaves out");
+            "--align-method is for --align, and --attitude excludes --align");
     REFUSED(PLACE " --align 10s --stop 3s",
-            "--stop is of --zero-velocity TIME, such as --zero-velocity 60s");
+            "--stop is for --zero-velocity TIME, such as --zero-velocity 60s");
     REFUSED(PLACE " --align 10s --model unit.yaml --zero-velocity auto --stop 3s",
-            "--stop is of --zero-velocity TIME, such as --zero-velocity 60s");
+            "--stop is for --zero-velocity TIME, such as --zero-velocity 60s");
     REFUSED(PLACE " --align 10s --still-rotation 1deg/h",
-            "--still-rotation is of --zero-velocity: add it");
+            "--still-rotation is for --zero-velocity; add that option");
     REFUSED(PLACE " --align 10s --heading 720deg",
             "--heading \"720deg\": expected an azimuth within 360 deg, such as 30deg, or \"30 +- 1 "
             "deg\" with its 1 sigma");
-    REFUSED(PLACE " --attitude '0 95 0 deg'",
-            "--attitude \"0 95 0 deg\": the pitch is within 90 deg, roll and yaw within 360 deg");
+    REFUSED(
+        PLACE " --attitude '0 95 0 deg'",
+        "--attitude \"0 95 0 deg\": the pitch must be within 90 deg, roll and yaw within 360 deg");
     REFUSED("--align 10s --position '45 +- 1 deg, 10 deg, 0 m'",
-            "--position \"45 +- 1 deg, 10 deg, 0 m\": the latitude is taken as it is: leave its +- "
-            "out");
+            "--position \"45 +- 1 deg, 10 deg, 0 m\": the latitude takes no uncertainty; leave out "
+            "its +-");
     REFUSED(PLACE " --align 10s -o rest.csv",
             "--output rest.csv would overwrite what is read: give another name");
     REFUSED(PLACE " --align 10s -o ./rest.csv",

@@ -184,10 +184,10 @@ static void test_allan_taus(void **state)
         0);
     assert_string_equal(out, "501\n");
     assert_int_equal(run("$I allan x.txt $A --tau 1,nan"), 2);
-    check_contains(err, "\"nan\" is no averaging time", "--tau 1,nan");
+    check_contains(err, "\"nan\" is not an averaging time", "--tau 1,nan");
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1,2m", 2,
-                  "imukit allan: error: --tau 1,2m: \"2m\" is no averaging time; expected octave, "
-                  "decade, many, all or a list such as 1,10,100 in seconds\n" TRY("allan"));
+                  "imukit allan: error: --tau 1,2m: \"2m\" is not an averaging time; expected "
+                  "octave, decade, many, all or a list such as 1,10,100 in seconds\n" TRY("allan"));
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1s,501s", 2,
                   "imukit allan: error: --tau 1s,501s: 501 s is outside the averaging times of "
                   "this record, 1 s to 500 s\n" TRY("allan"));
