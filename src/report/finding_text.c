@@ -310,7 +310,7 @@ static const char *sensor_word(double sensor, char how)
                         : NULL;
 }
 
-/* In a unit that suits its size, of the dimension of one that is named. */
+/* In a readable unit for its size, of the same dimension as the unit `si`. */
 static void put_quantity(writing *w, double number, const char *si)
 {
     const imk_unit unit = imk_unit_readable(imk_unit_of(si).dimension, number);
@@ -319,7 +319,7 @@ static void put_quantity(writing *w, double number, const char *si)
     put(w, text, strlen(text));
 }
 
-/* A number as what stands behind its place says. */
+/* A number, written as the letters after its index say. */
 static void put_number(writing *w, double number, const char *how, size_t length)
 {
     char format[16], text[64];
@@ -347,7 +347,7 @@ static void put_number(writing *w, double number, const char *how, size_t length
     put(w, text, written > 0 ? strlen(text) : 0);
 }
 
-/* What stands for a place, "{name}" or "{0g}", of `length` characters without its last. */
+/* The text for a placeholder, "{name}" or "{0g}", of `length` characters without its last. */
 static void put_place(writing *w, const char *place, size_t length, const imk_finding *finding)
 {
     const size_t first = strcspn(finding->name, "\t");

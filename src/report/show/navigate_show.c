@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the unit went, as a result: the attitude it began with, the track, its end. */
+/* The result of a navigation: the attitude at the start, the track, its end. */
 #include "show_internal.h"
 
 #include <math.h>
@@ -234,8 +234,8 @@ static const struct line {
     {3, "east", IMK_CURVE_LINE, EAST_COLOR, IMK_TRACK_TIME, IMK_TRACK_VELOCITY + 1, 1},
 };
 
-/* A line of the track, thinned: the last point is its last row. Those of sigma are about the start,
- * where a unit that stood is; else about the track. */
+/* A line of the track, thinned: the last point is its last row. Lines of sigma are drawn about the
+ * start if the unit stood still, otherwise about the track. */
 static void add_line(const imk_navigate_log *n, const struct line *l, imk_figure_builder *figure)
 {
     const size_t every = n->track_rows / POINTS_MAX + 1;

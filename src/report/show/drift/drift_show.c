@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Drift as a result: what the error grows to, and which terms make it. */
+/* Drift as a result: how the error grows, and which terms cause it. */
 #include "drift_show_internal.h"
 
 #include "report/result_internal.h"
@@ -195,7 +195,7 @@ static void show_deciding(const imk_drift_models *r, imk_result *result)
 
 /* ---- all ---- */
 
-/* What stands on the page, and letters have no shades. */
+/* The page shows the shares too; a plot of letters has no shades for them. */
 static void show_figure(const imk_drift_models *r, imk_result *result)
 {
     imk_result_for(result, IMK_FOR_TERMINAL);

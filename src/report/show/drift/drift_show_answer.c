@@ -48,7 +48,7 @@ void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
 
 /* ---- terms ---- */
 
-/* What stands at the start: of the settings, not of the model. */
+/* The initial errors: they are settings, not terms of the model. */
 static void add_initial(const imk_drift_settings *s, const char *source, double factor,
                         imki_text *text)
 {
@@ -77,7 +77,7 @@ static void add_value(const imk_drift_case *one, const imk_result *model, size_t
     free(text.bytes);
 }
 
-/* 0 is below what the search for a factor can tell. */
+/* 0 means a factor below the resolution of the search. */
 static void add_factor(double factor, const char *none, imk_table *table)
 {
     if (factor == 0)

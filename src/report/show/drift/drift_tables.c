@@ -5,10 +5,10 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Shares below this are summed up in one line. */
+/* Smaller shares are added up in one line. */
 static const double least_share = 0.002;
 
-/* Seconds where a part of one would be lost. */
+/* Seconds, if a fraction of a second would be lost otherwise. */
 const char *imki_drift_time(double time, imk_drift_validity validity, char text[IMKI_DRIFT_TIME])
 {
     char plain[IMKI_DRIFT_TIME - 4];
@@ -168,8 +168,8 @@ static void show_shares(const imk_drift_models *r, const imk_drift_case *one, im
         imk_table_add(table, "%.1f %%", 100 * rest);
 }
 
-/* The moments of a source, or of all together, behind the last, where a shift shows beside the
- * scatter: a thousandth of it. NULL: it does not. */
+/* The moments of a source, or of all sources together (index after the last), if its shift is at
+ * least a thousandth of the scatter; otherwise NULL. */
 static const imk_drift_moments *shift_of(const imk_drift_case *one, size_t source)
 {
     const double least = 1e-3;

@@ -8,10 +8,10 @@
 #include <stdarg.h>
 #include <stdlib.h>
 
-/* A linear figure and one of runs differ when the interval of the runs leaves out this much on
- * either side of the linear figure: what fourth-order terms explain is left aside. Of a table of
- * 95 % intervals some leave out the truth: they are widened by 2.5, to 1e-6 each for a figure that
- * is near normal. */
+/* A linear figure and a figure of runs differ when the interval of the runs lies outside this
+ * tolerance around the linear figure; fourth-order terms explain smaller differences. In a table of
+ * 95 % intervals some miss the truth, so they are widened by 2.5, to a chance of 1e-6 each for a
+ * nearly normal figure. */
 static const double tolerance = 0.05, widening = 2.5;
 
 static void warn(imk_verdict *v, const char *code, const char *format, ...)
@@ -45,7 +45,7 @@ static void warn_of_omitted(const imk_drift_case *one, imk_verdict *v)
     free(list.bytes);
 }
 
-/* The first row of the table that is worth no more than this. */
+/* The time of the first row of the table with this validity. */
 static const char *first_time(const imk_drift_models *r, const imk_drift_case *one,
                               imk_drift_validity validity, char text[IMKI_DRIFT_TIME])
 {
@@ -71,7 +71,7 @@ static void warn_of_range(const imk_drift_models *r, const imk_drift_case *one, 
             one->label, text, r->found ? "" : "; --monte-carlo 1000 computes accurate figures");
 }
 
-/* First row where an interval of the runs leaves the linear figure out; -1: none. */
+/* First row where an interval of the runs does not contain the linear figure; -1: none. */
 static int disagreement(const imk_drift_models *r, imk_drift_requirement *requirement)
 {
     static const imk_drift_requirement looked_at[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_DRMS,

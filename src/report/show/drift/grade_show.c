@@ -11,7 +11,7 @@ static const char assumption[] =
     "height held by other means, position and velocity perfect at the start. CEP is the radius of "
     "the circle that holds half of all outcomes.";
 
-/* With a heading that is off by more than this there is none. */
+/* With a larger error of the heading there is no heading. */
 static const double no_north = 1; /* [rad] */
 
 static const char *grade_name(imk_grade grade)
@@ -20,7 +20,7 @@ static const char *grade_name(imk_grade grade)
     return row ? row->name : "below every class";
 }
 
-/* Nautical miles, as claims are, from a tenth of one; else metres. */
+/* Nautical miles, as in the claims, from 0.1 nmi on; metres below. */
 static const char *grade_length(double metres, char text[IMK_READABLE_SIZE])
 {
     const imk_unit mile = imk_unit_of("nmi");
@@ -193,7 +193,7 @@ static void show_needs(const imk_graded *one, imk_result *result)
     imki_show_text(&text, result);
 }
 
-/* Without the bias that differs from run to run the figures are those of a better sensor. */
+/* Without the run-to-run bias the figures are too good. */
 static bool states_repeatability(const imk_triad *triad)
 {
     for (int i = 0; i < triad->axis_count; i++)
@@ -217,7 +217,7 @@ static void show_flattery(const imk_graded *one, imk_result *result)
 
 /* ---- tables ---- */
 
-/* The computed figure that answers a claim. */
+/* The computed error for the time of a claim. */
 static void add_answer(imk_table *table, const imk_graded *one, const imk_grade_row *row)
 {
     char length[IMK_READABLE_SIZE];
@@ -350,7 +350,7 @@ static void show_comparison(const imk_graded_several *r, imk_audience audience, 
 
 /* ---- all ---- */
 
-/* What is said of the computed position below its table. */
+/* The remarks below the table of computed positions. */
 static void show_notes(const imk_graded *one, imk_result *result)
 {
     imk_result_gap(result);

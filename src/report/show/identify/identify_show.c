@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What was identified of one record, to be shown: data, and what stands where. */
+/* The display of one identified record: its data, and the order of its parts. */
 #include "identify_show_internal.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What was identified as tables: a row of values and one of intervals for each term. */
+/* Identified terms as tables: a row of values and a row of intervals for each term. */
 #include "identify_show_internal.h"
 
 #include <math.h>

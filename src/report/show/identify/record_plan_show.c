@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The plan of a record to be shown: lengths that are due, what each length tells, a figure. */
+/* The display of the plan of a record: required lengths, the precision of each length, a figure. */
 #include "report/show/show_internal.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ static void show_requirements(const imk_record_plan *p, imk_result *result)
     imk_result_gap(result);
 }
 
-/* "3.0 %", with the chance of being found where that is in diagnostic. */
+/* "3.0 %", with the chance that the term is found if this is not certain. */
 static void show_cell(imk_table *table, const imk_plan_record *record, size_t parameter, bool time)
 {
     const double relative = record->relative[parameter], found = record->detection[parameter];

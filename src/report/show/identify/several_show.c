@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Several records to be shown: run by run with the joint estimate, or sensor by sensor. */
+/* The display of several records: run by run with the joint estimate, or sensor by sensor. */
 #include "identify_show_internal.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* A spread smaller than this part of the mean is none. */
+/* A spread smaller than this part of the mean counts as none. */
 static const double no_spread = 1e-6;
 
 static const imk_log_column *column_of(const imk_identify_several *s, size_t channel)
@@ -62,7 +62,8 @@ static void run_rows(imk_table *table, const imk_identify_several *s, size_t cha
     imk_table_row(table, "chance if alike\t%s", imki_chance(a->probability).text);
 }
 
-/* Mean, its interval, spread, its interval: two say next to nothing about their kind. */
+/* Mean and spread with their intervals; not for two sensors, which show almost nothing about the
+ * spread of their type. */
 static void population_rows(imk_table *table, const imk_device_term *const *terms,
                             const shown_terms *shown, double confidence)
 {
@@ -113,7 +114,7 @@ static void device_rows(imk_table *table, const imk_identify_several *s, size_t 
         imk_table_add(table, "%s", imki_chance(terms[k]->squares.probability).text);
 }
 
-/* Each record's strengths on a channel, and what they are together. */
+/* The strengths of each record on a channel, and those of all records together. */
 static void channel_table(const imk_identify_several *s, size_t channel,
                           const imk_identify_shown *records, imk_result *result)
 {

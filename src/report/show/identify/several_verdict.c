@@ -36,7 +36,7 @@ static void tell_run(imk_verdict *v, const imk_identify_several *s, size_t chann
         s->joint.result[channel].term[a->term].value / scale, a->sigmas);
 }
 
-/* Neither of the slow terms is seen, all logs together. */
+/* Warn if all logs together do not show any of the slow terms. */
 static void assess_length(imk_verdict *v, const imk_identify_several *s)
 {
     imki_text list = {.bytes = NULL};
@@ -105,7 +105,7 @@ static void tell_difference(imk_verdict *v, const imk_identify_several *s, size_
                      t->sigmas, imki_chance(t->squares.probability).text);
 }
 
-/* What else the model of a channel has, which changes what its terms mean. */
+/* Further terms in the model of a channel, which change the meaning of its other terms. */
 static void assess_models(imk_verdict *v, const imk_identify_several *s, size_t channel,
                           const char *const *labels)
 {

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Gravity on the surface of the Earth [m/s^2]: equator to pole by WGS84, rounded outwards; what is
- * off by more than 5 % is no specific force at rest. */
+/* Gravity on the surface of the Earth [m/s^2]: equator to pole by WGS84, rounded outwards; a value
+ * more than 5 % outside is not the specific force at rest. */
 static const double gravity_least = 9.78 * (1 - 0.05), gravity_most = 9.83 * (1 + 0.05);
 
 /* ---- messages -------------------------------------------------------------------------------- */
@@ -82,7 +82,7 @@ void imki_verdict_lines(const imk_verdict *v, imk_result *result)
 
 /* ---- what is found on some channels ---------------------------------------------------------- */
 
-/* Does something hold on a channel? What was found there is added to an empty text. */
+/* Does a condition hold on a channel? The details are added to an empty text. */
 typedef bool (*assessment)(const imk_identify_log *log, size_t channel, imki_text *detail);
 
 static imk_unit unit_for(const imk_identify_log *log, size_t channel, double value)
@@ -145,7 +145,7 @@ static bool find_steps(const imk_identify_log *log, size_t channel, imki_text *d
     return s->steps.count > 0;
 }
 
-/* Not what was taken out: other messages tell of it. */
+/* Samples that were taken out do not count: other messages report them. */
 static bool find_missing(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
@@ -272,7 +272,7 @@ static const struct concern {
      "the output is low-pass filtered within the band; the filter is in the model", NULL},
 };
 
-/* The channels on which it holds, with what was found on each in parentheses. */
+/* The channels on which a condition holds, each with its details in parentheses. */
 static void assess_concern(imk_verdict *v, const imk_identify_log *log, const struct concern *about)
 {
     imki_text list = {.bytes = NULL};
@@ -297,7 +297,7 @@ static void assess_concern(imk_verdict *v, const imk_identify_log *log, const st
 
 /* ---- the record as a whole ------------------------------------------------------------------- */
 
-/* The unit in which the file's numbers would be gravity. */
+/* The unit in which the numbers of the file would equal gravity. */
 static const char *likely_unit(double magnitude, double scale)
 {
     static const char *const names[] = {"m/s^2", "g", "mg", "ug", "Gal", "mGal"};
@@ -309,8 +309,8 @@ static const char *likely_unit(double magnitude, double scale)
     return NULL;
 }
 
-/* |mean specific force| of a triad at rest is gravity; anything else is a wrong unit, most often.
- */
+/* The mean specific force of a triad at rest has the size of gravity; otherwise the unit is wrong
+ * in most cases. */
 static void assess_gravity(imk_verdict *v, const imk_identify_log *log)
 {
     double square = 0, scale = 0;
@@ -339,7 +339,8 @@ static void assess_gravity(imk_verdict *v, const imk_identify_log *log)
                          magnitude);
 }
 
-/* Where the five terms alone do not explain the log, and what shapes it there instead. */
+/* The times at which the five terms alone do not explain the log, and the other terms that dominate
+ * it there. */
 static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
 {
     imki_text list = {.bytes = NULL};
@@ -391,8 +392,8 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
                          1 / record->dt);
 }
 
-/* What the job itself came across; its warnings are not part of the verdict. How a curve is fitted
- * is all that is known of it. */
+/* Findings of the job itself, without its warnings, which are not part of the verdict. For a curve,
+ * only the quality of the fit is known. */
 static void add_findings(imk_verdict *v, const imk_identify_log *log)
 {
     char text[900];

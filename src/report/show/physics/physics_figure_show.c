@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures: the outputs of a run against time, the views of an instrument, still and in motion, and
- * what a laboratory found. */
+/* Pictures: the outputs of a run against time, the views of an instrument (also animated), and the
+ * results of a laboratory. */
 #include "jobs/physics/physics_log_internal.h"
 #include "physics_show_internal.h"
 
@@ -29,8 +29,8 @@ static void add_curves(const imk_physics_log *run, const double *x, const double
     }
 }
 
-/* Against the input, output 0 is a curve of response, with its dead band, when the sine is slow, an
- * ellipse when the instrument lags behind. */
+/* Output 0 against the input: a response curve with its dead band if the sine is slow, an ellipse
+ * if the instrument lags behind. */
 void imki_show_physics_run(const imk_physics_shown *p, imk_result *result)
 {
     const imk_physics_log *run = p->run;
