@@ -284,16 +284,16 @@ const verb identify_verb = {
         "LOG is a record of a stationary sensor: CSV with a header such as time [s],gyro_x "
         "[deg/s],accel_x [g] (also .gz, .zst){, or logs}; - is standard input. An hour shows the "
         "white noise and the bias instability of most sensors, several hours the random "
-        "walk.\n\nEstimated for each channel: quantization, white noise (angle or velocity random "
-        "walk), bias instability, rate or acceleration random walk and ramp, with spectral lines, "
-        "resonances and the output filter modelled separately. A term that the record does not "
-        "show is reported as absent with an upper bound.\n\nMissing samples stay missing. Where "
-        "the log shows them, outliers, stuck and saturated samples are left out, and a warm-up and "
-        "the effect of a temperature column are subtracted. The verdict reports what was found; "
-        "--keep leaves it in the log.\n\nSeveral LOGs need --runs (of one sensor) or --devices "
-        "(different sensors).\n\nThe mean of the record is printed but not written as a bias: at "
-        "rest it contains the Earth's rotation and gravity, and only a known attitude separates "
-        "these from the bias.",
+        "walk.\n\nThe estimated terms of each channel are quantization, white noise (angle or "
+        "velocity random walk), bias instability, rate or acceleration random walk and ramp; "
+        "spectral lines, resonances and the output filter are modelled separately. A term that the "
+        "record does not show is reported as absent with an upper bound.\n\nMissing samples stay "
+        "missing. Where the log shows them, outliers, stuck and saturated samples are left out, "
+        "and a warm-up and the effect of a temperature column are subtracted. The verdict reports "
+        "what was found; --keep leaves it in the log.\n\nSeveral LOGs need --runs (of one sensor) "
+        "or --devices (different sensors).\n\nThe mean of the record is printed but not written as "
+        "a bias: at rest it contains the Earth's rotation and gravity, and only a known attitude "
+        "separates these from the bias.",
     .groups = {OPTION_GROUP("Options", identify_option_table, 0),
                OPTION_GROUP("Planning a record", plan_option_table, 0),
                OPTION_GROUP("From Allan deviations", allan_option_table, 0),

@@ -134,10 +134,11 @@ static void show_devices(const imk_drift_models *r, const imk_drift_answer *answ
         if (!table) {
             const char *what = presets ? "Grade presets" : "Devices of the catalogue";
             imk_result_for(result, IMK_FOR_TERMINAL);
-            imk_result_line(result, "\n%s that meet it:", what);
+            imk_result_line(result, "\n%s that meet the requirement:", what);
             imk_result_for(result, IMK_FOR_PAGE);
-            imk_result_heading(result, presets ? "Grade presets that meet it"
-                                               : "Devices of the catalogue that meet it");
+            imk_result_heading(result, presets
+                                           ? "Grade presets that meet the requirement"
+                                           : "Devices of the catalogue that meet the requirement");
             imk_result_for(result, IMK_FOR_BOTH);
             table = imk_result_table(result, 2);
         }
@@ -148,7 +149,7 @@ static void show_devices(const imk_drift_models *r, const imk_drift_answer *answ
     }
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (!table && !presets)
-        imk_result_line(result, "\nNo device of the catalogue meets it.");
+        imk_result_line(result, "\nNo device of the catalogue meets the requirement.");
 }
 
 static void show_remarks(const imk_drift_models *r, const imk_drift_answer *answer,
@@ -187,19 +188,20 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
     if (!met)
         snprintf(factor, sizeof factor,
                  "all terms would have to be %.3g times smaller. The smallest improvement that "
-                 "meets it:",
+                 "meets the requirement:",
                  1 / need->all);
     else if (!isinf(need->all))
         snprintf(factor, sizeof factor, "all terms may be %.3g times larger.", need->all);
     imk_result_for(result, IMK_FOR_TERMINAL);
-    imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: it is %s, %s", title,
+    imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: the figure is %s; %s", title,
                     met ? "Met" : "Not met", imk_readable_quantity(need->present, &want->unit, now),
                     factor);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, title);
     imk_result_finding(
         result, met ? 0 : 1,
-        met ? "Met." : "Not met. The smallest improvement that meets it, counted in factors:");
+        met ? "Met."
+            : "Not met. The smallest improvement that meets the requirement, counted in factors:");
     imk_result_for(result, IMK_FOR_BOTH);
     show_terms(r, model, result);
     show_devices(r, answer, false, result);
