@@ -63,7 +63,7 @@ int compensate_end(const compensate_options *o, imk_result *result)
     return show_end(result, &(show_options){.json = o->json, .quiet = true}, code);
 }
 
-/* Numbers are turned round by --axes, which counts, with their zero offset, are not made for. */
+/* --axes changes signs, which is wrong for counts because of their zero offset. */
 static int check_axes(const compensate_options *o, const imk_model *model,
                       const imk_record_source *source)
 {
@@ -81,7 +81,7 @@ static int check_axes(const compensate_options *o, const imk_model *model,
     return -1;
 }
 
-/* What went wrong with the model or with what is written; the rest is the log's. */
+/* Errors of the model or of the output; all other errors concern the log. */
 static int tell(const char *const *operands, const imk_compensate_log *log, imk_status status,
                 const imk_error *error)
 {

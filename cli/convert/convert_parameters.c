@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Position 0 is what is in force when the option is not given. The names stand in the order of
+/* Position 0 applies when the option is not given. The names stand in the order of
  * imk_parameter_format and imk_density. */
 static const char formats[] =
     "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
@@ -72,7 +72,7 @@ int parameters_wanted(const parameter_options *options, const char *in, bool mod
     return -1;
 }
 
-/* What was left out is a warning; what was assumed is worth a line. */
+/* A left-out value is a warning; an assumption is only a line. */
 static void tell(const imk_parameter_notes *notes)
 {
     for (size_t i = 0; i < notes->count; i++)

@@ -53,9 +53,9 @@ static const option motion_option_table[] = {
                 "heading at the start, from north to east, for the Earth's rotation; default 0deg"),
 };
 
-/* What each end is. A name without an ending tells nothing of what is read: its content is looked
- * at, but a stream's only when a model is due, for it has to be copied. A stream that is written is
- * of the kind of what is read. */
+/* The kind of each end. An input name without an ending does not show the kind, so the content is
+ * examined; a stream is examined only if a model is expected, because it has to be copied. An
+ * output stream has the kind of the input. */
 static void find_kinds(const char *in, const char *out, bool *from_model, bool *to_model)
 {
     *to_model = imk_is_script_name(out);
@@ -104,7 +104,7 @@ static int set_up(convert_options *o)
     return code;
 }
 
-/* What is wrong with an option, or with what is written; the rest is the log's. */
+/* Errors of an option or of the output; all other errors concern the log. */
 static int tell(const char *in, const imk_findings *findings, imk_status status,
                 const imk_error *error)
 {

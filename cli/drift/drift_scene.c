@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is navigated and when to look, from the options. */
+/* The motion and the times of the navigation, from the options. */
 #include "drift_parts.h"
 
 #include <math.h>
@@ -126,7 +126,7 @@ static int stated_times(const char *text, stated *t)
     return -1;
 }
 
-/* How long the motion gives something to navigate. */
+/* The length of motion that can be navigated. */
 static double motion_length(const drift_scene *s)
 {
     return s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;

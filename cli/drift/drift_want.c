@@ -8,7 +8,7 @@
 
 enum { FIGURES = IMK_REQUIRED_HEADING + 1 };
 
-/* Of any figure, SI: beyond what sensors do and what the Earth has room for. */
+/* Limits of any figure, SI: beyond real sensors and beyond the size of the Earth. */
 static const double least_goal = 1e-9, largest_goal = 1e9;
 
 static int refuse(const char *text, const char *why)

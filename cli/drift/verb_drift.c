@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit drift: how far off a navigator will be, which term is to blame, and how good it must
- * become. */
+/* imukit drift: how large the error of a navigator becomes, which terms cause it, and how small
+ * they must be. */
 #include "campaign/campaign_run.h"
 #include "drift_parts.h"
 
@@ -52,8 +52,8 @@ static const option place_option_table[] = {
      .help = "sampling rate; default 100Hz"},
     LATITUDE_OPTION(AT(latitude), "geodetic latitude; default 45deg"),
     HEIGHT_OPTION(AT(height)),
-    TURN_OPTION("roll", AT(roll), "default 0deg: level"),
-    TURN_OPTION("pitch", AT(pitch), "default 0deg: level"),
+    TURN_OPTION("roll", AT(roll), "roll; default 0deg: level"),
+    TURN_OPTION("pitch", AT(pitch), "pitch; default 0deg: level"),
     TURN_OPTION("yaw", AT(yaw), "heading, from north to east; default 0deg"),
 };
 
@@ -142,7 +142,7 @@ static int open_models(work *w)
     return code;
 }
 
-/* A requirement that can be typed: half of what there is, at a time of the table. */
+/* A requirement that can be typed: half of the present figure, at a time of the table. */
 static void show_requirement(const imk_drift_models *r, imk_result *result)
 {
     char length[IMK_READABLE_SIZE];
@@ -206,7 +206,7 @@ static int show(const work *w)
                     EXIT_DONE);
 }
 
-/* A part of a campaign has no figures worth showing: what to do with it is said. */
+/* A part of a campaign has no figures worth showing: print the next step instead. */
 static void show_shard(const work *w)
 {
     printf("%s: %llu runs.\nNext, with all parts: imukit merge PART.h5... -o WHOLE.h5\n",

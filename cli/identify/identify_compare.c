@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit identify of several logs: each is identified alone, its samples let go, and all are
+/* imukit identify of several logs: each is identified alone and its samples are freed; then all are
  * compared. */
 #include "identify_parts.h"
 #include "shell/growing_list.h"

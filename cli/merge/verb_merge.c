@@ -46,7 +46,7 @@ static bool has_unreadable(const imk_campaign_merge_report *r)
     return false;
 }
 
-/* What to do about the runs that are not there. */
+/* What to do about the missing runs. */
 static void describe_missing(const imk_campaign_merge_report *r, growing_list *text)
 {
     list_add(text, "runs %s of %llu are missing", r->missing, (unsigned long long)r->run_count);

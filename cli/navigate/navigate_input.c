@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What imukit navigate is asked: place, attitude and stops as texts, and numbers. */
+/* The options of imukit navigate: place, attitude and stops as texts, and numbers. */
 #include "navigate_parts.h"
 #include "shell/place_text.h"
 
@@ -75,7 +75,7 @@ static int parse_stops(const navigate_options *o, imk_navigate_log_settings *s)
     return -1;
 }
 
-/* Options that mean nothing without another one, or beside it. */
+/* Options that need another option, or exclude it. */
 static int check_company(const navigate_options *o)
 {
     const bool automatic = o->zero_velocity && strcmp(o->zero_velocity, "auto") == 0;

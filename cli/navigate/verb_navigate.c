@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit navigate: a log -> where the unit went, or what it drifts when it went nowhere. */
+/* imukit navigate: a log -> the track of the unit, or its drift if it was at rest. */
 #include "navigate_parts.h"
 #include "shell/job_progress.h"
 #include "shell/show.h"

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* As the steps of a motion script; hotter than this nothing is solid. */
+/* The limit of the steps of a motion script: at higher temperatures nothing is solid. */
 static const double largest_motion = 1e6; /* [rad/s], [m/s^2] */
 static const double highest_temperature = 1e4;
 

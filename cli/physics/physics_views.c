@@ -82,7 +82,7 @@ int physics_show_view_figure(const physics *p, imk_result *result)
     return code;
 }
 
-/* Of the view asked for, else of the first that can move. */
+/* Animate the requested view, or else the first view that can be animated. */
 static int choose_moving(const physics *p, size_t *index)
 {
     const imk_instrument *instrument = p->settings.instrument;

@@ -157,7 +157,7 @@ static void show_next(const physics *p, imk_result *result)
     imk_result_for(result, IMK_FOR_PAGE);
 }
 
-/* All there is to show of a run, of the error models (sweep NULL: not measured), or of the design.
+/* The whole display of a run, of the error models (sweep NULL: not measured), or of the design.
  * @return -1 or the exit code, the message printed */
 static int make_result(const physics *p, const imk_physics_shown *shown, imk_result *result)
 {
@@ -186,8 +186,8 @@ static int make_result(const physics *p, const imk_physics_shown *shown, imk_res
     return code;
 }
 
-/* Picture, page, JSON, tables of what was done: without the picture, for want of gnuplot, still the
- * page. @return the exit code */
+/* Picture, page, JSON and tables of the result: if the picture fails because gnuplot is missing,
+ * the page is still written. @return the exit code */
 static int show(const physics *p, const imk_physics_log *r, const imk_physics_sweep *l, bool quiet)
 {
     const physics_options *o = p->options;
@@ -276,7 +276,7 @@ static int list(const physics_options *o)
 
 /* ---- the verb -------------------------------------------------------------------------------- */
 
-/* The instrument that the table of grades calls so: "fog" is the fibre-optic gyro. */
+/* The instrument with this name in the table of grades: "fog" is the fibre-optic gyro. */
 static const imk_instrument *of_technology(const char *name)
 {
     for (size_t i = 0; i < imk_instrument_count(); i++)

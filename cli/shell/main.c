@@ -110,9 +110,9 @@ static void interrupted(int number)
 }
 
 /* A second signal, which shells and timeout(1) send soon after the first, waits until the files are
- * gone. A signal that the parent has switched off, as nohup(1) does, stays off; but of gnuplot we
- * need to know how it ended. A file beyond the limit of its size is an error of write() like any
- * other, with a message. */
+ * removed. A signal that the parent has switched off, as nohup(1) does, stays off, except SIGCHLD,
+ * because the exit status of gnuplot is needed. A file beyond the limit of its size is an error of
+ * write() like any other, with a message. */
 static void catch_signals(void)
 {
     signal(SIGXFSZ, SIG_IGN);

@@ -54,8 +54,8 @@ static const option motion_option_table[] = {
          "parts into which a sample is divided, for vibration and bandwidth; default: as needed"},
     LATITUDE_OPTION(AT(latitude), "geodetic latitude; default 45deg"),
     HEIGHT_OPTION(AT(height)),
-    TURN_OPTION("roll", AT(roll), "default 0deg: level"),
-    TURN_OPTION("pitch", AT(pitch), "default 0deg: level"),
+    TURN_OPTION("roll", AT(roll), "roll; default 0deg: level"),
+    TURN_OPTION("pitch", AT(pitch), "pitch; default 0deg: level"),
     TURN_OPTION("yaw", AT(yaw), "heading, from north to east; default 0deg"),
     {"no-earth", OPTION_FLAG, AT(no_earth), .help = "without Earth rate and gravity"},
 };

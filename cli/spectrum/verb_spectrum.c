@@ -109,7 +109,7 @@ static int show(const imk_spectrum_log *s, const spectrum_options *o, const char
     return show_end(result, &options, EXIT_DONE);
 }
 
-/* A wrong option is none of the log's faults. */
+/* A wrong option is not an error of the log. */
 static int tell(const spectrum_options *o, const char *path, const imk_spectrum_log *s,
                 imk_status status, const imk_error *error)
 {
