@@ -17,8 +17,8 @@ static const option compensate_option_table[] = {
          "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output"},
     {"temperature", OPTION_QUANTITY, AT(settings.temperature), .value = "TEMPERATURE",
      .unit = "degC",
-     .help = "temperature of the unit, for a log without a temperature column; it overrides such a "
-             "column"},
+     .help = "temperature of the unit, for a log without a temperature column; if there is one, it "
+             "is ignored"},
     {"temperature-time", OPTION_QUANTITY, AT(settings.temperature_time), .value = "TIME",
      .unit = "s",
      .help = "time over which the rate of temperature is smoothed, where the model needs it; "

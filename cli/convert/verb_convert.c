@@ -200,7 +200,7 @@ const verb convert_verb = {
         "Increments become rates. Values keep their units unless an option changes them.\n\nA "
         "model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
         "Parameter files of kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, "
-        "openvins, vins, px4 and ardupilot are recognised by their content; assumptions about "
+        "openvins, vins, px4 and ardupilot are recognised by their content. Assumptions about "
         "units and densities, and values that a format cannot hold, are reported on standard "
         "error. docs/other-formats.md describes the formats.",
     .groups = {OPTION_GROUP("Options", convert_option_table, 0),

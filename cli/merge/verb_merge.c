@@ -20,7 +20,8 @@ typedef struct merge_options {
 static const option merge_option_table[] = {
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
      .help = "results file: .h5 or .csv (.csv.gz, .csv.zst)"},
-    {"partial", OPTION_FLAG, AT(partial), .help = "write what is there although runs are missing"},
+    {"partial", OPTION_FLAG, AT(partial),
+     .help = "write the existing runs although others are missing"},
     JSON_OPTION(AT(json), "print as JSON"),
 };
 

@@ -32,16 +32,16 @@ static const option input_option_table[] = {
     {"acceleration", OPTION_TEXT, AT(acceleration), .letter = 'a', .value = "FORCE",
      .help = "specific force along x, \"1 g\", or along all axes of the case, \"0 0 -9.81 m/s^2\""},
     {"sine", OPTION_QUANTITY, AT(sine), .value = "FREQUENCY", .unit = "Hz",
-     .help = "frequency of a sine, whose amplitude is the rate or force given"},
+     .help = "frequency of a sine; the given rate or force is its amplitude"},
     {"temperature", OPTION_QUANTITY, AT(temperature), .letter = 't', .value = "TEMPERATURE",
-     .unit = "degC", .help = "default 20degC"},
+     .unit = "degC", .help = "temperature of the instrument; default 20degC"},
     {"temperature-rate", OPTION_QUANTITY, AT(temperature_rate), .value = "RATE", .unit = "degC/min",
-     .help = "rate at which the temperature changes from there"},
+     .help = "rate at which the temperature changes from --temperature on"},
 };
 
 static const option run_option_table[] = {
     {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
-     .help = "length of the run, and write its log; with --view: length of the view"},
+     .help = "run for this time and write the log; with --view: length of the view"},
     {"output-rate", OPTION_QUANTITY, AT(output_rate), .value = "RATE", .unit = "Hz",
      .help = "samples per second; default 100Hz. With --view: points per second of the view"},
     {"level", OPTION_CHOICE, AT(level), .value = "LEVEL", .choices = "full|slow",
@@ -52,7 +52,7 @@ static const option run_option_table[] = {
              "would give wrong results is refused"},
     {"no-noise", OPTION_FLAG, AT(no_noise),
      .help = "nothing random: no noise, no random constants of the run"},
-    SEED_OPTION(AT(seed), "the same seed makes the same bytes on every machine; default 1"),
+    SEED_OPTION(AT(seed), "seed; the same seed makes the same bytes on every machine; default 1"),
     {"run", OPTION_INTEGER, AT(run), .value = "N", .choices = "0-4294967295",
      .help =
          "another run of the same instrument: other noise, other constants of the run; default 0"},
@@ -377,7 +377,7 @@ const verb physics_verb = {
         "Without an option the design is printed.\n\nEach row of a log is the mean over the sample "
         "that ends at its time; the input is held over a sample. x is the input axis; the "
         "documentation of each instrument describes y and z. The views are drawn for the input of "
-        "--rate and --acceleration; without it, each view has an input that suits it.",
+        "--rate and --acceleration; without these options each view has an input that suits it.",
     .groups = {OPTION_GROUP("What to do", task_option_table, 0),
                OPTION_GROUP("Input", input_option_table, 0),
                OPTION_GROUP("Running", run_option_table, 0),

@@ -23,7 +23,7 @@ static const option simulate_option_table[] = {
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "LOG",
      .help = "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard "
              "output; a directory, DIR/, with --runs"},
-    SEED_OPTION(AT(seed), "the same seed makes the same bytes on every machine; default 1"),
+    SEED_OPTION(AT(seed), "seed; the same seed makes the same bytes on every machine; default 1"),
     {"run", OPTION_INTEGER, AT(run), .value = "N", .choices = "0-4294967295",
      .help = "another run of the same sensor: other noise, other run-to-run biases; default 0"},
     {"runs", OPTION_INTEGER, AT(runs), .value = "N", .choices = "1-4294967295",
