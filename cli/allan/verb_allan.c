@@ -25,19 +25,19 @@ typedef struct allan_options {
 static const option allan_option_table[] = {
     {"statistic", OPTION_TEXT, AT(statistic), .value = "NAME,NAME…|all",
      .help = "oadev (the default), adev, mdev, tdev, ohdev, hdev, totdev, mtot, htot, theo1, pdev, "
-             "haar; theo1 takes seconds a million samples"},
+             "haar; theo1 takes seconds per million samples"},
     {"tau", OPTION_TEXT, AT(tau), .value = "octave|decade|many|all|LIST",
-     .help = "averaging times: doubling (the default), ten per decade, many (all up to 64 samples, "
-             "then 32 to the octave), every one, or a list such as 1,10,100 in seconds"},
-    CONFIDENCE_OPTION(AT(confidence), "of the two-sided intervals; default 0.95"),
+     .help = "averaging times: octave (doubling, the default), decade (ten per decade), many (all "
+             "up to 64 samples, then 32 per octave), all, or a list such as 1,10,100 in seconds"},
+    CONFIDENCE_OPTION(AT(confidence), "confidence of the two-sided intervals; default 0.95"),
     {"edf", OPTION_CHOICE, AT(edf), .value = "CHOICE", .choices = "exact|greenhall-riley",
-     .help = "degrees of freedom behind the intervals: of the sampled process (the default), or by "
-             "the published formulas for the continuous one"},
+     .help = "degrees of freedom of the intervals: exact for the sampled process (the default), or "
+             "by the published formulas for the continuous process"},
     {"bias", OPTION_CHOICE, AT(bias), .value = "CHOICE", .choices = "removed|published|left",
-     .help = "the bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: taken off for "
-             "the noise found (the default), the same with the factors in print, or left in"},
+     .help = "bias of totdev, mtot, htot and theo1 against adev, mdev and hdev: removed for the "
+             "noise found (the default), removed with the published factors, or left in"},
     {"type", OPTION_CHOICE, AT(type), .value = "CHOICE", .choices = "rate|phase",
-     .help = "what the columns hold: rates (the default), or their integral (phase, angle)"},
+     .help = "what the columns contain: rates (the default), or their integral (phase, angle)"},
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE.csv",
      .help = "write the long table (one line per channel and averaging time, SI) here; - is "
              "standard output"},
@@ -104,7 +104,7 @@ static double *parse_times(const char *text, size_t *count, int *code)
             status = imk_quantity_parse(item, item + length, imk_unit_of("s").dimension, 1, &tau,
                                         &sigma, &numbers, NULL, &error);
         if (status != IMK_OK || !isfinite(tau))
-            *code = command_misused("--tau %s: \"%.*s\" is no averaging time; expected octave, "
+            *code = command_misused("--tau %s: \"%.*s\" is not an averaging time; expected octave, "
                                     "decade, many, all or a list such as 1,10,100 in seconds",
                                     text, (int)length, item);
         else if (*count > 0 && !(tau > times[*count - 1]))
@@ -258,16 +258,14 @@ const verb allan_verb = {
                  {"imukit allan phase.txt --columns x --rate 1Hz --type phase -o adev.csv",
                   "one column of phase data without header, sampled once a second"}},
     .description =
-        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
-        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
-        "column is "
-        "analysed.\n\nWhich statistic: oadev to look at a sensor; mdev or pdev to tell "
-        "quantization from "
-        "other fast noise; ohdev when the rate drifts in a straight line; totdev, htot and theo1 "
-        "for tau near the length of the log; tdev (in units of the column times s) for the scatter "
-        "of the integral; haar as published for wavelet methods. \n\nRows that are missing or not "
-        "finite keep their places empty: oadev of rates is then taken of what is there, and the "
-        "share of the record's pairs behind each point is shown. The other statistics, and phase, "
-        "need a complete record: --gaps bridge or --gaps longest.",
+        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst){, "
+        "or logs}; - is standard input. Without gyro and accelerometer columns every other column "
+        "is analysed.\n\nChoice of the statistic: oadev for a first look at a sensor; mdev or pdev "
+        "to distinguish quantization from other fast noise; ohdev when the rate drifts linearly; "
+        "totdev, htot and theo1 for tau near the length of the log; tdev (in units of the column "
+        "times s) for the scatter of the integral; haar as published for wavelet methods. \n\nRows "
+        "that are missing or not finite leave gaps. oadev of rates then uses the existing samples, "
+        "and the table shows the share of the record's pairs behind each point. The other "
+        "statistics, and phase, need a complete record: --gaps bridge or --gaps longest.",
     .groups = {OPTION_GROUP("Options", allan_option_table, 0), LOG_INPUT_GROUP(AT(log))},
     .run = run};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A run gives the same bytes wherever and whenever it is computed, so the only order that matters
- * is that of the file, which the library keeps. */
+/* A run gives the same bytes wherever and whenever it is computed. Only the order in the file
+ * matters, and the library keeps it. */
 #define _POSIX_C_SOURCE 200809L
 #include "campaign_job.h"
 
@@ -11,13 +11,13 @@
 
 /* ---- interrupted ---- */
 
-/* Said by a signal handler, so it is made beforehand. */
+/* A signal handler writes this text, so it is composed beforehand. */
 static char farewell[1024];
 static const int ending_signals[] = {SIGINT, SIGTERM, SIGHUP};
 enum { ENDING_SIGNALS = sizeof ending_signals / sizeof ending_signals[0] };
 static struct sigaction before[ENDING_SIGNALS];
 
-/* End as the signal would have. What is in PATH.part is whole without our doing anything. */
+/* End as the signal would have. PATH.part is complete without further work. */
 static void interrupted(int number)
 {
     const ssize_t written = write(STDERR_FILENO, farewell, strlen(farewell));
@@ -32,7 +32,7 @@ static void catch_signals(const char *path)
     struct sigaction action = {.sa_handler = interrupted};
     snprintf(farewell, sizeof farewell,
              "%simukit: interrupted: the runs computed so far are kept in %.800s.part, and the "
-             "same command goes on from there\n",
+             "same command continues from there\n",
              isatty(STDERR_FILENO) ? "\r\033[K" : "", path);
     sigemptyset(&action.sa_mask);
     for (int i = 0; i < ENDING_SIGNALS; i++)
@@ -55,7 +55,7 @@ static bool is_there(const campaign_job *job, uint64_t run)
     return job->writer && imk_campaign_has(job->writer, run);
 }
 
-/* Batches of the runs that are not there. @return false when memory is exhausted */
+/* Batches of the missing runs. @return false when memory is exhausted */
 static bool make_batches(campaign_job *job, size_t at_once)
 {
     const uint64_t end = job->first + job->runs;
@@ -127,8 +127,8 @@ int campaign_job_open(campaign_job *job, const imk_campaign *campaign, uint64_t 
     }
     if (job->writer) {
         if (job->due < runs)
-            command_note("%llu of %llu runs are there already",
-                         (unsigned long long)(runs - job->due), (unsigned long long)runs);
+            command_note("%llu of %llu runs exist already", (unsigned long long)(runs - job->due),
+                         (unsigned long long)runs);
         catch_signals(path);
     }
     job->line = progress_begin("Monte Carlo", "runs", 1);
@@ -206,7 +206,8 @@ int campaign_job_close(campaign_job *job, double **values)
             code = command_error(&error, NULL);
         job->writer = NULL;
     }
-    /* Until here, for to write a large file takes time: PATH.part stays until it has its name. */
+    /* Signals are held until here, because a large file takes time to write: PATH.part stays until
+     * it has its final name. */
     if (caught)
         release_signals();
     if (code < 0 && values) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The books of a campaign that is being computed: which runs are due, where results go, what went
- * wrong. Whoever computes takes batches and brings their values back, in any order, from any
+/* The state of a campaign while it is computed: which runs are missing, where results go, which
+ * errors occurred. Each worker takes batches and brings their values back, in any order, from any
  * thread. */
 #ifndef IMUKIT_CAMPAIGN_JOB_H
 #define IMUKIT_CAMPAIGN_JOB_H

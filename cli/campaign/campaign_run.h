@@ -16,7 +16,8 @@ typedef struct campaign_work {
     size_t threads; /* how many may call at once */
 } campaign_work;
 
-/* What main() calls first and last. imukit-mpi: joins the other ranks, and takes leave of them. */
+/* Functions that main() calls first and last. imukit-mpi joins the other ranks in the first and
+ * leaves them in the last. */
 void campaign_begin(int *argument_count, char ***arguments);
 int campaign_end(int code);
 

@@ -3,8 +3,9 @@
  *
  * Rank 0 keeps the books: its main thread answers the other ranks while its other threads compute
  * as theirs do. A rank asks for as many batches as it has threads and brings the values of those
- * before along, so that fast ranks compute more. All ranks read the same command line; those beyond
- * the first are silent, and wait for their discharge, which rank 0 gives exactly once to each. */
+ * before along, so that fast ranks compute more. All ranks read the same command line; all ranks
+ * but the first are silent and wait for their discharge, which rank 0 sends exactly once to
+ * each. */
 #define _POSIX_C_SOURCE 200809L
 #include "campaign_job.h"
 
@@ -17,11 +18,12 @@
 enum { TAG_ASK = 1, TAG_VALUES, TAG_ERROR, TAG_BATCHES };
 
 static int rank, ranks;
-static bool discharged; /* rank 0: the others have been let go; others: so has this one */
+static bool discharged; /* rank 0: the other ranks have been discharged; other ranks: this rank has
+                         * been discharged */
 
 /* ---- first and last ---- */
 
-/* The others take part in campaigns and in nothing else: whatever a verb writes, rank 0 does. */
+/* The other ranks take part in campaigns only: rank 0 writes everything that a verb writes. */
 static bool takes_part(int argument_count, char **arguments)
 {
     static const char name[] = "--monte-carlo";
@@ -174,7 +176,7 @@ typedef struct lead {
     size_t computing; /* threads at work here; under the mutex of the job */
 } lead;
 
-/* A thread of this rank. It is told apart by its number. */
+/* A thread of this rank, identified by its number. */
 typedef struct worker {
     lead *lead;
     size_t number;

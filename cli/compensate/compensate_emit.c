@@ -14,12 +14,12 @@ const option compensate_emit_options[COMPENSATE_EMIT_OPTIONS] = {
     {"emit-c", OPTION_FILE, AT(directory), .value = "DIR",
      .help = "write C99 code that corrects a sample: PREFIX.h, PREFIX.c, PREFIX_test.c"},
     {"arithmetic", OPTION_CHOICE, AT(arithmetic), .value = "KIND", .choices = "float|double|fixed",
-     .help = "of that code: float (default), double, or fixed: 32-bit integers, for parts without "
-             "an FPU"},
+     .help = "arithmetic of the code: float (default), double, or fixed: 32-bit integers, for "
+             "parts without an FPU"},
     {"prefix", OPTION_TEXT, AT(prefix), .value = "NAME",
-     .help = "of its files and names; default: imukit_ and the name of the model"},
+     .help = "prefix of its files and names; default: imukit_ and the name of the model"},
     {"vectors", OPTION_INTEGER, AT(vectors), .value = "N", .choices = "1-1000000",
-     .help = "samples in its self-test, 1 to 1000000; default 64"},
+     .help = "number of samples in its self-test, 1 to 1000000; default 64"},
 };
 
 static const char *const arithmetics[3] = {"float", "double", "fixed"};
@@ -33,8 +33,8 @@ static void warn_of_terms(const imk_term_keys *left_in)
         for (size_t k = 0; k < sizeof needs_time / sizeof needs_time[0]; k++)
             if (strstr(left_in->key[i], needs_time[k]))
                 command_warn("left_in",
-                             "%s stays in: it needs more than one sample; imukit compensate LOG "
-                             "MODEL takes it out of a log",
+                             "the code does not correct %s, which needs more than one sample; "
+                             "imukit compensate LOG MODEL takes it out of a log",
                              left_in->key[i]);
 }
 
@@ -70,10 +70,10 @@ static void show_summary(const char *directory, const char *name, const imk_firm
 {
     for (int sensor = 0; sensor < 2; sensor++)
         if (plan->axis_count[sensor] > 0)
-            imk_result_line(result, "The %s is within %.2g %s of the exact correction%s",
-                            motions[sensor], plan->bound[sensor], units[sensor],
-                            plan->limit_stated[sensor] ? ""
-                                                       : " (no range is stated: of small motions)");
+            imk_result_line(
+                result, "The %s is within %.2g %s of the exact correction%s", motions[sensor],
+                plan->bound[sensor], units[sensor],
+                plan->limit_stated[sensor] ? "" : " (no range is stated: for small motions)");
     imk_result_line(result, "%d multiplications, %d additions, %d comparisons a sample",
                     plan->cost.multiplications, plan->cost.additions, plan->cost.comparisons);
     imk_result_line(result,

@@ -16,28 +16,29 @@ static const option compensate_option_table[] = {
      .help =
          "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard output"},
     {"temperature", OPTION_QUANTITY, AT(settings.temperature), .value = "TEMPERATURE",
-     .unit = "degC", .help = "of the unit, for a log without such a column; overrules one"},
+     .unit = "degC",
+     .help = "temperature of the unit, for a log without a temperature column; if there is one, it "
+             "is ignored"},
     {"temperature-time", OPTION_QUANTITY, AT(settings.temperature_time), .value = "TIME",
      .unit = "s",
-     .help =
-         "over which the rate of temperature is smoothed, where the model needs it; default 30s"},
+     .help = "time over which the rate of temperature is smoothed, where the model needs it; "
+             "default 30s"},
     {"powered-for", OPTION_QUANTITY, AT(settings.powered_for), .value = "TIME", .unit = "s",
      .help = "how long the unit was on before the first row, for warm-up; default 0s"},
     {"rate-limit", OPTION_QUANTITY, AT(settings.rate_limit), .value = "RATE", .unit = "deg/s",
-     .choices = "positive",
-     .help = "largest rate, where the model has nonlinear terms and no range"},
+     .choices = "positive", .help = "largest rate, if the model has nonlinear terms but no range"},
     {"force-limit", OPTION_QUANTITY, AT(settings.force_limit), .value = "FORCE", .unit = "g",
-     .choices = "positive", .help = "largest specific force, likewise"},
+     .choices = "positive", .help = "largest specific force, in the same case"},
     {"to-gyro-unit", OPTION_UNIT, AT(settings.gyro_unit), .value = "UNIT", .unit = "rad/s",
-     .help = "of the rates written; default: as read, rad/s for counts"},
+     .help = "unit of the rates written; default: as read, rad/s for counts"},
     {"to-accel-unit", OPTION_UNIT, AT(settings.accel_unit), .value = "UNIT", .unit = "m/s^2",
-     .help = "of the forces written; default: as read, m/s^2 for counts"},
+     .help = "unit of the forces written; default: as read, m/s^2 for counts"},
     DECIMALS_OPTION(AT(decimals)),
     {"flags", OPTION_FLAG, AT(settings.flags),
      .help = "add a column of flags: 1 saturated, 2 temperature, 4 limit, 8 not finite, 16 "
              "acceleration"},
     STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
-    JSON_OPTION(AT(json), "print the summary as JSON; the log goes to a file then"),
+    JSON_OPTION(AT(json), "print the summary as JSON; the log must go to a file"),
     THREADS_OPTION(AT(threads),
                    "threads to use; default: all processors. The bytes do not depend on it"),
 };
@@ -62,7 +63,7 @@ int compensate_end(const compensate_options *o, imk_result *result)
     return show_end(result, &(show_options){.json = o->json, .quiet = true}, code);
 }
 
-/* Numbers are turned round by --axes, which counts, with their zero offset, are not made for. */
+/* --axes changes signs, which is wrong for counts because of their zero offset. */
 static int check_axes(const compensate_options *o, const imk_model *model,
                       const imk_record_source *source)
 {
@@ -74,13 +75,13 @@ static int check_axes(const compensate_options *o, const imk_model *model,
                                                                                    : NULL;
         if (triad && triad->present && triad->sensitivity.value[0] != 0 &&
             imk_dimension_equal(column->unit.dimension, counts))
-            return command_misused("--axes turns numbers round, and counts have a zero offset: "
-                                   "compensate first, then imukit convert --axes");
+            return command_misused("--axes changes signs, and counts have a zero offset; "
+                                   "compensate first, then use imukit convert --axes");
     }
     return -1;
 }
 
-/* What went wrong with the model or with what is written; the rest is the log's. */
+/* Errors of the model or of the output; all other errors concern the log. */
 static int tell(const char *const *operands, const imk_compensate_log *log, imk_status status,
                 const imk_error *error)
 {
@@ -180,15 +181,15 @@ const verb compensate_verb = {
                   "self-test"}},
     .description =
         "LOG is CSV (also .gz, .zst){ or logs}; - is standard input. MODEL is a model file or a "
-        "name "
-        "from `imukit devices`. Gyro and accel columns become angular rate and specific force of "
-        "the body; other columns are copied.\n\nThe deterministic terms are taken out: bias with "
-        "temperature and warm-up, scale factor, nonlinearity, misalignment, cross-axis and "
+        "name from `imukit devices`. Gyro and accel columns become angular rate and specific force "
+        "of the body; other columns are copied.\n\nThe deterministic terms are taken out: bias "
+        "with temperature and warm-up, scale factor, nonlinearity, misalignment, cross-axis and "
         "g-sensitivity, lever arms, counts. Noise, hysteresis, repeatability and bandwidth stay, "
-        "because a model knows their size and not their course.\n\nWith lever arms, the angular "
-        "acceleration is the central difference of the rates. A gap in time begins anew.\n\nWith "
-        "--emit-c and no LOG, the correction is written as C99 code without loops, heap or libm. "
-        "Lever arms, warm-up and the rate of temperature stay in there.",
+        "because a model states their size, not their course.\n\nWith lever arms, the angular "
+        "acceleration is the central difference of the rates. The correction starts anew after a "
+        "gap in time.\n\nWith --emit-c and no LOG, the correction is written as C99 code without "
+        "loops, heap or libm. This code does not correct lever arms, warm-up and the rate of "
+        "temperature.",
     .groups = {OPTION_GROUP("Options", compensate_option_table, 0),
                {"Code for a device", COMPENSATE_EMIT_OPTIONS, compensate_emit_options,
                 AT(emission)},

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Position 0 is what is in force when the option is not given. The names stand in the order of
+/* Position 0 applies when the option is not given. The names stand in the order of
  * imk_parameter_format and imk_density. */
 static const char formats[] =
     "auto|kalibr|gazebo|matlab|gnss-ins-sim|navego|openvins|vins|px4|ardupilot|filter";
@@ -23,23 +23,25 @@ static const char target_formats[] =
 
 const option parameter_option_table[PARAMETER_OPTIONS] = {
     {"from", OPTION_CHOICE, AT(from), .value = "FORMAT", .choices = formats,
-     .help = "of the parameter file read; default: by its content"},
+     .help = "format of the parameter file read; default: recognised by its content"},
     {"to", OPTION_CHOICE, AT(to), .value = "FORMAT", .choices = target_formats,
-     .help = "of the parameter file written; default: a model file"},
+     .help = "format of the parameter file written; default: a model file"},
     {"density", OPTION_CHOICE, AT(density), .value = "SIDES",
      .choices = "as-the-program|two-sided|one-sided",
-     .help = "what a number per sqrt(Hz) is, where the format leaves it open (vins, matlab)"},
+     .help = "meaning of a number per sqrt(Hz), where the format leaves it open (vins, matlab)"},
     {"sensor", OPTION_TEXT, AT(sensor), .value = "NAME",
-     .help = "which of several in the parameter file"},
-    JSON_OPTION(AT(json), "print what was assumed and left out as JSON"),
+     .help = "name of the sensor, if the parameter file has several"},
+    JSON_OPTION(AT(json), "print as JSON what was assumed and left out"),
     {"flicker", OPTION_CHOICE, AT(flicker), .value = "CHOICE",
      .choices = "random-walk|gauss-markov|two-gauss-markov|left-out",
-     .help = "--to filter: what stands for bias instability, which no filter state is"},
+     .help = "--to filter: the process that replaces bias instability, because no filter state can "
+             "model it exactly"},
     {"tau-from", OPTION_QUANTITY, AT(tau_from), .value = "TIME", .unit = "s",
      .choices = "1e-9..1e9",
-     .help = "--to filter: shortest averaging time at which that has to hold; default 1 s"},
+     .help =
+         "--to filter: shortest averaging time at which the replacement has to hold; default 1 s"},
     {"tau-to", OPTION_QUANTITY, AT(tau_to), .value = "TIME", .unit = "s", .choices = "1e-9..1e9",
-     .help = "--to filter: the longest; default 1000 s"},
+     .help = "--to filter: longest averaging time at which it has to hold; default 1000 s"},
 };
 
 static bool only_parameters(const char *path)
@@ -70,7 +72,7 @@ int parameters_wanted(const parameter_options *options, const char *in, bool mod
     return -1;
 }
 
-/* What was left out is a warning; what was assumed is worth a line. */
+/* A left-out value is a warning; an assumption is only a line. */
 static void tell(const imk_parameter_notes *notes)
 {
     for (size_t i = 0; i < notes->count; i++)
@@ -109,8 +111,8 @@ static int read_source(const parameter_options *o, const imk_parameter_settings 
     *format = reading.format;
     const bool is_model = reading.format == IMK_PARAMETERS_UNKNOWN && !only_parameters(in);
     if (is_model && o->sensor)
-        return command_misused("--sensor is of a parameter file with several, and %s is a model",
-                               in);
+        return command_misused(
+            "--sensor is for a parameter file with several sensors, and %s is a model", in);
     if (is_model)
         return command_model(in, model, NULL);
     if (imk_parameters_read(in, &reading, model, notes, &error) != IMK_OK)

@@ -27,13 +27,13 @@ static const option convert_option_table[] = {
     {"select", OPTION_TEXT, AT(to.select), .value = "NAMES",
      .help = "columns to keep, in this order, such as time,gyro_x; default: all"},
     {"to-gyro-unit", OPTION_UNIT, AT(to.gyro_unit), .value = "UNIT",
-     .help = "of the gyro columns written; default: as read"},
+     .help = "unit of the gyro columns written; default: as read"},
     {"to-accel-unit", OPTION_UNIT, AT(to.accel_unit), .value = "UNIT",
-     .help = "of the accelerometer columns written; default: as read"},
+     .help = "unit of the accelerometer columns written; default: as read"},
     {"to-time-unit", OPTION_UNIT, AT(to.time_unit), .value = "UNIT",
-     .help = "of the time column written; default: as read"},
+     .help = "unit of the time column written; default: as read"},
     {"to-temperature-unit", OPTION_UNIT, AT(to.temperature_unit), .value = "UNIT",
-     .help = "of the temperature column written; default: as read"},
+     .help = "unit of the temperature column written; default: as read"},
     DECIMALS_OPTION(AT(decimals)),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
@@ -44,18 +44,18 @@ static const option motion_option_table[] = {
              "accelerometers, such as \"0.1 0 -0.05 m\""},
     {"gravity-free", OPTION_FLAG, AT(to.gravity_free),
      .help = "acceleration relative to the Earth instead of specific force; needs --latitude, and "
-             "a unit that is still at first"},
+             "a unit that is at rest at the start"},
     {"still", OPTION_QUANTITY, AT(to.still), .value = "TIME", .unit = "s",
-     .help = "how long it is still, for roll and pitch; default 10s"},
-    LATITUDE_OPTION(AT(to.latitude), "geodetic, for gravity"),
+     .help = "time at rest at the start, to find roll and pitch; default 10s"},
+    LATITUDE_OPTION(AT(to.latitude), "geodetic latitude, for gravity"),
     HEIGHT_OPTION(AT(to.height)),
     TURN_OPTION("yaw", AT(to.yaw),
-                "at first, from north to east, for the Earth's rotation; default 0deg"),
+                "heading at the start, from north to east, for the Earth's rotation; default 0deg"),
 };
 
-/* What each end is. A name without an ending tells nothing of what is read: its content is looked
- * at, but a stream's only when a model is due, for it has to be copied. A stream that is written is
- * of the kind of what is read. */
+/* The kind of each end. An input name without an ending does not show the kind, so the content is
+ * examined; a stream is examined only if a model is expected, because it has to be copied. An
+ * output stream has the kind of the input. */
 static void find_kinds(const char *in, const char *out, bool *from_model, bool *to_model)
 {
     *to_model = imk_is_script_name(out);
@@ -99,12 +99,12 @@ static int set_up(convert_options *o)
     o->to.to_point = o->to_point != NULL;
     int code = o->to_point ? parse_point(o->to_point, o->to.point.v) : -1;
     if (code < 0 && o->to.gravity_free && isnan(o->to.latitude))
-        code = command_misused("--gravity-free: gravity differs from place to place: add "
-                               "--latitude 45deg and, off the sea, --height 500m");
+        code = command_misused("--gravity-free: gravity depends on the place; add --latitude 45deg "
+                               "and, away from sea level, --height 500m");
     return code;
 }
 
-/* What is wrong with an option, or with what is written; the rest is the log's. */
+/* Errors of an option or of the output; all other errors concern the log. */
 static int tell(const char *in, const imk_findings *findings, imk_status status,
                 const imk_error *error)
 {
@@ -165,8 +165,8 @@ static int run(int count, char **words)
     if (wanted)
         return convert_parameters(&o.parameters, o.log.file.rate, operands[0], operands[1]);
     if (o.parameters.json || o.parameters.sensor || o.parameters.density)
-        return command_misused("%s: --json, --sensor and --density are for parameter files; "
-                               "--from says which kind it is",
+        return command_misused("%s: --json, --sensor and --density are for parameter files; state "
+                               "the format with --from",
                                operands[0]);
     bool from_model, to_model;
     find_kinds(operands[0], operands[1], &from_model, &to_model);
@@ -191,19 +191,18 @@ const verb convert_verb = {
     .last_is_written = true,
     .examples =
         {{"imukit convert raw.csv log.csv.zst --rate 200Hz --gyro-unit deg/s --accel-unit g",
-          "a log without units becomes one that says everything"},
+          "a log without units becomes a log that states its units"},
          {"imukit convert model.yaml imu.yaml --to kalibr --rate 200Hz",
-          "a model becomes a parameter file of another program; without --to the way back"}},
+          "a model becomes a parameter file of another program; without --to a parameter file "
+          "becomes a model"}},
     .description =
         "A log is .csv (also .gz, .zst){ or logs}; - is standard input or output, as CSV. "
-        "Increments "
-        "become rates. Values keep their units unless an option changes them.\n\n"
-        "A model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
-        "Parameter files of "
-        "kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, openvins, vins, px4 and "
-        "ardupilot "
-        "are recognised by their content; what was assumed about units and densities, and what a "
-        "format cannot hold, is said on standard error. docs/other-formats.md has the formats.",
+        "Increments become rates. Values keep their units unless an option changes them.\n\nA "
+        "model (.yaml, .yml, .json, or through a pipe) is converted between YAML and JSON. "
+        "Parameter files of kalibr, gazebo (SDF), matlab (imuSensor), gnss-ins-sim, navego, "
+        "openvins, vins, px4 and ardupilot are recognised by their content. Assumptions about "
+        "units and densities, and values that a format cannot hold, are reported on standard "
+        "error. docs/other-formats.md describes the formats.",
     .groups = {OPTION_GROUP("Options", convert_option_table, 0),
                {"Parameter files", PARAMETER_OPTIONS, parameter_option_table, AT(parameters)},
                OPTION_GROUP("Another point, without gravity", motion_option_table, 0),

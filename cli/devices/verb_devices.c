@@ -152,7 +152,7 @@ const verb devices_verb = {
     .operands_maximum = 1,
     .examples = {{"imukit devices", "every entry with its main figures"},
                  {"imukit devices ADIS16488", "one entry: its source, notes and model file"}},
-    .description = "Any name may stand where a verb asks for a MODEL. Figures are of the axis "
+    .description = "Every verb that takes a MODEL accepts these names. Figures are of the axis "
                    "given first; bias instability is B of IEEE 952: datasheets that quote the "
                    "floor of the Allan deviation were divided by 0.664, and the note says so.",
     .groups = {{"Options", 1, devices_option_table, 0}},

@@ -35,7 +35,7 @@ static void *thread_memory(size_t size)
     return posix_memalign(&memory, 64, size) == 0 ? memory : NULL;
 }
 
-/* A thread's memory is made by itself, where it runs. */
+/* Each thread allocates its own memory, where it runs. */
 static imk_status compute(void *context, size_t thread, uint64_t first, size_t count,
                           double *values, imk_error *error)
 {
@@ -57,7 +57,8 @@ static int read_shard(const char *text, uint64_t *index, uint64_t *count)
         strchr(text, '-'))
         return command_misused("--shard %s: expected I/N, such as 3/10: the third of ten parts",
                                text);
-    if (n > UINT32_MAX) /* as many as runs; what is no number of 64 bits is read as the largest */
+    if (n > UINT32_MAX) /* at most as many as runs; a number beyond 64 bits is read as the largest
+                         * one */
         return command_misused("--shard %s: expected at most 4294967295 parts", text);
     *index = i;
     *count = n;
@@ -194,8 +195,8 @@ static int show(const imk_drift_models *r, const imk_campaign_results *file, con
     list_free(&words);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (there < whole)
-        imk_result_line(result,
-                        "\nA part of the campaign; the whole: imukit merge PART.h5... -o WHOLE.h5");
+        imk_result_line(result, "\nThis is a part of the campaign. All parts together: imukit "
+                                "merge PART.h5... -o WHOLE.h5");
     imk_result_for(result, IMK_FOR_PAGE);
     show_origin(result);
     return show_end(result, &(show_options){.report = o->report, .plot = o->plot, .json = o->json},

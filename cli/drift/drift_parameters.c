@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Everything that the numbers of a campaign depend on, as JSON: equal physics gives equal text.
+/* All inputs that the numbers of a campaign depend on, as JSON: equal physics gives equal text.
  *
  * The model is without its name, its evidence and the texts of the file it came from; numbers are
  * the shortest that read back to the same double. A motion script is there as it is; of any motion

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is navigated and when to look, from the options. */
+/* The motion and the times of the navigation, from the options. */
 #include "drift_parts.h"
 
 #include <math.h>
@@ -13,8 +13,8 @@ static const double day = 86400;
 static int check_rest(const drift_options *o)
 {
     if (o->roll != 0 || o->pitch != 0 || o->yaw != 0)
-        return command_misused("--roll, --pitch and --yaw are of a unit at rest: with --motion the "
-                               "attitude is in the motion file");
+        return command_misused("--roll, --pitch and --yaw are for a unit at rest; with --motion "
+                               "the attitude is in the motion file");
     return -1;
 }
 
@@ -31,13 +31,14 @@ static int open_motion(const drift_options *o, drift_scene *s)
         return command_error(&error, o->motion);
     const imk_motion *motion = imk_motion_file_motion(s->motion);
     if (!motion->trajectory)
-        return command_failed("%s: recorded rates and forces do not say where the unit truly was; "
-                              "give a motion script or a table of poses (position and attitude)",
-                              o->motion);
+        return command_failed(
+            "%s: recorded rates and forces do not contain the true position of the unit; give a "
+            "motion script or a table of poses (position and attitude)",
+            o->motion);
     if (!motion->trajectory->earth)
-        return command_failed("%s: the motion is not on the Earth (`earth: no`): there is nothing "
-                              "to navigate on",
-                              o->motion);
+        return command_failed(
+            "%s: the motion is not on the Earth (`earth: no`), and navigation needs the Earth",
+            o->motion);
     const char *note = imk_motion_file_note(s->motion);
     if (*note)
         command_warn("motion", "%s: %s", o->motion, note);
@@ -77,10 +78,10 @@ static int read_initial(const char *name, const char *text, const char *unit, do
 static int read_start(const drift_options *o, imk_drift_settings *s)
 {
     if (o->aligned == 1 && o->initial_attitude)
-        return command_misused("--initial-attitude is of a given attitude, --aligned self finds "
-                               "it: one of the two");
+        return command_misused("--initial-attitude is for a given attitude, but --aligned self "
+                               "finds the attitude; leave one out");
     if (o->aligned != 1 && !isnan(o->align_time))
-        return command_misused("--align-time is of --aligned self: add it");
+        return command_misused("--align-time is for --aligned self; add that option");
     if (!isnan(o->align_time) && !(o->align_time >= 1.0 && o->align_time <= 1e7))
         return command_misused("--align-time %g s: expected 1 s to 1e7 s", o->align_time);
     int code = read_initial("initial-position", o->initial_position, "m", s->initial_sigma);
@@ -113,7 +114,7 @@ static int stated_times(const char *text, stated *t)
         if (imk_quantity_parse(begin, begin + length, imk_unit_of("s").dimension, 1, &value, &sigma,
                                &count, NULL, NULL) != IMK_OK ||
             count != 1 || !(value > 0 && value <= latest))
-            return command_misused("--times \"%s\": \"%.*s\" is no positive time with a unit; "
+            return command_misused("--times \"%s\": \"%.*s\" is not a positive time with a unit; "
                                    "write --times \"1min, 10min, 1h\"",
                                    text, (int)length, begin);
         if (t->count == IMK_DRIFT_ROWS_MAX - 2)
@@ -125,7 +126,7 @@ static int stated_times(const char *text, stated *t)
     return -1;
 }
 
-/* How long the motion gives something to navigate. */
+/* The length of motion that can be navigated. */
 static double motion_length(const drift_scene *s)
 {
     return s->motion ? imk_motion_file_duration(s->motion) : (double)INFINITY;

@@ -8,7 +8,7 @@
 
 enum { FIGURES = IMK_REQUIRED_HEADING + 1 };
 
-/* Of any figure, SI: beyond what sensors do and what the Earth has room for. */
+/* Limits of any figure, SI: beyond real sensors and beyond the size of the Earth. */
 static const double least_goal = 1e-9, largest_goal = 1e9;
 
 static int refuse(const char *text, const char *why)
@@ -40,9 +40,10 @@ static int find_figure(const char *text, size_t length, imk_drift_wanted *want)
         }
     }
     const char *nearest = command_nearest(given, FIGURES, names);
-    snprintf(why, sizeof why,
-             "\"%s\" is no figure%s%s%s; CEP, R95, DRMS, height, velocity, tilt and heading are",
-             given, nearest ? " (did you mean " : "", nearest ? nearest : "", nearest ? "?)" : "");
+    snprintf(
+        why, sizeof why,
+        "\"%s\" is not a figure%s%s%s; expected CEP, R95, DRMS, height, velocity, tilt or heading",
+        given, nearest ? " (did you mean " : "", nearest ? nearest : "", nearest ? "?)" : "");
     return refuse(text, why);
 }
 
@@ -59,20 +60,20 @@ int drift_want_parse(const char *text, imk_drift_wanted *want)
     if (!at)
         return refuse(text, "the time is missing");
     if (value >= at)
-        return refuse(text, "how large it may be is missing");
+        return refuse(text, "the limit is missing");
     const char *unit = imk_drift_requirement_unit(want->figure);
     if (!quantity(value, at, unit, &want->goal, &want->unit)) {
-        snprintf(why, sizeof why, "\"%.*s\" is no positive number with a unit of %s, such as %s",
+        snprintf(why, sizeof why, "\"%.*s\" is not a positive number with a unit of %s, such as %s",
                  (int)(at - value < 40 ? at - value : 40), value,
                  imk_dimension_name(imk_unit_of(unit).dimension),
                  imk_dimension_examples(imk_unit_of(unit).dimension));
         return refuse(text, why);
     }
     if (!(want->goal >= least_goal && want->goal <= largest_goal)) {
-        snprintf(why, sizeof why, "a figure from 1e-9 to 1e9 %s is due", unit);
+        snprintf(why, sizeof why, "expected a figure from 1e-9 to 1e9 %s", unit);
         return refuse(text, why);
     }
     if (!quantity(at + 1, at + 1 + strlen(at + 1), "s", &want->time, NULL))
-        return refuse(text, "behind @ a positive time with its unit is due");
+        return refuse(text, "expected a positive time with its unit after @");
     return -1;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit drift: how far off a navigator will be, which term is to blame, and how good it must
- * become. */
+/* imukit drift: how large the error of a navigator becomes, which terms cause it, and how small
+ * they must be. */
 #include "campaign/campaign_run.h"
 #include "drift_parts.h"
 
@@ -17,58 +17,58 @@
 
 static const option navigation_option_table[] = {
     {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
-     .help = "how long; default: 24h, with --motion its length, with --want its time"},
+     .help =
+         "length of the navigation; default: 24h, with --motion its length, with --want its time"},
     {"times", OPTION_TEXT, AT(times), .value = "TIMES",
-     .help = "when to look instead, such as \"1min, 10min, 1h\""},
+     .help = "times to show instead, such as \"1min, 10min, 1h\""},
     {"aligned", OPTION_CHOICE, AT(aligned), .value = "HOW", .choices = "given|self",
-     .help = "given (the default): the attitude at the start is true, but for --initial-attitude; "
-             "self: the unit finds it at rest from its own readings"},
+     .help = "given (the default): the attitude at the start is true except for "
+             "--initial-attitude; self: the unit finds it at rest from its own readings"},
     {"align-time", OPTION_QUANTITY, AT(align_time), .value = "TIME", .unit = "s",
-     .help = "length of that alignment; default 300s"},
+     .help = "length of the alignment of --aligned self; default 300s"},
     {"initial-attitude", OPTION_TEXT, AT(initial_attitude), .value = "ANGLES",
-     .help = "1 sigma of the error at the start: \"0.05 deg\", or about north, east and down, "
-             "\"0.01 0.01 0.1 deg\"; default 0"},
+     .help = "1 sigma of the attitude error at the start: \"0.05 deg\", or about north, east and "
+             "down, \"0.01 0.01 0.1 deg\"; default 0"},
     {"initial-velocity", OPTION_TEXT, AT(initial_velocity), .value = "SPEEDS",
-     .help = "likewise, \"0.1 m/s\"; default 0"},
+     .help = "1 sigma of the velocity error at the start, such as \"0.1 m/s\"; default 0"},
     {"initial-position", OPTION_TEXT, AT(initial_position), .value = "LENGTHS",
-     .help = "likewise, \"10 m\"; default 0"},
+     .help = "1 sigma of the position error at the start, such as \"10 m\"; default 0"},
     {"vertical", OPTION_CHOICE, AT(vertical), .value = "HOW", .choices = "slaved|free",
      .help = "slaved (the default): height follows the truth, as with a barometer; free: it grows "
              "without bound"},
     {"compensated", OPTION_FLAG, AT(compensated),
-     .help = "beside it the same after calibration: values that the model knows are taken out, "
-             "their uncertainty stays"},
+     .help = "show also the figures after calibration: known values of the model are taken out, "
+             "and their uncertainty stays"},
     {"want", OPTION_TEXT, AT(want), .value = "REQUIREMENT",
-     .help = "the inverse question, \"CEP 1 nmi @ 1h\": what each term must become, and which "
-             "devices would do; also R95, DRMS, height, velocity, tilt, heading"},
+     .help = "the inverse question, such as \"CEP 1 nmi @ 1h\": how small each term must be, and "
+             "which devices meet this; also R95, DRMS, height, velocity, tilt, heading"},
 };
 
 static const option place_option_table[] = {
     {"motion", OPTION_FILE, AT(motion), .letter = 'm', .value = "MOTION",
-     .help =
-         "a motion script (.yaml) or a table of poses; default: at rest as the options below say"},
+     .help = "a motion script (.yaml) or a table of poses; default: at rest, as stated by the "
+             "options below"},
     {"rate", OPTION_QUANTITY, AT(rate), .letter = 'r', .value = "RATE", .unit = "Hz",
-     .help = "of the samples; default 100Hz"},
-    LATITUDE_OPTION(AT(latitude), "geodetic; default 45deg"),
+     .help = "sampling rate; default 100Hz"},
+    LATITUDE_OPTION(AT(latitude), "geodetic latitude; default 45deg"),
     HEIGHT_OPTION(AT(height)),
-    TURN_OPTION("roll", AT(roll), "default 0deg: level"),
-    TURN_OPTION("pitch", AT(pitch), "default 0deg: level"),
-    TURN_OPTION("yaw", AT(yaw), "from north to east; default 0deg"),
+    TURN_OPTION("roll", AT(roll), "roll; default 0deg: level"),
+    TURN_OPTION("pitch", AT(pitch), "pitch; default 0deg: level"),
+    TURN_OPTION("yaw", AT(yaw), "heading, from north to east; default 0deg"),
 };
 
 static const option output_option_table[] = {
     {"monte-carlo", OPTION_INTEGER, AT(monte_carlo), .letter = 'n', .value = "N",
-     .choices = "1-4294967295",
-     .help = "simulate and navigate so many runs as well, without linearising"},
+     .choices = "1-4294967295", .help = "also simulate and navigate N runs, without linearising"},
     SEED_OPTION(AT(seed),
-                "of the runs: the same seed makes the same bytes on every machine; default 1"),
+                "seed of the runs: the same seed makes the same bytes on every machine; default 1"),
     {"shard", OPTION_TEXT, AT(shard), .value = "I/N",
-     .help = "only part I of N of the runs, for imukit merge; with -o PART.h5"},
+     .help = "compute only part I of N of the runs, for imukit merge; needs -o PART.h5"},
     THREADS_OPTION(AT(threads),
                    "threads to use; default: all processors. The results do not depend on it"),
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
-     .help = "with --monte-carlo every run (.h5, or .csv, .csv.gz, .csv.zst); killed and started "
-             "again, it goes on. Else figures and terms against time (.csv)"},
+     .help = "with --monte-carlo: every run (.h5, or .csv, .csv.gz, .csv.zst); the same command "
+             "continues an interrupted campaign. Otherwise: figures and terms against time (.csv)"},
     PLOT_OPTION(AT(plot), "draw the growth and the shares of the terms"),
     REPORT_OPTION(AT(report), "write one self-contained page"),
     JSON_OPTION(AT(json), "print as JSON"),
@@ -85,12 +85,12 @@ static bool is_csv(const char *path)
 static int check_runs(const drift_options *o, size_t models)
 {
     if (models > 1)
-        return command_misused("--monte-carlo is of one model at a time");
+        return command_misused("--monte-carlo takes one model at a time");
     if (o->shard && !o->output)
         return command_misused("--shard makes a part for imukit merge: add -o PART.h5");
     if (o->output && !is_csv(o->output) && command_is_stream(o->output))
-        return command_misused("-o %s: runs are kept in a file beside their results while they are "
-                               "made; give a name ending in .csv or .h5",
+        return command_misused("-o %s: the runs are kept in a file beside the results while they "
+                               "are computed; give a name ending in .csv or .h5",
                                o->output);
     if (o->output && !imk_has_ending(o->output, ".h5") && !is_csv(o->output))
         return command_misused("-o %s: expected a name ending in .h5, .csv, .csv.gz or .csv.zst",
@@ -106,14 +106,14 @@ static int check(const drift_options *o, bool runs, size_t models)
     if (code >= 0)
         return code;
     if (!runs && o->shard)
-        return command_misused("--shard is a part of --monte-carlo N: add it");
+        return command_misused("--shard selects a part of --monte-carlo N; add that option");
     if (!runs && o->output && !is_csv(o->output) && !command_is_stream(o->output))
-        return command_misused(
-            "-o %s: figures against time are written as .csv (%s holds runs: add "
-            "--monte-carlo 1000)",
-            o->output, imk_has_ending(o->output, ".h5") ? ".h5" : "a results file");
+        return command_misused("-o %s: figures against time are written as .csv; %s is for runs: "
+                               "add --monte-carlo 1000",
+                               o->output,
+                               imk_has_ending(o->output, ".h5") ? ".h5" : "a results file");
     if (o->want && models > 1)
-        return command_misused("--want is of one model at a time");
+        return command_misused("--want takes one model at a time");
     return -1;
 }
 
@@ -142,7 +142,7 @@ static int open_models(work *w)
     return code;
 }
 
-/* A requirement that can be typed: half of what there is, at a time of the table. */
+/* A requirement that can be typed: half of the present figure, at a time of the table. */
 static void show_requirement(const imk_drift_models *r, imk_result *result)
 {
     char length[IMK_READABLE_SIZE];
@@ -152,7 +152,8 @@ static void show_requirement(const imk_drift_models *r, imk_result *result)
     const bool whole_hours = hours == floor(hours), whole_minutes = minutes == floor(minutes);
     if (!(f->cep > 0) || imk_drift_validity_of(f) == IMK_DRIFT_LOST)
         return;
-    imk_result_line(result, "\nNext: what would halve it?  %s --want \"CEP %s @ %.8g%s\"",
+    imk_result_line(result,
+                    "\nNext, to see what would halve the error: %s --want \"CEP %s @ %.8g%s\"",
                     command_line(), imk_readable_figure(IMK_REQUIRED_CEP, 0.5 * f->cep, length),
                     whole_hours     ? hours
                     : whole_minutes ? minutes
@@ -205,7 +206,7 @@ static int show(const work *w)
                     EXIT_DONE);
 }
 
-/* A part of a campaign has no figures worth showing: what to do with it is said. */
+/* A part of a campaign has no figures worth showing: print the next step instead. */
 static void show_shard(const work *w)
 {
     printf("%s: %llu runs.\nNext, with all parts: imukit merge PART.h5... -o WHOLE.h5\n",
@@ -271,13 +272,12 @@ static int run(int count, char **words)
         return code;
     for (size_t m = 0; m < models && models > 1; m++)
         if (imk_has_ending(w.name[m], ".h5"))
-            return command_misused("%s: a results file is shown by itself; several parts of a "
-                                   "campaign are put together by imukit merge",
+            return command_misused("%s: a results file is shown alone; combine several parts of a "
+                                   "campaign with imukit merge",
                                    w.name[m]);
     if (models == 1 && imk_has_ending(w.name[0], ".h5"))
-        return runs ? command_misused("%s holds runs that were made already: leave --monte-carlo "
-                                      "out",
-                                      w.name[0])
+        return runs ? command_misused(
+                          "%s contains runs that exist already; leave --monte-carlo out", w.name[0])
                     : drift_results(&o, w.name[0]);
     code = open_models(&w);
     if (code < 0)
@@ -292,7 +292,7 @@ static int run(int count, char **words)
 
 const verb drift_verb = {
     .name = "drift",
-    .summary = "how far off after a minute, an hour, a day, and which term is to blame",
+    .summary = "position error after a minute, an hour, a day, and the terms that cause it",
     .operands = "MODEL... | RESULTS.h5",
     .operands_minimum = 1,
     .operands_maximum = IMK_DRIFT_MODELS_MAX,
@@ -301,15 +301,15 @@ const verb drift_verb = {
           "error growth of a class by covariance, with the budget of its terms, beside a hundred "
           "simulated runs"},
          {"imukit drift model.yaml --aligned self --want \"CEP 1 nmi @ 1h\" --report drift.html",
-          "what each term must become for a mile in an hour, and which devices would do"}},
+          "how small each term must be for one mile in an hour, and which devices meet this"}},
     .description =
         "MODEL is a model file or a name from `imukit devices`; several are compared. The unit "
-        "navigates by itself, at rest or on a motion, and the figures say how far off it is: CEP "
-        "is the radius of the circle that holds half of all outcomes, R95 95 % of them.\n\nValues "
-        "that the model knows (bias.fixed, misalignment) shift every run alike; terms of which a "
-        "size is known (repeatability, noise) scatter. The covariance is linear: ~ marks where "
-        "attitude errors are too large for it.\n\nRESULTS.h5 is what --monte-carlo or imukit merge "
-        "wrote: its statistics are printed.",
+        "navigates by itself, at rest or on a motion, and the figures state its error: CEP is the "
+        "radius of the circle that holds half of all outcomes, R95 the radius for 95 % of "
+        "them.\n\nKnown values of the model (bias.fixed, misalignment) shift every run by the same "
+        "amount; terms with only a known size (repeatability, noise) scatter. The covariance is "
+        "linear: ~ marks figures for which attitude errors are too large.\n\nRESULTS.h5 is a file "
+        "from --monte-carlo or imukit merge; its statistics are printed.",
     .groups = {OPTION_GROUP("Navigation", navigation_option_table, 0),
                {"Terms", TERM_OPTIONS, term_options, AT(terms)},
                OPTION_GROUP("Motion and place", place_option_table, 0),

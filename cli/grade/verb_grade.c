@@ -19,10 +19,10 @@ typedef struct grade_options {
 #define AT(field) offsetof(grade_options, field)
 
 static const option grade_option_table[] = {
-    PLOT_OPTION(AT(plot), "draw the maps: stability of bias against that of scale factor, of gyros "
-                          "and of accelerometers, and cost against performance"),
+    PLOT_OPTION(AT(plot), "draw the maps: bias stability against scale factor stability for gyros "
+                          "and for accelerometers, and cost against performance"),
     {"map", OPTION_CHOICE, AT(map), .value = "WHICH", .choices = "all|gyro|accel|cost",
-     .help = "the one to draw; default: all, with --plot term gyro"},
+     .help = "the map to draw; default: all, but gyro with --plot term"},
     REPORT_OPTION(AT(report), "write one self-contained page"),
     JSON_OPTION(AT(json), "print as JSON"),
 };
@@ -77,7 +77,7 @@ static int show(const grading *g, const grade_options *o)
         &(show_options){.report = o->report, .plot = stands ? o->plot : NULL, .json = o->json},
         EXIT_DONE);
     return code == EXIT_DONE && o->plot && !stands
-               ? command_failed("--map: nothing of the model stands on this map")
+               ? command_failed("--map: the model has no value for this map")
                : code;
 }
 
@@ -89,7 +89,7 @@ static int run(int count, char **words)
     if (code < 0)
         code = command_check_plot(o.plot);
     if (code < 0 && o.map > 0 && !o.plot)
-        code = command_misused("--map is of a drawing: add --plot FILE.svg");
+        code = command_misused("--map selects a drawing; add --plot FILE.svg");
     if (code < 0)
         code = grade(&g);
     if (code < 0)
@@ -103,19 +103,21 @@ static int run(int count, char **words)
 
 const verb grade_verb = {
     .name = "grade",
-    .summary = "class of a model by its biases and by computed performance, and what limits it",
+    .summary =
+        "class of a model by its biases and by computed performance, and the terms that limit it",
     .operands = "MODEL...",
     .operands_minimum = 1,
     .operands_maximum = MODELS_MAX,
     .examples = {{"imukit grade model.yaml", "the class of an identified model"},
                  {"imukit grade model.yaml HG1700 navigation --report grade.html",
-                  "beside a device of the catalogue and a class, with maps"}},
+                  "compared with a device of the catalogue and a class, with maps"}},
     .description =
-        "By the table, what counts is the bias that stays after calibration: the root sum of "
-        "squares of repeatability, instability and the uncertainty of the fixed bias, on the worst "
-        "axis. The class of the unit is the worse of its gyro and its accelerometer class.\n\nBy "
-        "performance, what counts is the error of position that all terms of the model make, as "
-        "imukit drift computes it: at rest at 45 deg N, with a perfect attitude at the start, and "
-        "with one that the unit finds itself. What a class claims stands beside what is computed.",
+        "By the table, the class depends on the bias that remains after calibration: the root sum "
+        "of squares of repeatability, instability and the uncertainty of the fixed bias, on the "
+        "worst axis. The class of the unit is the worse of its gyro and its accelerometer "
+        "class.\n\nBy performance, the class depends on the position error that all terms of the "
+        "model cause, as imukit drift computes it: at rest at 45 deg N, with a perfect attitude at "
+        "the start, and with an attitude that the unit finds itself. The claim of each class is "
+        "shown beside the computed error.",
     .groups = {OPTION_GROUP("Options", grade_option_table, 0)},
     .run = run};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit identify of several logs: each is identified alone, its samples let go, and all are
+/* imukit identify of several logs: each is identified alone and its samples are freed; then all are
  * compared. */
 #include "identify_parts.h"
 #include "shell/growing_list.h"
@@ -21,7 +21,7 @@ static int check_request(const identify_options *o)
 {
     if (o->runs && o->method == METHOD_ALLAN)
         return command_misused("--method allan fits one log at a time; the joint estimate of "
-                               "--runs is by likelihood");
+                               "--runs needs --method likelihood");
     if (o->devices && (o->output || o->into || o->name || o->twin || o->plot || o->truth))
         return command_misused(
             "--devices compares sensors and makes no model: leave out %s, or identify each log "
@@ -59,10 +59,10 @@ static int check_channels(const several_logs *s, size_t record)
         return -1;
     if (strcmp(error.field, "rate") == 0)
         return command_failed("%s was sampled at %.6g Hz, %s at %.6g Hz: runs of one sensor have "
-                              "one sample rate; identify them apart, or with --devices",
+                              "one sampling rate; identify them separately, or with --devices",
                               s->label[0], 1 / first->dt, s->label[record], 1 / other->dt);
-    return command_failed("%s and %s do not have the same channels (%zu from %s on, %zu from "
-                          "%s on): only logs of the same columns can be compared",
+    return command_failed("%s and %s do not have the same channels (%zu from %s on, %zu from %s "
+                          "on): only logs with the same columns can be compared",
                           s->label[0], s->label[record], first->count,
                           imk_even_record_column(first, 0)->name, other->count,
                           imk_even_record_column(other, 0)->name);

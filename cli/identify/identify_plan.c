@@ -21,8 +21,8 @@ static int refuse_name(const imk_record_plan *p, const char *model, const char *
         list_add_item(&list, "%s", p->parameter[k].key);
     }
     const char *nearest = command_nearest(given, count, keys);
-    const int code = command_misused("--want \"%s\": %s has no such noise%s%s%s; it has %s", given,
-                                     model, nearest ? " (did you mean " : "",
+    const int code = command_misused("--want \"%s\": %s has no such noise term%s%s%s; it has %s",
+                                     given, model, nearest ? " (did you mean " : "",
                                      nearest ? nearest : "", nearest ? "?)" : "", list.text);
     list_free(&list);
     return code;
@@ -49,7 +49,7 @@ int identify_plan(const identify_options *o)
 {
     if (!(o->log.file.rate > 0))
         return command_misused(
-            "--plan: the sample rate of the record is due, such as --rate 100Hz");
+            "--plan: the sampling rate of the record is missing; add it, such as --rate 100Hz");
     imk_model *model = command_memory(NULL, sizeof *model);
     imk_record_plan *p = NULL;
     imk_error error;

@@ -12,62 +12,64 @@ static const option identify_option_table[] = {
      .help = "write the model here (.yaml or .json)"},
     REPORT_OPTION(AT(report),
                   "write one self-contained page: verdict, parameters, Allan plots, model"),
-    PLOT_OPTION(AT(plot),
-                "draw the Allan deviation of each channel with the model, and how far it is off"),
+    PLOT_OPTION(
+        AT(plot),
+        "draw the Allan deviation of each channel with the model, and the difference between them"),
     {"twin", OPTION_FLAG, AT(twin),
      .help = "simulate the model over the length of the log and draw its Allan deviation over the "
              "log's"},
-    {"seed", OPTION_INTEGER, AT(seed), .value = "N", .help = "of the twin; default 1"},
+    {"seed", OPTION_INTEGER, AT(seed), .value = "N", .help = "seed of the twin; default 1"},
     {"into", OPTION_INTO, AT(into), .value = "MODEL",
      .help = "start from this model and replace only what is identified: noise and output filter; "
              "the changes are printed"},
     {"name", OPTION_TEXT, AT(name), .value = "TEXT",
-     .help = "name of the model; default: that of the log file"},
+     .help = "name of the model; default: the name of the log file"},
     {"truth", OPTION_FILE, AT(truth), .value = "MODEL",
-     .help = "print these true values beside the estimates, for logs that were simulated"},
-    CONFIDENCE_OPTION(AT(confidence), "of intervals and bounds; default 0.95"),
+     .help = "print the true values of this model beside the estimates, for simulated logs"},
+    CONFIDENCE_OPTION(AT(confidence), "confidence of intervals and bounds; default 0.95"),
     {"significance", OPTION_FRACTION, AT(significance), .value = "FRACTION",
-     .help = "chance that a term which is not there is called present; default 0.01"},
+     .help = "chance that an absent term is reported as present; default 0.01"},
     {"keep", OPTION_TEXT, AT(keep), .value = "LIST",
      .help = "leave these in the log: outliers, stuck, saturated (samples), warm-up, temperature, "
-             "all; otherwise what is found of them is taken out, and told"},
+             "all; by default they are taken out where found, and reported"},
     {"runs", OPTION_FLAG, AT(runs),
-     .help = "several logs are runs of one sensor: one joint model, do they agree, and how much "
-             "the mean differs from run to run"},
+     .help = "several logs are runs of one sensor: make one joint model, test whether the runs "
+             "agree, and estimate how much the mean differs from run to run"},
     {"devices", OPTION_FLAG, AT(devices),
-     .help = "several logs are of different sensors: mean and spread of each term, and which of "
-             "them differ"},
-    STRICT_OPTION(AT(strict), "exit with 1 when the verdict holds a warning"),
+     .help = "several logs are of different sensors: estimate the mean and the spread of each "
+             "term, and show where the sensors differ"},
+    STRICT_OPTION(AT(strict), "exit with 1 when the verdict contains a warning"),
     JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
 };
 
 static const option plan_option_table[] = {
     {"plan", OPTION_FILE, AT(plan), .value = "MODEL",
-     .help = "no LOG: how well a record of this noise (a file or a catalogue name) will tell each "
-             "term; with --rate"},
+     .help = "without LOG: compute how precisely a record with this noise (a file or a catalogue "
+             "name) determines each term; needs --rate"},
     {"want", OPTION_TEXT, AT(want), .value = "LIST",
-     .help = "how long to record for this: \"bias_instability 5%, gyro.rate_random_walk detected "
-             "95%\""},
+     .help = "compute how long to record for this: \"bias_instability 5%, gyro.rate_random_walk "
+             "detected 95%\""},
     {"duration", OPTION_QUANTITY, AT(duration), .value = "TIME", .unit = "s", .choices = "positive",
-     .help = "of the planned record, or of the one behind a curve"},
+     .help = "length of the planned record, or of the record behind a curve"},
 };
 
 static const option allan_option_table[] = {
     {"method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "likelihood|allan",
-     .help = "likelihood of the spectrum (default), which loses nothing; or generalised least "
-             "squares on the Allan deviations, for what a plot holds"},
+     .help = "likelihood of the spectrum (default), which uses all information in the log; or "
+             "generalised least squares on the Allan deviations, which uses only what an Allan "
+             "plot shows"},
     {"curve", OPTION_FLAG, AT(curve),
      .help = "LOG is a table of Allan deviations instead: columns tau [s], gyro_x [deg/s] and so "
-             "on; with --rate and --duration"},
+             "on; needs --rate and --duration"},
     {"plain", OPTION_FLAG, AT(plain),
      .help = "the clusters of the curve do not overlap; default: they do"},
     {"tolerance", OPTION_FRACTION, AT(tolerance), .value = "FRACTION",
-     .help = "error of the model admitted in each deviation, beside what chance explains: 2% for a "
-             "curve read from a page"},
+     .help = "error of the model allowed in each deviation, in addition to the statistical error: "
+             "2% for a curve read from a page"},
     {"gauss-markov", OPTION_INTEGER, AT(gauss_markov), .value = "N", .choices = "0-8",
-     .help = "Gauss-Markov terms looked for in the Allan deviations; default 0 (the likelihood "
-             "looks by itself)"},
+     .help = "number of Gauss-Markov terms to look for in the Allan deviations; default 0 (the "
+             "likelihood looks for them by itself)"},
 };
 
 _Static_assert(IMK_TERMS_MAX == 8, "as the range of --gauss-markov says");
@@ -145,13 +147,13 @@ static int identify_log(identification *i, const imk_executor *executor)
 static int check_allan(const identify_options *o)
 {
     if (o->curve && (!(o->log.file.rate > 0) || !(o->duration > 0)))
-        return command_misused("a curve does not say how long and how fast was recorded: give "
+        return command_misused("a curve does not state the rate and the length of its record; add "
                                "--rate and --duration, such as --rate 100Hz --duration 3h");
     if (o->curve && (o->keep || o->twin))
-        return command_misused("%s is about the samples of a log; a curve has none",
+        return command_misused("%s needs the samples of a log, and a curve has none",
                                o->keep ? "--keep" : "--twin");
     if (o->duration > 0 && !o->curve)
-        return command_misused("--duration goes with --plan or --curve: a log has its own");
+        return command_misused("--duration goes with --plan or --curve; a log has its own length");
     if (o->plain && !o->curve)
         return command_misused("--plain goes with --curve");
     if ((o->tolerance > 0 || o->gauss_markov.given) && !o->curve && o->method != METHOD_ALLAN)
@@ -173,14 +175,15 @@ static int check_request(const identify_options *o, size_t logs)
                                "--strict; the other options are about a log");
     if (o->plan)
         return logs == 0 ? -1
-                         : command_misused("--plan is for a record that is not made yet: leave the "
-                                           "log out, or --plan");
+                         : command_misused("--plan is for a record that does not exist yet; leave "
+                                           "out the log, or --plan");
     if (o->want)
-        return command_misused("--want says what a record is to tell: it goes with --plan MODEL");
+        return command_misused("--want states requirements for a planned record; add --plan MODEL");
     if (logs == 0)
         return command_misused("an operand is missing: imukit identify LOG..., or --plan MODEL");
     if (o->runs && o->devices)
-        return command_misused("--runs are of one sensor, --devices are different ones: which?");
+        return command_misused(
+            "--runs means one sensor, --devices means different ones; leave one out");
     if (logs > 1 && !o->runs && !o->devices)
         return command_misused("%zu logs are given: add --runs when they are of one sensor (one "
                                "joint model), or --devices when they are of different ones (their "
@@ -278,19 +281,19 @@ const verb identify_verb = {
                   "--gyro-unit deg/s -o gyro.yaml --twin --plot term",
                   "a log without header and time column; the model's twin is drawn over it"}},
     .description =
-        "LOG is a record of a sensor that does not move: CSV with a header such as time [s],gyro_x "
+        "LOG is a record of a stationary sensor: CSV with a header such as time [s],gyro_x "
         "[deg/s],accel_x [g] (also .gz, .zst){, or logs}; - is standard input. An hour shows the "
-        "white noise and the bias instability of most sensors, several hours the random walk.\n\n"
-        "Estimated for each channel: quantization, white noise (angle or velocity random walk), "
-        "bias instability, rate or acceleration random walk and ramp, with spectral lines, "
-        "resonances and the output filter modelled apart. A term that the record does not show is "
-        "reported as absent with an upper bound.\n\n"
-        "Missing samples stay missing; outliers, stuck and saturated samples are left out, a "
-        "warm-up and what follows a temperature column are subtracted, where the log shows them. "
-        "The verdict tells what was found; --keep leaves it in.\n\n"
-        "Several LOGs need --runs (of one sensor) or --devices (different sensors).\n\n"
-        "The mean of the record is printed but not written as a bias: at rest it holds the Earth's "
-        "rotation and gravity, which need a known attitude to be told apart.",
+        "white noise and the bias instability of most sensors, several hours the random "
+        "walk.\n\nThe estimated terms of each channel are quantization, white noise (angle or "
+        "velocity random walk), bias instability, rate or acceleration random walk and ramp; "
+        "spectral lines, resonances and the output filter are modelled separately. A term that the "
+        "record does not show is reported as absent with an upper bound.\n\nMissing samples stay "
+        "missing. Where the log shows them, outliers, stuck and saturated samples are left out, "
+        "and a warm-up and the effect of a temperature column are subtracted. The verdict reports "
+        "what was found; --keep leaves it in the log.\n\nSeveral LOGs need --runs (of one sensor) "
+        "or --devices (different sensors).\n\nThe mean of the record is printed but not written as "
+        "a bias: at rest it contains the Earth's rotation and gravity, and only a known attitude "
+        "separates these from the bias.",
     .groups = {OPTION_GROUP("Options", identify_option_table, 0),
                OPTION_GROUP("Planning a record", plan_option_table, 0),
                OPTION_GROUP("From Allan deviations", allan_option_table, 0),

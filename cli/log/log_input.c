@@ -11,10 +11,10 @@
 
 const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"rate", OPTION_QUANTITY, AT(file.rate), .letter = 'r', .value = "RATE", .unit = "Hz",
-     .choices = "1e-9..1e9", .help = "sample rate, needed when the log has no time column"},
+     .choices = "1e-9..1e9", .help = "sampling rate, needed when the log has no time column"},
     {"columns", OPTION_TEXT, AT(file.columns), .value = "NAMES",
      .help = "names of the columns of a log without header, such as time,gyro_x,gyro_y,gyro_z; - "
-             "skips one"},
+             "skips a column"},
     {"gyro-unit", OPTION_TEXT, AT(file.gyro_unit), .value = "UNIT",
      .help = "unit of the gyro columns where the header has none, such as deg/s"},
     {"accel-unit", OPTION_TEXT, AT(file.accel_unit), .value = "UNIT",
@@ -24,13 +24,13 @@ const option log_input_options[LOG_INPUT_OPTIONS] = {
     {"temperature-unit", OPTION_TEXT, AT(file.temperature_unit), .value = "UNIT",
      .help = "unit of the temperature column where the header has none, such as degC"},
     {"axes", OPTION_TEXT, AT(file.axes), .value = "NAMES",
-     .help =
-         "where the log's x, y, z point, such as right-forward-up; mapped to forward-right-down"},
+     .help = "directions of the log's x, y and z axes, such as right-forward-up; they are mapped "
+             "to forward-right-down"},
     {"gaps", OPTION_CHOICE, AT(gaps), .value = "CHOICE", .choices = "refuse|bridge|longest|keep",
-     .help = "rows that are missing, not finite or out of order: keep their places empty (the "
-             "default of allan and identify, which know how), refuse the log (the default "
-             "elsewhere; gaps of up to 0.1 % are bridged with a warning), interpolate over them, "
-             "or use the longest clean stretch"},
+     .help = "what to do with rows that are missing, not finite or out of order: refuse the log "
+             "(the default, but not of allan and identify; gaps of up to 0.1 % are bridged with a "
+             "warning), bridge (interpolate over them), longest (use the longest clean stretch), "
+             "or keep (leave gaps; the default of allan and identify)"},
 };
 
 imk_log_settings log_input_settings(const log_input *input)
@@ -43,8 +43,8 @@ imk_log_settings log_input_settings(const log_input *input)
 int log_input_check(const log_input *input)
 {
     if (input->gaps == IMK_GAPS_KEEP && !input->missing_allowed)
-        return command_misused("--gaps keep: what this verb does needs every sample; use --gaps "
-                               "bridge or --gaps longest");
+        return command_misused(
+            "--gaps keep: this verb needs every sample; use --gaps bridge or --gaps longest");
     return -1;
 }
 

@@ -30,7 +30,7 @@ imk_log_settings log_input_settings(const log_input *input);
  * @return -1 or the exit code */
 int log_input_load(const log_input *input, const char *path, imk_even_record *channels);
 
-/* Refuse a policy on gaps that this verb has not. @return -1 or the exit code */
+/* Refuse a policy on gaps that this verb does not have. @return -1 or the exit code */
 int log_input_check(const log_input *input);
 /* Open a log for a job. @param again  the job may rewind it. @return -1 or the exit code */
 int log_input_open(const log_input *input, const char *path, bool again, imk_log_reader **reader);

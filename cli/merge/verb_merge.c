@@ -20,7 +20,8 @@ typedef struct merge_options {
 static const option merge_option_table[] = {
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE",
      .help = "results file: .h5 or .csv (.csv.gz, .csv.zst)"},
-    {"partial", OPTION_FLAG, AT(partial), .help = "write what is there although runs are missing"},
+    {"partial", OPTION_FLAG, AT(partial),
+     .help = "write the existing runs although others are missing"},
     JSON_OPTION(AT(json), "print as JSON"),
 };
 
@@ -46,13 +47,13 @@ static bool has_unreadable(const imk_campaign_merge_report *r)
     return false;
 }
 
-/* What to do about the runs that are not there. */
+/* What to do about the missing runs. */
 static void describe_missing(const imk_campaign_merge_report *r, growing_list *text)
 {
     list_add(text, "runs %s of %llu are missing", r->missing, (unsigned long long)r->run_count);
     if (has_unreadable(r))
-        list_add(text, ", which may be in a file that could not be read: merge again with files "
-                       "that can");
+        list_add(text,
+                 "; they may be in a file that could not be read: merge again with readable files");
     else if (r->shard_count > 0 && r->shards[0])
         list_add(text,
                  "; compute again with --shard i/%llu for i = %s (Slurm: sbatch --array=%s), then "
@@ -102,7 +103,7 @@ static int merge(const merge_options *o, size_t count, const char *const *paths,
     warn_complaints(&report);
     describe_missing(&report, &missing);
     if (status == IMK_ERROR_CONFLICT && report.missing[0])
-        code = command_failed("%s (--partial merges what there is)", missing.text);
+        code = command_failed("%s (--partial merges the existing runs)", missing.text);
     else if (status != IMK_OK)
         code = command_error(&error, NULL);
     else if (report.missing[0])
@@ -143,15 +144,14 @@ const verb merge_verb = {
     .operands_minimum = 1,
     .operands_maximum = FILES_MAX,
     .examples = {{"imukit merge shard-*.h5 -o all.h5",
-                  "the file, byte for byte, of the campaign computed in one piece"},
+                  "the same file, byte for byte, as of a campaign computed in one piece"},
                  {"imukit merge shard-*.h5 -o some.h5 --partial",
-                  "the runs that are there, with their numbers; the rest can be merged later"}},
-    .description =
-        "SHARD is a results file of imukit drift --monte-carlo … --shard i/N, or of a merge "
-        "before. The order does not matter.\n\n"
-        "A file that is damaged, or of another campaign, seed or version than most, is named and "
-        "left out. When runs are missing then, nothing is written, and the shards to compute again "
-        "are named; --partial writes what there is.\n\n"
-        "docs/clusters.md shows campaigns on many machines, docs/campaign-file.md the format.",
+                  "the existing runs, with their numbers; the others can be merged later"}},
+    .description = "SHARD is a results file of imukit drift --monte-carlo … --shard i/N, or of an "
+                   "earlier merge. The order does not matter.\n\nA file that is damaged, or of "
+                   "another campaign, seed or version than most, is reported and left out. If runs "
+                   "are then missing, nothing is written, and the shards to compute again are "
+                   "listed; --partial writes the existing runs.\n\ndocs/clusters.md shows "
+                   "campaigns on many machines, docs/campaign-file.md the format.",
     .groups = {OPTION_GROUP("Options", merge_option_table, 0)},
     .run = run};

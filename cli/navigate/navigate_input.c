@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What imukit navigate is asked: place, attitude and stops as texts, and numbers. */
+/* The options of imukit navigate: place, attitude and stops as texts, and numbers. */
 #include "navigate_parts.h"
 #include "shell/place_text.h"
 
@@ -17,13 +17,13 @@ static int parse_attitude(const char *text, imk_navigate_log_settings *s)
                            s->attitude_sigma, &count, NULL, &error) != IMK_OK ||
         count != 3)
         return command_misused("--attitude \"%s\": expected roll, pitch and yaw with one unit, "
-                               "such as \"0.5 -1.2 90 deg\", and their 1 sigma behind +- if known",
+                               "such as \"0.5 -1.2 90 deg\", and their 1 sigma after +- if known",
                                text);
     if (!(fabs(s->attitude[0]) <= turn && fabs(s->attitude[1]) <= quarter &&
           fabs(s->attitude[2]) <= turn))
-        return command_misused("--attitude \"%s\": the pitch is within 90 deg, roll and yaw within "
-                               "360 deg",
-                               text);
+        return command_misused(
+            "--attitude \"%s\": the pitch must be within 90 deg, roll and yaw within 360 deg",
+            text);
     return -1;
 }
 
@@ -67,33 +67,32 @@ static int parse_stops(const navigate_options *o, imk_navigate_log_settings *s)
                                    "to stop");
     }
     if (!o->model)
-        return command_misused("--zero-velocity needs to know how good the sensors are: add "
-                               "--model MODEL, one from imukit identify or a name from imukit "
-                               "devices");
+        return command_misused("--zero-velocity needs the errors of the sensors; add --model "
+                               "MODEL, one from imukit identify or a name from imukit devices");
     if (s->stops == IMK_STOPS_FOUND && o->attitude)
-        return command_misused("--zero-velocity auto learns what rest looks like during --align, "
-                               "which --attitude leaves out");
+        return command_misused("--zero-velocity auto learns the readings at rest during --align, "
+                               "and --attitude excludes --align");
     return -1;
 }
 
-/* Options that mean nothing without another one, or beside it. */
+/* Options that need another option, or exclude it. */
 static int check_company(const navigate_options *o)
 {
     const bool automatic = o->zero_velocity && strcmp(o->zero_velocity, "auto") == 0;
     if (isnan(o->align) && !o->attitude)
         return command_misused(
-            "the attitude at the start is missing: add --align 300s if the unit "
-            "stands still that long first, or --attitude \"ROLL PITCH YAW deg\"");
+            "the attitude at the start is missing: add --align 300s if the unit is at rest for "
+            "that time at the start, or --attitude \"ROLL PITCH YAW deg\"");
     if (!isnan(o->align) && o->attitude)
         return command_misused("--align finds the attitude that --attitude gives: leave one out");
     if (o->heading && o->attitude)
         return command_misused("--heading is part of --attitude: leave it out");
     if (o->method >= 0 && o->attitude)
-        return command_misused("--align-method is of --align, which --attitude leaves out");
+        return command_misused("--align-method is for --align, and --attitude excludes --align");
     if (!isnan(o->stop) && (!o->zero_velocity || automatic))
-        return command_misused("--stop is of --zero-velocity TIME, such as --zero-velocity 60s");
+        return command_misused("--stop is for --zero-velocity TIME, such as --zero-velocity 60s");
     if (!isnan(o->still_rotation) && !o->zero_velocity)
-        return command_misused("--still-rotation is of --zero-velocity: add it");
+        return command_misused("--still-rotation is for --zero-velocity; add that option");
     return -1;
 }
 
@@ -108,8 +107,8 @@ static int check_numbers(const navigate_options *o)
     if (o->still_rotation < 0)
         return command_misused("--still-rotation must not be negative");
     if (!(o->standard_gravity > 9.7 && o->standard_gravity < 9.9))
-        return command_misused("--standard-gravity is what g stands for in the log's units, "
-                               "between 9.7 and 9.9 m/s^2");
+        return command_misused("--standard-gravity must be between 9.7 and 9.9 m/s^2; it is the "
+                               "value of g in the log's units");
     return -1;
 }
 
@@ -131,8 +130,8 @@ static void take_numbers(const navigate_options *o, imk_navigate_log_settings *s
 int navigate_parse(const navigate_options *o, imk_model *model, imk_navigate_log_settings *s)
 {
     if (!o->position)
-        return command_misused("the place of the start is missing: add --position \"LATITUDE deg, "
-                               "LONGITUDE deg, HEIGHT m\"");
+        return command_misused("the position at the start is missing: add --position \"LATITUDE "
+                               "deg, LONGITUDE deg, HEIGHT m\"");
     int code = check_company(o);
     if (code < 0)
         code = check_numbers(o);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* imukit navigate: a log -> where the unit went, or what it drifts when it went nowhere. */
+/* imukit navigate: a log -> the track of the unit, or its drift if it was at rest. */
 #include "navigate_parts.h"
 #include "shell/job_progress.h"
 #include "shell/show.h"
@@ -17,11 +17,12 @@ static const option navigate_option_table[] = {
      .help = "latitude, longitude and height above the ellipsoid at the start, such as \"34.25 "
              "deg, 108.91 deg, 380 m\""},
     {"align", OPTION_QUANTITY, AT(align), .value = "TIME", .unit = "s",
-     .help = "how long the unit stands at the start, to find its attitude by itself"},
+     .help = "time at rest at the start, in which the unit finds its attitude"},
     {"align-method", OPTION_CHOICE, AT(method), .value = "CHOICE", .choices = "means|inertial|fine",
-     .help = "from the means of force and rate (the default for gyros that read more than 1.5 "
-             "times the Earth's rotation); from gravity's turn in inertial axes (the default for "
-             "others: the unit may rock); the same and an estimate of the rest"},
+     .help = "means: from the mean force and rate (the default for gyros that read more than 1.5 "
+             "times the Earth's rotation); inertial: from the turn of gravity in inertial axes "
+             "(the default for other gyros; the unit may rock); fine: inertial, then an estimate "
+             "of the remaining errors"},
     {"heading", OPTION_TEXT, AT(heading), .value = "ANGLE",
      .help = "azimuth of body x at the start, for gyros that cannot find north, such as \"30 +- 1 "
              "deg\""},
@@ -29,33 +30,33 @@ static const option navigate_option_table[] = {
      .help =
          "roll, pitch and yaw at the start instead of --align, such as \"0.5 -1.2 90 +- 0.1 deg\""},
     {"model", OPTION_FILE, AT(model), .letter = 'm', .value = "MODEL",
-     .help = "errors of the sensors, a file or a name from imukit devices: predicts the error, and "
-             "weighs updates"},
+     .help = "error model of the sensors, a file or a name from imukit devices: it predicts the "
+             "error and weighs updates"},
     {"zero-velocity", OPTION_TEXT, AT(zero_velocity), .value = "auto|TIME",
-     .help = "correct by standing still: whenever it is seen to, or known to at the end of each "
-             "TIME, such as 60s"},
+     .help = "correct the error while the unit is at rest: auto detects this in the log; TIME, "
+             "such as 60s, means a stop at the end of each TIME"},
     {"stop", OPTION_QUANTITY, AT(stop), .value = "TIME", .unit = "s",
-     .help = "length of the stops that --zero-velocity TIME knows of; default 5s"},
+     .help = "length of the stops of --zero-velocity TIME; default 5s"},
     {"still-velocity", OPTION_QUANTITY, AT(still_velocity), .value = "VELOCITY", .unit = "m/s",
-     .help = "1 sigma of what moves in a unit that stands; default 0.01m/s"},
+     .help = "1 sigma of the velocity of a unit at rest; default 0.01m/s"},
     {"still-rotation", OPTION_QUANTITY, AT(still_rotation), .value = "RATE", .unit = "deg/h",
-     .help = "use that a standing unit does not turn either, to this 1 sigma of the mean rate over "
-             "a stand; default: not used"},
+     .help = "use also that a unit at rest does not turn: RATE is the 1 sigma of its mean rate "
+             "over a stop; default: not used"},
     {"vertical", OPTION_CHOICE, AT(vertical), .value = "CHOICE", .choices = "slaved|free",
-     .help =
-         "height held as at the start (the default), or free: it then runs away within minutes"},
+     .help = "slaved (the default): the height stays as at the start; free: the height diverges "
+             "within minutes"},
     {"coning", OPTION_INTEGER, AT(samples), .value = "N", .choices = "1-4",
-     .help = "samples that coning and sculling are computed from, 1 to 4; default 3"},
+     .help = "number of samples from which coning and sculling are computed, 1 to 4; default 3"},
     {"standard-gravity", OPTION_QUANTITY, AT(standard_gravity), .value = "G", .unit = "m/s^2",
-     .help = "what g stands for in accelerometer columns in g, mg or ug; default 9.80665m/s^2"},
+     .help = "value of g for accelerometer columns in g, mg or ug; default 9.80665m/s^2"},
     {"gravity-free", OPTION_FLAG, AT(gravity_free),
-     .help = "put the acceleration relative to the Earth into the track: mean since the row "
-             "before; north, east, down"},
+     .help = "add the acceleration relative to the Earth to the track: north, east, down; mean "
+             "since the previous row"},
     {"interval", OPTION_QUANTITY, AT(interval), .value = "TIME", .unit = "s",
-     .help = "between rows of the track; default 1s"},
+     .help = "time between rows of the track; default 1s"},
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "TRACK",
      .help = "write the track: .csv (also .gz, .zst){ or written}; - is standard output"},
-    PLOT_OPTION(AT(plot), "draw the track, and the way from the start against time"),
+    PLOT_OPTION(AT(plot), "draw the track, and the displacement from the start against time"),
     REPORT_OPTION(AT(report), "write one self-contained page"),
     JSON_OPTION(AT(json), "print the summary as JSON"),
     STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
@@ -168,16 +169,17 @@ const verb navigate_verb = {
     .operands_maximum = 1,
     .examples = {{"imukit navigate parked.csv --position \"34.25 deg, 108.91 deg, 380 m\" --align "
                   "300s --model unit.yaml --report parked.html",
-                  "a unit that stands: its drift, beside what its model predicts"},
+                  "a unit at rest: its drift, beside the drift that its model predicts"},
                  {"imukit navigate drive.csv --position \"48.1 deg, 11.6 deg, 520 m\" --align 2min "
                   "--model tactical --zero-velocity auto -o track.csv",
-                  "a drive with stops, each of which corrects"}},
+                  "a drive with stops; each stop corrects the error"}},
     .description =
         "LOG is CSV (also .gz, .zst){ or logs} with three gyros and three accelerometers, as rates "
         "or increments; - is standard input. A strapdown mechanisation on the WGS84 ellipsoid "
-        "integrates it from --position on. Nothing but --zero-velocity corrects it, so its error "
-        "grows.\n\nWith --model the error is predicted by covariance, alignment included. Errors "
-        "that the model knows are not taken out here: imukit compensate does that first.\n\n"
-        "Where the unit stands still all the time, the distance from the start is the error.",
+        "integrates the log from --position on. Only --zero-velocity corrects the result, so "
+        "without it the error grows.\n\nWith --model the error is predicted by covariance, "
+        "alignment included. Known errors of the model are not taken out here: use imukit "
+        "compensate first.\n\nIf the unit is at rest all the time, the distance from the start is "
+        "the error.",
     .groups = {OPTION_GROUP("Options", navigate_option_table, 0), LOG_INPUT_GROUP(AT(log))},
     .run = run};

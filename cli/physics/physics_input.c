@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* As the steps of a motion script; hotter than this nothing is solid. */
+/* The limit of the steps of a motion script: at higher temperatures nothing is solid. */
 static const double largest_motion = 1e6; /* [rad/s], [m/s^2] */
 static const double highest_temperature = 1e4;
 
@@ -48,8 +48,8 @@ static int check(const physics_options *o)
     if (is_sine && !(o->sine > 0))
         return command_misused("--sine: expected a frequency above 0");
     if (is_sine && !(o->sine <= 0.25 * o->output_rate))
-        return command_misused("--sine %g Hz: the input is held over a sample of %g s, at least "
-                               "four of which make a cycle; add --output-rate %gHz or more",
+        return command_misused("--sine %g Hz: the input is held over a sample of %g s, and a cycle "
+                               "needs at least four samples; add --output-rate %gHz or more",
                                o->sine, 1 / o->output_rate, 4 * o->sine);
     if (!(o->temperature > 0 && o->temperature <= highest_temperature))
         return command_misused("--temperature: expected more than absolute zero, and at most "

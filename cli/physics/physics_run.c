@@ -38,7 +38,7 @@ static int check(const physics *p)
     return -1;
 }
 
-/* What went wrong is told with the options' names. */
+/* Errors are reported with the names of the options. */
 static int tell(const physics *p, const imk_physics_log *run, imk_status status, imk_error *error)
 {
     const imk_finding *failure = run ? imk_findings_failure(&run->findings) : NULL;

@@ -30,8 +30,8 @@ static int find_view(const physics *p, size_t *index)
     if (instrument->view_count == 0)
         return command_misused("--view %s: the %s has no views", text, instrument->title);
     if (found < 0)
-        return command_misused("--view %s: expected 1 to %zu, or how the title of a view begins; "
-                               "imukit physics %s lists them",
+        return command_misused("--view %s: expected 1 to %zu, or the beginning of the title of a "
+                               "view; imukit physics %s lists them",
                                text, instrument->view_count, instrument->name);
     *index = (size_t)found;
     return -1;
@@ -82,7 +82,7 @@ int physics_show_view_figure(const physics *p, imk_result *result)
     return code;
 }
 
-/* Of the view asked for, else of the first that can move. */
+/* Animate the requested view, or else the first view that can be animated. */
 static int choose_moving(const physics *p, size_t *index)
 {
     const imk_instrument *instrument = p->settings.instrument;
@@ -98,8 +98,8 @@ static int choose_moving(const physics *p, size_t *index)
         return command_misused("--animate: no view of the %s shows one signal against another",
                                instrument->title);
     if (!imk_physics_view_moves(&views[*index]))
-        return command_misused("--animate: the view \"%s\" is drawn against time; a view of one "
-                               "signal against another can move",
+        return command_misused("--animate: the view \"%s\" is drawn against time; only a view of "
+                               "one signal against another can move",
                                views[*index].title);
     return -1;
 }

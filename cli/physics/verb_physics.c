@@ -13,12 +13,12 @@
 #define AT(field) offsetof(physics_options, field)
 
 static const option task_option_table[] = {
-    {"list", OPTION_FLAG, AT(list), .help = "the instruments there are; also without INSTRUMENT"},
+    {"list", OPTION_FLAG, AT(list), .help = "list the instruments; the same as without INSTRUMENT"},
     {"show", OPTION_FLAG, AT(show),
-     .help = "print the design as a file with units and comments, the way to begin a design of "
-             "your own"},
+     .help =
+         "print the design as a file with units and comments, as a start for a design of your own"},
     {"reduce", OPTION_FLAG, AT(reduce),
-     .help = "the error model by closed forms, as a table; -o MODEL.yaml writes it"},
+     .help = "print the error model by closed forms as a table; -o MODEL.yaml writes it"},
     {"sweep", OPTION_FLAG, AT(sweep),
      .help = "find the error model by the experiments of a laboratory and compare it with the "
              "closed forms; -o MODEL.yaml without --reduce writes what was measured"},
@@ -32,26 +32,27 @@ static const option input_option_table[] = {
     {"acceleration", OPTION_TEXT, AT(acceleration), .letter = 'a', .value = "FORCE",
      .help = "specific force along x, \"1 g\", or along all axes of the case, \"0 0 -9.81 m/s^2\""},
     {"sine", OPTION_QUANTITY, AT(sine), .value = "FREQUENCY", .unit = "Hz",
-     .help = "makes the rate or force given the amplitude of a sine"},
+     .help = "frequency of a sine; the given rate or force is its amplitude"},
     {"temperature", OPTION_QUANTITY, AT(temperature), .letter = 't', .value = "TEMPERATURE",
-     .unit = "degC", .help = "default 20degC"},
+     .unit = "degC", .help = "temperature of the instrument; default 20degC"},
     {"temperature-rate", OPTION_QUANTITY, AT(temperature_rate), .value = "RATE", .unit = "degC/min",
-     .help = "lets it rise or fall from there"},
+     .help = "rate at which the temperature changes from --temperature on"},
 };
 
 static const option run_option_table[] = {
     {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
-     .help = "run so long and write the log; with --view: draw the view for so long"},
+     .help = "run for this time and write the log; with --view: length of the view"},
     {"output-rate", OPTION_QUANTITY, AT(output_rate), .value = "RATE", .unit = "Hz",
      .help = "samples per second; default 100Hz. With --view: points per second of the view"},
     {"level", OPTION_CHOICE, AT(level), .value = "LEVEL", .choices = "full|slow",
-     .help = "the dynamics of all parts (the default), or a map or envelope without the fast part"},
+     .help = "full (the default): the dynamics of all parts; slow: a map or envelope without the "
+             "fast part"},
     {"step", OPTION_QUANTITY, AT(step), .value = "TIME", .unit = "s", .choices = "positive",
      .help = "longest internal step; default: what the instrument's accuracy needs. A step that "
              "would give wrong results is refused"},
     {"no-noise", OPTION_FLAG, AT(no_noise),
-     .help = "nothing random: no noise and no constants of the run"},
-    SEED_OPTION(AT(seed), "the same seed makes the same bytes on every machine; default 1"),
+     .help = "nothing random: no noise, no random constants of the run"},
+    SEED_OPTION(AT(seed), "seed; the same seed makes the same bytes on every machine; default 1"),
     {"run", OPTION_INTEGER, AT(run), .value = "N", .choices = "0-4294967295",
      .help =
          "another run of the same instrument: other noise, other constants of the run; default 0"},
@@ -64,17 +65,17 @@ static const option output_option_table[] = {
      .help = "the log (.csv, also .gz, .zst{, or written}; default: standard output), the model of "
              "--reduce, or the design of --show"},
     {"signals", OPTION_OUTPUT, AT(signals), .value = "FILE.csv",
-     .help = "write what happens inside, against time"},
+     .help = "write the internal signals against time"},
     {"signal-rate", OPTION_QUANTITY, AT(signal_rate), .value = "RATE", .unit = "Hz",
-     .help = "rows per second of --signals; default: the output rate. Another rate is a run of its "
-             "own"},
+     .help = "rows per second of --signals; default: the output rate. Another rate needs a "
+             "separate run"},
     PLOT_OPTION(AT(plot),
                 "draw the outputs of the run against time (with --sine also against the input), or "
-                "what --sweep found; without either, the views of the instrument"),
+                "the results of --sweep; without either, the views of the instrument"),
     {"view", OPTION_TEXT, AT(view), .value = "VIEW",
-     .help = "the view to --plot: its number, or how its title begins"},
+     .help = "the view for --plot: its number, or the beginning of its title"},
     {"animate", OPTION_OUTPUT, AT(animate), .value = "FILE.svg",
-     .help = "draw a view of one signal against another as a picture that moves: that of --view, "
+     .help = "draw a view of one signal against another as an animation: the view of --view, or "
              "else the first"},
     REPORT_OPTION(AT(report), "write one self-contained page: outputs, views, design, error model"),
     JSON_OPTION(AT(json), "print the result as JSON"),
@@ -104,7 +105,7 @@ static int check_tasks(const physics_options *o, const char *operand)
         return command_misused("%s: there is no run to write; add --duration TIME",
                                o->output ? "-o" : "--signals");
     if (!runs && !models && !o->plot && !o->report && !o->animate && (o->rate || o->acceleration))
-        return command_misused("--%s: how long? add --duration TIME",
+        return command_misused("--%s: the length is missing; add --duration TIME",
                                o->rate ? "rate" : "acceleration");
     if (o->animate && (runs || models))
         return command_misused("--animate draws a view of the instrument: leave --%s out",
@@ -156,7 +157,7 @@ static void show_next(const physics *p, imk_result *result)
     imk_result_for(result, IMK_FOR_PAGE);
 }
 
-/* All there is to show of a run, of the error models (sweep NULL: not measured), or of the design.
+/* The whole display of a run, of the error models (sweep NULL: not measured), or of the design.
  * @return -1 or the exit code, the message printed */
 static int make_result(const physics *p, const imk_physics_shown *shown, imk_result *result)
 {
@@ -185,8 +186,8 @@ static int make_result(const physics *p, const imk_physics_shown *shown, imk_res
     return code;
 }
 
-/* Picture, page, JSON, tables of what was done: without the picture, for want of gnuplot, still the
- * page. @return the exit code */
+/* Picture, page, JSON and tables of the result: if the picture fails because gnuplot is missing,
+ * the page is still written. @return the exit code */
 static int show(const physics *p, const imk_physics_log *r, const imk_physics_sweep *l, bool quiet)
 {
     const physics_options *o = p->options;
@@ -275,7 +276,7 @@ static int list(const physics_options *o)
 
 /* ---- the verb -------------------------------------------------------------------------------- */
 
-/* The instrument that the table of grades calls so: "fog" is the fibre-optic gyro. */
+/* The instrument with this name in the table of grades: "fog" is the fibre-optic gyro. */
 static const imk_instrument *of_technology(const char *name)
 {
     for (size_t i = 0; i < imk_instrument_count(); i++)
@@ -365,19 +366,18 @@ const verb physics_verb = {
     .operands = "[INSTRUMENT|DESIGN.yaml]",
     .operands_minimum = 0,
     .operands_maximum = 1,
-    .examples =
-        {{"imukit physics ring_laser --rate \"10 deg/s\" --duration 10s -o out.csv",
-          "ten seconds of a ring laser gyro that turns, as a log"},
-         {"imukit physics mine.yaml --reduce --sweep -o model.yaml",
-          "the error model of a design of your own, by closed forms beside experiments, for "
-          "simulate, grade and the others"}},
+    .examples = {{"imukit physics ring_laser --rate \"10 deg/s\" --duration 10s -o out.csv",
+                  "ten seconds of a ring laser gyro that turns, as a log"},
+                 {"imukit physics mine.yaml --reduce --sweep -o model.yaml",
+                  "the error model of a design of your own, by closed forms and by experiments, "
+                  "for simulate, grade and the other verbs"}},
     .description =
-        "INSTRUMENT is a name of the list that imukit physics prints, with its default design; "
-        "DESIGN.yaml is a design file (docs/design-file.md), begun with --show. Without an option "
-        "the design is printed.\n\nEach row of a log is the mean over the sample that ends at its "
-        "time; the input is held over a sample. x is the input axis; what y and z are stands in "
-        "the documentation of each instrument. The views are drawn under the input of --rate and "
-        "--acceleration, else each under an input that shows something.",
+        "INSTRUMENT is a name from the list that imukit physics prints, with its default design; "
+        "DESIGN.yaml is a design file (docs/design-file.md); --show prints one to start from. "
+        "Without an option the design is printed.\n\nEach row of a log is the mean over the sample "
+        "that ends at its time; the input is held over a sample. x is the input axis; the "
+        "documentation of each instrument describes y and z. The views are drawn for the input of "
+        "--rate and --acceleration; without these options each view has an input that suits it.",
     .groups = {OPTION_GROUP("What to do", task_option_table, 0),
                OPTION_GROUP("Input", input_option_table, 0),
                OPTION_GROUP("Running", run_option_table, 0),

@@ -266,7 +266,7 @@ int command_finish(int code)
     const int number = fflush(stdout) != 0 ? errno : 0;
     if (number == 0 && !ferror(stdout))
         return code;
-    /* What failed before this flush has left no reason behind; somebody may have given it. */
+    /* An error before this flush has left no reason here; it may have been reported already. */
     if (!has_said_why)
         command_failed("standard output: %s",
                        number != 0 ? strerror(number) : "not all of it could be written");

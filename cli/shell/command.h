@@ -47,8 +47,8 @@ int command_misused(const char *format, ...) __attribute__((format(printf, 1, 2)
 int command_error(const imk_error *error, const char *source);
 /* End the command at once, from where there is no way back; unfinished output files are removed. */
 _Noreturn void command_end(int code);
-/* Memory for what is printed and drawn: realloc() that ends the command when it fails, so that no
- * result is short of what did not fit. */
+/* Memory for printed and drawn results: realloc() that ends the command when it fails, so that no
+ * result is incomplete. */
 void *command_memory(void *at, size_t size);
 /* The same, zeroed. */
 void *command_zeroed(size_t size);
@@ -66,8 +66,8 @@ int command_log_error(const imk_error *error, const char *path);
 /* Refuse a --plot that cannot be drawn before the work is done. @return -1 or the exit code */
 int command_check_plot(const char *plot);
 
-/* Text of strangers on its way to a terminal: what could be taken for a command, and bytes that are
- * no text, become "?", as in the messages of errors. Line feeds stay. */
+/* Text from files on its way to a terminal: control sequences and bytes that are not text become
+ * "?", as in error messages. Line feeds stay. */
 void command_clean(char *text);
 
 /* Is it standard output, or a pipe or device that is there: nothing that has a format by its name?

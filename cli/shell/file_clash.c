@@ -19,8 +19,8 @@
 
 enum { LINKS_MAX = 40 }; /* as Linux itself follows */
 
-/* A path with a slash before its last part, which is put before `rest`. Nothing is left of it when
- * all of it has been. */
+/* Move the last part of a path, with a slash before it, in front of `rest`. The path is empty when
+ * all parts have been moved. */
 static bool move_last_part(char path[PATH_MAX], char rest[PATH_MAX])
 {
     size_t end = strlen(path);
@@ -168,7 +168,7 @@ static bool is_same(const run_file *a, const run_file *b)
     return a->place && b->place && strcmp(a->place, b->place) == 0;
 }
 
-/* A model that results are put into may be the one that is written. */
+/* The model that receives the results may be the file that is written. */
 static bool may_replace(const run_file *written, const run_file *read)
 {
     return read->kind == OPTION_INTO && written->option && strcmp(written->option, "output") == 0;

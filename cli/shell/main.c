@@ -18,16 +18,15 @@ enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
 void command_welcome(FILE *out)
 {
     const char *bold = command_color(out, COLOR_BOLD), *reset = command_color(out, COLOR_RESET);
-    fprintf(out,
-            "imukit %s: the errors of gyros and accelerometers, from logs, in logs\n\n"
-            "%sFirst result%s (no sensor needed)\n"
-            "  imukit simulate AHRS --rate 100Hz --duration 1h --seed 1 -o static.csv\n"
-            "  imukit identify static.csv -o model.yaml --report report.html\n\n"
-            "%sWith your own sensor%s: leave it still for an hour or more, log it, and run\n"
-            "  imukit identify LOG.csv -o model.yaml --report report.html\n"
-            "The message names the option to add if the units or the rate are not in the file.\n\n"
-            "%sVerbs%s\n",
-            imk_version(), bold, reset, bold, reset, bold, reset);
+    fprintf(
+        out,
+        "imukit %s: find, simulate and correct the errors of gyros and accelerometers\n\n%sFirst "
+        "result%s (no sensor needed)\n  imukit simulate AHRS --rate 100Hz --duration 1h --seed 1 "
+        "-o static.csv\n  imukit identify static.csv -o model.yaml --report report.html\n\n%sWith "
+        "your own sensor%s: leave it at rest for an hour or more, log it, and run\n  imukit "
+        "identify LOG.csv -o model.yaml --report report.html\nThe message names the option to add "
+        "if the units or the rate are not in the file.\n\n%sVerbs%s\n",
+        imk_version(), bold, reset, bold, reset, bold, reset);
     for (size_t i = 0; i < VERB_COUNT; i++)
         fprintf(out, "  %-10s %s\n", verbs[i]->name, verbs[i]->summary);
     fprintf(out, "\n  imukit VERB --help   examples and options of a verb\n"
@@ -57,18 +56,17 @@ static int unknown_verb(const char *name)
 /* The page imukit(1), which lists the verbs. */
 static void main_manual(void)
 {
-    printf(".TH IMUKIT 1 \"\" \"imukit %s\" \"imukit\"\n.SH NAME\n"
-           "imukit \\- the errors of gyros and accelerometers, from logs, in logs\n"
-           ".SH SYNOPSIS\n.B imukit\n.I VERB\n[operands] [options]\n.SH VERBS\n",
+    printf(".TH IMUKIT 1 \"\" \"imukit %s\" \"imukit\"\n.SH NAME\nimukit \\- find, simulate and "
+           "correct the errors of gyros and accelerometers\n.SH SYNOPSIS\n.B imukit\n.I "
+           "VERB\n[operands] [options]\n.SH VERBS\n",
            imk_version());
     for (size_t i = 0; i < VERB_COUNT; i++)
         printf(".TP\n.BR imukit\\-%s (1)\n%s\n", verbs[i]->name, verbs[i]->summary);
-    fputs(
-        ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nno colours when set\n"
-        ".TP\n.B TMPDIR\nwhere gnuplot draws before a figure is put in place, and where a copy of "
-        "a pipe is kept that is read twice\n"
-        ".TP\n.B IMUKIT_GNUPLOT_SECONDS\nhow long gnuplot may take for a figure; default 120\n",
-        stdout);
+    fputs(".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nno colours when set\n.TP\n.B TMPDIR\ndirectory where "
+          "gnuplot draws a figure before it is put in place, and where a copy of a pipe is kept "
+          "that is read twice\n.TP\n.B IMUKIT_GNUPLOT_SECONDS\nhow long gnuplot may take for a "
+          "figure; default 120\n",
+          stdout);
 }
 
 /* imukit help [VERB], and the hidden forms packaging uses: help --man [VERB], help --completion. */
@@ -112,9 +110,9 @@ static void interrupted(int number)
 }
 
 /* A second signal, which shells and timeout(1) send soon after the first, waits until the files are
- * gone. A signal that the parent has switched off, as nohup(1) does, stays off; but of gnuplot we
- * need to know how it ended. A file beyond the limit of its size is an error of write() like any
- * other, with a message. */
+ * removed. A signal that the parent has switched off, as nohup(1) does, stays off, except SIGCHLD,
+ * because the exit status of gnuplot is needed. A file beyond the limit of its size is an error of
+ * write() like any other, with a message. */
 static void catch_signals(void)
 {
     signal(SIGXFSZ, SIG_IGN);

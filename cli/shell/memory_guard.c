@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The limit on the command's own data. The address and thread sanitizers map far more than there
- * is, and keep it empty. */
+/* The limit on the data of the command itself. The address and thread sanitizers map far more
+ * memory than exists, and do not use it, so they have no limit. */
 #define _POSIX_C_SOURCE 200809L
 #include "memory_guard.h"
 

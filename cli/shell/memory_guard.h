@@ -3,8 +3,9 @@
 #ifndef MEMORY_GUARD_H
 #define MEMORY_GUARD_H
 
-/* Systems that promise more memory than they have end a program that takes it, or another one,
- * without a word. From here on a request beyond seven eighths of the memory fails, and is told. */
+/* Systems that promise more memory than they have kill the program that uses it, or another one,
+ * without a message. After this call a request beyond seven eighths of the memory fails with a
+ * message. */
 void memory_guard(void);
 
 #endif

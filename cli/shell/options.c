@@ -158,7 +158,7 @@ static int set_quantity(const option *o, const char *text, double *target)
                                o->name, text, o->unit);
     if (status != IMK_OK || count != 1 || !isfinite(value))
         return command_misused("--%s %s: %s; expected %s such as %s", o->name, text,
-                               status == IMK_OK ? "one finite number is due"
+                               status == IMK_OK ? "this is not one finite number"
                                : error.found[0] ? error.found
                                                 : imk_status_text(status),
                                imk_dimension_name(unit.dimension),

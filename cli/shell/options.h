@@ -111,7 +111,7 @@ typedef struct example {
     {                                                                                              \
         "height", OPTION_QUANTITY, at, .value = "LENGTH", .unit = "m",                             \
                                        .choices = "-10000..100000",                                \
-                                       .help = "above the ellipsoid; default 0m"                   \
+                                       .help = "height above the ellipsoid; default 0m"            \
     }
 
 /* OPERANDS_MAX is room for the operands of most verbs; one that takes more makes its own. */

@@ -29,16 +29,17 @@ int place_parse(const char *text, imk_geodetic *place)
                                    "longitude, height, such as \"34.25 deg, 108.91 deg, 380 m\"",
                                    text, name[i]);
         if (sigma > 0)
-            return command_misused("--position \"%s\": the %s is taken as it is: leave its +- out",
-                                   text, name[i]);
+            return command_misused(
+                "--position \"%s\": the %s takes no uncertainty; leave out its +-", text, name[i]);
         item += length + 1;
     }
     if (!(fabs(value[0]) <= 90.0 * degree) || !(fabs(value[1]) <= 360.0 * degree))
-        return command_misused("--position \"%s\": the latitude is within 90 deg, the longitude "
-                               "within 360 deg",
-                               text);
+        return command_misused(
+            "--position \"%s\": the latitude must be within 90 deg, the longitude within 360 deg",
+            text);
     if (!(value[2] >= -1e4 && value[2] <= 1e5))
-        return command_misused("--position \"%s\": the height is between -10 and 100 km", text);
+        return command_misused("--position \"%s\": the height must be between -10 and 100 km",
+                               text);
     *place = (imk_geodetic){value[0], value[1], value[2]};
     return -1;
 }

@@ -8,9 +8,9 @@
 const option term_options[TERM_OPTIONS] = {
     {"only", OPTION_TEXT, offsetof(term_selection, only), .value = "TERMS",
      .help =
-         "use these terms of the model alone, such as angle_random_walk,scale_factor or gyro.bias"},
+         "use only these terms of the model, such as angle_random_walk,scale_factor or gyro.bias"},
     {"without", OPTION_TEXT, offsetof(term_selection, without), .value = "TERMS",
-     .help = "use all terms of the model but these"},
+     .help = "use all terms of the model except these"},
 };
 
 enum { TERMS_MAX = 64 };

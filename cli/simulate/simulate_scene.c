@@ -36,10 +36,11 @@ static int open_motion(const simulate_options *o, scene *s)
     imk_error error;
     imk_geodetic place = place_of(o);
     if (o->roll != 0 || o->pitch != 0 || o->yaw != 0)
-        return command_misused("--roll, --pitch and --yaw are of a unit at rest: with --motion the "
-                               "attitude is in the motion file");
+        return command_misused("--roll, --pitch and --yaw are for a unit at rest; with --motion "
+                               "the attitude is in the motion file");
     if (o->no_earth)
-        return command_misused("--no-earth is of a unit at rest: a motion script says `earth: no`");
+        return command_misused(
+            "--no-earth is for a unit at rest; in a motion script write `earth: no`");
     const imk_geodetic *stated = isnan(o->latitude) ? NULL : &place;
     imk_log_settings settings = imk_log_default();
     settings.reopened = true;
@@ -101,7 +102,7 @@ static int choose_rate(const simulate_options *o, scene *s)
     const imk_recorded_motion *recorded = s->settings.simulation.motion.recorded;
     s->settings.simulation.rate = isnan(o->rate) && recorded ? recorded->rate : o->rate;
     if (isnan(s->settings.simulation.rate))
-        return command_misused("the sample rate is missing: add --rate 100Hz");
+        return command_misused("the sampling rate is missing: add --rate 100Hz");
     if (!(s->settings.simulation.rate > 0))
         return command_misused("--rate must be positive");
     if (!(s->settings.simulation.rate >= 1e-9 && s->settings.simulation.rate <= 1e12))
@@ -123,8 +124,8 @@ static void warn_of_vibration(const simulate_options *o, const scene *s)
     size_t parts = imk_trajectory_substeps(trajectory, 1 / rate);
     if (parts > IMK_SUBSTEPS_MAX)
         command_warn("vibration",
-                     "the vibration needs %zu parts to a sample, and %d are the most: what it "
-                     "does comes out wrong below --rate %.0fHz",
+                     "the vibration needs %zu parts per sample, but %d are the most; its effect is "
+                     "wrong below --rate %.0fHz",
                      parts, IMK_SUBSTEPS_MAX, ceil(rate * (double)parts / IMK_SUBSTEPS_MAX));
 }
 

@@ -14,28 +14,28 @@
 
 static const option simulate_option_table[] = {
     {"rate", OPTION_QUANTITY, AT(rate), .letter = 'r', .value = "RATE", .unit = "Hz",
-     .help = "sample rate, such as 100Hz; required unless a recorded motion has one"},
+     .help = "sampling rate, such as 100Hz; required unless a recorded motion has one"},
     {"duration", OPTION_QUANTITY, AT(duration), .letter = 'd', .value = "TIME", .unit = "s",
      .help = "length, such as 2h; default: the whole motion"},
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "LOG",
      .help = "where to write: .csv (also .gz, .zst){ or written}; - (the default) is standard "
              "output; a directory, DIR/, with --runs"},
-    SEED_OPTION(AT(seed), "the same seed makes the same bytes on every machine; default 1"),
+    SEED_OPTION(AT(seed), "seed; the same seed makes the same bytes on every machine; default 1"),
     {"run", OPTION_INTEGER, AT(run), .value = "N", .choices = "0-4294967295",
      .help = "another run of the same sensor: other noise, other run-to-run biases; default 0"},
     {"runs", OPTION_INTEGER, AT(runs), .value = "N", .choices = "1-4294967295",
-     .help = "so many runs, from --run on, into DIR/run_000.csv and so on"},
+     .help = "number of runs, from --run on, written to DIR/run_000.csv and so on"},
     {"format", OPTION_TEXT, AT(format), .value = "EXTENSION",
-     .help = "of the logs of --runs: csv (default), csv.gz, csv.zst or npy"},
+     .help = "format of the logs of --runs: csv (default), csv.gz, csv.zst or npy"},
     {"truth", OPTION_OUTPUT, AT(truth), .value = "FILE",
-     .help = "write the true motion, and what perfect sensors would have read, row by row"},
+     .help = "write the true motion and the readings of perfect sensors, row by row"},
     {"increments", OPTION_FLAG, AT(increments),
      .help = "write increments of angle and velocity (dtheta_x, dvel_x) instead of rates"},
     DECIMALS_OPTION(AT(decimals)),
     {"gyro-unit", OPTION_UNIT, AT(gyro_unit), .value = "UNIT",
-     .help = "of the gyro columns; default deg/s, or deg for increments"},
+     .help = "unit of the gyro columns; default deg/s, or deg for increments"},
     {"accel-unit", OPTION_UNIT, AT(accel_unit), .value = "UNIT",
-     .help = "of the accelerometer columns; default m/s^2, or m/s for increments"},
+     .help = "unit of the accelerometer columns; default m/s^2, or m/s for increments"},
     THREADS_OPTION(AT(threads),
                    "threads to use; default: all processors. The bytes do not depend on it"),
 };
@@ -43,17 +43,17 @@ static const option simulate_option_table[] = {
 static const option motion_option_table[] = {
     {"motion", OPTION_FILE, AT(motion), .letter = 'm', .value = "MOTION",
      .help = "a motion script (.yaml), a table of poses, or a log of true rates and forces; "
-             "default: at rest as the options below say"},
+             "default: at rest, as stated by the options below"},
     {"temperature", OPTION_FILE, AT(temperature), .letter = 't', .value = "PROFILE",
      .help = "a constant such as 25degC, a profile (.yaml), or a table of time and temperature"},
     {"substeps", OPTION_INTEGER, AT(substeps), .value = "N", .choices = "1-512",
      .help =
          "parts into which a sample is divided, for vibration and bandwidth; default: as needed"},
-    LATITUDE_OPTION(AT(latitude), "geodetic; default 45deg"),
+    LATITUDE_OPTION(AT(latitude), "geodetic latitude; default 45deg"),
     HEIGHT_OPTION(AT(height)),
-    TURN_OPTION("roll", AT(roll), "default 0deg: level"),
-    TURN_OPTION("pitch", AT(pitch), "default 0deg: level"),
-    TURN_OPTION("yaw", AT(yaw), "from north to east; default 0deg"),
+    TURN_OPTION("roll", AT(roll), "roll; default 0deg: level"),
+    TURN_OPTION("pitch", AT(pitch), "pitch; default 0deg: level"),
+    TURN_OPTION("yaw", AT(yaw), "heading, from north to east; default 0deg"),
     {"no-earth", OPTION_FLAG, AT(no_earth), .help = "without Earth rate and gravity"},
 };
 

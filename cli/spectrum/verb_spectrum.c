@@ -23,32 +23,35 @@ typedef struct spectrum_options {
 static const option spectrum_option_table[] = {
     {"method", OPTION_CHOICE, AT(settings.method), .value = "CHOICE", .choices = "welch|multitaper",
      .help = "averaged windowed segments (the default), or Slepian tapers, for records too short "
-             "to be cut up"},
+             "to be divided"},
     {"resolution", OPTION_QUANTITY, AT(settings.resolution), .value = "BANDWIDTH", .unit = "Hz",
      .choices = "positive",
-     .help = "how far two lines must be apart to be told from each other; default: 31 segments, or "
-             "one for multitaper"},
+     .help = "smallest distance at which two lines are separated; default: 31 segments, or one for "
+             "multitaper"},
     {"window", OPTION_CHOICE, AT(settings.window), .value = "CHOICE",
      .choices = "hann|blackman-harris|kaiser",
-     .help = "of the segments; the latter two for weak lines beside strong ones"},
+     .help =
+         "window of the segments; blackman-harris and kaiser suit weak lines beside strong ones"},
     {"trend", OPTION_FLAG, AT(settings.trend),
-     .help = "remove a straight line from each segment, not its mean only"},
+     .help = "remove a straight line from each segment, not only its mean"},
     {"density", OPTION_CHOICE, AT(density), .value = "SIDES", .choices = "two-sided|one-sided",
-     .help = "of the densities shown: IEEE's convention (the default), or twice that as many data "
-             "sheets and analysers have it; parameters are always two-sided"},
+     .help = "convention of the densities shown: that of IEEE (the default), or twice as large, as "
+             "in many data sheets and analysers; parameters are always two-sided"},
     {"false-alarm", OPTION_FRACTION, AT(settings.false_alarm), .value = "FRACTION",
      .help = "chance that a channel without lines shows any; default 0.001"},
     {"from", OPTION_QUANTITY, AT(settings.from), .value = "FREQUENCY", .unit = "Hz",
      .choices = "not negative",
-     .help = "lowest frequency the noise parameters are fitted to; default: the lowest resolved"},
+     .help = "lowest frequency of the fit of the noise parameters; default: the lowest resolved"},
     {"to", OPTION_QUANTITY, AT(settings.to), .value = "FREQUENCY", .unit = "Hz",
      .choices = "positive",
-     .help = "highest; set it below the sensor's own filter; default: half the sample rate"},
-    CONFIDENCE_OPTION(AT(settings.confidence), "of the two-sided intervals; default 0.95"),
+     .help = "highest frequency of this fit; set it below the sensor's own filter; default: half "
+             "the sampling rate"},
+    CONFIDENCE_OPTION(AT(settings.confidence),
+                      "confidence of the two-sided intervals; default 0.95"),
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "FILE.csv",
      .help = "write the densities (100 per decade, one line per channel and frequency, SI) here; - "
              "is standard output"},
-    PLOT_OPTION(AT(plot), "draw the root densities with their intervals, lines marked"),
+    PLOT_OPTION(AT(plot), "draw the root densities with their intervals, and mark the lines"),
     REPORT_OPTION(AT(report), "write one self-contained page: plot and tables"),
     JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
@@ -106,7 +109,7 @@ static int show(const imk_spectrum_log *s, const spectrum_options *o, const char
     return show_end(result, &options, EXIT_DONE);
 }
 
-/* A wrong option is none of the log's faults. */
+/* A wrong option is not an error of the log. */
 static int tell(const spectrum_options *o, const char *path, const imk_spectrum_log *s,
                 imk_status status, const imk_error *error)
 {
@@ -170,13 +173,13 @@ const verb spectrum_verb = {
     .examples = {{"imukit spectrum static.csv --plot spectrum.svg",
                   "densities, vibration and interference lines, noise parameters of every channel"},
                  {"imukit spectrum bench.csv --resolution 0.01Hz --density one-sided -o psd.csv",
-                  "finer, and in the convention of most spectrum analysers, as a table"}},
+                  "a finer resolution, in the convention of most spectrum analysers, as a table"}},
     .description =
-        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst)"
-        "{, or logs}; - is standard input. Without gyro and accelerometer columns every other "
-        "column is "
-        "analysed.\n\nLines are listed with frequency, amplitude and what they are multiples of. "
-        "The noise parameters are a cross-check of imukit identify, which is the better "
-        "estimator; where they differ, something that neither models is in the log.",
+        "LOG is CSV with a header such as time [s],gyro_x [deg/s],accel_x [g] (also .gz, .zst){, "
+        "or logs}; - is standard input. Without gyro and accelerometer columns every other column "
+        "is analysed.\n\nEach line is listed with its frequency, its amplitude and the line of "
+        "which it is a multiple. The noise parameters are a cross-check of imukit identify, which "
+        "is the better estimator; where the two differ, the log contains something that neither of "
+        "them models.",
     .groups = {OPTION_GROUP("Options", spectrum_option_table, 0), LOG_INPUT_GROUP(AT(log))},
     .run = run};

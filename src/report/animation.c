@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A path with a point that walks along it, as an SVG that moves by itself (SMIL).
  *
- * The drawing is in whole tenths of a pixel, so that no decimal point, and no locale, is in it. The
- * walker follows the path by the length s(t) that has been walked (keyPoints); its trail is a dash
- * of the same path, whose offset is w - s(t). Where the path jumps, dots hop instead. */
+ * The drawing is in whole tenths of a pixel, so that it contains no decimal point and does not
+ * depend on the locale. The walker follows the path by the length s(t) that has been walked
+ * (keyPoints); its trail is a dash of the same path, whose offset is w - s(t). Where the path
+ * jumps, dots hop instead. */
 #include "markup_internal.h"
 
 #include "imukit/names.h"
@@ -21,7 +22,7 @@ enum {
     TOP = 500,
     BOTTOM = 850,
     POINTS_MAX = 4000, /* of a path */
-    KEYS = 400,        /* moments at which the walker's place is told */
+    KEYS = 400,        /* moments for which the walker's place is written */
     HOPS_MAX = 600,
     GHOSTS = 5, /* dots that follow a hopping one */
     TRAIL_MAX = 6000
@@ -38,7 +39,7 @@ typedef struct drawing {
     const imk_animation *animation;
     axis x, y;
     size_t count;   /* points of the path */
-    size_t *sample; /* of the animation, with which each is reached */
+    size_t *sample; /* sample of the animation at which each point is reached */
     size_t *last;   /* and left: some stay */
     int *px, *py;   /* tenths of a pixel */
     double *walked; /* length up to each */
@@ -70,7 +71,7 @@ static double tick_distance(const axis *a)
     return power * (digit < 2 ? 1 : digit < 5 ? 2 : 5);
 }
 
-/* "0.3", without what rounding adds to a multiple of the distance. */
+/* "0.3", without the rounding error of a multiple of the distance. */
 static void put_number(imki_text *out, double value, double distance)
 {
     char text[40];
@@ -282,7 +283,7 @@ static imk_status check(const imk_animation *animation, imk_error *error)
     return IMK_OK;
 }
 
-/* The points of the path in tenths of a pixel, those that fall on the one before left out. */
+/* The points of the path in tenths of a pixel, without points that fall on the previous one. */
 static bool drawing_make(drawing *d, const imk_animation *animation)
 {
     const size_t stride = (animation->count + POINTS_MAX - 1) / POINTS_MAX;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a figure has in common however it is drawn: the range of each axis, sizes, colours.
+/* What every drawing of a figure shares: the range of each axis, sizes, colours.
  *
  * The axes span points, error bars and bands; lines are clipped to them, because the asymptote of
  * one noise term would otherwise squeeze the data into a corner. */
@@ -19,8 +19,9 @@ static const double few_decades = 300;
 /* A logarithmic axis spans at least a factor of two: a flat response is drawn flat. */
 static const double least_decades = 0.3;
 
-/* Values that differ less, in parts of themselves or at all, are drawn as equal: no label could
- * tell them apart. And no axis is longer, so that its length is a number. */
+/* Values with a smaller relative or absolute difference are drawn as equal: no label could
+ * distinguish them. The third number is the largest length of an axis, so that the length stays
+ * finite. */
 static const double least_part = 1e-9, least_span = 1e-290, largest = 1e300;
 
 typedef struct span {
@@ -103,7 +104,7 @@ imk_status imki_figure_check(const imk_figure *figure, imk_error *error)
     return IMK_OK;
 }
 
-/* Some air around the data: a part of the span, on a logarithmic axis in decades. */
+/* Margin around the data: a part of the span, on a logarithmic axis in decades. */
 static imki_axis axis_make(span s, bool logarithmic)
 {
     double low = logarithmic ? log10(s.low) : fmax(s.low, -largest);
@@ -129,7 +130,7 @@ void imki_panel_axes(const imk_panel *panel, imki_axis *x, imki_axis *y)
 double imki_axis_place(const imki_axis *axis, double value)
 {
     const double at = axis->logarithmic ? log10(value) : value;
-    /* Far outside the frame one place is as good as another, if it is a number. */
+    /* Far outside the frame any finite place will do. */
     return fmax(-1e6, fmin(1e6, (at - axis->low) / (axis->high - axis->low)));
 }
 

@@ -4,8 +4,8 @@
  * A drawing must stay small when a curve has a million points. Of the points of a line that follow
  * one another in the same half of a pixel's column, the first, the lowest, the highest and the last
  * are kept, in their order: the picture is the same. A band keeps its extent per column, and of
- * points one is kept per pixel. What is still too much (a line that goes to and fro, a cloud) is
- * thinned evenly. */
+ * points one is kept per pixel. If there are still too many points (a line that goes to and fro, a
+ * cloud), they are thinned evenly. */
 #include "figure_internal.h"
 
 #include <stdlib.h>
@@ -48,7 +48,8 @@ static void pen_line(pen *p, point to)
 
 /* ---- points of a line, few in a column ------------------------------------------------------- */
 
-/* Takes the points that are kept, in order; `begins` after a gap, and at first. */
+/* Takes the points that are kept, in order; `begins` is true for the first point and after a
+ * gap. */
 typedef struct visitor {
     void (*visit)(struct visitor *v, point p, bool begins);
 } visitor;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files that draw a figure share. Axes, sizes and colours are those of gnuplot's drawings
- * too (io/plot/gnuplot_script.c). Lengths are in pixels, y downwards; the drawing is written in
- * whole tenths of them. */
+/* What the files that draw a figure share. Drawings by gnuplot use the same axes, sizes and colours
+ * (io/plot/gnuplot_script.c). Lengths are in pixels, y downwards; the drawing is written in whole
+ * tenths of them. */
 #ifndef IMUKIT_REPORT_FIGURE_INTERNAL_H
 #define IMUKIT_REPORT_FIGURE_INTERNAL_H
 
@@ -13,11 +13,11 @@
 
 /* ---- figure_axes.c --------------------------------------------------------------------------- */
 
-/* What an axis shows, with some air around the data; of a logarithmic one, exponents of ten. */
+/* The range of an axis, with a margin around the data; exponents of ten for a logarithmic axis. */
 typedef struct imki_axis {
     double low, high;
     bool logarithmic;
-    bool few_decades; /* powers of ten alone would be one label or two */
+    bool few_decades; /* powers of ten alone would give only one or two labels */
 } imki_axis;
 
 /* Can a value stand on such an axis? */
@@ -29,7 +29,8 @@ imk_status imki_figure_check(const imk_figure *figure, imk_error *error);
 /* The axes of a panel that has passed. */
 void imki_panel_axes(const imk_panel *panel, imki_axis *x, imki_axis *y);
 
-/* Where a drawable value stands: 0 at the low end, 1 at the high one, and beyond. */
+/* Place of a drawable value: 0 at the low end of the axis, 1 at the high end; values outside are
+ * below 0 or above 1. */
 double imki_axis_place(const imki_axis *axis, double value);
 
 /* Filled between lower and upper? */
@@ -61,19 +62,18 @@ typedef struct imki_ticks {
     imki_tick tick[IMKI_TICKS_MAX];
 } imki_ticks;
 
-/* Ticks from low to high of an axis so long, on which labels need so much room. */
+/* Ticks from low to high for an axis of this length, whose labels need this much room. */
 void imki_axis_ticks(const imki_axis *axis, double length, double room, imki_ticks *ticks);
 
 /* ---- figure_text.c --------------------------------------------------------------------------- */
 
-/* Width of a line in DejaVu Sans, about; where another font stands in, it is narrower or as wide.
- */
+/* Approximate width of a line in DejaVu Sans; fonts that replace it are not wider. */
 double imki_line_width(const char *text, double font_size);
 
 typedef enum imki_anchor { IMKI_START = 0, IMKI_MIDDLE, IMKI_END } imki_anchor;
 
-/* A line of text, as it is. One that is wider than `width` becomes smaller, and where that is not
- * enough its middle is left out. `more` is further attributes, or "". */
+/* A line of text, as given. A line that is wider than `width` is drawn smaller; if that is not
+ * enough, its middle is left out. `more` holds further attributes, or "". */
 void imki_svg_line(imki_text *out, double x, double y, imki_anchor anchor, double font_size,
                    double width, const char *more, const char *text);
 
@@ -116,7 +116,7 @@ void imki_curve_draw(imki_text *out, const imki_frame *frame, const imk_curve *c
 /* How many parts of a curve reach into a box? */
 size_t imki_curve_touches(const imki_frame *frame, const imk_curve *curve, const imki_box *box);
 
-/* An open <path …> as a curve has it, up to d=" and without it. */
+/* The beginning of the <path …> of a curve, up to but without d=". */
 void imki_curve_style(imki_text *out, const imk_curve *curve);
 
 /* ---- figure_points.c ------------------------------------------------------------------------- */
@@ -135,8 +135,8 @@ typedef struct imki_key {
     double width, height;
 } imki_key;
 
-/* Make the key of a panel, with columns as the width allows, `columns_max` at most; the rows are
- * closer where the height is little. */
+/* Make the key of a panel, with as many columns as the width allows, at most `columns_max`; the
+ * rows are closer if the height is small. */
 imki_key imki_key_make(const imk_panel *panel, double font_size, double width, double height,
                        size_t columns_max);
 void imki_key_draw(imki_text *out, const imki_key *key, const imk_panel *panel, double left,

@@ -4,7 +4,7 @@
 
 /* [px] */
 static const double sample = 22, gap = 6, between = 16;
-/* Of a name, in sizes of the font: longer ones are shortened. */
+/* Longest name, in sizes of the font: longer names are shortened. */
 static const double longest_name = 30;
 
 static bool is_named(const imk_curve *curve)

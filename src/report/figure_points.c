@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Error bars beyond so many are joined within a column. */
+/* If there are more error bars than this, those of a column are joined. */
 enum { BARS_MAX = 2000 };
 
 /* Draws a mark unless there is one in its cell of the frame. */

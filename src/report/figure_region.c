@@ -7,7 +7,7 @@
 enum { PLACED_MAX = 64 }; /* names that others keep clear of */
 static const double font_size = 10, row = 13, inset = 5, mark = 7;
 
-/* A limit that cannot be drawn, as infinity, is that of the frame. */
+/* A limit that cannot be drawn, such as infinity, becomes the limit of the frame. */
 static double limit(const imki_axis *axis, double value, bool high)
 {
     if (!imki_drawable(value, axis->logarithmic))
@@ -45,7 +45,7 @@ static bool overlap(const imki_box *a, const imki_box *b)
     return a->left < b->right && b->left < a->right && a->top < b->bottom && b->top < a->bottom;
 }
 
-/* Down, row by row, to where no name is yet. */
+/* Move down row by row until no other name is in the way. */
 static void find_room(imki_box *name, const imki_box *placed, size_t count, double bottom)
 {
     for (size_t i = 0; i < count && name->bottom + row <= bottom; i++)

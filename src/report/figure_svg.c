@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A figure as SVG. Needs memory and arithmetic only: no file, no process, no font.
  *
- * The drawing is in whole tenths of a pixel, so that no decimal point, and no locale, is in it. The
- * frames of a column of panels have the same left edge, those of a row the same lower one. The
- * order in a panel: grid, regions, curves as they come, axes, names. */
+ * The drawing is in whole tenths of a pixel, so that it contains no decimal point and does not
+ * depend on the locale. The frames of a column of panels have the same left edge, those of a row
+ * the same lower one. The order in a panel: grid, regions, curves as they come, axes, names. */
 #include "figure_internal.h"
 #include "markup_internal.h"
 
@@ -22,10 +22,10 @@ enum {
     KEY_GAP = 10
 };
 
-/* For a label and more between it and the next, in sizes of the font. */
+/* Room for a label and the space to the next one, in sizes of the font. */
 static const double x_label_room = 4.6, y_label_room = 3.3;
 
-/* Names stand on what they cover with a thin margin of paper. */
+/* Names cover the drawing behind them with a thin white margin. */
 static const char on_paper[] = "<g paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"25\" "
                                "stroke-opacity=\"0.8\" stroke-linejoin=\"round\">\n";
 
@@ -66,7 +66,7 @@ static bool is_inside(const sheet *s, const imk_panel *panel)
     return panel->key != IMK_KEY_BELOW && !is_beside(s, panel);
 }
 
-/* The key, and what stands below the frame. */
+/* The key, and everything below the frame. */
 static void lay_out_key(const sheet *s, const imk_panel *panel, layout *l)
 {
     const double width = l->cell.right - l->cell.left, height = l->cell.bottom - l->cell.top;
@@ -84,7 +84,7 @@ static void lay_out_key(const sheet *s, const imk_panel *panel, layout *l)
         l->below += KEY_GAP + l->key.height;
 }
 
-/* The frame but for its left side, which the widest label decides. */
+/* The frame without its left side, which depends on the widest label. */
 static void lay_out_frame(const sheet *s, const imk_panel *panel, double below, layout *l)
 {
     imki_ticks ticks;
@@ -104,8 +104,8 @@ static void lay_out_frame(const sheet *s, const imk_panel *panel, double below, 
         l->left += LABEL_SIZE + 10;
 }
 
-/* Corner 0 is the one that a panel asks for, 1 the other side, 2 and 3 the same at the other end.
- */
+/* Corner 0 is the corner that a panel asks for, 1 is on the other side, 2 and 3 are the same at the
+ * other end. */
 static imki_box corner_box(const imk_panel *panel, const layout *l, int corner)
 {
     const imki_frame *f = &l->frame;
@@ -127,8 +127,8 @@ static void count_touches(const imk_panel *panel, layout *l)
     }
 }
 
-/* The corner where the keys of all panels together hide least, the one that is asked for before
- * others. */
+/* The corner where the keys of all panels together hide least; if equal, the corner that is asked
+ * for. */
 static int common_corner(const sheet *s)
 {
     size_t total[CORNERS] = {0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Lines of text in a figure, which must fit where nobody can measure them: widths are those of
- * DejaVu Sans, the first font that the drawing asks for. Verdana, which is next, is as wide. */
+/* Lines of text in a figure must fit, but their width cannot be measured here: widths are those of
+ * DejaVu Sans, the first font that the drawing asks for. Verdana, the second font, is as wide. */
 #include "figure_internal.h"
 #include "markup_internal.h"
 
@@ -16,11 +16,11 @@ static const short advance[] = {
     611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352,  635, 634, 278, 278, 579,
     278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592,  525, 636, 337, 636, 838};
 
-/* Letters of other alphabets are 600 to 670 wide in the mean; from three bytes on there are signs
- * as wide as high, such as those of East Asia. */
+/* Letters of other alphabets are 600 to 670 wide on average; characters of three bytes or more can
+ * be as wide as high, such as those of East Asia. */
 static const short other_letter = 680, sign = 1000;
 
-/* A line becomes smaller down to this part before letters are left out. */
+/* A line is drawn smaller, down to this part of its size, before letters are left out. */
 static const double least_part = 0.75;
 
 /* The longest line, in bytes. */

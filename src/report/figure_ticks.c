@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the ticks of an axis stand and what they say. Labels are 1, 2 or 5 times a power of ten
- * apart; of many decades they are the powers of ten, of few decades 1, 2 and 5 in each, and where
- * that is not two labels yet, steps of a linear axis. */
+/* Places and labels of the ticks of an axis. Labels of a linear axis are 1, 2 or 5 times a power of
+ * ten apart. A logarithmic axis has labels at the powers of ten if it spans many decades, at 1, 2
+ * and 5 in each decade if it spans few, and the steps of a linear axis if this gives fewer than two
+ * labels. */
 #include "figure_internal.h"
 
 #include "imukit/decimal.h"
@@ -12,7 +13,7 @@
 /* Decades shorter than this [px] have no ticks between the powers of ten. */
 static const double open_decade = 36;
 
-/* Powers of ten need so much less room than numbers. */
+/* Powers of ten need less room than numbers, by this factor. */
 static const double slimmer = 1.3;
 
 /* An imki_tick.text has room for so many decimals of a number below 1e7. */
@@ -60,8 +61,8 @@ static int digits_of(int power, int decimals)
     return (power > 0 ? power : 0) + 1 + (decimals > 0 ? decimals + 1 : 0);
 }
 
-/* A label of a linear axis: 0.25, or 2.5·10⁻⁷ where all are very small or large, unless that is
- * longer, as of 1000000.5. */
+/* A label of a linear axis: 0.25, or 2.5·10⁻⁷ if all labels are very small or large, unless this
+ * form is longer, as for 1000000.5. */
 static void label_linear(imki_tick *tick, const imki_axis *axis, step s, double n)
 {
     const double value = step_value(s, n), most = fmax(fabs(axis->low), fabs(axis->high));
@@ -144,7 +145,7 @@ static void add_digits(imki_ticks *ticks, const imki_axis *axis)
         }
 }
 
-/* Powers of ten, each, or each second, fifth, tenth … as there is room. */
+/* Powers of ten: every one, or every second, fifth, tenth …, as there is room. */
 static void add_powers(imki_ticks *ticks, const imki_axis *axis, double length, double most)
 {
     const double decades = axis->high - axis->low;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The messages of findings: one table, by code.
  *
- * In braces stands the place of a number of the finding and how it is written: {0} a count, {1g} as
- * %g, {2.1f} as %.1f, {0s} an s unless the count is one, {0a} the name of an Allan statistic, {0t}
- * the text of a status, {0k} gyro or accel, {0p} gyros or accelerometers, {0q} rate or specific
- * force, {0u} a quantity of the unit that is the name. {name} is the name, {other} what stands
- * behind a tab in it; {record} and {model} are what these are called. Between {2?} and {?} stands
- * what is told where number 2 is not 0, behind {2!} what is told where it is. */
+ * Braces hold the index of a number of the finding and how to write it: {0} a count, {1g} as %g,
+ * {2.1f} as %.1f, {0s} an s unless the count is one, {0a} the name of an Allan statistic, {0t} the
+ * text of a status, {0k} gyro or accel, {0p} gyros or accelerometers, {0q} rate or specific force,
+ * {0u} a quantity of the unit that is the name. {name} is the name, {other} what stands behind a
+ * tab in it; {record} and {model} are what these are called. The text between {2?} and {?} is shown
+ * if number 2 is not 0, the text behind {2!} if it is 0. */
 #include "imukit/allan.h"
 #include "imukit/job.h"
 #include "imukit/units.h"
@@ -16,13 +16,13 @@
 #include <string.h>
 
 #define HOW_TO_GO_ON "use --gaps longest (the longest clean stretch) or --gaps bridge (interpolate)"
-#define CURVE_FIT "{name}: chi-square {0.1f} for {1} degrees of freedom ({2.2g} by chance)"
-#define LEFT_OUT "tau below {3.3g} s are left out: the terms do not explain them."
+#define CURVE_FIT "{name}: chi-square {0.1f} for {1} degrees of freedom (probability {2.2g})"
+#define LEFT_OUT "deviations at tau below {3.3g} s are left out: the terms do not explain them."
 #define CURVE_MISFIT                                                                               \
-    "The terms do not explain the curve, or it is not what was said: do its clusters overlap "     \
-    "(--plain)? Was it read from a page (--tolerance)? Do not trust the intervals."
-#define PLAN_LENGTH                                                                                \
-    "--plan: a record of {0g} s at {1g} Hz has not the 256 to 1e12 samples that are due; "
+    "Either the terms do not explain the curve, or the options do not describe it: add --plain "   \
+    "if its clusters do not overlap, --tolerance if it was read from a page. Do not trust the "    \
+    "intervals."
+#define PLAN_LENGTH "--plan: a record of {0g} s at {1g} Hz does not have 256 to 1e12 samples; "
 
 #define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
 
@@ -33,24 +33,25 @@ static const struct message {
     {"no_rows", "there is a header but no data row"},
     {"no_channel", "there is no column to analyse; name one with --columns, such as gyro_x or "
                    "accel_z"},
-    {"one_row", "there is one row only; a static record of minutes to hours is due"},
-    {"no_interval", "the time column does not increase, so the sample rate is not known; name it, "
-                    "such as --rate 100Hz"},
+    {"one_row", "there is only one row; record minutes to hours at rest"},
+    {"no_interval", "the time column does not increase, so the sampling rate is unknown; leave the "
+                    "column out with --columns and state the rate, such as --rate 100Hz"},
     /* record_grid.c */
-    {"no_grid", "the times are no even grid: steps scatter by {0.0f} % of their median, {1g} s; "
-                "give the rate the samples were taken at, such as --rate 100Hz, if only the time "
-                "stamps scatter and the column is left out with --columns, or resample the log"},
-    {"jitter", "the times scatter by {0.1f} % of the interval: samples are taken as evenly spaced"},
-    {"clock_leaps", "the times leap by far more than there are rows: is there a jump of the clock? "
-                    "use --gaps longest (the longest clean stretch)"},
+    {"no_grid", "the timestamps are not evenly spaced: steps scatter by {0.0f} % of their median, "
+                "{1g} s; if only the timestamps scatter, leave the time column out with --columns "
+                "and state the sampling rate, such as --rate 100Hz; otherwise resample the log"},
+    {"jitter", "the timestamps scatter by {0.1f} % of the sample interval; the samples are treated "
+               "as evenly spaced"},
+    {"clock_leaps", "the timestamps do not fit the number of rows; the clock may have jumped or "
+                    "stopped: use --gaps longest (the longest clean stretch)"},
     {"not_finite", "{0} row{0s} with a value that is not a finite number or beyond 1e60, first in "
                    "row {1}: counted as missing"},
-    {"unordered", "{0} row{0s} whose time stands still or runs backwards: left out"},
-    {"missing", "{0} of {1} samples are missing, in {2} hole{2s}, the longest of {3g} s: their "
-                "places are kept empty"},
+    {"unordered", "{0} row{0s} whose time does not increase: left out"},
+    {"missing",
+     "{0} of {1} samples are missing, in {2} gap{2s}, the longest of {3g} s; the gaps stay empty"},
     /* record_spacing.c */
-    {"mostly_missing", "more is missing than is there ({0} good rows, {1} samples missing): "
-                       "nothing to interpolate; use --gaps longest"},
+    {"mostly_missing", "{0} good row{0s} and {1} missing sample{1s} are too little to interpolate; "
+                       "use --gaps longest"},
     {"refused_not_finite", "{0} row{0s} with a value that is not a finite number or beyond 1e60, "
                            "first in row {1}, column {name}; " HOW_TO_GO_ON},
     {"refused_backwards",
@@ -58,61 +59,62 @@ static const struct message {
     {"refused_standing", "time stands still in {0} row{0s}, first in row {1}; " HOW_TO_GO_ON},
     {"refused_missing",
      "{0} samples are missing in {1} gap{1s}, first before row {2}; " HOW_TO_GO_ON},
-    {"longest_stretch", "{0} bad, {1} missing: using the longest clean stretch, rows {2} to {3} of "
-                        "{4}"},
-    {"no_good_rows", "no two rows in a row are good"},
+    {"longest_stretch", "{0} bad row{0s}, {1} missing sample{1s}: using the longest clean stretch, "
+                        "rows {2} to {3} of {4}"},
+    {"no_good_rows", "no two consecutive rows are good"},
     /* allan_log.c */
     {"no_value", "column {name} has no finite value in {0} rows; leave it out with --columns, or "
                  "check the log"},
     {"constant", "column {name} is constant in all {0} rows: there is no noise to analyse; leave "
                  "it out with --columns, or check the log"},
     {"too_few_for_allan", "{0} rows are too few for an Allan deviation"},
-    {"statistic_needs_all", "column {name} has missing samples: only oadev of rates is defined "
-                            "with them; leave out --statistic and --type, or use --gaps bridge or "
-                            "--gaps longest"},
+    {"statistic_needs_all",
+     "column {name} has missing samples, and only oadev of rates allows gaps; leave out "
+     "--statistic and --type, or use --gaps bridge or --gaps longest"},
     {"statistic_failed", "column {name}: {0a}: {1t}"},
-    {"averaging_time", "{0g} s is outside what this record allows, {1g} s to {2g} s"},
+    {"averaging_time", "{0g} s is outside the averaging times of this record, {1g} s to {2g} s"},
     /* identify_log.c, identify_by_allan.c */
     {"constant_identify", "column {name} is constant in all {0} rows: there is no noise to "
                           "identify; leave it out with --columns, or check the log"},
     {"too_few_values", "column {name} has {0} finite values in {1} rows: at least 256 are needed "
                        "to identify noise; leave it out with --columns, or check the log"},
-    {"too_few_to_identify", "{1} rows are too few to identify noise: at least 256 are needed, and "
-                            "minutes to hours are useful"},
+    {"too_few_to_identify",
+     "{1} rows are too few to identify noise: at least 256 are needed; record minutes to hours"},
     {"column_failed", "column {name}: {0t}"},
-    {"allan_needs_all", "column {name} has {0} samples missing, or taken out: --method allan needs "
-                        "all of them; the likelihood, which is the default, does not (or use "
-                        "--gaps bridge)"},
+    {"allan_needs_all",
+     "column {name} has {0} samples missing or taken out, and --method allan needs all of them; "
+     "use --method likelihood (the default), which allows gaps, or --gaps bridge"},
     {"allan_fit", "{name}: Allan deviations fitted from {0.3g} s to {1.3g} s, chi-square {2.1f} "
-                  "for {3} degrees of freedom ({4.2g} by chance)."},
+                  "for {3} degrees of freedom (probability {4.2g})."},
     /* identify_curve.c */
-    {"long_table", "looks like the long table of imukit allan; a curve has a column for each "
-                   "channel, such as tau [s],gyro_x [deg/s]. From the log itself, --method allan "
-                   "does the same, and needs no table"},
-    {"no_curve", "a table of Allan deviations has a column tau [s] and columns such as gyro_x "
-                 "[deg/s]"},
-    {"too_few_tau", "{0} tau are multiples of 1/{1g} s and at most half of {2g} s; a fit needs 4"},
+    {"long_table", "looks like the long table of imukit allan; a curve needs a column for each "
+                   "channel, such as tau [s],gyro_x [deg/s]; or identify the log itself with "
+                   "--method allan, which needs no table"},
+    {"no_curve",
+     "a table of Allan deviations needs a column tau [s] and columns such as gyro_x [deg/s]"},
+    {"too_few_tau",
+     "{0} values of tau are multiples of 1/{1g} s and at most half of {2g} s; a fit needs 4"},
     {"curve", CURVE_FIT "."},
     {"curve_from", CURVE_FIT "; " LEFT_OUT},
     {"curve_misfit", CURVE_FIT ". " CURVE_MISFIT},
     {"curve_misfit_from", CURVE_FIT "; " LEFT_OUT " " CURVE_MISFIT},
     /* record_plan.c, plan_requirement.c */
     {"plan_length", PLAN_LENGTH "change --duration or --rate"},
-    {"plan_no_length", PLAN_LENGTH "add another --duration"},
-    {"no_noise", "states no noise, from which to tell how long to record: a catalogue entry near "
-                 "it does (imukit devices), or imukit identify finds it in a first log at rest"},
-    {"requirement", "--want \"{name}\": expected a term and its 1 sigma in per cent of it, such as "
-                    "\"bias_instability 5%\", or \"rate_random_walk detected 95%\""},
+    {"plan_no_length", PLAN_LENGTH "add a --duration that fits"},
+    {"no_noise",
+     "states no noise, so no record length can be computed; use a similar catalogue entry (imukit "
+     "devices), or identify the noise from a first log at rest (imukit identify)"},
+    {"requirement", "--want \"{name}\": expected a term and its 1 sigma in per cent of its value, "
+                    "such as \"bias_instability 5%\", or \"rate_random_walk detected 95%\""},
     {"requirement_chance",
-     "--want \"{name}\": behind \"detected\" a chance below 100% is due, such "
-     "as 95%"},
-    {"requirements", "--want: these are more than {0} requirements"},
-    {"no_such_noise", "--want \"{name}\": there is no such noise"},
+     "--want \"{name}\": expected a chance below 100% after \"detected\", such as 95%"},
+    {"requirements", "--want: there are more than {0} requirements"},
+    {"no_such_noise", "--want \"{name}\": the model has no such noise term"},
     /* spectrum_log.c */
-    {"too_few_for_spectrum", "{0} rows are too few for a spectrum; 64 are needed, and some "
-                             "thousands useful"},
-    {"segments_missing", "column {name}: every segment has missing samples; ask for a coarser "
-                         "--resolution, or use --gaps longest"},
+    {"too_few_for_spectrum",
+     "{0} rows are too few for a spectrum; at least 64 are needed, and some thousands are useful"},
+    {"segments_missing", "column {name}: every segment has missing samples; use a coarser "
+                         "--resolution, or --gaps longest"},
     {"resolution", "--resolution {0g} Hz: {name}; this record of {1g} s at {2g} Hz allows about "
                    "{3.2g} Hz to {4.2g} Hz"},
     {"from_beyond", "{1.6g} Hz"},
@@ -120,21 +122,22 @@ static const struct message {
     {"lines", "{name}: more than {0} lines; the strongest are listed"},
     {"fit", "{name}: the noise parameters could not be fitted: {0t}"},
     {"misfit", "{name}: the four noise terms do not explain the spectrum (misfit {0.1f}, worst at "
-               "{1.3g} Hz: {2.2f} of the fit); an output filter, a resonance or a correlated noise "
-               "is there: see imukit identify, or fit a part with --from and --to"},
+               "{1.3g} Hz: {2.2f} times the fit); there is an output filter, a resonance or "
+               "correlated noise: use imukit identify, or fit only a part with --from and --to"},
     /* convert_log.c, convert_motion.c */
     {"no_such_column",
      "--select: the log has no column \"{name}\"{0?}; did you mean \"{other}\"?{?}"},
     {"convert:no_axis", "{record} has no column {name}, which --{other} needs"},
-    {"convert:counts", "{name} is in counts, and --{other} needs {0?}forces{0!}rates{?}: imukit "
-                       "compensate makes them, by a model with a sensitivity"},
-    {"moves", "the unit moves in the first {0g} s ({1.3g} deg/s, {2.3g} m/s^2 rms): roll and pitch "
-              "are wrong by as much; shorten --still"},
-    {"gravity", "the mean force while still is {0.4g} m/s^2 and gravity {1.4g} m/s^2"},
+    {"convert:counts", "{name} is in counts, and --{other} needs {0?}forces{0!}rates{?}; imukit "
+                       "compensate converts counts with a model that states a sensitivity"},
+    {"moves", "the unit moves in the first {0g} s ({1.3g} deg/s, {2.3g} m/s^2 rms), so roll and "
+              "pitch are wrong accordingly; shorten --still"},
+    {"gravity", "the mean force at rest is {0.4g} m/s^2, but gravity is {1.4g} m/s^2"},
     {"acceleration", "{0} rows have no neighbour with finite rates: their angular acceleration is "
                      "taken as zero"},
-    {"drift", "attitude comes from the gyros alone: while still they were off by {0.3g} deg/h, "
-              "which makes up to {1.3g} deg and {2.3g} m/s^2 in the {3.4g} s of this log"},
+    {"drift",
+     "the attitude comes from the gyros alone; at rest they were off by {0.3g} deg/h, which causes "
+     "errors of up to {1.3g} deg and {2.3g} m/s^2 in the {3.4g} s of this log"},
     {"convert:not_finite", "{0} rows have no finite rates: the attitude was held"},
     /* evaluate_log.c */
     {"two_units", "{name} is in {other} in another"},
@@ -144,187 +147,186 @@ static const struct message {
     {"no_unit", "{name} has no unit; write it into the header, such as {name} [deg/s] or {name} "
                 "[count]"},
     {"direction", "row {0}: direction \"{name}\"; expected up, down or -"},
-    {"no_reading", "row {0}: {name} is no number, or beyond 1e60; leave the row out"},
-    {"no_sigma", "row {0}: sigma should be above 0"},
-    {"no_readings", "{record} has no column reference and reading"},
-    {"no_steps", "the reference never stays constant for {0.3g} s: figures need steps; imukit "
-                 "calibrate --procedure rate-table takes sines too"},
-    {"no_reference", "{record} says nothing about what the unit was exposed to: add --motion "
+    {"no_reading", "row {0}: {name} is not a number, or beyond 1e60; leave the row out"},
+    {"no_sigma", "row {0}: sigma must be above 0"},
+    {"no_readings", "{record} needs the columns reference and reading"},
+    {"no_steps", "the reference never stays constant for {0.3g} s, and the figures need steps; for "
+                 "sines use imukit calibrate --procedure rate-table"},
+    {"no_reference", "{record} does not contain the reference motion of the unit; add --motion "
                      "PROGRAMME, or columns reference_rate_z [deg/s] … or table_rate [deg/s] with "
-                     "--table-axis; of a unit at rest: --static {record}"},
-    {"no_change", "the reference of no axis changes from stretch to stretch: there is nothing to "
-                  "compare"},
+                     "--table-axis; for a unit at rest use --static {record}"},
+    {"no_change",
+     "no axis has a reference that changes from stretch to stretch: there is nothing to compare"},
     {"static", "column {name} of the log at rest: {0t}"},
     /* navigate_log.c, navigate_align.c, navigate_run.c */
-    {"column_of_counts", "{name} is in counts: imukit compensate makes rates and forces of them"},
+    {"column_of_counts",
+     "{name} is in counts; imukit compensate converts counts to rates and forces"},
     {"no_sensor_column", "has no column {name}: navigation needs three gyros and three "
                          "accelerometers"},
-    {"no_gravity_unit", "no accelerometer column is in g, mg or ug"},
-    {"align_empty", "no sample falls into --align {0.6g}s: its rows are {1.6g} s apart; align for "
-                    "longer, or correct --rate or the times"},
-    {"align_whole", "is {0.6g} s long: nothing is left after --align {1.6g}s"},
-    {"compensate_first", "{name} knows fixed errors of the {0?}accelerometer{0!}gyro{?}s: the log "
-                         "is taken for one from which they are gone already (imukit compensate)"},
-    {"no_gravity", "at rest the accelerometers read {0.4g} of gravity: their unit, {name}, is "
-                   "{1?}likely to be {other}{1!}wrong, or gravity is not in them, or the unit does "
-                   "not stand still"},
-    {"standard_gravity", "at rest the accelerometers read {0.6f} of gravity, as if g stood for "
-                         "9.780327 m/s^2 in this log: add --standard-gravity \"9.780327 m/s^2\" "
-                         "if it does"},
-    {"earth_rate", "at rest the gyros read {0.3g} times the Earth's rotation: {1?}their unit, "
-                   "{name}, may be {other}; or {2?}a bias; imukit compensate takes it out{2!}north "
-                   "cannot be found from that; take out the bias (imukit compensate) or add "
-                   "--heading"},
-    {"axes", "the angle between force and rotation is that of latitude {0.1f} deg, not of {1.1f} "
-             "deg: {2?}the sign of the latitude is wrong, or that of all gyros or all "
-             "accelerometers{2!}the axes are others than forward-right-down (--axes), or a bias is "
-             "large"},
+    {"no_gravity_unit",
+     "--standard-gravity needs accelerometer columns in g, mg or ug, and there are none"},
+    {"align_empty", "no sample falls into --align {0.6g}s: the rows are {1.6g} s apart; align for "
+                    "longer, or correct --rate or the timestamps"},
+    {"align_whole",
+     "is {0.6g} s long, so nothing is left after --align {1.6g}s; shorten the alignment"},
+    {"compensate_first", "{name} states fixed errors of the {0?}accelerometer{0!}gyro{?}s; this "
+                         "log is assumed to be free of them already (imukit compensate)"},
+    {"no_gravity",
+     "at rest the accelerometers read {0.4g} times gravity: {1?}their unit is probably {other}, "
+     "not {name}{1!}their unit, {name}, is wrong{?}, or gravity was removed, or the unit moves"},
+    {"standard_gravity",
+     "at rest the accelerometers read {0.6f} times gravity, so g may mean 9.780327 m/s^2 in this "
+     "log; if it does, add --standard-gravity \"9.780327 m/s^2\""},
+    {"earth_rate",
+     "at rest the gyros read {0.3g} times the Earth's rotation; {1?}their unit may be {other}, not "
+     "{name}; {2?}if this is a bias, imukit compensate takes it out{2!}north cannot be found from "
+     "such readings; take out the bias (imukit compensate) or add --heading"},
+    {"axes", "the angle between force and rotation fits latitude {0.1f} deg, not {1.1f} deg: "
+             "{2?}the sign of the latitude, of all gyros or of all accelerometers is wrong{2!}the "
+             "axes are not forward-right-down (state them with --axes), or a bias is large"},
     {"start_acceleration",
-     "in the attitude given the log begins with an acceleration of {0.3g} m/s^2: {1?}the "
-     "accelerometers' unit, {name}, is likely to be {other}{1!}the attitude, --axes or the unit of "
-     "the accelerometers is wrong, or it moves from the first row on"},
+     "with the attitude given, the log begins with an acceleration of {0.3g} m/s^2: {1?}the unit "
+     "of the accelerometers is probably {other}, not {name}{1!}the attitude, --axes or the unit of "
+     "the accelerometers is wrong, or the log begins in motion"},
     {"pole", "within 1 deg of a pole there is no north to align to: give --attitude"},
-    {"align_short", "--align {0.6g}s is too short to find an attitude; minutes are due"},
-    {"rest_short", "--align {0.6g}s is too short to learn what rest looks like: {1g} s are due"},
+    {"align_short", "--align {0.6g}s is too short to find an attitude; align for minutes"},
+    {"rest_short", "--align {0.6g}s is too short to learn the readings at rest; {1g} s are needed"},
     {"model_axes", "navigation needs three gyros and three accelerometers"},
     {"navigation_failed", "{0t}"},
-    {"updates_refused", "{0} of {1} updates do not fit what the model allows and were refused, "
-                        "first at {2.1f} s: the unit moved then, or the model is too good for it"},
-    {"steady_motion", "{0.4g} s look like standing, but begin with a velocity that is not 0: taken "
-                      "for smooth motion and not used"},
+    {"updates_refused",
+     "{0} of {1} updates were refused because they do not fit the model, first at {2.1f} s: the "
+     "unit moved then, or the errors in the model are too small"},
+    {"steady_motion", "{0.4g} s look like rest but begin with a velocity that is not 0; they are "
+                      "treated as smooth motion and not used"},
     {"updates_lost", "the last {0} updates were all refused: the estimate is lost{1?}, or the unit "
-                     "moved smoothly ever since"},
-    {"no_stop", "no standstill was {0?}found{0!}due before the end of the log{?}: there was no "
-                "update"},
-    {"model_too_good", "innovations are {0.1f} times as large as the model says (squared: {1.1f}): "
-                       "its predictions are too good"},
-    {"left_the_earth", "by {0.3f} s the estimate has left the Earth's surroundings: a reading "
-                       "before is absurd, or its unit wrong"},
+                     "has moved smoothly since"},
+    {"no_stop", "no standstill was {0?}found{0!}scheduled before the end of the log{?}, so there "
+                "was no update"},
+    {"model_too_good", "the innovations are {0.1f} times as large as the model predicts (squared: "
+                       "{1.1f}): the errors in the model are too small"},
+    {"left_the_earth", "at {0.3f} s the estimate is no longer near the Earth: an earlier reading "
+                       "is absurd, or its unit is wrong"},
     /* calibrate: session_record.c */
     {"calibrate:time_order",
-     "{record}: {0} rows whose time does not increase, or is no number, are left out"},
+     "{record}: {0} rows whose time does not increase, or is not a number, are left out"},
     {"calibrate:not_finite",
-     "{record}: in {0} of {1} rows a reading or the temperature is no finite number, or beyond "
-     "1e60, first in row {2}: such rows are left out, or the hold or step that they interrupt"},
-    {"axis_gap",
-     "{record} has {name}: calibration needs the axes one after the other; name the columns "
-     "with --columns"},
+     "{record}: in {0} of {1} rows a reading or the temperature is not finite, or beyond 1e60, "
+     "first in row {2}; these rows, or the hold or step that they interrupt, are left out"},
+    {"axis_gap", "{record} has {name}: calibration needs the axes x, y, z in this order; name the "
+                 "columns with --columns"},
     {"counts_mixed", "some {name} columns are in counts and some are not"},
     {"no_sensor",
      "{record} has no gyro and no accelerometer column; name them with --columns, such as "
      "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z"},
-    {"no_section", "{record} has no column \"{name}\" of texts to divide it into sections{0?}; did "
-                   "you mean \"{other}\"?{?}"},
-    {"one_row_of_test", "{record} has one row of data; a test takes thousands, some seconds of "
+    {"no_section", "{record} has no text column \"{name}\" to divide it into sections{0?}; did you "
+                   "mean \"{other}\"?{?}"},
+    {"one_row_of_test", "{record} has one row of data; a test needs thousands, some seconds of "
                         "each pose or step"},
     {"longer_than_record", "--{name} {0.6g}s is longer than {record}, which has {1.4g} s"},
-    {"sections",
-     "{record} has {0} columns of texts: say which one divides it into sections, such as "
-     "--section {name}"},
+    {"sections", "{record} has {0} text columns; name the one that divides it into sections, such "
+                 "as --section {name}"},
     /* calibrate_exposure.c */
     {"calibrate:no_unit",
      "{record}: {name} has no unit; write it into the header, such as {name} [{other}]"},
     {"wrong_unit", "{record}: {name} should be {other}"},
-    {"no_table_rate", "{record} has no column table_rate [deg/s], whose axis --table-axis names"},
+    {"no_table_rate", "{record} has no column table_rate [deg/s], which --table-axis needs"},
     {"no_table_axis",
-     "{record} has a column table_rate: say about which axis of the unit it turns, "
-     "such as --table-axis z"},
-    {"reference_twice", "{record} has reference columns and --motion says what they say: leave one "
-                        "out"},
+     "{record} has a column table_rate; state the axis of the unit about which the "
+     "table turns it, such as --table-axis z"},
+    {"reference_twice",
+     "{record} has reference columns and --motion gives another reference; leave "
+     "one of them out"},
     {"programme_not_followed",
      "{record} does not follow the programme at any offset within {0.3g} s (the best correlation "
-     "is {1.2f}): is it the programme that was run?"},
+     "is {1.2f}); check that this programme was run"},
     {"programme_begins", "{record}: the programme begins at {0.4f} s of the log (1 sigma {1.2g} s, "
                          "correlation {2.4f})"},
-    {"rival:motion_offset", "{record}: at {0.4f} s the programme fits nearly as well; if that is "
-                            "right, add --motion-offset {0.4f}s"},
+    {"rival:motion_offset", "{record}: the programme fits nearly as well from {0.4f} s on; if that "
+                            "is right, add --motion-offset {0.4f}s"},
     {"calibrate:motion_offset",
-     "{record} follows the programme best when that begins {0.4f} s {1?}later{1!}earlier{?} in the "
-     "log than it was told (1 sigma {2.2g} s): give --motion-offset {3.4f}s, or auto"},
+     "{record} fits the programme best if the programme begins {0.4f} s {1?}later{1!}earlier{?} "
+     "than stated (1 sigma {2.2g} s); use --motion-offset {3.4f}s, or auto"},
     /* calibrate_set_up.c */
     {"counts_of_axes", "--{name}-sensitivity and --{name}-zero take one number, or one for each of "
                        "{0} axes"},
     {"no_sensitivity", "--{name}-sensitivity: a sensitivity of 0 makes no counts"},
     {"zero_of_nothing", "--{name}-zero needs --{name}-sensitivity"},
-    {"not_in_counts", "--{name}-{0?}sensitivity{0!}zero{?} is for readings in counts, and those of "
+    {"not_in_counts", "--{name}-{0?}sensitivity{0!}zero{?} is for readings in counts, but those of "
                       "{record} have a unit"},
-    {"axes_differ", "{record} has {0} {name} axes and the others have {1}"},
+    {"axes_differ", "{record} has {0} {name} axes and the other logs have {1}"},
     {"counts_differ", "{record}: its {name} readings are in counts and those of other logs are "
                       "not, or the reverse"},
-    {"axes_of_model", "{model} has {0} {name} axes, the log has {1}: they cannot be matched"},
+    {"axes_of_model", "{model} has {0} {name} axes, but the log has {1}"},
     {"model_of_residuals",
-     "{model} is what is left after compensating with \"{name}\": to calibrate again, take the "
-     "log before it was compensated, and that model with --into"},
+     "{model} describes the errors left after compensation with \"{name}\"; calibrate the log "
+     "before it was compensated, with that model and --into"},
     {"calibrate:gravity",
-     "the place is not known: gravity is taken as {0.5f} m/s^2, that of 45 deg and sea level, and "
-     "differs from it by up to 0.3 %, which goes into the scale factors; add --position \"48.1 "
-     "deg, 11.6 deg, 520 m\" or --gravity 9.80780m/s^2"},
+     "the place is not known: gravity is taken as {0.5f} m/s^2 (45 deg, sea level). Local gravity "
+     "may differ by up to 0.3 %, which goes into the scale factors; add --position \"48.1 deg, "
+     "11.6 deg, 520 m\" or --gravity 9.80780m/s^2"},
     /* calibrate_terms.c */
-    {"no_term", "--estimate: no term is named"},
-    {"no_change_of_temperature", "no log has a column temperature [degC] that changes, so that "
-                                 "nothing over temperature can be estimated"},
+    {"no_term", "--estimate names no term"},
+    {"no_change_of_temperature", "no log has a column temperature [degC] that changes, so no term "
+                                 "of temperature can be estimated"},
     /* calibrate_closed_form.c, power_cycles.c, calibrate_model.c */
-    {"stretches", "these are more than {0} holds and turns"},
-    {"many_runs", "these are more than {0} runs"},
+    {"stretches", "there are more than {0} holds and turns"},
+    {"many_runs", "there are more than {0} runs"},
     {"few_runs", "{0} run: at least two are needed, better ten; give a log for each power cycle, "
                  "or one log with a column of texts that names the runs (--section NAME)"},
-    {"models_of_units", "{other} and {record} have not the same {name} axes: they are not runs of "
-                        "one unit"},
-    {"models_of_counts", "{other} and {record}: the {name} readings are in counts in one and not "
+    {"models_of_units", "{other} and {record} do not have the same {name} axes, so they are not "
+                        "runs of one unit"},
+    {"models_of_counts", "the {name} readings are in counts in one of {other} and {record} and not "
                          "in the other"},
     {"models_of_frames", "{record} is in the frame \"{other}\", the first model in \"{name}\": "
-                         "calibrate all runs alike, with the same --frame"},
+                         "calibrate all runs with the same --frame"},
     {"model_without_sigma", "{record} states no uncertainty of bias or scale factor: give the "
                             "models that imukit calibrate wrote, one of each run"},
     {"one_model", "1 run: at least two are needed, better ten; give the model of each power cycle"},
-    {"no_uncertainty", "no bias and no scale factor is stated with its uncertainty by all of these "
-                       "models"},
-    {"attitude", "the forces of the runs differ by up to {0.3g} mrad: was the unit moved? What a "
-                 "change of attitude does to accelerometers looks like a change of bias; keep it "
-                 "fixed, or state how well it is put back with --placement 0.1deg"},
-    {"temperature_left_out", "{name}: what else temperature does is left out: {0t}"},
+    {"no_uncertainty",
+     "there is no bias and no scale factor that all of these models state with an uncertainty"},
+    {"attitude", "the forces of the runs differ by up to {0.3g} mrad: was the unit moved? A change "
+                 "of attitude looks like a change of accelerometer bias; keep the attitude fixed, "
+                 "or state how accurately the unit is put back with --placement 0.1deg"},
+    {"temperature_left_out", "{name}: the other effects of temperature are left out: {0t}"},
     /* compensate_columns.c */
-    {"no_counts",
-     "{record}: {name}, but {model} makes counts ({0k}.sensitivity): these are not the "
-     "readings it describes"},
+    {"no_counts", "{record}: {name}, but {model} describes readings in counts ({0k}.sensitivity)"},
     {"counts", "{record}: {name} is in counts, but {model} does not say what a count is: add "
                "{0k}.sensitivity to it"},
     {"increments_in_counts",
      "{record}: {name} holds increments in counts; expected counts of {0q}"},
-    {"no_axis", "{record} has no column {name}: {model} describes {0} {1k} axes, which are all "
-                "needed"},
-    {"axes_do_not_match",
-     "{record} has {0} {1k} columns, {model} describes {2}: they cannot be matched; name the log's "
-     "columns with --columns, - for one to skip"},
+    {"no_axis",
+     "{record} has no column {name}: {model} describes {0} {1k} axes, and all of them are needed"},
+    {"axes_do_not_match", "{record} has {0} {1k} columns, but {model} describes {2}; name the "
+                          "log's columns with --columns, and write - for a column to skip"},
     {"compensate:no_sensor", "{record} has no gyro and no accel column: name them with --columns"},
     {"sensor_needed", "{record} has no {0k} columns, which {name} of {model} needs"},
-    {"not_in_model", "{model} describes no {0p}: these columns are copied as they are"},
+    {"not_in_model", "{model} describes no {0p}: their columns are copied as they are"},
     {"no_sensor_in_model", "{model} describes none of the sensors in {record}"},
     {"no_room_for_flags", "there is no room for a column of flags beside {0} others"},
     /* compensate_log.c */
-    {"no_temperature", "{model} depends on temperature ({name}) and {record} has no temperature "
-                       "column: add --temperature 25degC"},
-    {"temperature_counts", "{model} depends on temperature ({name}), which {record} has in counts "
-                           "only: add --temperature 25degC"},
-    {"residual", "{model} is what is left after compensating with {name}: do that first"},
+    {"no_temperature", "{model} depends on temperature ({name}), but {record} has no temperature "
+                       "column; add --temperature 25degC"},
+    {"temperature_counts", "{model} depends on temperature ({name}), but {record} has it in counts "
+                           "only; add --temperature 25degC"},
+    {"residual", "{model} describes the errors that remain after compensation with {name}; "
+                 "compensate with that model first"},
     {"nothing", "{model} has no deterministic term{name}: there is nothing to take out"},
-    {"no_limit", "{model}: {name} is missing, which bounds the correction: state it in the model, "
-                 "or add --rate-limit 500deg/s or --force-limit 10g"},
+    {"no_limit", "{model}: {name} is missing, and the correction needs a limit; state {name} in "
+                 "the model, or add --rate-limit 500deg/s or --force-limit 10g"},
     {"model_refused", "{model}: {0t}"},
     {"not_written", "{0t}"},
     {"compensate:saturated", "saturated, at or beyond the range of an axis" SAMPLES_FIRST},
-    {"compensate:temperature",
-     "temperature outside the valid range of the model's terms, whose end "
-     "was used" SAMPLES_FIRST},
+    {"compensate:temperature", "temperature outside the valid range of the model's terms, so the "
+                               "nearer end of the range was used" SAMPLES_FIRST},
     {"compensate:limit", "corrected values beyond the limits up to which the correction is "
                          "proven" SAMPLES_FIRST},
-    {"compensate:not_finite", "readings that are no finite number, or no temperature yet; what "
-                              "depends on it is nan" SAMPLES_FIRST},
-    {"compensate:acceleration", "angular acceleration for the lever arms not known, or from a "
-                                "saturated rate" SAMPLES_FIRST},
-    {"temperature_held", "no temperature, the last one used: {0} of {1} samples"},
-    {"time_missing", "the time is no finite number" SAMPLES_FIRST "; each is taken for the one "
-                     "after the sample before it"},
+    {"compensate:not_finite", "readings that are not finite, or no temperature yet; values that "
+                              "depend on these are nan" SAMPLES_FIRST},
+    {"compensate:acceleration",
+     "angular acceleration for the lever arms unknown, or from a saturated rate" SAMPLES_FIRST},
+    {"temperature_held", "temperature missing, so the last one was used: {0} of {1} samples"},
+    {"time_missing", "the time is not finite" SAMPLES_FIRST
+                     "; it is taken as one sample interval after the sample before"},
     {"compensate:gaps",
      "gaps and steps back in time: {0} (first: row {1}); each begins a new stretch"},
     /* physics_log.c, physics_warnings.c */
@@ -334,8 +336,8 @@ static const struct message {
     {"dead_band", "the input of {0u} is within the dead band of {3u}: the output does not follow "
                   "it"},
     {"not_followed", "the output ends at {1u}, the input is {0u}"},
-    {"physics:temperature", "{0.4g} degC is outside the temperatures of this design, {1.4g} to "
-                            "{2.4g} degC"},
+    {"physics:temperature",
+     "{0.4g} degC is outside the temperature range of this design, {1.4g} to {2.4g} degC"},
     /* grade_position.c */
     {"nothing_to_grade", "states no bias repeatability, no bias instability and no uncertainty of "
                          "the fixed bias: there is nothing to grade"},
@@ -364,7 +366,7 @@ static const char *sensor_word(double sensor, char how)
                         : NULL;
 }
 
-/* In a unit that suits its size, of the dimension of one that is named. */
+/* In a readable unit for its size, of the same dimension as the unit `si`. */
 static void put_quantity(writing *w, double number, const char *si)
 {
     const imk_unit unit = imk_unit_readable(imk_unit_of(si).dimension, number);
@@ -373,7 +375,7 @@ static void put_quantity(writing *w, double number, const char *si)
     put(w, text, strlen(text));
 }
 
-/* A number as what stands behind its place says. */
+/* A number, written as the letters after its index say. */
 static void put_number(writing *w, double number, const char *how, size_t length)
 {
     char format[16], text[64];
@@ -401,7 +403,7 @@ static void put_number(writing *w, double number, const char *how, size_t length
     put(w, text, written > 0 ? strlen(text) : 0);
 }
 
-/* What stands for a place, "{name}" or "{0g}", of `length` characters without its last. */
+/* The text for a placeholder, "{name}" or "{0g}", of `length` characters without its last. */
 static void put_place(writing *w, const char *place, size_t length, const imk_finding *finding)
 {
     const size_t first = strcspn(finding->name, "\t");

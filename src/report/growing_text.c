@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Text that grows in memory. What does not fit is remembered, so that nobody need look after every
- * word. */
+/* Text that grows in memory. A failed allocation is remembered, so that callers need not check
+ * after every word. */
 #include "growing_text_internal.h"
 
 #include <stdarg.h>

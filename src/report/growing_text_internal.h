@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* From {.bytes = NULL} on; the bytes are freed by whoever has it. */
+/* Starts as {.bytes = NULL}; the owner frees the bytes. */
 typedef struct imki_text {
     char *bytes; /* ends with a zero */
     size_t size, capacity;
@@ -17,7 +17,7 @@ void imki_text_put(imki_text *text, const char *words);
 void imki_text_put_char(imki_text *text, char letter);
 void imki_text_put_bytes(imki_text *text, const char *bytes, size_t size);
 void imki_text_add(imki_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* The text, which is the caller's; NULL when memory was exhausted. */
+/* The text, which the caller then owns; NULL when memory was exhausted. */
 char *imki_text_take(imki_text *text, size_t *size);
 
 #endif

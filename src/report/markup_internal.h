@@ -5,8 +5,8 @@
 
 #include "growing_text_internal.h"
 
-/* Written so that nothing in it is markup; control characters, which neither language allows, are
- * left out. NULL is "". */
+/* Escape all markup in a text; control characters are left out, because neither language allows
+ * them. NULL is "". */
 void imki_markup_escape(imki_text *out, const char *text);
 
 #endif

@@ -109,8 +109,8 @@ void imki_page_code(imki_page *page, const char *text)
     element(page, "<pre>", text, "</pre>\n");
 }
 
-/* A drawing of ours, where identifiers are made unique, since several drawings share the page. No
- * text of a caller can hold one of these openings: its quotes are escaped. */
+/* A drawing made here; its identifiers are made unique, since several drawings share the page. No
+ * text of a caller can contain one of these openings, because its quotes are escaped. */
 static void put_svg(imki_page *page, const char *svg)
 {
     static const char *const openings[] = {" id=\"", " clip-path=\"url(#", "href=\"#"};

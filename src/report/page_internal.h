@@ -20,12 +20,12 @@ void imki_page_text(imki_page *page, const char *text);
 void imki_page_verdict(imki_page *page, int level, const char *text);
 /* A table of rows x columns texts, the first row the header. */
 void imki_page_table(imki_page *page, size_t rows, size_t columns, const char *const *cells);
-/* A figure, drawn into the page. Of one without a point to draw a note says what is missing; any
- *  other failure becomes that of imki_page_take(). */
+/* A figure, drawn into the page. For a figure without a point to draw, a note says what is missing;
+ * imki_page_take() reports any other failure. */
 void imki_page_figure(imki_page *page, const imk_figure *figure, const char *caption);
 /* An animation, drawn into the page. */
 void imki_page_animation(imki_page *page, const imk_animation *animation, const char *caption);
-/* On paper, and in a PDF, what follows begins a new sheet; nothing on the screen. */
+/* Begin a new sheet on paper and in a PDF; no effect on the screen. */
 void imki_page_break(imki_page *page);
 /* Preformatted text, such as a model file. */
 void imki_page_code(imki_page *page, const char *text);

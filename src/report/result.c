@@ -59,7 +59,7 @@ void imk_result_array(imk_result *result, const char *key)
 
 void imk_result_end(imk_result *result)
 {
-    /* Where memory failed, what was to be ended may not have been begun. */
+    /* After memory was exhausted, the object or array to end may never have begun. */
     if (result && result->open->parent)
         result->open = result->open->parent;
 }

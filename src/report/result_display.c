@@ -106,10 +106,10 @@ imk_table *imk_result_table(imk_result *result, unsigned right)
     return &made->table;
 }
 
-/* The separator of units of ASCII: no text of a person has it. */
+/* The unit separator of ASCII, which no text of a user contains. */
 enum { CELL_END = 0x1f };
 
-/* A cell of `length` bytes; what a terminal could take for a command becomes "?". */
+/* A cell of `length` bytes; bytes that a terminal could take for a command become "?". */
 static const char *clean_cell(imki_arena *arena, const char *text, size_t length)
 {
     char *cell = imki_arena_take(arena, length + 1), *end = cell;
@@ -126,7 +126,7 @@ static const char *clean_cell(imki_arena *arena, const char *text, size_t length
     return cell ? cell : "";
 }
 
-/* The cells of a format: its tabs are told from those of the arguments. */
+/* The cells of a format: its tabs are distinguished from tabs in the arguments. */
 static void add_cells(imk_table *table, const char *format, va_list arguments)
 {
     imki_row *row = &table->row[table->rows - 1];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What stands at a path of the data of a result. */
+/* Find the value at a path in the data of a result. */
 #include "result_internal.h"
 
 #include <stdlib.h>

@@ -66,7 +66,7 @@ static void put_scalar(imki_text *out, const imki_data *data)
     }
 }
 
-/* What stands before a member: a comma, and a new line unless its object is on one. */
+/* The text before a member: a comma, and a new line unless its object is on one line. */
 static void put_separator(imki_text *out, const imki_data *member, bool flat, int depth)
 {
     const bool first = member->parent->first == member;
@@ -80,7 +80,8 @@ static void put_separator(imki_text *out, const imki_data *member, bool flat, in
     }
 }
 
-/* Trees are as deep as the code that makes them nests. */
+/* The depth of the recursion is the depth of the tree, which the code that makes the tree
+ * bounds. */
 static void put(imki_text *out, const imki_data *data, int depth)
 {
     if (!is_container(data)) {
@@ -98,7 +99,7 @@ static void put(imki_text *out, const imki_data *data, int depth)
     imki_text_put_char(out, object ? '}' : ']');
 }
 
-/* 0.25, 1e-7, 2.0: a number keeps what tells it from a count. */
+/* 0.25, 1e-7, 2.0: a number always looks different from a count. */
 static void put_digits(imki_text *out, double value)
 {
     char text[40];
@@ -112,7 +113,7 @@ static void put_digits(imki_text *out, double value)
                       digits);
 }
 
-/* The member whose key comes next behind that of another, or first. */
+/* The member with the next key in alphabetical order after `last`, or the first one. */
 static const imki_data *next_by_key(const imki_data *data, const imki_data *last)
 {
     const imki_data *next = NULL;

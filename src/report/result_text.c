@@ -59,7 +59,7 @@ static imk_status put_table(imki_text *out, const imk_table *table, const char *
     return IMK_OK;
 }
 
-/* What a terminal could take for a command becomes "?". */
+/* Bytes that a terminal could take for a command become "?". */
 static void put_line(imki_text *out, const char *text, const char *bold, const char *plain)
 {
     while (*text) {

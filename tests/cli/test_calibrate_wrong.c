@@ -134,7 +134,7 @@ static void missing_readings_are_told(void **state)
 {
     (void)state;
     write_turns();
-    static const char told[] = "a reading or the temperature is no finite number, or beyond 1e60";
+    static const char told[] = "a reading or the temperature is not finite, or beyond 1e60";
     static const char *const values[] = {"nan", "inf", "1e308", ""};
     char line[300];
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {

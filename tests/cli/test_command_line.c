@@ -83,9 +83,9 @@ static void test_wrong_usage(void **state)
                   "OUT\n" TRY("convert"));
     check_message("$I simulate tactical --rate", 2,
                   "imukit simulate: error: --rate needs a value: --rate RATE\n" TRY("simulate"));
-    check_message("$I simulate tactical --duration 1h", 2,
-                  "imukit simulate: error: the sample rate is missing: add --rate "
-                  "100Hz\n" TRY("simulate"));
+    check_message(
+        "$I simulate tactical --duration 1h", 2,
+        "imukit simulate: error: the sampling rate is missing: add --rate 100Hz\n" TRY("simulate"));
     check_message("$I simulate tactical --rate 100Hz", 2,
                   "imukit simulate: error: the length is missing: add --duration "
                   "1h\n" TRY("simulate"));

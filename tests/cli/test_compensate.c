@@ -30,17 +30,13 @@ static void test_every_column(void **state)
     check_message(
         "$I compensate log.csv unit.yaml --flags --decimals 3 -o out.csv", 0,
         "imukit compensate: warning: saturated, at or beyond the range of an axis: 1 of 4 samples "
-        "(first: row 2)\n"
-        "imukit compensate: warning: temperature outside the valid range of the model's terms, "
-        "whose end was used: 1 of 4 samples (first: row 4)\n"
-        "imukit compensate: warning: readings that are no finite number, or no temperature yet; "
-        "what depends on it is nan: 1 of 4 samples (first: row 3)\n"
-        "imukit compensate: warning: gaps and steps back in time: 1 (first: row 4); each begins a "
-        "new stretch\n"
-        "Taken out: gyro.bias.fixed, gyro.bias.temperature, gyro.sensitivity, accel.bias.fixed, "
-        "accel.scale_factor.fixed\n"
-        "Left in: gyro.bias.hysteresis\n"
-        "4 samples, 3 flagged\n");
+        "(first: row 2)\nimukit compensate: warning: temperature outside the valid range of the "
+        "model's terms, so the nearer end of the range was used: 1 of 4 samples (first: row "
+        "4)\nimukit compensate: warning: readings that are not finite, or no temperature yet; "
+        "values that depend on these are nan: 1 of 4 samples (first: row 3)\nimukit compensate: "
+        "warning: gaps and steps back in time: 1 (first: row 4); each begins a new stretch\nTaken "
+        "out: gyro.bias.fixed, gyro.bias.temperature, gyro.sensitivity, accel.bias.fixed, "
+        "accel.scale_factor.fixed\nLeft in: gyro.bias.hysteresis\n4 samples, 3 flagged\n");
     assert_string_equal(out, "");
     assert_int_equal(run("cat out.csv"), 0);
     assert_string_equal(out,
@@ -75,49 +71,46 @@ static void test_refusals(void **state)
     put("gyro.csv", "time [s],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s]\n0,1,1,1\n1,1,1,1\n");
     put("two.csv", "time [s],gyro_x [deg/s],gyro_y [deg/s]\n0,1,1\n1,1,1\n");
     put("accel.csv", "time [s],accel_x [g],accel_y [g],accel_z [g]\n0,1,1,1\n1,1,1,1\n");
-    check_message("cut -d, -f1-7 log.csv | $I compensate - unit.yaml", 1,
-                  "imukit compensate: error: unit.yaml depends on temperature "
-                  "(gyro.bias.temperature) and - has no temperature column: add --temperature "
-                  "25degC\n");
+    check_message(
+        "cut -d, -f1-7 log.csv | $I compensate - unit.yaml", 1,
+        "imukit compensate: error: unit.yaml depends on temperature (gyro.bias.temperature), but - "
+        "has no temperature column; add --temperature 25degC\n");
     check_message("$I compensate gyro.csv unit.yaml", 1,
-                  "imukit compensate: error: gyro.csv: gyro_x is in deg/s, but unit.yaml makes "
-                  "counts (gyro.sensitivity): these are not the readings it describes\n");
+                  "imukit compensate: error: gyro.csv: gyro_x is in deg/s, but unit.yaml describes "
+                  "readings in counts (gyro.sensitivity)\n");
     check_message("$I compensate log.csv rates.yaml", 1,
                   "imukit compensate: error: log.csv: gyro_x is in counts, but rates.yaml does not "
                   "say what a count is: add gyro.sensitivity to it\n");
     check_message("$I compensate two.csv rates.yaml", 1,
                   "imukit compensate: error: two.csv has no column gyro_z: rates.yaml describes 3 "
-                  "gyro axes, which are all needed\n");
+                  "gyro axes, and all of them are needed\n");
     check_message("$I compensate accel.csv arms.yaml", 1,
                   "imukit compensate: error: accel.csv has no gyro columns, which accel.lever_arm "
                   "of arms.yaml needs\n");
     check_message("$I compensate accel.csv rates.yaml", 1,
-                  "imukit compensate: warning: rates.yaml describes no accelerometers: these "
-                  "columns are copied as they are\n"
-                  "imukit compensate: error: rates.yaml describes none of the sensors in "
-                  "accel.csv\n");
+                  "imukit compensate: warning: rates.yaml describes no accelerometers: their "
+                  "columns are copied as they are\nimukit compensate: error: rates.yaml describes "
+                  "none of the sensors in accel.csv\n");
     check_message("$I compensate log.csv unit.yaml --axes right-forward-up", 2,
-                  "imukit compensate: error: --axes turns numbers round, and counts have a zero "
-                  "offset: compensate first, then imukit convert --axes\n" TRY("compensate"));
+                  "imukit compensate: error: --axes changes signs, and counts have a zero offset; "
+                  "compensate first, then use imukit convert --axes\n" TRY("compensate"));
     check_message("$I compensate gyro.csv rates.yaml --json", 2,
                   "imukit compensate: error: --json and the log cannot both go to standard output: "
                   "add -o LOG\n" TRY("compensate"));
-    check_message(
-        "$I compensate gyro.csv k2.yaml -o x.csv", 1,
-        "imukit compensate: error: k2.yaml: gyro.range is missing, which bounds the "
-        "correction: state it in the model, or add --rate-limit 500deg/s or --force-limit "
-        "10g\n");
+    check_message("$I compensate gyro.csv k2.yaml -o x.csv", 1,
+                  "imukit compensate: error: k2.yaml: gyro.range is missing, and the correction "
+                  "needs a limit; state gyro.range in the model, or add --rate-limit 500deg/s or "
+                  "--force-limit 10g\n");
     assert_int_equal(run("$I compensate gyro.csv k2.yaml --rate-limit 500deg/s -o k2.csv"), 0);
     /* A model whose output turns back within its range cannot be undone. */
     assert_int_equal(run("$I compensate gyro.csv folded.yaml -o x.csv"), 1);
     check_contains(err, "nonlinearity", "what cannot be undone is named");
     assert_int_not_equal(access("x.csv", F_OK), 0);
     check_message("$I compensate gyro.csv left.yaml -o left.csv", 0,
-                  "imukit compensate: warning: left.yaml is what is left after compensating with "
-                  "first.yaml: do that first\n"
-                  "imukit compensate: warning: left.yaml has no deterministic term: there is "
-                  "nothing to take out\n"
-                  "Taken out: nothing\nLeft in: gyro.noise\n2 samples, 0 flagged\n");
+                  "imukit compensate: warning: left.yaml describes the errors that remain after "
+                  "compensation with first.yaml; compensate with that model first\nimukit "
+                  "compensate: warning: left.yaml has no deterministic term: there is nothing to "
+                  "take out\nTaken out: nothing\nLeft in: gyro.noise\n2 samples, 0 flagged\n");
     assert_int_equal(run("cmp gyro.csv left.csv"), 0);
     sweep();
 }
@@ -271,8 +264,8 @@ static void test_gravity_free(void **state)
     for (const char *line = out; *line; line = strchr(line, '\n') + 1)
         CHECK_CLOSE(strtod(line, NULL), 0, 1e-9);
     check_message("$I convert tilted.csv - --gravity-free", 2,
-                  "imukit convert: error: --gravity-free: gravity differs from place to place: add "
-                  "--latitude 45deg and, off the sea, --height 500m\n" TRY("convert"));
+                  "imukit convert: error: --gravity-free: gravity depends on the place; add "
+                  "--latitude 45deg and, away from sea level, --height 500m\n" TRY("convert"));
     sweep();
 }
 
@@ -290,7 +283,7 @@ static void test_missing_times(void **state)
                  "$I compensate log.csv unit.yaml -o out.csv",
                  values[i]);
         assert_int_equal(run(line), 0);
-        check_contains(err, "the time is no finite number: 2 of 1000 samples (first: row 8)", line);
+        check_contains(err, "the time is not finite: 2 of 1000 samples (first: row 8)", line);
         assert_null(strstr(err, "gaps"));
     }
     assert_int_equal(run("$I compensate good.csv unit.yaml -o out.csv"), 0);

@@ -98,8 +98,8 @@ static void test_sensor_of_one(void **state)
     (void)state;
     put("dev.yaml", "imukit: 1\ngyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h)}}\n");
     check_message("$I convert dev.yaml gnss.yaml --to gnss-ins-sim --rate 100Hz --sensor a", 2,
-                  "imukit convert: error: --sensor is of a parameter file with several, and "
-                  "dev.yaml is a model\n" TRY("convert"));
+                  "imukit convert: error: --sensor is for a parameter file with several sensors, "
+                  "and dev.yaml is a model\n" TRY("convert"));
     assert_int_equal(run("$I convert dev.yaml gnss.yaml --to gnss-ins-sim --rate 100Hz"), 0);
     check_message(
         "$I convert gnss.yaml back.yaml --sensor a", 1,

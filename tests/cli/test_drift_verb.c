@@ -132,10 +132,10 @@ static void test_no_position(void **state)
 {
     (void)state;
     check_message("$I drift tactical -d 24h", 0,
-                  "imukit drift: warning: tactical: at 8 h the error is beyond a tenth of the "
-                  "Earth's radius: no longer a position\n");
+                  "imukit drift: warning: tactical: at 8 h the error exceeds a tenth of the "
+                  "Earth's radius: this is no longer a position\n");
     check_contains(out, "no position", "24 h");
-    check_contains(out, "What makes it after 4 h", "the last that is one");
+    check_contains(out, "Contributions after 4 h", "the last that is one");
     assert_null(strstr(out, "1 d          "));
 }
 
@@ -325,13 +325,13 @@ static void test_messages(void **state)
         {"$I drift tactical --want 'CEP 1 nmi'",
          "--want \"CEP 1 nmi\": the time is missing; write --want \"CEP 1 nmi @ 1h\""},
         {"$I drift tactical --want 'CPE 1 nmi @ 1h'",
-         "--want \"CPE 1 nmi @ 1h\": \"CPE\" is no figure (did you mean CEP?); CEP, R95, DRMS, "
-         "height, velocity, tilt and heading are; write --want \"CEP 1 nmi @ 1h\""},
+         "--want \"CPE 1 nmi @ 1h\": \"CPE\" is not a figure (did you mean CEP?); expected CEP, "
+         "R95, DRMS, height, velocity, tilt or heading; write --want \"CEP 1 nmi @ 1h\""},
         {"$I drift tactical --want 'CEP 1e-30 nmi @ 1h'",
-         "--want \"CEP 1e-30 nmi @ 1h\": a figure from 1e-9 to 1e9 m is due; write --want \"CEP 1 "
-         "nmi @ 1h\""},
+         "--want \"CEP 1e-30 nmi @ 1h\": expected a figure from 1e-9 to 1e9 m; write --want \"CEP "
+         "1 nmi @ 1h\""},
         {"$I drift tactical --times 1min,foo",
-         "--times \"1min,foo\": \"foo\" is no positive time with a unit; write --times \"1min, "
+         "--times \"1min,foo\": \"foo\" is not a positive time with a unit; write --times \"1min, "
          "10min, 1h\""},
         {"$I drift tactical --latitude 91deg", "--latitude 91deg: expected -90deg to 90deg"},
         {"$I drift tactical --height 200km", "--height 200km: expected -10000m to 100000m"},
@@ -340,17 +340,17 @@ static void test_messages(void **state)
          "--duration 1.08e+08 s: expected at most three years (1e8 s)"},
         {"$I drift tactical --aligned self --align-time 0s",
          "--align-time 0 s: expected 1 s to 1e7 s"},
-        {"$I drift tactical --align-time 10s", "--align-time is of --aligned self: add it"},
-        {"$I drift tactical navigation -n 10", "--monte-carlo is of one model at a time"},
+        {"$I drift tactical --align-time 10s",
+         "--align-time is for --aligned self; add that option"},
+        {"$I drift tactical navigation -n 10", "--monte-carlo takes one model at a time"},
         {"$I drift tactical -n 10 --shard 4/3 -o a.h5",
          "--shard 4/3: expected I/N, such as 3/10: the third of ten parts"},
         {"$I drift tactical -n 10 --shard 1/18446744073709551616 -o a.h5",
          "--shard 1/18446744073709551616: expected at most 4294967295 parts"},
         {"$I drift tactical -n 10 --shard 1/3",
          "--shard makes a part for imukit merge: add -o PART.h5"},
-        {"$I drift tactical -o a.h5",
-         "-o a.h5: figures against time are written as .csv (.h5 holds runs: add --monte-carlo "
-         "1000)"},
+        {"$I drift tactical -o a.h5", "-o a.h5: figures against time are written as .csv; .h5 is "
+                                      "for runs: add --monte-carlo 1000"},
         {"$I drift tactical --initial-attitude '1 2 deg'",
          "--initial-attitude \"1 2 deg\": expected one or three numbers (north, east, down) that "
          "are not negative, with a unit such as deg"},
@@ -376,8 +376,8 @@ static void test_omitted(void **state)
     (void)state;
     put("band.yaml", "imukit: 1\nname: band\ngyro: {dead_band: 0.1 deg/h}\naccel: {}\n");
     check_message("$I drift band.yaml -d 1min", 0,
-                  "imukit drift: warning: band.yaml: left out by the linear theory: "
-                  "gyro.dead_band; --monte-carlo has all that needs no temperature\n");
+                  "imukit drift: warning: band.yaml: the linear theory leaves out gyro.dead_band; "
+                  "--monte-carlo includes everything that needs no temperature\n");
     sweep();
 }
 

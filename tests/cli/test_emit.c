@@ -124,19 +124,17 @@ static void test_messages(void **state)
     put("unit.yaml", unit_model);
     /* 4.4 rad/s (the range and a tenth) and its bias are below 8: u = 2^-24, of the reading less
      * the bias, and that of the bias itself; with those of imk_correct(), 2.6e-07. */
-    check_message("$I compensate unit.yaml --emit-c made", 0,
-                  "imukit compensate: warning: gyro.bias.warm_up stays in: it needs more "
-                  "than one sample; imukit compensate LOG MODEL takes it out of a log\n"
-                  "imukit compensate: warning: accel.lever_arm stays in: it needs more than one "
-                  "sample; imukit compensate LOG MODEL takes it out of a log\n"
-                  "Taken out: gyro.bias.fixed, accel.bias.fixed\n"
-                  "Left in: gyro.bias.warm_up, gyro.noise, accel.lever_arm\n"
-                  "The rate is within 2.5e-07 rad/s of the exact correction\n"
-                  "The force is within 5.9e-06 m/s^2 of the exact correction\n"
-                  "0 multiplications, 6 additions, 12 comparisons a sample\n"
-                  "Wrote made/imukit_my_unit_no_7.h, .c and _test.c. Next, for example:\n"
-                  "    arm-none-eabi-gcc -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard -O2 -c "
-                  "made/imukit_my_unit_no_7.c\n");
+    check_message(
+        "$I compensate unit.yaml --emit-c made", 0,
+        "imukit compensate: warning: the code does not correct gyro.bias.warm_up, which needs more "
+        "than one sample; imukit compensate LOG MODEL takes it out of a log\nimukit compensate: "
+        "warning: the code does not correct accel.lever_arm, which needs more than one sample; "
+        "imukit compensate LOG MODEL takes it out of a log\nTaken out: gyro.bias.fixed, "
+        "accel.bias.fixed\nLeft in: gyro.bias.warm_up, gyro.noise, accel.lever_arm\nThe rate is "
+        "within 2.5e-07 rad/s of the exact correction\nThe force is within 5.9e-06 m/s^2 of the "
+        "exact correction\n0 multiplications, 6 additions, 12 comparisons a sample\nWrote "
+        "made/imukit_my_unit_no_7.h, .c and _test.c. Next, for example:\n    arm-none-eabi-gcc "
+        "-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard -O2 -c made/imukit_my_unit_no_7.c\n");
     assert_string_equal(out, "");
     assert_int_equal(run("cd made && ls && rm -r ../made"), 0);
     assert_string_equal(
@@ -155,12 +153,12 @@ static void test_messages(void **state)
     assert_int_equal(run("$I compensate unit.yaml --emit-c . --prefix unit"), 0);
     put("unit.c", "int main(void) { return 0; }\n");
     check_message("$I compensate unit.yaml --emit-c . --prefix unit --without warm_up,lever_arm", 1,
-                  "imukit compensate: warning: gyro.bias.warm_up stays in: it needs more "
-                  "than one sample; imukit compensate LOG MODEL takes it out of a log\n"
-                  "imukit compensate: warning: accel.lever_arm stays in: it needs more than one "
-                  "sample; imukit compensate LOG MODEL takes it out of a log\n"
-                  "imukit compensate: error: ./unit.c: this file was not made by --emit-c and is "
-                  "not replaced; give another --prefix or directory\n");
+                  "imukit compensate: warning: the code does not correct gyro.bias.warm_up, which "
+                  "needs more than one sample; imukit compensate LOG MODEL takes it out of a "
+                  "log\nimukit compensate: warning: the code does not correct accel.lever_arm, "
+                  "which needs more than one sample; imukit compensate LOG MODEL takes it out of a "
+                  "log\nimukit compensate: error: ./unit.c: this file was not made by --emit-c and "
+                  "is not replaced; give another --prefix or directory\n");
     assert_int_equal(run("cat unit.c"), 0);
     assert_string_equal(out, "int main(void) { return 0; }\n");
     sweep();

@@ -184,10 +184,11 @@ static void test_messages(void **state)
     check_message("$I evaluate d.csv", 1,
                   "imukit evaluate: error: row 1: direction \"left\"; expected up, down or -\n");
     write_good();
-    check_message("$I evaluate good.csv", 1,
-                  "imukit evaluate: error: good.csv says nothing about what the unit was exposed "
-                  "to: add --motion PROGRAMME, or columns reference_rate_z [deg/s] … or table_rate "
-                  "[deg/s] with --table-axis; of a unit at rest: --static good.csv\n");
+    check_message(
+        "$I evaluate good.csv", 1,
+        "imukit evaluate: error: good.csv does not contain the reference motion of the unit; add "
+        "--motion PROGRAMME, or columns reference_rate_z [deg/s] … or table_rate [deg/s] with "
+        "--table-axis; for a unit at rest use --static good.csv\n");
     sweep();
 }
 

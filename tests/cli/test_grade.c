@@ -134,7 +134,7 @@ static void test_compensation(void **state)
     json_decref(document);
     assert_int_equal(run("$I grade a.yaml"), 0);
     check_contains(out, "\nperfect start, compensated ", out);
-    check_contains(out, "a shift by known values, which compensation takes out\n", out);
+    check_contains(out, "scatter but a shift by known values; compensation takes it out\n", out);
     sweep();
 }
 
@@ -150,7 +150,7 @@ static void test_claims_beside_figures(void **state)
     check_contains(out, "\nFor strategic (1 nmi / 24 h) every term would have to be ", out);
     check_contains(out, "at rest at 45 deg N", out);
     assert_int_equal(run("$I grade control"), 0);
-    check_contains(out, "no longer a position after 1 h", out);
+    check_contains(out, "no position any more after 1 h", out);
     check_contains(out, "no north", out);
     assert_null(strstr(out, "nan"));
     assert_null(strstr(out, "inf "));
@@ -179,8 +179,8 @@ static void test_parts_of_a_unit(void **state)
     assert_true(cep(way_of(models, 0, "given"), 1) > 0);
     json_decref(document);
     check_message("$I grade g.yaml --map cost", 2,
-                  "imukit grade: error: --map is of a drawing: add --plot FILE.svg\n"
-                  "Try: imukit grade --help\n");
+                  "imukit grade: error: --map selects a drawing; add --plot FILE.svg\nTry: imukit "
+                  "grade --help\n");
     sweep();
 }
 
@@ -200,7 +200,7 @@ static void test_maps(void **state)
     check_contains(out, "Comparison", "page");
     put("g.yaml", "imukit: 1\ngyro: {bias: {repeatability: 0.01 deg/h}}\n");
     assert_int_equal(run("$I grade g.yaml --map cost --plot c.svg"), 1);
-    check_contains(err, "--map: nothing of the model stands on this map", err);
+    check_contains(err, "--map: the model has no value for this map", err);
     assert_int_equal(access("c.svg", F_OK), -1);
     if (imk_plot_available()) {
         assert_int_equal(run("$I grade tactical --plot term"), 0);

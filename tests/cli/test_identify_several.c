@@ -91,8 +91,8 @@ static void test_which(void **state)
     check_message("$I identify run1.npy --runs", 2,
                   "imukit identify: error: --runs needs two logs or more\n" TRY("identify"));
     check_message("$I identify run1.npy run2.npy --runs --devices", 2,
-                  "imukit identify: error: --runs are of one sensor, --devices are different ones: "
-                  "which?\n" TRY("identify"));
+                  "imukit identify: error: --runs means one sensor, --devices means different "
+                  "ones; leave one out\n" TRY("identify"));
     check_message("$I identify run1.npy nothing.npy --runs", 1,
                   "imukit identify: error: nothing.npy cannot be read\n");
     check_message(
@@ -100,9 +100,10 @@ static void test_which(void **state)
         "imukit identify: error: --devices compares sensors and makes no model: leave out "
         "--output, or identify each log alone\n" TRY("identify"));
     assert_int_equal(run("$I simulate model.yaml --rate 50Hz --duration 1min -o slow.npy"), 0);
-    check_message("$I identify run1.npy slow.npy --runs", 1,
-                  "imukit identify: error: run1.npy was sampled at 100 Hz, slow.npy at 50 Hz: runs "
-                  "of one sensor have one sample rate; identify them apart, or with --devices\n");
+    check_message(
+        "$I identify run1.npy slow.npy --runs", 1,
+        "imukit identify: error: run1.npy was sampled at 100 Hz, slow.npy at 50 Hz: runs of one "
+        "sensor have one sampling rate; identify them separately, or with --devices\n");
 }
 
 static void test_runs(void **state)
@@ -154,7 +155,7 @@ static void test_run_that_differs(void **state)
     json_t *root = identify("run1.npy run2.npy noisy.npy --runs --strict", 1);
     const char *text;
     assert_int_equal(messages(result_of(root, "verdict"), "runs_differ", &text), 3);
-    check_contains(text, "most of all in angle random walk", "a run that differs");
+    check_contains(text, "the largest difference is in angle random walk", "a run that differs");
     check_contains(text, "in noisy.npy", "a run that differs");
     check_contains(err, "do not have the same noise", "a run that differs");
     json_decref(root);
@@ -207,29 +208,29 @@ static void test_plan(void **state)
     assert_int_equal(run("$I identify --plan model.yaml --rate 100Hz --want 'bias_instability 5%'"),
                      0);
     check_contains(out, "bias_instability 5%", "plan");
-    check_contains(out, "as planned", "plan");
+    check_contains(out, "planned length", "plan");
     /* Ten minutes are too short for a statement. */
     assert_int_equal(run("$I identify --plan tactical --rate 0.1Hz | grep gyro.angle_random_walk"),
                      0);
     check_contains(out, "deg/sqrt(h)    -  ", "plan");
     check_message("$I identify --plan tactical --rate 1e-9Hz", 2,
-                  "imukit identify: error: --plan: a record of 86400 s at 1e-09 Hz has not the 256 "
-                  "to 1e12 samples that are due; add another --duration\n" TRY("identify"));
+                  "imukit identify: error: --plan: a record of 86400 s at 1e-09 Hz does not have "
+                  "256 to 1e12 samples; add a --duration that fits\n" TRY("identify"));
     check_message("$I identify --plan tactical --rate 100Hz --duration 1e308s", 2,
-                  "imukit identify: error: --plan: a record of 1e+308 s at 100 Hz has not the 256 "
-                  "to 1e12 samples that are due; change --duration or --rate\n" TRY("identify"));
+                  "imukit identify: error: --plan: a record of 1e+308 s at 100 Hz does not have "
+                  "256 to 1e12 samples; change --duration or --rate\n" TRY("identify"));
     check_message("$I identify run1.npy --plan model.yaml --rate 100Hz", 2,
-                  "imukit identify: error: --plan is for a record that is not made yet: leave the "
-                  "log out, or --plan\n" TRY("identify"));
+                  "imukit identify: error: --plan is for a record that does not exist yet; leave "
+                  "out the log, or --plan\n" TRY("identify"));
     check_message("$I identify --want 'bias_instability 5%'", 2,
-                  "imukit identify: error: --want says what a record is to tell: it goes with "
+                  "imukit identify: error: --want states requirements for a planned record; add "
                   "--plan MODEL\n" TRY("identify"));
     check_message("$I identify", 2,
                   "imukit identify: error: an operand is missing: imukit identify LOG..., "
                   "or --plan MODEL\n" TRY("identify"));
     check_message("$I identify run1.npy --duration 3h", 2,
-                  "imukit identify: error: --duration goes with --plan or --curve: a log has its "
-                  "own\n" TRY("identify"));
+                  "imukit identify: error: --duration goes with --plan or --curve; a log has its "
+                  "own length\n" TRY("identify"));
 }
 
 /* A curve of N = 0.3 deg/sqrt(h) alone: 0.3/60/sqrt(tau) deg/s; of the log, by either method. */
@@ -246,10 +247,10 @@ static void test_allan(void **state)
     json_t *term = term_of(json_array_get(result_of(root, "channels"), 0));
     CHECK_CLOSE(number(term, "value"), white, 1e-6 * white); /* nine decimals of the table */
     json_decref(root);
-    check_message("$I identify curve.csv --curve", 2,
-                  "imukit identify: error: a curve does not say how long and how fast was "
-                  "recorded: give --rate and --duration, such as --rate 100Hz --duration "
-                  "3h\n" TRY("identify"));
+    check_message(
+        "$I identify curve.csv --curve", 2,
+        "imukit identify: error: a curve does not state the rate and the length of its record; add "
+        "--rate and --duration, such as --rate 100Hz --duration 3h\n" TRY("identify"));
     root = identify("run1.npy --method allan", 0);
     term = term_of(json_array_get(result_of(root, "channels"), 0));
     CHECK_CLOSE(number(term, "value"), white, 6 * number(term, "sigma"));

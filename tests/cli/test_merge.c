@@ -72,7 +72,7 @@ static void what_is_wrong_is_named(void **state)
     check_contains(err,
                    "imukit merge: error: runs 10-29,60-69,90-99 of 100 are missing; compute again "
                    "with --shard i/10 for i = 2-3,7,10 (Slurm: sbatch --array=2-3,7,10), then "
-                   "merge again (--partial merges what there is)\n",
+                   "merge again (--partial merges the existing runs)\n",
                    "missing shards");
     assert_int_equal(access("all.h5", F_OK), -1);
     assert_int_equal(run("$I merge s?.h5 -o some.h5 --partial --json"), 0);
@@ -126,10 +126,9 @@ static void results_through_a_pipe(void **state)
                   "itself to imukit drift, with a name ending in .h5\n");
     check_message("cat s1.h5 | $I merge - s2.h5 -o x.h5", 1,
                   "imukit merge: warning: standard input: a results file cannot be read through a "
-                  "pipe; give the file itself\n"
-                  "imukit merge: error: runs 0-49 of 100 are missing, which may be in a file that "
-                  "could not be read: merge again with files that can (--partial merges what there "
-                  "is)\n");
+                  "pipe; give the file itself\nimukit merge: error: runs 0-49 of 100 are missing; "
+                  "they may be in a file that could not be read: merge again with readable files "
+                  "(--partial merges the existing runs)\n");
     run("cat s1.h5 | $I merge /dev/stdin s2.h5 -o x.h5");
     check_contains(err, "/dev/stdin: a results file cannot be read through a pipe", "merge");
     assert_null(strstr(err, "compute again"));
@@ -250,15 +249,15 @@ static void an_interrupt_says_how_to_go_on(void **state)
     read_text("said", err);
     check_contains(err,
                    "interrupted: the runs computed so far are kept in x.h5.part, and the same "
-                   "command goes on from there\n",
+                   "command continues from there\n",
                    "SIGINT");
     assert_int_equal(run("$I drift m.yaml --duration 1min --seed 4 --monte-carlo 400 -o x.h5"), 1);
     assert_string_equal(err, "imukit drift: error: x.h5.part: the seed is 3, not 4; remove the "
                              "file to begin anew, or choose another name for the results\n");
     assert_int_equal(run("$I drift m.yaml --duration 1min --seed 3 --monte-carlo 400 -o x.h5"), 0);
-    check_contains(err, " of 400 runs are there already\n", "what the interrupt left");
+    check_contains(err, " of 400 runs exist already\n", "what the interrupt left");
     assert_int_equal(run("$I drift m.yaml --duration 1min --seed 3 --monte-carlo 400 -o x.h5"), 0);
-    assert_string_equal(err, "imukit drift: 400 of 400 runs are there already\n");
+    assert_string_equal(err, "imukit drift: 400 of 400 runs exist already\n");
     sweep();
 }
 
@@ -275,7 +274,7 @@ static void a_full_disk(void **state)
                    "a limit on the size of files");
     assert_int_equal(access("x.h5", F_OK), -1);
     assert_int_equal(run(DRIFT "-o x.h5"), 0);
-    check_contains(err, " of 100 runs are there already\n", "what the full disk held");
+    check_contains(err, " of 100 runs exist already\n", "what the full disk held");
     assert_int_equal(run(DRIFT "-o one.h5 && cmp one.h5 x.h5"), 0);
     sweep();
 }

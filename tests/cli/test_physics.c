@@ -398,8 +398,8 @@ static void test_refusals(void **state)
         {"fibre_optic --animate a.png", 2,
          E "--animate a.png: expected a name ending in .svg\n" TRY("physics")},
         {"fibre_optic --view 2 --animate a.svg", 2,
-         E "--animate: the view \"The ramp and its resets\" is drawn against time; a view of one "
-           "signal against another can move\n" TRY("physics")},
+         E "--animate: the view \"The ramp and its resets\" is drawn against time; only a view of "
+           "one signal against another can move\n" TRY("physics")},
         {"fibre_optic --view 1 --plot a.svg --duration 1us", 2,
          E "--duration: 1e-06 s at 1e+06 points per second are no picture\n" TRY("physics")},
         {"no.yaml", 1,
@@ -413,7 +413,7 @@ static void test_refusals(void **state)
         {"ring_laser -o a.csv", 2,
          E "-o: there is no run to write; add --duration TIME\n" TRY("physics")},
         {"ring_laser --rate '1 deg/s'", 2,
-         E "--rate: how long? add --duration TIME\n" TRY("physics")},
+         E "--rate: the length is missing; add --duration TIME\n" TRY("physics")},
         {"ring_laser --rate 10 -d 1s -o a.csv", 2,
          E "--rate 10: the unit is missing; write --rate \"10 deg/s\"\n" TRY("physics")},
         {"free_gyro --rate '1e12 deg/s' -d 50ms -o a.csv", 2,
@@ -438,8 +438,8 @@ static void test_refusals(void **state)
          E "--sine is the frequency of the rate or acceleration given: add --rate or "
            "--acceleration\n" TRY("physics")},
         {"ring_laser --rate '1 deg/s' --sine 50Hz -d 1s", 2,
-         E "--sine 50 Hz: the input is held over a sample of 0.01 s, at least four of which make a "
-           "cycle; add --output-rate 200Hz or more\n" TRY("physics")},
+         E "--sine 50 Hz: the input is held over a sample of 0.01 s, and a cycle needs at least "
+           "four samples; add --output-rate 200Hz or more\n" TRY("physics")},
         {"ring_laser -d 0s -o a.csv", 2, E "--duration: expected a time above 0\n" TRY("physics")},
         {"ring_laser -d 1ms -o a.csv", 2,
          E "--duration 0.001 s: shorter than a sample of 0.01 s\n" TRY("physics")},

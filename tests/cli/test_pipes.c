@@ -282,17 +282,16 @@ static void test_formats_that_seek(void **state)
     check_message("cat x.npy & $I convert log.csv x.npy", 1,
                   "imukit convert: error: x.npy: a .npy of unknown length cannot be compressed or "
                   "go to a pipe; write a plain .npy file, or a .csv\n");
-    check_message(
-        "$I drift tactical -d 10s -r 1Hz -n 3 -o x.h5", 2,
-        "imukit drift: error: -o x.h5: runs are kept in a file beside their results while "
-        "they are made; give a name ending in .csv or .h5\n" TRY("drift"));
+    check_message("$I drift tactical -d 10s -r 1Hz -n 3 -o x.h5", 2,
+                  "imukit drift: error: -o x.h5: the runs are kept in a file beside the results "
+                  "while they are computed; give a name ending in .csv or .h5\n" TRY("drift"));
     assert_int_equal(run("$I drift tactical -d 10s -r 1Hz -n 3 -o runs.h5"), 0);
     check_message("$I merge runs.h5 -o x.h5", 1,
                   "imukit merge: error: x.h5: it is not a regular file; expected a regular file, "
                   "because its checksum is written last\n");
     check_message("$I drift tactical -d 10s -r 1Hz -n 3 -o /dev/stdout", 2,
-                  "imukit drift: error: -o -: runs are kept in a file beside their results while "
-                  "they are made; give a name ending in .csv or .h5\n" TRY("drift"));
+                  "imukit drift: error: -o -: the runs are kept in a file beside the results while "
+                  "they are computed; give a name ending in .csv or .h5\n" TRY("drift"));
     check_message(
         "$I drift x.h5", 1,
         "imukit drift: error: x.h5: a results file cannot be read through a pipe; give the file "

@@ -294,8 +294,8 @@ static void test_rectification(void **state)
     imk_log_free(&straight);
     imk_log_free(&clean);
     check_message("$I simulate k2.yaml --motion shaker.yaml --rate 1Hz", 0,
-                  "imukit simulate: warning: the vibration needs 5328 parts to a sample, and 512 "
-                  "are the most: what it does comes out wrong below --rate 11Hz\n");
+                  "imukit simulate: warning: the vibration needs 5328 parts per sample, but 512 "
+                  "are the most; its effect is wrong below --rate 11Hz\n");
     sweep();
 }
 
@@ -363,7 +363,7 @@ static void test_refusals(void **state)
     put("clock.yaml", "imukit: 1\ngyro: {}\naccel: {}\ntiming: {jitter: 0.1 ms, drops: 1 %}\n");
     assert_int_equal(run("$I simulate AHRS --rate 10Hz --duration 1s -o log.csv"), 0);
     setenv("D", "--motion drive.yaml --rate 100Hz", 1);
-    REFUSED("AHRS --motion drive.yaml", "the sample rate is missing: add --rate 100Hz");
+    REFUSED("AHRS --motion drive.yaml", "the sampling rate is missing: add --rate 100Hz");
     REFUSED("AHRS --rate 100Hz", "the length is missing: add --duration 1h");
     REFUSED("AHRS $D --duration 1h", "--duration 3600 s: the motion ends after 23 s (leave "
                                      "the option out, or let the motion end with `then: hold`)");
@@ -381,10 +381,10 @@ static void test_refusals(void **state)
             "--output and --truth both write x.csv: give another name");
     REFUSED("AHRS $D --truth -",
             "the log and the truth cannot both go to standard output: add -o LOG");
-    REFUSED("AHRS $D --yaw 5deg", "--roll, --pitch and --yaw are of a unit at rest: with --motion "
+    REFUSED("AHRS $D --yaw 5deg", "--roll, --pitch and --yaw are for a unit at rest; with --motion "
                                   "the attitude is in the motion file");
     REFUSED("AHRS $D --no-earth",
-            "--no-earth is of a unit at rest: a motion script says `earth: no`");
+            "--no-earth is for a unit at rest; in a motion script write `earth: no`");
     REFUSED("AHRS --rate 1Hz --duration 1s --latitude 100deg",
             "--latitude 100deg: expected -90deg to 90deg");
     REFUSED("AHRS --rate 1Hz --duration 1s --height 1e6m",

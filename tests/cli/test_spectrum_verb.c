@@ -135,8 +135,8 @@ static void test_refusals(void **state)
                   "imukit spectrum: error: --from 20 Hz is not below --to 10 Hz\n" TRY("spectrum"));
     put("short.csv", "time [s],gyro_x [deg/s]\n0,1\n1,2\n2,1\n");
     check_message("$I spectrum short.csv", 1,
-                  "imukit spectrum: error: short.csv: 3 rows are too few for a spectrum; 64 are "
-                  "needed, and some thousands useful\n");
+                  "imukit spectrum: error: short.csv: 3 rows are too few for a spectrum; at least "
+                  "64 are needed, and some thousands are useful\n");
     assert_int_equal(run("$I spectrum good.csv --method wlech"), 2);
     check_contains(err, "welch", "the nearest choice");
     assert_int_equal(run("awk 'BEGIN {print \"time [s],gyro_x [deg/s]\"; for (i = 0; i < 100; i++) "

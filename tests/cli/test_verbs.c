@@ -167,8 +167,8 @@ static void test_allan_statistics(void **state)
     check_message("$I allan x.txt $A --statistic mdev,mdev", 2,
                   "imukit allan: error: --statistic mdev,mdev: mdev is named twice\n" TRY("allan"));
     check_message("$I allan x.txt $A --statistic theo1 --tau 1", 2,
-                  "imukit allan: error: --tau 1: 1 s is outside what this record allows, 7.5 s to "
-                  "750 s\n" TRY("allan"));
+                  "imukit allan: error: --tau 1: 1 s is outside the averaging times of this "
+                  "record, 7.5 s to 750 s\n" TRY("allan"));
     sweep();
 }
 
@@ -184,13 +184,13 @@ static void test_allan_taus(void **state)
         0);
     assert_string_equal(out, "501\n");
     assert_int_equal(run("$I allan x.txt $A --tau 1,nan"), 2);
-    check_contains(err, "\"nan\" is no averaging time", "--tau 1,nan");
+    check_contains(err, "\"nan\" is not an averaging time", "--tau 1,nan");
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1,2m", 2,
-                  "imukit allan: error: --tau 1,2m: \"2m\" is no averaging time; expected octave, "
-                  "decade, many, all or a list such as 1,10,100 in seconds\n" TRY("allan"));
+                  "imukit allan: error: --tau 1,2m: \"2m\" is not an averaging time; expected "
+                  "octave, decade, many, all or a list such as 1,10,100 in seconds\n" TRY("allan"));
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 1s,501s", 2,
-                  "imukit allan: error: --tau 1s,501s: 501 s is outside what this record "
-                  "allows, 1 s to 500 s\n" TRY("allan"));
+                  "imukit allan: error: --tau 1s,501s: 501 s is outside the averaging times of "
+                  "this record, 1 s to 500 s\n" TRY("allan"));
     check_message("$I allan x.txt --columns gyro_x --gyro-unit rad/s --rate 1Hz --tau 10s,1s", 2,
                   "imukit allan: error: --tau 10s,1s: the times must ascend\n" TRY("allan"));
     check_message(
@@ -269,7 +269,7 @@ static void test_identify_names_the_likely_unit(void **state)
     assert_int_equal(run("$I identify s.csv"), 0);
     check_contains(err,
                    "m/s^2 at rest: the numbers look like g; write g into the header, or add "
-                   "--accel-unit g where it has none.",
+                   "--accel-unit g if it has no unit.",
                    err);
     sweep();
 }

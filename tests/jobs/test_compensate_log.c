@@ -64,8 +64,8 @@ static void test_missing_axis_is_a_finding(void **state)
     const imk_finding *why = imk_findings_failure(&log->findings);
     assert_non_null(why);
     imk_finding_message(why, "log.csv", "unit.yaml", text, sizeof text);
-    assert_string_equal(text, "log.csv has no column gyro_z: unit.yaml describes 3 gyro axes, "
-                              "which are all needed");
+    assert_string_equal(text, "log.csv has no column gyro_z: unit.yaml describes 3 gyro axes, and "
+                              "all of them are needed");
     imk_compensate_log_free(log);
 }
 

@@ -132,8 +132,9 @@ static void test_what_is_missing(void **state)
     assert_string_equal(text, "1 row with a value that is not a finite number or beyond 1e60, "
                               "first in row 21: counted as missing");
     imk_finding_text(&findings.item[1], text, sizeof text);
-    assert_string_equal(text, "3 of 600 samples are missing, in 2 holes, the longest of 0.02 s: "
-                              "their places are kept empty");
+    assert_string_equal(
+        text,
+        "3 of 600 samples are missing, in 2 gaps, the longest of 0.02 s; the gaps stay empty");
     imk_even_record_free(&even);
     CHECK_OK(source.rewind(source.context, &error));
     findings.count = 0;

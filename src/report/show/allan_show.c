@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Allan deviations to be shown: data, tables, a figure. */
+/* The display of Allan deviations: data, tables, a figure. */
 #include "imukit/channel_units.h"
 #include "imukit/show.h"
 
@@ -102,10 +102,10 @@ static void show_tables(const imk_allan_log *a, imk_result *result)
         imk_result_for(result, IMK_FOR_PAGE);
         if (a->settings.statistic_count > 1)
             imk_result_heading(result, imk_allan_title(a->settings.statistic[k]));
-        /* What a statistic cannot be taken of is said, not left out in silence. */
+        /* A statistic that cannot be computed gets a line; it is not left out silently. */
         imk_result_for(result, IMK_FOR_TERMINAL);
         if (a->curve[0][k].count == 0)
-            imk_result_line(result, "%s: the record allows no such averaging time\n",
+            imk_result_line(result, "%s: the record allows none of these averaging times\n",
                             imk_allan_title(a->settings.statistic[k]));
         for (imk_channel_kind kind = IMK_CHANNEL_GYRO; kind < IMK_CHANNEL_KINDS; kind++)
             show_table(a, kind, k, result);

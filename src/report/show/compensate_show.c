@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What was taken out of a record, and what was met on the way. */
+/* The terms taken out of a record, and the samples that were flagged. */
 #include "show_internal.h"
 
 #include <stdio.h>

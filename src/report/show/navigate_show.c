@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the unit went, as a result: the attitude it began with, the track, its end. */
+/* The result of a navigation: the attitude at the start, the track, its end. */
 #include "show_internal.h"
 
 #include <math.h>
@@ -146,10 +146,10 @@ static void show_attitude(const imk_navigate_log *n, imk_result *result)
         "  force %.6f of normal gravity, rotation %.4f of the Earth's, sway %.2g m/s",
         n->record.dt * (double)n->first, method_names[n->method],
         !n->settings.method_given && n->method == IMK_ALIGNMENT_MEANS
-            ? ", as the gyros read more than the Earth's rotation"
+            ? ", because the gyros read more than the Earth's rotation"
             : "",
         angles_text(n->attitude, text), n->settings.heading_given ? " (yaw given)" : "", tilt,
-        north, n->settings.model ? "" : " (scatter alone; --model counts the biases in)",
+        north, n->settings.model ? "" : " (from the scatter alone; --model includes the biases)",
         n->alignment.gravity_ratio, n->alignment.earth_rate_ratio, n->alignment.disturbance);
 }
 
@@ -234,8 +234,8 @@ static const struct line {
     {3, "east", IMK_CURVE_LINE, EAST_COLOR, IMK_TRACK_TIME, IMK_TRACK_VELOCITY + 1, 1},
 };
 
-/* A line of the track, thinned: the last point is its last row. Those of sigma are about the start,
- * where a unit that stood is; else about the track. */
+/* A line of the track, thinned: the last point is its last row. Lines of sigma are drawn about the
+ * start if the unit stood still, otherwise about the track. */
 static void add_line(const imk_navigate_log *n, const struct line *l, imk_figure_builder *figure)
 {
     const size_t every = n->track_rows / POINTS_MAX + 1;
@@ -311,8 +311,8 @@ static void show_rest(const imk_navigate_log *n, imk_result *result)
     show_drift(n, 0, result);
     if (c->accepted + c->refused > 0)
         imk_result_line(result,
-                        "Zero-velocity updates: %llu, refused %llu; innovations squared %.2f of "
-                        "what the model says",
+                        "Zero-velocity updates: %llu, refused %llu; innovations squared %.2f times "
+                        "what the model predicts",
                         (unsigned long long)c->accepted, (unsigned long long)c->refused,
                         c->degrees > 0 ? c->chi_square / (double)c->degrees : 0.0);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What results of several jobs are shown by. */
+/* Functions for the display of results, shared by several jobs. */
 #ifndef IMUKI_SHOW_INTERNAL_H
 #define IMUKI_SHOW_INTERNAL_H
 
@@ -12,17 +12,18 @@
 
 enum { IMKI_WORDS = 120 };
 
-/* "1.2345 ± 0.0012", to the digits that the uncertainty leaves; in a unit of this scale. */
+/* "1.2345 ± 0.0012", with the digits that the uncertainty allows, in a unit of this scale. */
 typedef struct imki_words {
     char text[IMKI_WORDS];
 } imki_words;
 imki_words imki_plus_minus(double value, double sigma, double scale);
-/* A value alone, by its uncertainty; or to `digits` when that is 0. */
+/* A value alone, with the digits that its uncertainty allows, or `digits` if the uncertainty is
+ * 0. */
 imki_words imki_value(double value, double uncertainty, int digits);
 
-/* "1.2 to 3.4", to the digits that the width leaves. */
+/* "1.2 to 3.4", with the digits that the width allows. */
 imki_words imki_range(double lower, double upper, double scale);
-/* The interval of an estimate, or "< 3.4" of what is absent. */
+/* The interval of an estimate, or "< 3.4" for an absent term. */
 imki_words imki_interval(const imk_estimate *estimate, double scale);
 /* "0.03", "below 1e-12" */
 imki_words imki_chance(double probability);
@@ -35,7 +36,7 @@ size_t imki_members(const imk_even_record *record, imk_channel_kind kind, size_t
 void imki_show_estimate(imk_result *result, const char *key, const imk_estimate *estimate,
                         double scale, const char *unit);
 
-/* Begin an object, or tell null where there is none. @return there */
+/* Begin an object, or write null if there is none. @return `there` */
 bool imki_begin_object(imk_result *result, const char *key, bool there);
 /* An array of texts. */
 void imki_show_texts(imk_result *result, const char *key, size_t count, const char *const *texts);
@@ -44,7 +45,7 @@ void imki_show_texts(imk_result *result, const char *key, size_t count, const ch
 void imki_begin_curve(imk_figure_builder *figure, const char *label, imk_curve_style style,
                       int color);
 
-/* A line, of a text that is put together; nothing when it is empty. The text is freed. */
+/* A line from a composed text; nothing when the text is empty. The text is freed. */
 void imki_show_text(imki_text *text, imk_result *result);
 
 bool imki_warned(const imk_findings *findings);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Spectra to be shown: root densities, lines, noise parameters, a figure. */
+/* The display of spectra: root densities, lines, noise parameters, a figure. */
 #include "show_internal.h"
 
 #include "imukit/identify_log.h"
@@ -17,7 +17,7 @@ static const char *sides_text(const imk_spectrum_log *s)
     return s->settings.one_sided ? "one-sided" : "two-sided";
 }
 
-/* Unit a person reads the roots of the densities of these channels in, without /sqrt(Hz). */
+/* Readable unit for the root densities of these channels, without /sqrt(Hz). */
 static imk_unit root_unit(const imk_spectrum_log *s, size_t channel)
 {
     const imk_channel_spectrum *f = &s->channel[channel];
@@ -39,8 +39,8 @@ static void density_cell(imk_table *table, const imk_channel_spectrum *f,
     imk_table_add(table, "%s", "");
 }
 
-/* Frequencies down, channels across; nothing when there are none. A band that is one line on some
- * channel is empty there. */
+/* Frequencies down, channels across; nothing when there are none. A band that a spectral line fills
+ * on some channel is empty there. */
 static void show_densities(const imk_spectrum_log *s, imk_channel_kind kind, imk_result *result)
 {
     size_t member[IMK_LOG_COLUMNS_MAX];
@@ -95,8 +95,8 @@ static void show_line(const imk_spectrum_log *s, size_t channel, size_t index, i
 static void show_lines(const imk_spectrum_log *s, imk_result *result)
 {
     imk_table *table = imk_result_table(result, 0);
-    imk_table_row(table, "channel\tfrequency [Hz]\tamplitude\tover floor\tchance of it\tkind\t"
-                         "multiple of");
+    imk_table_row(table,
+                  "channel\tfrequency [Hz]\tamplitude\tover floor\tfalse alarm\tkind\tmultiple of");
     for (size_t c = 0; c < s->record.count; c++)
         for (size_t i = 0; i < s->channel[c].line_count; i++)
             show_line(s, c, i, table);

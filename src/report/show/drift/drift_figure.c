@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Drift as a picture: how the error grows, and which term makes how much of it at which time. */
+/* Drift as a picture: how the error grows, and how much each term contributes at each time. */
 #include "drift_show_internal.h"
 
 #include "report/result_internal.h"
@@ -153,7 +153,8 @@ static bool has_shares(const imk_drift_case *one, size_t t)
     return is_drawn(&one->figures[t]) && variance(&one->analysis->total[t]) > 0;
 }
 
-/* Bands from 0 to 100 %, each on the ones before; the rest, where it shows, is the last. */
+/* Bands from 0 to 100 %, each on top of the previous ones; the rest, if it is visible, is the last
+ * band. */
 static void add_bands(const drawing *d, const imk_drift_case *one, const band *bands, size_t count)
 {
     double *below = d->below, rest = 0;
@@ -195,7 +196,7 @@ static void show_shares(const drawing *d)
 
 /* ---- all ---- */
 
-/* The largest distance that is drawn: kilometres when they are some. */
+/* The largest distance that is drawn; it decides between metres and kilometres. */
 static double largest(const imk_drift_models *r)
 {
     double most = 0;
@@ -242,7 +243,7 @@ void imki_drift_show_figure(const imk_drift_models *r, bool shares, imk_result *
     d.figure = imk_result_figure(
         result, r->model_count > 1 ? "Comparison" : r->name[0], any ? 1 + r->case_count : 1,
         "CEP is the radius of the circle that holds half of all outcomes, R95 that of 95 %. Shares "
-        "are of the variance: a term with 25 % makes half as much error as the whole.");
+        "refer to the variance: a term with 25 % causes half as much error as all terms together.");
     show_growth(&d);
     if (shares && any)
         show_shares(&d);

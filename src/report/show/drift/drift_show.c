@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Drift as a result: what the error grows to, and which terms make it. */
+/* Drift as a result: how the error grows, and which terms cause it. */
 #include "drift_show_internal.h"
 
 #include "report/result_internal.h"
@@ -186,16 +186,16 @@ static void show_deciding(const imk_drift_models *r, imk_result *result)
         const imk_drift_case *one = &r->cases[c];
         char text[IMKI_DRIFT_TIME];
         if (one->share_count > 0 && one->share[0].share > 0)
-            imk_result_line(result, "%s: after %s %s makes %.0f %% of the variance", one->label,
-                            imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, text),
-                            one->analysis->source[one->share[0].source].text,
-                            100 * one->share[0].share);
+            imk_result_line(
+                result, "%s: after %s %s contributes %.0f %% of the variance", one->label,
+                imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, text),
+                one->analysis->source[one->share[0].source].text, 100 * one->share[0].share);
     }
 }
 
 /* ---- all ---- */
 
-/* What stands on the page, and letters have no shades. */
+/* The page shows the shares too; a plot of letters has no shades for them. */
 static void show_figure(const imk_drift_models *r, imk_result *result)
 {
     imk_result_for(result, IMK_FOR_TERMINAL);

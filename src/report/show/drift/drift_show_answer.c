@@ -48,7 +48,7 @@ void imki_drift_show_answer_data(const imk_drift_models *r, imk_result *result)
 
 /* ---- terms ---- */
 
-/* What stands at the start: of the settings, not of the model. */
+/* The initial errors: they are settings, not terms of the model. */
 static void add_initial(const imk_drift_settings *s, const char *source, double factor,
                         imki_text *text)
 {
@@ -77,7 +77,7 @@ static void add_value(const imk_drift_case *one, const imk_result *model, size_t
     free(text.bytes);
 }
 
-/* 0 is below what the search for a factor can tell. */
+/* 0 means a factor below the resolution of the search. */
 static void add_factor(double factor, const char *none, imk_table *table)
 {
     if (factor == 0)
@@ -99,7 +99,7 @@ static void show_terms(const imk_drift_models *r, const imk_result *model, imk_r
     imk_table *table = imk_result_table(result, 0x18U);
     imk_table_row(table, "term\tis\tmust become\tfactor");
     if (answer->alone)
-        imk_table_add(table, "this one alone");
+        imk_table_add(table, "if changed alone");
     for (size_t i = 0; i < answer->order_count; i++) {
         const size_t k = answer->order[i];
         imk_table_row(table, "%s", one->analysis->source[k].text);
@@ -115,8 +115,8 @@ static void show_terms(const imk_drift_models *r, const imk_result *model, imk_r
     imk_result_for(result, IMK_FOR_TERMINAL);
     imk_result_line(result, "%s",
                     answer->alone
-                        ? "\nThis one alone: made so much smaller, with the others as they are."
-                        : "\nTo make one of them better alone would not be enough.");
+                        ? "\nIf changed alone: the factor when only this term becomes smaller."
+                        : "\nImproving only one of them would not be enough.");
 }
 
 /* ---- devices ---- */
@@ -134,10 +134,11 @@ static void show_devices(const imk_drift_models *r, const imk_drift_answer *answ
         if (!table) {
             const char *what = presets ? "Grade presets" : "Devices of the catalogue";
             imk_result_for(result, IMK_FOR_TERMINAL);
-            imk_result_line(result, "\n%s that would do:", what);
+            imk_result_line(result, "\n%s that meet the requirement:", what);
             imk_result_for(result, IMK_FOR_PAGE);
-            imk_result_heading(result, presets ? "Grade presets that would do"
-                                               : "Devices of the catalogue that would do");
+            imk_result_heading(result, presets
+                                           ? "Grade presets that meet the requirement"
+                                           : "Devices of the catalogue that meet the requirement");
             imk_result_for(result, IMK_FOR_BOTH);
             table = imk_result_table(result, 2);
         }
@@ -148,7 +149,7 @@ static void show_devices(const imk_drift_models *r, const imk_drift_answer *answ
     }
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (!table && !presets)
-        imk_result_line(result, "\nNo device of the catalogue would do.");
+        imk_result_line(result, "\nNo device of the catalogue meets the requirement.");
 }
 
 static void show_remarks(const imk_drift_models *r, const imk_drift_answer *answer,
@@ -162,9 +163,9 @@ static void show_remarks(const imk_drift_models *r, const imk_drift_answer *answ
         starred = starred || (c->no_bias && imki_drift_would_do(r, c, c->device->is_preset));
     }
     if (starred)
-        imk_result_line(result, "* Its source states no run-to-run bias of gyros or "
-                                "accelerometers: it is as good as this only after a calibration at "
-                                "every start.");
+        imk_result_line(result,
+                        "* The source states no run-to-run bias of gyros or accelerometers: the "
+                        "device is this good only after a calibration at every start.");
     if (left_out > 0)
         imk_result_line(result, "%zu entries have no complete set of gyros and accelerometers.",
                         left_out);
@@ -178,7 +179,7 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
     const imk_drift_wanted *want = &r->settings.want;
     const imk_drift_allocation *need = &answer->allocation;
     const bool met = need->present <= want->goal;
-    char title[160], factor[80] = "nothing makes it.";
+    char title[160], factor[120] = "no term contributes to it.";
     char now[IMK_READABLE_SIZE], goal[IMK_READABLE_SIZE], time[IMKI_DRIFT_TIME];
     snprintf(title, sizeof title, "Wanted: %s %s after %s",
              imk_drift_requirement_name(want->figure),
@@ -186,17 +187,21 @@ void imki_drift_show_answer(const imk_drift_models *r, const imk_result *model, 
              imki_drift_time(want->time, IMK_DRIFT_LINEAR, time));
     if (!met)
         snprintf(factor, sizeof factor,
-                 "all terms would have to be %.3g times smaller. The least work:", 1 / need->all);
+                 "all terms would have to be %.3g times smaller. The smallest improvement that "
+                 "meets the requirement:",
+                 1 / need->all);
     else if (!isinf(need->all))
         snprintf(factor, sizeof factor, "all terms may be %.3g times larger.", need->all);
     imk_result_for(result, IMK_FOR_TERMINAL);
-    imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: it is %s, %s", title,
+    imk_result_line(result, "\n" IMK_BOLD "%s." IMK_PLAIN " %s: the figure is %s; %s", title,
                     met ? "Met" : "Not met", imk_readable_quantity(need->present, &want->unit, now),
                     factor);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, title);
-    imk_result_finding(result, met ? 0 : 1,
-                       met ? "Met." : "Not met. The least work that would do, counted in factors:");
+    imk_result_finding(
+        result, met ? 0 : 1,
+        met ? "Met."
+            : "Not met. The smallest improvement that meets the requirement, counted in factors:");
     imk_result_for(result, IMK_FOR_BOTH);
     show_terms(r, model, result);
     show_devices(r, answer, false, result);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The parts of a drift that is shown: tables, figure, and the answer to what is wanted. */
+/* The parts of a displayed drift: tables, figure, and the answer to a requirement. */
 #ifndef IMUKI_DRIFT_SHOW_INTERNAL_H
 #define IMUKI_DRIFT_SHOW_INTERNAL_H
 

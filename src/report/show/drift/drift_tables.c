@@ -5,10 +5,10 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Shares below this are summed up in one line. */
+/* Smaller shares are added up in one line. */
 static const double least_share = 0.002;
 
-/* Seconds where a part of one would be lost. */
+/* Seconds, if a fraction of a second would be lost otherwise. */
 const char *imki_drift_time(double time, imk_drift_validity validity, char text[IMKI_DRIFT_TIME])
 {
     char plain[IMKI_DRIFT_TIME - 4];
@@ -168,8 +168,8 @@ static void show_shares(const imk_drift_models *r, const imk_drift_case *one, im
         imk_table_add(table, "%.1f %%", 100 * rest);
 }
 
-/* The moments of a source, or of all together, behind the last, where a shift shows beside the
- * scatter: a thousandth of it. NULL: it does not. */
+/* The moments of a source, or of all sources together (index after the last), if its shift is at
+ * least a thousandth of the scatter; otherwise NULL. */
 static const imk_drift_moments *shift_of(const imk_drift_case *one, size_t source)
 {
     const double least = 1e-3;
@@ -212,15 +212,15 @@ void imki_drift_show_budget(const imk_drift_models *r, const imk_drift_case *one
     const imk_audience audience = r->model_count > 1 ? IMK_FOR_PAGE : IMK_FOR_BOTH;
     char title[240], time[IMKI_DRIFT_TIME];
     imki_drift_time(r->times->time[one->time], IMK_DRIFT_LINEAR, time);
-    snprintf(title, sizeof title, "What makes it after %s: %s", time, one->label);
+    snprintf(title, sizeof title, "Contributions after %s: %s", time, one->label);
     imk_result_for(result, IMK_FOR_PAGE);
     if (shares)
         imk_result_heading(result, title);
     imk_result_for(result, audience & IMK_FOR_TERMINAL);
     if (!shares && !shifts)
-        imk_result_line(result, "\nNo term of %s makes an error of position.", one->label);
+        imk_result_line(result, "\nNo term of %s causes a position error.", one->label);
     else
-        imk_result_line(result, "\nWhat makes it after %s%s", time,
+        imk_result_line(result, "\nContributions after %s%s", time,
                         r->case_count == 1          ? ""
                         : one->settings.compensated ? ", after calibration"
                                                     : ", before calibration");

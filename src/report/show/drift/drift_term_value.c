@@ -43,7 +43,7 @@ static bool read_numbers(const char *text, numbers *n)
     return n->count > 0;
 }
 
-/* Terms whose value is known count with their uncertainty once they are compensated. */
+/* After compensation, a term with a known value counts with its uncertainty only. */
 static bool is_known(const char *source)
 {
     return !strstr(source, "repeatability") &&

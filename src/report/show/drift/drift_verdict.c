@@ -8,10 +8,10 @@
 #include <stdarg.h>
 #include <stdlib.h>
 
-/* A linear figure and one of runs differ when the interval of the runs leaves out this much on
- * either side of the linear figure: what fourth-order terms explain is left aside. Of a table of
- * 95 % intervals some leave out the truth: they are widened by 2.5, to 1e-6 each for a figure that
- * is near normal. */
+/* A linear figure and a figure of runs differ when the interval of the runs lies outside this
+ * tolerance around the linear figure; fourth-order terms explain smaller differences. In a table of
+ * 95 % intervals some miss the truth, so they are widened by 2.5, to a chance of 1e-6 each for a
+ * nearly normal figure. */
 static const double tolerance = 0.05, widening = 2.5;
 
 static void warn(imk_verdict *v, const char *code, const char *format, ...)
@@ -39,13 +39,13 @@ static void warn_of_omitted(const imk_drift_case *one, imk_verdict *v)
         imki_text_add(&list, "%s%s", i > 0 ? ", " : "", one->analysis->omitted[i]);
     if (list.size > 0)
         warn(v, "omitted",
-             "%s: left out by the linear theory: %.239s; --monte-carlo has all that needs "
-             "no temperature",
+             "%s: the linear theory leaves out %.239s; --monte-carlo includes everything that "
+             "needs no temperature",
              one->label, list.bytes);
     free(list.bytes);
 }
 
-/* The first row of the table that is worth no more than this. */
+/* The time of the first row of the table with this validity. */
 static const char *first_time(const imk_drift_models *r, const imk_drift_case *one,
                               imk_drift_validity validity, char text[IMKI_DRIFT_TIME])
 {
@@ -61,17 +61,17 @@ static void warn_of_range(const imk_drift_models *r, const imk_drift_case *one, 
     char text[IMKI_DRIFT_TIME];
     if (first_time(r, one, IMK_DRIFT_LOST, text))
         warn(v, "no_position",
-             "%s: at %s the error is beyond a tenth of the Earth's radius: no longer a "
+             "%s: at %s the error exceeds a tenth of the Earth's radius: this is no longer a "
              "position",
              one->label, text);
     else if (first_time(r, one, IMK_DRIFT_ROUGH, text))
-        warn(v, "nonlinear",
-             "%s: at %s attitude errors exceed 0.1 rad: linear figures are rough from "
-             "there (~)%s",
-             one->label, text, r->found ? "" : "; --monte-carlo 1000 shows the whole");
+        warn(
+            v, "nonlinear",
+            "%s: at %s attitude errors exceed 0.1 rad: linear figures are rough from then on (~)%s",
+            one->label, text, r->found ? "" : "; --monte-carlo 1000 computes accurate figures");
 }
 
-/* First row where an interval of the runs leaves the linear figure out; -1: none. */
+/* First row where an interval of the runs does not contain the linear figure; -1: none. */
 static int disagreement(const imk_drift_models *r, imk_drift_requirement *requirement)
 {
     static const imk_drift_requirement looked_at[] = {IMK_REQUIRED_CEP, IMK_REQUIRED_DRMS,
@@ -100,15 +100,15 @@ static void warn_of_runs(const imk_drift_models *r, imk_verdict *v)
     const size_t last = r->times->row_count - 1;
     if (r->used[last] < r->run_count)
         warn(v, "lost_runs",
-             "%llu of %llu runs left the Earth or found no attitude; the figures are of "
-             "the others",
+             "%llu of %llu runs left the Earth or found no attitude; the figures are from the "
+             "other runs",
              (unsigned long long)(r->run_count - r->used[last]), (unsigned long long)r->run_count);
     const int row = disagreement(r, &requirement);
     if (row < 0)
         return;
     warn(v, "disagreement",
-         "from %s on the runs differ from the covariance by more than %g %% (%s): the "
-         "runs are right, the linear theory leaves something out",
+         "from %s on the runs differ from the covariance by more than %g %% (%s): the runs are "
+         "right, and the linear theory leaves something out",
          imki_drift_time(imki_drift_row_time(r, row), IMK_DRIFT_LINEAR, text), 100 * tolerance,
          imk_drift_requirement_name(requirement));
 }

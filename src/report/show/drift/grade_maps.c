@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Where models stand among classes, technologies and applications: bias stability against scale
- * factor stability, of gyros and of accelerometers, and cost against performance. A model that does
- * not state one of the two is a line along it; what it costs none states.
+ * factor stability, of gyros and of accelerometers, and cost against performance. A model that
+ * states only one of the two is a line along the other axis; no model states a cost.
  *
- * Grades with their applications, errors of position and costs are those of [ELSHEIMY2020],
- * table 1, which says nothing of scale factors: they are bands across the map. Classes of gyros by
- * bias drift and scale factor accuracy are those of [YAZDI1998], table 1. Technologies are those
- * which the table of classes (grades.c) lists for a bias; it says nothing of scale factors either:
- * they are columns at the left edge, where no sensor is, and their place along the axis means
- * nothing.
+ * Grades with their applications, errors of position and costs are those of [ELSHEIMY2020], table
+ * 1, which states no scale factors, so they are bands across the map. Classes of gyros by bias
+ * drift and scale factor accuracy are those of [YAZDI1998], table 1. Technologies are those which
+ * the table of classes (grades.c) lists for a bias; it states no scale factors either, so they are
+ * columns at the left edge, where no sensor is; their place along the axis has no meaning.
  *
- * What a source leaves open ("< 0.01 deg/h") ends where the better class does or at the edge, and
- * what it states as one number ("0.1 deg/s", "about 100,000 $") is drawn as a factor of two to
- * either side. */
+ * An open range of a source ("< 0.01 deg/h") ends at the limit of the better class or at the edge.
+ * A single number ("0.1 deg/s", "about 100,000 $") is drawn as a range of a factor of two to either
+ * side. */
 #include "grade_show_internal.h"
 
 #include "report/result_internal.h"
@@ -87,9 +86,9 @@ static const grade_map maps[IMK_GRADE_MAPS] = {
      "stability of the bias [deg/h]",
      {1, 1e5},
      {1e-4, 1e4},
-     "Bands are applications, whose source says nothing of scale factors; boxes are classes of "
-     "gyros. The columns at the left edge are technologies by bias alone: their place along the "
-     "axis means nothing.",
+     "Bands are applications; their source states no scale factors. Boxes are classes of gyros. "
+     "The columns at the left edge are technologies by bias alone: their place along the axis has "
+     "no meaning.",
      REGIONS(gyro_regions)},
     {"Accelerometers: applications and technologies",
      "stability of the scale factor [ppm]",
@@ -103,15 +102,15 @@ static const grade_map maps[IMK_GRADE_MAPS] = {
      "cost of a unit [dollars]",
      {1, 2e6},
      {1, 2e6},
-     "A model states no cost: it is a line at its computed CEP. Published figures that are one "
-     "number are drawn as a factor of two to either side.",
+     "A model states no cost, so it is drawn as a line at its computed CEP. A published single "
+     "number is drawn as a range of a factor of two to either side.",
      REGIONS(cost_regions)},
 };
 
-/* Where an error that is no position any more stands on the map of costs [nmi]. */
+/* Place on the map of costs for an error that is too large to be a position [nmi]. */
 static const double beyond = 1800;
 
-/* A place on a map, in its units; NaN where the model does not say. */
+/* A place on a map, in its units; NaN if the model does not state the value. */
 typedef struct spot {
     double x, y;
     const char *remark;
@@ -164,7 +163,7 @@ static void add_presets(bool gyro, imk_figure_builder *figure)
     }
 }
 
-/* A point, or a line over the range of the axis that is not known. */
+/* A point, or a line along the axis whose value is unknown. */
 static void add_model(const imk_graded *one, const char *name, int color, int map,
                       imk_figure_builder *figure)
 {

@@ -11,7 +11,7 @@ static const char assumption[] =
     "height held by other means, position and velocity perfect at the start. CEP is the radius of "
     "the circle that holds half of all outcomes.";
 
-/* With a heading that is off by more than this there is none. */
+/* With a larger error of the heading there is no heading. */
 static const double no_north = 1; /* [rad] */
 
 static const char *grade_name(imk_grade grade)
@@ -20,7 +20,7 @@ static const char *grade_name(imk_grade grade)
     return row ? row->name : "below every class";
 }
 
-/* Nautical miles, as claims are, from a tenth of one; else metres. */
+/* Nautical miles, as in the claims, from 0.1 nmi on; metres below. */
 static const char *grade_length(double metres, char text[IMK_READABLE_SIZE])
 {
     const imk_unit mile = imk_unit_of("nmi");
@@ -148,10 +148,10 @@ static void show_position(const imk_graded *one, imk_result *result)
         snprintf(text, sizeof text, "Position: not computed; %s", one->no_position);
     else if (p->validity[IMK_GRADE_HOUR] == IMK_DRIFT_LOST)
         snprintf(text, sizeof text,
-                 "Position: below every class that claims one; no longer a position after 1 h");
+                 "Position: below every class that claims one; no position any more after 1 h");
     else if (p->validity[IMK_GRADE_DAY] == IMK_DRIFT_LOST)
         snprintf(text, sizeof text,
-                 "Position: %s; CEP %s after 1 h, no longer a position after 24 h",
+                 "Position: %s; CEP %s after 1 h, no position any more after 24 h",
                  grade_name(p->grade), grade_length(p->cep[IMK_GRADE_HOUR], hour));
     else
         snprintf(text, sizeof text, "Position: %s; CEP %s after 1 h, %s after 24 h",
@@ -165,14 +165,13 @@ static void show_limits(const imk_graded *one, imk_result *result)
     imki_text text = {.bytes = NULL};
     for (size_t i = 0; i < one->share_count; i++)
         imki_text_add(&text, "%s%s %.0f %%",
-                      i == 0 ? "What makes it after 1 h, by variance: " : ", ", one->share[i].text,
+                      i == 0 ? "Contributions after 1 h, by variance: " : ", ", one->share[i].text,
                       100 * one->share[i].value);
     if (one->shifted)
-        imki_text_add(
-            &text,
-            "%sMost of it is no scatter but a shift by known values, which compensation takes "
-            "out",
-            text.size > 0 ? ". " : "");
+        imki_text_add(&text,
+                      "%sMost of the error is not scatter but a shift by known values; "
+                      "compensation takes it out",
+                      text.size > 0 ? ". " : "");
     imki_show_text(&text, result);
 }
 
@@ -194,7 +193,7 @@ static void show_needs(const imk_graded *one, imk_result *result)
     imki_show_text(&text, result);
 }
 
-/* Without the bias that differs from run to run the figures are those of a better sensor. */
+/* Without the run-to-run bias the figures are too good. */
 static bool states_repeatability(const imk_triad *triad)
 {
     for (int i = 0; i < triad->axis_count; i++)
@@ -209,8 +208,8 @@ static void show_flattery(const imk_graded *one, imk_result *result)
     const bool accel = states_repeatability(&one->model->accel);
     if (!one->no_position && !(gyro && accel))
         imk_result_line(result,
-                        "The model states no run-to-run bias of its %s: class and errors of "
-                        "position flatter it.",
+                        "The model states no run-to-run bias of its %s: its class and position "
+                        "errors look better than they are.",
                         gyro    ? "accelerometers"
                         : accel ? "gyros"
                                 : "gyros and accelerometers");
@@ -218,7 +217,7 @@ static void show_flattery(const imk_graded *one, imk_result *result)
 
 /* ---- tables ---- */
 
-/* The computed figure that answers a claim. */
+/* The computed error for the time of a claim. */
 static void add_answer(imk_table *table, const imk_graded *one, const imk_grade_row *row)
 {
     char length[IMK_READABLE_SIZE];
@@ -297,7 +296,7 @@ static void show_ways(const imk_graded *one, imk_result *result)
             imk_readable_figure(IMK_REQUIRED_HEADING, p->figures[IMK_GRADE_HOUR].heading, heading);
         }
         imk_table_add(table, "%s\t%s\t%s", tilt, heading,
-                      name_or(p->grade != IMK_GRADE_NONE, p->grade, "none claims it"));
+                      name_or(p->grade != IMK_GRADE_NONE, p->grade, "no class claims it"));
     }
 }
 
@@ -336,7 +335,7 @@ static void show_comparison(const imk_graded_several *r, imk_audience audience, 
                       name_or(one->table.limiting[0], one->table.overall, "-"),
                       one->no_position
                           ? "-"
-                          : name_or(p->grade != IMK_GRADE_NONE, p->grade, "none claims it"));
+                          : name_or(p->grade != IMK_GRADE_NONE, p->grade, "no class claims it"));
         for (size_t t = 0; t < IMK_GRADE_TIMES; t++)
             if (!one->no_position)
                 add_cep(table, p, t, "");
@@ -351,7 +350,7 @@ static void show_comparison(const imk_graded_several *r, imk_audience audience, 
 
 /* ---- all ---- */
 
-/* What is said of the computed position below its table. */
+/* The remarks below the table of computed positions. */
 static void show_notes(const imk_graded *one, imk_result *result)
 {
     imk_result_gap(result);
@@ -363,7 +362,8 @@ static void show_notes(const imk_graded *one, imk_result *result)
     show_flattery(one, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (!one->compensation_matters)
-        imk_result_line(result, "The model holds no known value that compensation would take out.");
+        imk_result_line(result,
+                        "The model states no known value that compensation would take out.");
     imki_text omitted = {.bytes = NULL};
     for (size_t i = 0; i < one->omitted_count; i++)
         imki_text_add(&omitted, "%s%s", i == 0 ? "Not in these figures: " : ", ", one->omitted[i]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The Allan plot of each channel: measured points, the model and its terms, where a record of this
- * length may fall under the model, and the twin; below it how far the points are off the model. */
+/* The Allan plot of each channel: measured points, the model and its terms, the range expected for
+ * a record of this length, and the twin; below it the difference of the points from the model. */
 #include "identify_show_internal.h"
 
 #include "report/result_internal.h"
@@ -15,8 +15,9 @@ enum { MODEL_COLOR = 6, BAND_COLOR = 7, DATA_COLOR = 0, TWIN_COLOR = 4 };
 /* Beyond this many standard deviations it does not matter how many. */
 static const double misfit_most = 9;
 
-/* The measured variance over the model's as a normal deviate: as improbable as this many standard
- * deviations, so that short and long averaging times can be seen in one picture. */
+/* The ratio of the measured variance to the model's, converted by its probability to standard
+ * deviations of a normal distribution, so that one picture can show short and long averaging
+ * times. */
 static double misfit_of(double ratio, double edf)
 {
     const double half = 0.5 * edf, x = half * ratio;
@@ -120,7 +121,7 @@ static void show_misfit(const imk_identify_log *log, size_t channel, imk_figure_
 
 void imki_identify_figure(const imk_identify_shown *shown, const char *caption, imk_result *result)
 {
-    /* So many beside one another that rows are full. */
+    /* Choose the number of columns so that all rows are full. */
     const size_t count = shown->log->record.count;
     const size_t columns = count % 3 == 0 ? 3 : count % 2 == 0 ? 2 : 1;
     imk_result_for(result, IMK_FOR_PAGE);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What was identified of one record, to be shown: data, and what stands where. */
+/* The display of one identified record: its data, and the order of its parts. */
 #include "identify_show_internal.h"
 
 #include <stdio.h>
@@ -185,15 +185,15 @@ void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result)
     imk_result_for(result, IMK_FOR_BOTH);
     imki_identify_tables(log, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_line(result,
-                    "Values with their 1-sigma uncertainty; below each the interval that holds the "
-                    "true value with the stated confidence, by profile likelihood. \"absent\" "
-                    "means that the record does not show the term; the bound below says how large "
-                    "it could still be. Bias instability is B of IEEE 952: the flat floor of the "
-                    "Allan deviation is 0.664 B; the measured minimum also holds white noise and "
-                    "random walk, which is why it is larger.");
+    imk_result_line(
+        result,
+        "Each value has its 1-sigma uncertainty; below it stands the interval that contains the "
+        "true value with the stated confidence, by profile likelihood. \"absent\" means that the "
+        "record does not show the term; the bound below says how large the term could still be. "
+        "Bias instability is B of IEEE 952: the flat floor of the Allan deviation is 0.664 B; the "
+        "measured minimum also contains white noise and random walk, so it is larger.");
     if (shown->truth) {
-        imk_result_heading(result, "Against the truth");
+        imk_result_heading(result, "Comparison with the true values");
         imk_result_for(result, IMK_FOR_BOTH);
         imki_truth_table(shown, result);
     }
@@ -201,12 +201,13 @@ void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result)
     imki_verdict_lines(&shown->verdict, result);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, "Allan deviation");
-    imki_identify_figure(shown,
-                         "Points: the log, with confidence intervals. Line: the model. Dashes: its "
-                         "terms. Grey: where the points of a record of this length may fall under "
-                         "the model. Twin: a simulation of the model. Below: how improbable the "
-                         "difference of each point from the model is, as standard deviations of a "
-                         "normal distribution; neighbours share most of their data.",
-                         result);
+    imki_identify_figure(
+        shown,
+        "Points: the log, with confidence intervals. Line: the model. Dashes: its terms. Grey: the "
+        "range of points expected from the model in a record of this length. Twin: a simulation of "
+        "the model. Below: the difference of each point from the model, converted by its "
+        "probability to standard deviations of a normal distribution; neighbouring points share "
+        "most of their data.",
+        result);
     imk_result_for(result, IMK_FOR_BOTH);
 }

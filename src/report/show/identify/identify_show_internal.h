@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What identification is shown by, of one record and of several. */
+/* Parts of the display of an identification, of one record or of several. */
 #ifndef IMUKI_IDENTIFY_SHOW_INTERNAL_H
 #define IMUKI_IDENTIFY_SHOW_INTERNAL_H
 
@@ -24,7 +24,7 @@ void imki_verdict_lines(const imk_verdict *verdict, imk_result *result);
 /* ---- parts: identify_show.c, identify_tables.c, identify_figure_show.c ------------------------
  */
 
-/* The object of a channel, which is left open; of a joint estimate without what concerns samples.
+/* The object of a channel, which is left open; for a joint estimate it has no keys about samples.
  */
 void imki_channel_data(const imk_identify_log *log, size_t channel, imk_result *result);
 /* "channels", all of them. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What was identified as tables: a row of values and one of intervals for each term. */
+/* Identified terms as tables: a row of values and a row of intervals for each term. */
 #include "identify_show_internal.h"
 
 #include <math.h>
@@ -80,7 +80,7 @@ static void record_rows(imk_table *table, const imk_identify_log *log, const siz
     imk_table_row(table, "model holds from tau =\ts");
     for (size_t k = 0; k < members; k++)
         from_cell(table, log->result[member[k]].valid_from);
-    imk_table_row(table, "the five terms alone from\ts");
+    imk_table_row(table, "five terms hold from tau =\ts");
     for (size_t k = 0; k < members; k++)
         from_cell(table, log->result[member[k]].five_terms_from);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The plan of a record to be shown: lengths that are due, what each length tells, a figure. */
+/* The display of the plan of a record: required lengths, the precision of each length, a figure. */
 #include "report/show/show_internal.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ static imki_words rough_duration(double seconds)
 static void show_requirements(const imk_record_plan *p, imk_result *result)
 {
     imk_table *table = imk_result_table(result, 0);
-    imk_table_row(table, "wanted\tof\trecord");
+    imk_table_row(table, "requirement\tterm\trecord length");
     for (size_t k = 0; k < p->requirement_count; k++) {
         const imk_plan_requirement *asked = &p->requirement[k];
         const imk_plan_parameter *parameter = &p->parameter[asked->parameter];
@@ -40,7 +40,7 @@ static void show_requirements(const imk_record_plan *p, imk_result *result)
     imk_result_gap(result);
 }
 
-/* "3.0 %", with the chance of being found where that is in diagnostic. */
+/* "3.0 %", with the chance that the term is found if this is not certain. */
 static void show_cell(imk_table *table, const imk_plan_record *record, size_t parameter, bool time)
 {
     const double relative = record->relative[parameter], found = record->detection[parameter];
@@ -77,13 +77,13 @@ static void show_records(const imk_record_plan *p, imk_result *result)
     }
     imk_result_gap(result);
     imk_result_line(result,
-                    "No unbiased method does better; imukit identify comes within some per cent of "
-                    "it. \"found\" is the chance that a record of that length shows the term at "
-                    "all, at a significance of %g %%.",
+                    "No unbiased method is more precise; imukit identify comes within a few per "
+                    "cent of this limit. \"found\" is the chance that a record of that length "
+                    "shows the term at all, at a significance of %g %%.",
                     100 * p->settings.significance);
     if (p->duration > 0)
-        imk_result_line(result, "* as planned: keep the sensor at rest and its temperature "
-                                "constant so long.");
+        imk_result_line(result, "* planned length: keep the sensor at rest and its temperature "
+                                "constant for this time.");
 }
 
 /* ---- data ------------------------------------------------------------------------------------ */
@@ -147,7 +147,8 @@ static void show_data(const imk_record_plan *p, const char *name, imk_result *re
 static void show_figure(const imk_record_plan *p, imk_result *result)
 {
     size_t first = 0;
-    imk_figure_builder *figure = imk_result_figure(result, "What a record tells", 2, "");
+    imk_figure_builder *figure =
+        imk_result_figure(result, "Precision against the length of the record", 2, "");
     for (size_t k = 0; k < p->parameter_count; k++) {
         const imk_plan_parameter *parameter = &p->parameter[k];
         if (k == 0 || parameter->sensor != p->parameter[k - 1].sensor) {

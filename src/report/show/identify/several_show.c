@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Several records to be shown: run by run with the joint estimate, or sensor by sensor. */
+/* The display of several records: run by run with the joint estimate, or sensor by sensor. */
 #include "identify_show_internal.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* A spread smaller than this part of the mean is none. */
+/* A spread smaller than this part of the mean counts as none. */
 static const double no_spread = 1e-6;
 
 static const imk_log_column *column_of(const imk_identify_several *s, size_t channel)
@@ -62,7 +62,8 @@ static void run_rows(imk_table *table, const imk_identify_several *s, size_t cha
     imk_table_row(table, "chance if alike\t%s", imki_chance(a->probability).text);
 }
 
-/* Mean, its interval, spread, its interval: two say next to nothing about their kind. */
+/* Mean and spread with their intervals; not for two sensors, which show almost nothing about the
+ * spread of their type. */
 static void population_rows(imk_table *table, const imk_device_term *const *terms,
                             const shown_terms *shown, double confidence)
 {
@@ -113,7 +114,7 @@ static void device_rows(imk_table *table, const imk_identify_several *s, size_t 
         imk_table_add(table, "%s", imki_chance(terms[k]->squares.probability).text);
 }
 
-/* Each record's strengths on a channel, and what they are together. */
+/* The strengths of each record on a channel, and those of all records together. */
 static void channel_table(const imk_identify_several *s, size_t channel,
                           const imk_identify_shown *records, imk_result *result)
 {
@@ -270,12 +271,12 @@ static void show_joint(const imk_identify_shown *joint, imk_result *result)
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_line(result, "One set of terms for all logs, by maximum likelihood on their spectra "
                             "together. Each log has its own mean, ramp and lines.");
-    imki_identify_figure(joint,
-                         "Points: the Allan deviations of all logs, pooled, with confidence "
-                         "intervals. Line: the joint model. Below: how improbable the difference "
-                         "of each point from it is, as standard deviations of a normal "
-                         "distribution.",
-                         result);
+    imki_identify_figure(
+        joint,
+        "Points: the Allan deviations of all logs, pooled, with confidence intervals. Line: the "
+        "joint model. Below: the difference of each point from the model, converted by its "
+        "probability to standard deviations of a normal distribution.",
+        result);
 }
 
 static void show_bias(const imk_identify_several *s, const imk_identify_shown *joint,
@@ -283,9 +284,10 @@ static void show_bias(const imk_identify_several *s, const imk_identify_shown *j
 {
     bias_table(s, result);
     imk_result_for(result, IMK_FOR_PAGE);
-    imk_result_line(result, "Noise within a run: how far the means of two runs without a break "
-                            "between them would differ, by the joint model. What the means differ "
-                            "by beyond it comes from run to run.");
+    imk_result_line(
+        result,
+        "Noise within a run: the difference that the joint model predicts between the means of two "
+        "runs without a break. Any further difference is a change from run to run.");
     imk_result_for(result, IMK_FOR_TERMINAL);
     if (joint->truth)
         imki_truth_table(joint, result);

@@ -20,7 +20,7 @@ static void tell_run(imk_verdict *v, const imk_identify_several *s, size_t chann
     if (a->record < 0 || a->term < 0) {
         imki_verdict_add(v, IMK_FINDING_WARNING, "runs_differ",
                          "%s: the logs do not have the same noise (chance %s): identify them "
-                         "apart, or find what differed.",
+                         "separately, or find what differed.",
                          column->name, chance.text);
         return;
     }
@@ -28,15 +28,15 @@ static void tell_run(imk_verdict *v, const imk_identify_several *s, size_t chann
     const double scale = display.unit.scale;
     imki_verdict_add(
         v, IMK_FINDING_WARNING, "runs_differ",
-        "%s: the logs do not have the same noise (chance %s); most of all in %s: %.4g ± %.2g %s in "
-        "%s, %.4g together (%.1f sigmas). Identify them apart, or find what differed: temperature, "
-        "mounting, settings, vibration.",
+        "%s: the logs do not have the same noise (chance %s); the largest difference is in %s: "
+        "%.4g ± %.2g %s in %s, %.4g for all logs together (%.1f sigmas). Identify them separately, "
+        "or find what differed: temperature, mounting, settings, vibration.",
         column->name, chance.text, display.name, a->value[a->record][a->term] / scale,
         a->sigma[a->record][a->term] / scale, display.unit.text, labels[a->record],
         s->joint.result[channel].term[a->term].value / scale, a->sigmas);
 }
 
-/* Neither of the slow terms is seen, all logs together. */
+/* Warn if all logs together do not show any of the slow terms. */
 static void assess_length(imk_verdict *v, const imk_identify_several *s)
 {
     imki_text list = {.bytes = NULL};
@@ -48,7 +48,7 @@ static void assess_length(imk_verdict *v, const imk_identify_several *s)
     }
     imki_verdict_list(v, IMK_FINDING_WARNING, "short", "", &list,
                       ": all logs together are too short for the slowest terms: they are bounded, "
-                      "not measured; log for longer at a time.");
+                      "not measured; make each log longer.");
 }
 
 static void assess_runs(imk_verdict *v, const imk_identify_several *s, const char *const *labels)
@@ -62,7 +62,7 @@ static void assess_runs(imk_verdict *v, const imk_identify_several *s, const cha
     assess_length(v, s);
     if (!differ)
         imki_verdict_add(v, IMK_FINDING_GOOD, "runs_agree",
-                         "The %zu logs agree: one model explains them, %s together.", s->count,
+                         "The %zu logs agree: one model explains them, %s in total.", s->count,
                          imki_duration(s->joint.duration).text);
     for (size_t c = 0; c < s->joint.record.count; c++) {
         const imk_repeatability *b = &s->bias[c];
@@ -70,8 +70,8 @@ static void assess_runs(imk_verdict *v, const imk_identify_several *s, const cha
         if (b->lower > 0)
             imki_verdict_add(v, IMK_FINDING_NOTE, "bias_differs",
                              "%s: the mean differs from run to run by %.3g %s (1 sigma, %g %%: "
-                             "%.3g to %.3g), more than noise within a run does. That is the bias "
-                             "repeatability, if the sensor was not moved in between.",
+                             "%.3g to %.3g), more than the noise within a run explains. This is "
+                             "the bias repeatability if the sensor was not moved between the runs.",
                              column_of(s, c)->name, b->value / unit.scale, unit.text,
                              100 * s->joint.settings.confidence, b->lower / unit.scale,
                              b->upper / unit.scale);
@@ -105,7 +105,7 @@ static void tell_difference(imk_verdict *v, const imk_identify_several *s, size_
                      t->sigmas, imki_chance(t->squares.probability).text);
 }
 
-/* What else the model of a channel has, which changes what its terms mean. */
+/* Further terms in the model of a channel, which change the meaning of its other terms. */
 static void assess_models(imk_verdict *v, const imk_identify_several *s, size_t channel,
                           const char *const *labels)
 {
@@ -121,8 +121,8 @@ static void assess_models(imk_verdict *v, const imk_identify_several *s, size_t 
         }
         if (have > 0 && have < s->count)
             imki_verdict_add(v, IMK_FINDING_NOTE, "models_differ",
-                             "%s: %zu of %zu logs show %s (%s%s); the other terms are what is left "
-                             "beside it, so compare them with care.",
+                             "%s: %zu of %zu logs show %s (%s%s); this changes the other terms, so "
+                             "compare them with care.",
                              column_of(s, channel)->name, have, s->count, what[filter], labels[one],
                              have > 1 ? " and others" : "");
     }
@@ -149,8 +149,8 @@ static void assess_devices(imk_verdict *v, const imk_identify_several *s, const 
                          s->count, s->differing_count, s->compared_count, percent);
     if (s->count == 2)
         imki_verdict_add(v, IMK_FINDING_NOTE, "two_devices",
-                         "Two sensors tell whether they differ, but next to nothing about the "
-                         "spread of their kind.");
+                         "Two sensors show whether they differ, but almost nothing about the "
+                         "spread of their type.");
 }
 
 imk_verdict imk_several_verdict(const imk_identify_several *s, const char *const *labels,

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Gravity on the surface of the Earth [m/s^2]: equator to pole by WGS84, rounded outwards; what is
- * off by more than 5 % is no specific force at rest. */
+/* Gravity on the surface of the Earth [m/s^2]: equator to pole by WGS84, rounded outwards; a value
+ * more than 5 % outside is not the specific force at rest. */
 static const double gravity_least = 9.78 * (1 - 0.05), gravity_most = 9.83 * (1 + 0.05);
 
 /* ---- messages -------------------------------------------------------------------------------- */
@@ -82,7 +82,7 @@ void imki_verdict_lines(const imk_verdict *v, imk_result *result)
 
 /* ---- what is found on some channels ---------------------------------------------------------- */
 
-/* Does something hold on a channel? What was found there is added to an empty text. */
+/* Does a condition hold on a channel? The details are added to an empty text. */
 typedef bool (*assessment)(const imk_identify_log *log, size_t channel, imki_text *detail);
 
 static imk_unit unit_for(const imk_identify_log *log, size_t channel, double value)
@@ -119,7 +119,7 @@ static bool find_warm_up(const imk_identify_log *log, size_t channel, imki_text 
     const imk_screen *s = &log->screen[channel];
     const imk_unit unit = unit_for(log, channel, s->warm_up_amplitude);
     imki_text_add(
-        detail, "%s %s at the start, falling with %s s",
+        detail, "%s %s at the start, time constant %s s",
         imki_plus_minus(s->warm_up_amplitude, s->warm_up_amplitude_sigma, unit.scale).text,
         unit.text, imki_plus_minus(s->warm_up_time, s->warm_up_time_sigma, 1).text);
     return s->warm_up;
@@ -145,7 +145,7 @@ static bool find_steps(const imk_identify_log *log, size_t channel, imki_text *d
     return s->steps.count > 0;
 }
 
-/* Not what was taken out: other messages tell of it. */
+/* Samples that were taken out do not count: other messages report them. */
 static bool find_missing(const imk_identify_log *log, size_t channel, imki_text *detail)
 {
     const imk_screen *s = &log->screen[channel];
@@ -247,8 +247,8 @@ static const struct concern {
      "longer",
      NULL},
     {IMK_VERDICT_COARSE, find_resolution, 0, IMK_FINDING_WARNING, "coarse",
-     "the output step is larger than the noise: the white noise is doubtful; log with more digits "
-     "or a smaller range",
+     "the output step is larger than the noise, so the white noise is unreliable; log with more "
+     "digits or a smaller range",
      NULL},
     {IMK_VERDICT_SATURATED, NULL, 0, IMK_FINDING_WARNING, "saturated",
      "samples stick at an extreme value: the range is too small or the sensor was moved", NULL},
@@ -257,20 +257,22 @@ static const struct concern {
      "log's",
      NULL},
     {IMK_VERDICT_WARM_UP, NULL, 0, IMK_FINDING_WARNING, "warm_up",
-     "the start drifts unlike the rest: switch on earlier, or leave the first minutes out", NULL},
+     "the start drifts differently from the rest; switch the sensor on earlier, or leave out the "
+     "first minutes",
+     NULL},
     {IMK_VERDICT_MISFIT, find_validity, 0, IMK_FINDING_WARNING, "misfit",
-     "the model explains the record only over these averaging times; the log holds something else "
-     "as well (vibration, filtering, another process)",
+     "the model explains the record only over these averaging times; the log also contains "
+     "something else (vibration, filtering, another process)",
      NULL},
     {IMK_VERDICT_LINES, find_lines, 0, IMK_FINDING_NOTE, "lines",
-     "spectral lines, from vibration or interference, are modelled apart as sinusoids", NULL},
+     "spectral lines, from vibration or interference, are modelled separately as sinusoids", NULL},
     {IMK_VERDICT_RESONANCE, find_resonance, 0, IMK_FINDING_NOTE, "resonance",
-     "a resonance of the structure or the sensor is modelled apart", NULL},
+     "a resonance of the structure or the sensor is modelled separately", NULL},
     {IMK_VERDICT_FILTERED, find_filter, 0, IMK_FINDING_NOTE, "filtered",
      "the output is low-pass filtered within the band; the filter is in the model", NULL},
 };
 
-/* The channels on which it holds, with what was found on each in parentheses. */
+/* The channels on which a condition holds, each with its details in parentheses. */
 static void assess_concern(imk_verdict *v, const imk_identify_log *log, const struct concern *about)
 {
     imki_text list = {.bytes = NULL};
@@ -295,7 +297,7 @@ static void assess_concern(imk_verdict *v, const imk_identify_log *log, const st
 
 /* ---- the record as a whole ------------------------------------------------------------------- */
 
-/* The unit in which the file's numbers would be gravity. */
+/* The unit in which the numbers of the file would equal gravity. */
 static const char *likely_unit(double magnitude, double scale)
 {
     static const char *const names[] = {"m/s^2", "g", "mg", "ug", "Gal", "mGal"};
@@ -307,8 +309,8 @@ static const char *likely_unit(double magnitude, double scale)
     return NULL;
 }
 
-/* |mean specific force| of a triad at rest is gravity; anything else is a wrong unit, most often.
- */
+/* The mean specific force of a triad at rest has the size of gravity; otherwise the unit is wrong
+ * in most cases. */
 static void assess_gravity(imk_verdict *v, const imk_identify_log *log)
 {
     double square = 0, scale = 0;
@@ -328,16 +330,17 @@ static void assess_gravity(imk_verdict *v, const imk_identify_log *log)
     if (unit)
         imki_verdict_add(v, IMK_FINDING_WARNING, "gravity",
                          "|accel| is %.4g m/s^2 at rest: the numbers look like %s; write %s into "
-                         "the header, or add --accel-unit %s where it has none.",
+                         "the header, or add --accel-unit %s if it has no unit.",
                          magnitude, unit, unit, unit);
     else
         imki_verdict_add(v, IMK_FINDING_WARNING, "gravity",
-                         "|accel| is %.4g m/s^2 at rest, not gravity (9.78 to 9.83), and no usual "
-                         "unit makes it so: was gravity removed, or did the sensor move?",
+                         "|accel| is %.4g m/s^2 at rest, not gravity (9.78 to 9.83), and no common "
+                         "unit explains this value: was gravity removed, or did the sensor move?",
                          magnitude);
 }
 
-/* Where the five terms alone do not explain the log, and what shapes it there instead. */
+/* The times at which the five terms alone do not explain the log, and the other terms that dominate
+ * it there. */
 static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
 {
     imki_text list = {.bytes = NULL};
@@ -362,12 +365,11 @@ static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
             }
         imki_text_put(&list, any ? ")" : "cause not known)");
     }
-    imki_verdict_list(
-        v, IMK_FINDING_NOTE, "five_terms",
-        "white noise, bias instability, random walk, ramp and quantization alone explain the log "
-        "only from some averaging time on. At shorter times other terms, which the model has too, "
-        "shape it: ",
-        &list, ".");
+    imki_verdict_list(v, IMK_FINDING_NOTE, "five_terms",
+                      "white noise, bias instability, random walk, ramp and quantization alone "
+                      "explain the log only from some averaging time on. At shorter times other "
+                      "terms of the model dominate the log: ",
+                      &list, ".");
 }
 
 static void assess_length(imk_verdict *v, const imk_identify_log *log)
@@ -381,17 +383,17 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
             to = fmin(to, log->result[c].valid_to);
         }
     if (from > 0)
-        imki_verdict_add(v, imk_verdict_warns(v) ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, "length",
-                         "%s at %.6g Hz: the model speaks for averaging times from %.3g s to %.3g "
-                         "s.",
-                         length.text, 1 / record->dt, from, to);
+        imki_verdict_add(
+            v, imk_verdict_warns(v) ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, "length",
+            "%s at %.6g Hz: the model is valid for averaging times from %.3g s to %.3g s.",
+            length.text, 1 / record->dt, from, to);
     else
         imki_verdict_add(v, IMK_FINDING_NOTE, "length", "%s at %.6g Hz.", length.text,
                          1 / record->dt);
 }
 
-/* What the job itself came across; its warnings are not part of the verdict. How a curve is fitted
- * is all that is known of it. */
+/* Findings of the job itself, without its warnings, which are not part of the verdict. For a curve,
+ * only the quality of the fit is known. */
 static void add_findings(imk_verdict *v, const imk_identify_log *log)
 {
     char text[900];
@@ -418,8 +420,8 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
     assess_gravity(&v, log);
     if (!log->screened)
         imki_verdict_add(&v, IMK_FINDING_NOTE, "not_screened",
-                         "the log is longer than what is held in memory: outliers, steps, the "
-                         "warm-up and the temperature were not looked for.");
+                         "the log is too long to be held in memory, so it was not searched for "
+                         "outliers, steps, a warm-up or an effect of temperature.");
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
         if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
             assess_concern(&v, log, &concerns[k]);
@@ -430,6 +432,6 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
                          "%zu of %zu samples were bridged by straight lines.", log->record.bridged,
                          log->record.rows);
     if (!imk_verdict_warns(&v))
-        imki_verdict_add(&v, IMK_FINDING_GOOD, "good", "Nothing speaks against this record.");
+        imki_verdict_add(&v, IMK_FINDING_GOOD, "good", "No test found a fault in this record.");
     return v;
 }

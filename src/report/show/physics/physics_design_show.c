@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The instruments there are, and the design of one. */
+/* The list of instruments, and the design of one of them. */
 #include "physics_show_internal.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures: the outputs of a run against time, the views of an instrument, still and in motion, and
- * what a laboratory found. */
+/* Pictures: the outputs of a run against time, the views of an instrument (also animated), and the
+ * results of a laboratory. */
 #include "jobs/physics/physics_log_internal.h"
 #include "physics_show_internal.h"
 
@@ -29,8 +29,8 @@ static void add_curves(const imk_physics_log *run, const double *x, const double
     }
 }
 
-/* Against the input, output 0 is a curve of response, with its dead band, when the sine is slow, an
- * ellipse when the instrument lags behind. */
+/* Output 0 against the input: a response curve with its dead band if the sine is slow, an ellipse
+ * if the instrument lags behind. */
 void imki_show_physics_run(const imk_physics_shown *p, imk_result *result)
 {
     const imk_physics_log *run = p->run;
@@ -39,7 +39,7 @@ void imki_show_physics_run(const imk_physics_shown *p, imk_result *result)
     imk_figure_builder *figure = imk_result_figure(
         result, imki_physics_name(p), 2,
         run->stride > 1 ? "Each point is the mean of several samples."
-                        : "Each point is a sample: the mean since the one before.");
+                        : "Each point is a sample: the mean since the previous one.");
     for (size_t i = 0; i < instrument->output_count; i++) {
         const imk_signal *signal = &instrument->outputs[i];
         snprintf(title, sizeof title, "%s: %.190s", imki_physics_label(x, signal->name, "1"),
@@ -139,10 +139,10 @@ void imki_show_sweep_figure(const imk_physics_shown *p, imk_result *result)
     const imk_instrument *instrument = p->settings->instrument;
     if (r->point_count == 0 && r->response_count == 0)
         return;
-    imk_figure_builder *figure = imk_result_figure(
-        result, instrument->title, 2,
-        "The rate table shows output less input, bars of two standard deviations; the response is "
-        "the gain for a sine.");
+    imk_figure_builder *figure =
+        imk_result_figure(result, instrument->title, 2,
+                          "The rate table shows output minus input, with bars of two standard "
+                          "deviations; the response is the gain for a sine.");
     if (r->point_count > 0)
         add_table(r, instrument->sensor == IMK_GYRO, figure);
     if (r->response_count > 0)

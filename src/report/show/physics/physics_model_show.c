@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The error model of an instrument by closed forms, and beside it what the experiments of a
- * laboratory say: as tables and as data. */
+/* The error model of an instrument by closed forms, and beside it the results of laboratory
+ * experiments, as tables and as data. */
 #include "physics_show_internal.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ static size_t add_terms(imk_laboratory_figure *figures, size_t n, const imk_nois
     return n;
 }
 
-/* The figures of a laboratory and those that its experiments do not find. */
+/* The figures of a laboratory, and the figures that its experiments do not find. */
 static size_t all_figures(const imk_model *model, int sensor, imk_laboratory_figure *figures)
 {
     const bool gyro = sensor == IMK_GYRO;
@@ -95,7 +95,7 @@ void imki_reduced_data(const imk_model *model, int sensor, imk_result *result)
 
 /* ---- experiments ----------------------------------------------------------------------------- */
 
-/* Worth a line: one of the two says something. */
+/* Is there a value to show in one of the two? */
 static bool says_something(const imk_laboratory_figure *computed,
                            const imk_laboratory_figure *found)
 {

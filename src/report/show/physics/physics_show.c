@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an instrument did, or is, as data, on the terminal and on a page. */
+/* The run or the design of an instrument, as data, on the terminal and on a page. */
 #include "physics_show_internal.h"
 
 #include <math.h>

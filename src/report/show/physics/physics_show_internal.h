@@ -16,8 +16,8 @@ void imki_design_data(const imk_physics_shown *p, imk_result *result);
 void imki_show_design(const imk_physics_shown *p, imk_result *result);
 void imki_show_overview(const imk_physics_shown *p, imk_result *result);
 
-/* physics_model_show.c: parameters of a model of one axis that are stated, extras such as
- * repeatability included; and what experiments say of it. */
+/* physics_model_show.c: the stated parameters of a model of one axis, with extras such as
+ * repeatability; and the results of experiments. */
 void imki_show_reduced(const imk_model *model, int sensor, imk_result *result);
 void imki_reduced_data(const imk_model *model, int sensor, imk_result *result);
 void imki_show_sweep(const imk_physics_sweep *l, imk_result *result);
