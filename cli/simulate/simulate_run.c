@@ -46,22 +46,18 @@ static int choose_units(const simulate_options *o, const imk_model *model,
     return code < 0 ? check_counts(o, model) : code;
 }
 
-typedef struct log_target {
-    const char *path, *label; /* what the progress says: "run 3 (4 of 20)" */
-} log_target;
-
-/* One run of the scene into one file. @return the exit code, the message printed */
+/* One run of the scene into one file; the progress says `label`, "run 3 (4 of 20)".
+ * @return the exit code, the message printed */
 static int simulate_log(const simulate_options *o, const imk_model *model, const scene *s,
-                        const imk_executor *executor, const log_target *target)
+                        const imk_executor *executor, const char *path, const char *label)
 {
     imk_error error;
     imk_log_sink log = {
-        .path = target->path, .fixed = o->decimals.given, .decimals = (int)o->decimals.value};
+        .path = path, .fixed = o->decimals.given, .decimals = (int)o->decimals.value};
     const imk_record_sink sink = imk_log_sink_of(&log);
     job_progress shown = job_progress_begin(NULL);
     const imk_job job = job_progress_job(&shown, executor);
-    imk_status status =
-        imk_simulate_log_run(model, &s->settings, &sink, target->label, &job, &error);
+    imk_status status = imk_simulate_log_run(model, &s->settings, &sink, label, &job, &error);
     job_progress_end(&shown);
     status = imk_log_sink_end(&log, status, &error);
     return status == IMK_OK ? EXIT_DONE : command_error(&error, NULL);
@@ -98,7 +94,7 @@ static int simulate_runs(const simulate_options *o, const imk_model *model, scen
         snprintf(label, sizeof label, "run %llu (%llu of %llu)", (unsigned long long)number,
                  (unsigned long long)i + 1, (unsigned long long)o->runs.value);
         s->settings.simulation.run = (uint32_t)number;
-        int code = simulate_log(o, model, s, executor, &(log_target){path, label});
+        int code = simulate_log(o, model, s, executor, path, label);
         if (code != EXIT_DONE)
             return code;
     }
@@ -114,8 +110,7 @@ static int write_logs(const simulate_options *o, const imk_model *model, scene *
         return code;
     if (o->runs.given)
         return simulate_runs(o, model, s, executor);
-    return simulate_log(o, model, s, executor,
-                        &(log_target){o->output ? o->output : "-", "simulating"});
+    return simulate_log(o, model, s, executor, o->output ? o->output : "-", "simulating");
 }
 
 int simulate_logs(const simulate_options *o, const imk_model *model, scene *s)

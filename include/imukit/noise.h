@@ -32,22 +32,28 @@
 
 IMK_BEGIN_C
 
+/** The stochastic terms, in the order in which their samples are added, with the numbers of their
+ *  random streams. */
+#define IMK_NOISE_TERM_LIST(TERM)                                                                  \
+    TERM(WHITE, white, 1)                                                                          \
+    TERM(FLICKER, flicker, 2)                                                                      \
+    TERM(RANDOM_WALK, random_walk, 3)                                                              \
+    TERM(GAUSS_MARKOV, gauss_markov, 4)                                                            \
+    TERM(SINUSOID, sinusoid, 5)                                                                    \
+    TERM(RESONANCE, resonance, 6)
+
 /** Term numbers of the random streams: imk_stream(run, term, instance, axis). Fixed for ever. */
 enum {
-    IMK_TERM_WHITE = 1,
-    IMK_TERM_FLICKER = 2,
-    IMK_TERM_RANDOM_WALK = 3,
-    IMK_TERM_GAUSS_MARKOV = 4,
-    IMK_TERM_SINUSOID = 5,
-    IMK_TERM_RESONANCE = 6,
     IMK_TERM_QUANTIZATION = 7,
     IMK_TERM_REPEATABILITY = 8,
     IMK_TERM_JITTER = 9,
     IMK_TERM_DROPS = 10,
     IMK_TERM_PHYSICS = 11,
-    IMK_TERM_RESIDUAL =
-        12,               /**< errors of the known values that remain after calibration (drift.h) */
-    IMK_TERM_INITIAL = 13 /**< errors at the start of a navigation (drift.h) */
+    IMK_TERM_RESIDUAL = 12, /**< errors of known values left after calibration (drift.h) */
+    IMK_TERM_INITIAL = 13,  /**< errors at the start of a navigation (drift.h) */
+#define IMK_TERM_NUMBER(NAME, name, number) IMK_TERM_##NAME = number,
+    IMK_NOISE_TERM_LIST(IMK_TERM_NUMBER)
+#undef IMK_TERM_NUMBER
 };
 
 enum {

@@ -352,10 +352,10 @@ static imk_status check_directions(const imk_triad *triad, const double (*direct
 static imk_status check_density(const imk_triad *triad, imki_fault *fault)
 {
     int density = (int)triad->noise.density;
-    if (!(density >= IMK_DENSITY_UNSTATED && density <= IMK_DENSITY_ONE_SIDED))
-        return refuse(fault, IMK_ERROR_RANGE, -1, density, IMK_DENSITY_ONE_SIDED,
-                      "one of imk_density");
-    return IMK_OK;
+    return density >= IMK_DENSITY_UNSTATED && density <= IMK_DENSITY_ONE_SIDED
+               ? IMK_OK
+               : refuse(fault, IMK_ERROR_RANGE, -1, density, IMK_DENSITY_ONE_SIDED,
+                        "one of imk_density");
 }
 
 static imk_status refuse_field(imki_fault *fault, const char *field, double value, double limit,

@@ -11,7 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const sensor_names[2] = {"gyro", "accel"};
 static const char *const axis_letters[3] = {"x", "y", "z"};
 
 static bool is_term(int sensor, int term)
@@ -104,7 +103,7 @@ imk_status imk_model_parameter_name(imk_model_parameter parameter,
     const char *element = imki_form_element(imki_terms[parameter.term].form, parameter.element);
     const char number[2] = {(char)('0' + parameter.axis), '\0'};
     name[0] = '\0';
-    append(name, sensor_names[parameter.sensor]);
+    append(name, imki_kind_names[parameter.sensor]);
     append(name, imki_term_field(parameter.term)->path[parameter.sensor]);
     append(name, parameter.axis < 3 ? axis_letters[parameter.axis] : number);
     if (element)
@@ -143,7 +142,7 @@ static bool parse_place(imki_form form, const char *text, imk_model_parameter *p
 imk_status imk_model_parameter_parse(const char *name, imk_model_parameter *parameter)
 {
     for (int sensor = 0; name && sensor < 2; sensor++) {
-        const char *path = behind(name, sensor_names[sensor]);
+        const char *path = behind(name, imki_kind_names[sensor]);
         for (int term = 0; path && term < IMK_MODEL_TERMS; term++) {
             const char *own = imki_term_field(term)->path[sensor];
             const char *rest = own ? behind(path, own) : NULL;

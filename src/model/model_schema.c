@@ -21,6 +21,8 @@
 #define IN(term, member) offsetof(struct term, member)
 #define NO_COUNT 0
 
+const char *const imki_kind_names[2] = {"gyro", "accel"};
+
 const imki_field imki_triad_fields[] = {
     {BOTH("direction"), IMKI_DIRECTION, IMKI_BARE | IMKI_OUTPUT, AT(direction), AT(axis_count),
      UNIT("1"), NO_UNITS, UNIT("1"), ANY},

@@ -43,6 +43,9 @@ typedef struct imki_field {
     double minimum, maximum;
 } imki_field;
 
+/* What a sensor is called: of IMK_GYRO and IMK_ACCEL. */
+extern const char *const imki_kind_names[2];
+
 /* A kind of list term. */
 typedef struct imki_list {
     size_t size; /* of an element */

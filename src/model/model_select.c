@@ -12,8 +12,6 @@
 
 enum { PATH_SIZE = 96, CANDIDATES_MAX = 256 };
 
-static const char *const kind_names[2] = {"gyro", "accel"};
-
 /* ---- names ----------------------------------------------------------------------------------- */
 
 /* "first.second", or "first.second.third". */
@@ -45,12 +43,12 @@ static bool names_path(const char *name, const char *path)
 /* Of a name that begins with the sensor the rest is what any name is: "gyro.angle_random_walk". */
 static bool names_of_sensor(const char *name, int kind, const char *first, const char *second)
 {
-    const size_t length = strlen(kind_names[kind]);
+    const size_t length = strlen(imki_kind_names[kind]);
     char path[PATH_SIZE];
-    join(path, kind_names[kind], first, second);
+    join(path, imki_kind_names[kind], first, second);
     if (names_path(name, path))
         return true;
-    return strncmp(name, kind_names[kind], length) == 0 && name[length] == '.' &&
+    return strncmp(name, imki_kind_names[kind], length) == 0 && name[length] == '.' &&
            names_path(name + length + 1, path + length + 1);
 }
 
@@ -124,9 +122,9 @@ static imk_status refuse_name(const char *name, imk_error *error)
 {
     const char *candidates[CANDIDATES_MAX + 16], *sensor = NULL, *below = name;
     for (int kind = 0; kind < 2; kind++) {
-        const size_t length = strlen(kind_names[kind]);
-        if (strncmp(name, kind_names[kind], length) == 0 && name[length] == '.') {
-            sensor = kind_names[kind];
+        const size_t length = strlen(imki_kind_names[kind]);
+        if (strncmp(name, imki_kind_names[kind], length) == 0 && name[length] == '.') {
+            sensor = imki_kind_names[kind];
             below = name + length + 1;
         }
     }

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const kind_names[2] = {"gyro", "accel"};
-
 static imk_status refuse(imki_fault *fault, const char *field, imk_status status, int index,
                          double value, double limit, const char *expected)
 {
@@ -134,7 +132,7 @@ static imk_status check(const imk_model *model, imki_fault *fault)
             refuse(fault, "gyro", IMK_ERROR_KEY_MISSING, -1, 0, 0, "a gyro, an accel, or both");
     for (int kind = 0; status == IMK_OK && kind < 2; kind++) {
         status = imki_triad_check(triads[kind], kind, fault);
-        fault->part = kind_names[kind];
+        fault->part = imki_kind_names[kind];
     }
     if (status == IMK_OK) {
         status = imki_timing_check(&model->timing, fault);
@@ -142,7 +140,7 @@ static imk_status check(const imk_model *model, imki_fault *fault)
     }
     for (int kind = 0; status == IMK_OK && kind < 2; kind++) {
         status = check_evidence(evidence[kind], triads[kind], kind, fault);
-        fault->part = kind_names[kind];
+        fault->part = imki_kind_names[kind];
     }
     return status == IMK_OK ? check_correlation(model, fault) : status;
 }

@@ -2,10 +2,9 @@
 /* The rows of the stochastic terms. */
 #include "noise_terms_internal.h"
 
-const imki_noise_term *const imki_noise_terms[IMKI_NOISE_TERMS] = {
-    &imki_white_term,        &imki_flicker_term,  &imki_random_walk_term,
-    &imki_gauss_markov_term, &imki_sinusoid_term, &imki_resonance_term,
-};
+#define ROW(NAME, name, number) &imki_##name##_term,
+const imki_noise_term *const imki_noise_terms[IMKI_NOISE_TERMS] = {IMK_NOISE_TERM_LIST(ROW)};
+#undef ROW
 
 int imki_term_count(const imki_noise_term *term, const imk_noise *noise)
 {

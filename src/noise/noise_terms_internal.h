@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The stochastic terms of a model: a row each, at the end of the file of its generator. The
  * simulator, the drift, an alignment and a calibration plan walk the rows, so that a new term is a
- * row of the model's fields, a file here with its row, and the row's name in noise_terms.c. */
+ * row of the model's fields, a file here with its row, and its name in IMK_NOISE_TERM_LIST. */
 #ifndef IMUKI_NOISE_TERMS_INTERNAL_H
 #define IMUKI_NOISE_TERMS_INTERNAL_H
 
@@ -74,8 +74,10 @@ typedef struct imki_noise_term {
     double (*allan_variance)(imki_term_place place, double tau);
 } imki_noise_term;
 
-/* In the order in which their samples are added. */
-enum { IMKI_NOISE_TERMS = 6 };
+/* Of IMK_NOISE_TERM_LIST. */
+#define COUNT(NAME, name, number) +1
+enum { IMKI_NOISE_TERMS = IMK_NOISE_TERM_LIST(COUNT) };
+#undef COUNT
 extern const imki_noise_term *const imki_noise_terms[IMKI_NOISE_TERMS];
 
 /* Elements of the term in a model: 1, or of its list. */
@@ -89,8 +91,9 @@ size_t imki_one_process(imki_process *process, imki_process_kind kind, double si
 void imki_add_generated(const imki_generator *generator, void *state, imk_random random,
                         imk_noise_block *block, size_t count, double *out);
 
-extern const imki_noise_term imki_white_term, imki_flicker_term, imki_random_walk_term,
-    imki_gauss_markov_term, imki_sinusoid_term, imki_resonance_term;
+#define ROW(NAME, name, number) extern const imki_noise_term imki_##name##_term;
+IMK_NOISE_TERM_LIST(ROW)
+#undef ROW
 extern const imki_generator imki_filtered_white;
 
 #endif

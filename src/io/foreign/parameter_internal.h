@@ -46,7 +46,6 @@ typedef struct imki_parameters {
 typedef void imki_parameter_function(imki_parameters *p);
 
 /* Of IMK_GYRO and IMK_ACCEL. */
-static const char *const imki_kind_names[2] = {"gyro", "accel"};
 static const char *const imki_kind_units[2] = {"rad/s", "m/s^2"};
 
 imki_parameter_function imki_kalibr_read, imki_kalibr_write, imki_gazebo_read, imki_gazebo_write,

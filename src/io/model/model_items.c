@@ -22,8 +22,6 @@ static const text_item evidence_texts[] = {{"source", offsetof(imk_evidence, sou
 
 enum { HEAD_TEXTS = 3, EVIDENCE_TEXTS = 3, EVIDENCE_ITEMS = EVIDENCE_TEXTS + 2 };
 
-static const char *const kind_names[2] = {"gyro", "accel"};
-
 const imk_evidence *imki_evidence_of(const imk_model *model, int kind)
 {
     return kind == IMK_GYRO ? &model->gyro_evidence : &model->accel_evidence;
@@ -36,13 +34,13 @@ static void sensor_item(size_t index, int kind, imki_item *item)
     item->kind = kind;
     if (index == 0) {
         item->type = IMKI_ITEM_SENSOR;
-        snprintf(item->path, sizeof item->path, "%s", kind_names[kind]);
+        snprintf(item->path, sizeof item->path, "%s", imki_kind_names[kind]);
     } else if (index <= imki_triad_field_count) {
         item->type = IMKI_ITEM_FIELD;
         item->field = &imki_triad_fields[index - 1];
         const char *path = item->field->path[kind];
         if (path && !(item->field->flags & IMKI_FLOOR))
-            snprintf(item->path, sizeof item->path, "%s.%s", kind_names[kind], path);
+            snprintf(item->path, sizeof item->path, "%s.%s", imki_kind_names[kind], path);
     } else {
         size_t which = index - 1 - imki_triad_field_count;
         bool is_text = which < EVIDENCE_TEXTS;
@@ -52,7 +50,7 @@ static void sensor_item(size_t index, int kind, imki_item *item)
             item->offset = evidence_texts[which].offset +
                            (kind == IMK_GYRO ? offsetof(imk_model, gyro_evidence)
                                              : offsetof(imk_model, accel_evidence));
-        snprintf(item->path, sizeof item->path, "%s.evidence.%s", kind_names[kind],
+        snprintf(item->path, sizeof item->path, "%s.evidence.%s", imki_kind_names[kind],
                  is_text          ? evidence_texts[which].path
                  : item->is_bound ? "upper_bound"
                                   : "interval_95");
@@ -130,7 +128,7 @@ static bool equal_intervals(const imk_evidence *a, const imk_evidence *b, int ax
 static bool in_absent_sensor(const imki_item *item, const imk_model *model)
 {
     bool in_sensor =
-        strncmp(item->path, kind_names[item->kind], strlen(kind_names[item->kind])) == 0;
+        strncmp(item->path, imki_kind_names[item->kind], strlen(imki_kind_names[item->kind])) == 0;
     return in_sensor && !imk_model_triad(model, item->kind)->present;
 }
 

@@ -69,8 +69,6 @@ static bool has_noise(const imk_triad *triad, int kind)
     return false;
 }
 
-static const char *const sensors[2] = {"gyro", "accel"};
-
 static void add(imk_term_keys *keys, const char *sensor, const char *name)
 {
     if (keys->count < IMK_TERM_KEYS_MAX)
@@ -80,12 +78,12 @@ static void add(imk_term_keys *keys, const char *sensor, const char *name)
 static void add_taken_out(imk_term_keys *keys, const imk_triad *triad, int kind)
 {
     if (triad->present && is_skewed(triad))
-        add(keys, sensors[kind], "direction");
+        add(keys, imki_kind_names[kind], "direction");
     for (int list = TERM; triad->present && list < STAYS; list++)
         for (size_t i = 0; i < imki_triad_field_count; i++)
             if (list_of(&imki_triad_fields[i], kind) == list &&
                 is_there(&imki_triad_fields[i], triad))
-                add(keys, sensors[kind], imki_field_name(&imki_triad_fields[i], kind));
+                add(keys, imki_kind_names[kind], imki_field_name(&imki_triad_fields[i], kind));
 }
 
 static void add_left_in(imk_term_keys *keys, const imk_triad *triad, const imk_triad *whole,
@@ -96,10 +94,10 @@ static void add_left_in(imk_term_keys *keys, const imk_triad *triad, const imk_t
             const imki_field *field = &imki_triad_fields[i];
             if (list_of(field, kind) == list && is_there(field, whole) &&
                 !(list < STAYS && is_there(field, triad)))
-                add(keys, sensors[kind], imki_field_name(field, kind));
+                add(keys, imki_kind_names[kind], imki_field_name(field, kind));
         }
     if (triad->present && has_noise(whole, kind))
-        add(keys, sensors[kind], "noise");
+        add(keys, imki_kind_names[kind], "noise");
 }
 
 imk_term_keys imki_taken_out(const imk_model *model)
@@ -142,7 +140,7 @@ bool imki_temperature_term(const imk_model *model, char *name, size_t size)
             if (term >= 0 && imki_terms[term].form >= IMKI_FORM_WARMTH &&
                 imki_terms[term].form <= IMKI_FORM_WARMING && field->path[sensor] &&
                 triads[sensor]->present && is_there(field, triads[sensor])) {
-                snprintf(name, size, "%s.%s", sensors[sensor], field->path[sensor]);
+                snprintf(name, size, "%s.%s", imki_kind_names[sensor], field->path[sensor]);
                 return true;
             }
     }
