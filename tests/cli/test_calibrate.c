@@ -311,9 +311,9 @@ static void wrong_usage_is_explained(void **state)
                   "imukit calibrate: error: --with k2: expected nonlinearity, cross_products, "
                   "g_sensitivity, g2_sensitivity or gyro\n" TRY("calibrate"));
     check_message("$I calibrate rest.csv " POSES " --model left.yaml", 1,
-                  "imukit calibrate: error: left.yaml is what is left after compensating with "
-                  "\"bench unit\": to calibrate again, take the log before it was compensated, and "
-                  "that model with --into\n");
+                  "imukit calibrate: error: left.yaml describes the errors left after compensation with "
+                  "\"bench unit\"; calibrate the log before it was compensated, with that model "
+                  "and --into\n");
     check_says("$I calibrate rest.csv " POSES " --estimate bais", 2,
                "--estimate bais: no such term; expected bias, scale_factor");
     check_says("$I calibrate rest.csv " POSES " --accel-sensitivity '415 count'", 2,
@@ -370,7 +370,7 @@ static void programme_is_the_reference(void **state)
                          ">late.csv"),
                      0);
     check_says("$I calibrate late.csv -p rate-table --motion table.yaml", 0,
-               "follows the programme best when that begins 1.337");
+               "fits the programme best if the programme begins 1.337");
     check_says("$I calibrate late.csv -p rate-table --motion table.yaml --motion-offset auto", 0,
                "late.csv: the programme begins at 1.337");
     sweep();
@@ -399,8 +399,8 @@ static void reference_columns_are_read(void **state)
     CHECK_CLOSE(found.gyro.scale_factor.fixed.value[2], 3000e-6, 300e-6);
     assert_false(found.accel.present);
     check_says("$I calibrate table.csv -p rate-table", 2,
-               "table.csv has a column table_rate: say about which axis of the unit it turns, such "
-               "as --table-axis z");
+               "table.csv has a column table_rate; state the axis of the unit about which the "
+               "table turns it, such as --table-axis z");
     assert_int_equal(run("sed '1s/table_rate .deg.s./table_rate/' table.csv >none.csv && sed "
                          "'1s/table_rate .deg.s./table_rate [g]/' table.csv >wrong.csv"),
                      0);

@@ -74,7 +74,7 @@ static void options_of_other_procedures_are_refused(void **state)
     check_says("$I calibrate turns.csv " POSES " --motion-offset auto", 2,
                "--motion-offset is of --motion");
     check_says("$I calibrate turns.csv -p rate-table --table-axis z", 1,
-               "turns.csv has no column table_rate [deg/s], whose axis --table-axis names");
+               "turns.csv has no column table_rate [deg/s], which --table-axis needs");
     sweep();
 }
 
@@ -125,7 +125,7 @@ static void other_programmes_are_noticed(void **state)
     (void)state;
     write_turns();
     check_says("$I calibrate turns.csv -p rate-table --motion turns.yaml --motion-offset 4s", 1,
-               "s earlier in the log than it was told");
+               "s earlier than stated");
     sweep();
 }
 
@@ -157,7 +157,7 @@ static void counts_are_for_logs_in_counts(void **state)
     (void)state;
     write_turns();
     check_says("$I calibrate turns.csv " POSES " --accel-sensitivity '415 count/(m/s^2)'", 2,
-               "--accel-sensitivity is for readings in counts, and those of turns.csv have a unit");
+               "--accel-sensitivity is for readings in counts, but those of turns.csv have a unit");
     check_says("$I calibrate turns.csv " POSES
                " --gyro-sensitivity '4778 count/(rad/s)' --gyro-zero "
                "'512 count'",
