@@ -71,7 +71,8 @@ typedef struct imk_record_source {
      *  `rows` is set to the number of rows read: 0 at the end. */
     imk_status (*read)(void *context, size_t rows_most, double *const *columns, size_t *rows,
                        imk_error *error);
-    /** Go back to the first row. */
+    /** Go back to the first row. A job reads a source to its end, so it has to be rewound before
+     *  another job reads it. */
     imk_status (*rewind)(void *context, imk_error *error);
     /** Counts and times of the rows read so far. */
     imk_log_findings (*findings)(void *context);
@@ -98,12 +99,14 @@ typedef struct imk_array_source {
 } imk_array_source;
 
 /** Make a source of `rows` rows in one array per column.
- *  @param names   names of the columns, without units: gyro_x [rad/s], accel_x [m/s^2], time [s],
- *                 temperature [K] and so on
+ *  @param names   of the columns, in SI units: "gyro_x" [rad/s], "accel_x" [m/s^2], "time" [s],
+ *                 "temperature" [K]; or with the unit in brackets: "gyro_x [deg/s]", "accel_x
+ * [count]", "table_rate [deg/s]"
  *  @param rate    sampling rate [Hz]; 0: from a column named time
  *  @param memory  holds the state of the source; must live as long as the source is used
  *  @return IMK_ERROR_COLUMN (too many columns, or a name twice), _ARGUMENT (an array is NULL),
- *          _RATE_MISSING (neither rate nor time), _MEMORY */
+ *          _RATE_MISSING (neither rate nor time), _DIMENSION, _MEMORY, errors of imk_unit_parse()
+ */
 IMK_API imk_status imk_array_source_make(size_t column_count, const char *const *names,
                                          const double *const *data, size_t rows, double rate,
                                          imk_array_source *memory, imk_record_source *source,

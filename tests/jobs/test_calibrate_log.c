@@ -170,13 +170,8 @@ static void test_counts(void **state)
     for (int k = 0; k < 3; k++)
         for (int row = 0; row < ROWS; row++)
             column[k][row] = floor(column[k][row] * 400 + 30.5);
-    imk_record_source source = source_of(3, sensors, ROWS);
-    imk_log_column columns[3];
-    for (int k = 0; k < 3; k++) {
-        columns[k] = source.columns[k];
-        columns[k].unit = imk_unit_of("count");
-    }
-    source.columns = columns;
+    static const char *const names[] = {"accel_x [count]", "accel_y [count]", "accel_z [count]"};
+    imk_record_source source = source_of(3, names, ROWS);
     settings.placement = 0;
     settings.sensitivity[1] = (imk_calibrate_counts){1, {400}};
     settings.zero_offset[1] = (imk_calibrate_counts){3, {30, 30, 30}};
@@ -277,7 +272,7 @@ static void fill_steps(void)
             column[k][row] = (k == 2 ? -gravity : 0) + noise * draw();
             column[3 + k][row] = (k == 2 ? 1.01 * rate + 2e-3 : 0) + 1e-4 * draw();
         }
-        column[6][row] = rate;
+        column[6][row] = rate * 57.29577951308232;
     }
 }
 
@@ -289,13 +284,9 @@ static void test_rate_table(void **state)
     imk_calibrate_log *found;
     imk_calibrate_log_settings settings = known_gravity();
     memcpy(names, sensors, sizeof names);
-    names[6] = "table_rate";
+    names[6] = "table_rate [deg/s]";
     fill_steps();
     imk_record_source source = source_of(7, names, ROWS);
-    imk_log_column columns[7];
-    memcpy(columns, source.columns, sizeof columns);
-    columns[6].unit = imk_unit_of("rad/s");
-    source.columns = columns;
     assert_int_equal(calibrate(IMK_PROCEDURE_RATE_TABLE, &source, &settings, &found, &error),
                      IMK_ERROR_ARGUMENT);
     assert_string_equal(code_of(found), "no_table_axis");
@@ -309,8 +300,8 @@ static void test_rate_table(void **state)
     check_value(found, "gyro.bias.fixed.z", 2e-3, 3e-5);
     imk_calibrate_log_free(found);
 
-    columns[6].unit = imk_unit_of("m/s");
-    CHECK_OK(source.rewind(source.context, NULL));
+    names[6] = "table_rate [m/s]";
+    source = source_of(7, names, ROWS);
     assert_int_equal(calibrate(IMK_PROCEDURE_RATE_TABLE, &source, &settings, &found, &error),
                      IMK_ERROR_DIMENSION);
     assert_string_equal(code_of(found), "wrong_unit");
@@ -333,7 +324,7 @@ static void test_programme(void **state)
     imk_calibrate_log_settings settings = known_gravity();
     fill_steps();
     for (int row = 0; row < ROWS - LATE; row++) {
-        rate[2][row] = column[6][row + LATE];
+        rate[2][row] = column[6][row + LATE] / 57.29577951308232;
         force[2][row] = -gravity;
     }
     imk_record_source source = source_of(6, sensors, ROWS);
@@ -418,6 +409,9 @@ static void test_records(void **state)
 
     source = source_of(6, sensors, ROWS);
     settings.estimate = "accel.bais";
+    assert_int_equal(calibrate(poses, &source, &settings, &found, NULL), IMK_ERROR_KEY_UNKNOWN);
+    imk_calibrate_log_free(found);
+    CHECK_OK(source.rewind(source.context, NULL));
     assert_int_equal(calibrate(poses, &source, &settings, &found, &error), IMK_ERROR_KEY_UNKNOWN);
     assert_string_equal(error.field, "accel.bais");
     imk_calibrate_log_free(found);

@@ -255,12 +255,44 @@ static void test_wrong_arrays(void **state)
     assert_int_equal(other.quantity, IMK_QUANTITY_OTHER);
 }
 
+/* Arrays in other units are read in SI units, as a file's columns are. */
+static void test_units_of_arrays(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"time [ms]", "gyro_x [deg/s]", "temperature [degC]",
+                                        "accel_x [count]"};
+    static const char *const wrong[] = {"gyro_x [m/s]", "gyro_x [deg/s", "gyro_x [quux]"};
+    const double time[] = {0, 10, 20}, rate[] = {180, -90, 0}, celsius[] = {25, 0, -40};
+    const double counts[] = {1, 2, 3}, *const data[] = {time, rate, celsius, counts};
+    double read[4][3], *const to[] = {read[0], read[1], read[2], read[3]};
+    imk_array_source memory;
+    imk_record_source source;
+    imk_error error;
+    size_t rows;
+    CHECK_OK(imk_array_source_make(4, names, data, 3, 0, &memory, &source, &error));
+    CHECK_OK(source.read(source.context, 3, to, &rows, &error));
+    CHECK_CLOSE(source.findings(source.context).interval, 0.01, 1e-15);
+    CHECK_CLOSE(read[0][2], 0.02, 1e-15);
+    CHECK_CLOSE(read[1][0], 3.141592653589793, 1e-15);
+    CHECK_CLOSE(read[2][2], 233.15, 1e-12);
+    CHECK_CLOSE(read[3][2], 3, 0);
+    assert_string_equal(source.columns[1].name, "gyro_x");
+    assert_string_equal(source.columns[1].unit.text, "deg/s");
+    CHECK_STATUS(imk_array_source_make(1, wrong, data, 3, 100, &memory, &source, &error),
+                 IMK_ERROR_DIMENSION);
+    assert_string_equal(error.field, "gyro_x");
+    CHECK_STATUS(imk_array_source_make(1, wrong + 1, data, 3, 100, &memory, &source, &error),
+                 IMK_ERROR_UNIT_MISSING);
+    CHECK_STATUS(imk_array_source_make(1, wrong + 2, data, 3, 100, &memory, &source, &error),
+                 IMK_ERROR_UNIT_UNKNOWN);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_arrays_are_a_log), cmocka_unit_test(test_what_is_missing),
-        cmocka_unit_test(test_given_up),         cmocka_unit_test(test_failing_memory),
-        cmocka_unit_test(test_wrong_arrays),
+        cmocka_unit_test(test_units_of_arrays), cmocka_unit_test(test_arrays_are_a_log),
+        cmocka_unit_test(test_what_is_missing), cmocka_unit_test(test_given_up),
+        cmocka_unit_test(test_failing_memory),  cmocka_unit_test(test_wrong_arrays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -114,7 +114,8 @@ static imk_status calibrate(imk_calibrate_log *b, imk_error *error)
     return imki_solve(b, error);
 }
 
-imk_status imk_calibrate_log_run(imk_calibrate_log *b, imk_error *error)
+/* @param error  not NULL: observing looks at it */
+static imk_status run(imk_calibrate_log *b, imk_error *error)
 {
     for (b->failed = 0; b->failed < b->count; b->failed++)
         if (b->record[b->failed].record.count == 0)
@@ -132,6 +133,12 @@ imk_status imk_calibrate_log_run(imk_calibrate_log *b, imk_error *error)
     if (status == IMK_OK)
         imki_calibrate_model(b);
     return status;
+}
+
+imk_status imk_calibrate_log_run(imk_calibrate_log *b, imk_error *error)
+{
+    imk_error own;
+    return run(b, error ? error : &own);
 }
 
 imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *input,

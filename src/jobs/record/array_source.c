@@ -54,6 +54,42 @@ imk_log_column imk_record_column(const char *name)
     return column;
 }
 
+/* A name with its unit behind it, "gyro_x [deg/s]", or in SI units without. */
+static imk_status column_of(const char *text, imk_log_column *column, imk_error *error)
+{
+    char name[sizeof column->name];
+    const char *open = strchr(text, '['), *close = open ? strrchr(open, ']') : NULL;
+    const size_t length = open ? (size_t)(open - text) : strlen(text);
+    snprintf(name, sizeof name, "%.*s", (int)length, text);
+    name[strcspn(name, " ")] = '\0';
+    *column = imk_record_column(name);
+    if (!open)
+        return IMK_OK;
+    imk_unit unit;
+    const imk_dimension due = column->unit.dimension, counts = imk_unit_of("count").dimension;
+    const imk_status status = imk_unit_parse(open + 1, close ? close : open + 1, &unit, error);
+    if (status != IMK_OK)
+        return status;
+    const bool fits = column->quantity == IMK_QUANTITY_OTHER ||
+                      imk_dimension_equal(unit.dimension, due) ||
+                      (column->axis >= 0 && imk_dimension_equal(unit.dimension, counts));
+    if (!fits)
+        return imk_error_set(error, IMK_ERROR_DIMENSION, name, unit.text, column->unit.text);
+    column->unit = unit;
+    return IMK_OK;
+}
+
+/* Numbers of a column from `first` on, in SI units. */
+static void read_column(const imk_array_source *s, size_t c, size_t first, size_t count, double *to)
+{
+    const imk_unit *unit = &s->column[c].unit;
+    if (unit->scale == 1 && unit->offset == 0)
+        memcpy(to, s->data[c] + first, count * sizeof *to);
+    else
+        for (size_t k = 0; k < count; k++)
+            to[k] = unit->scale * s->data[c][first + k] + unit->offset;
+}
+
 static imk_status read_rows(void *context, size_t rows_most, double *const *columns, size_t *rows,
                             imk_error *error)
 {
@@ -63,7 +99,7 @@ static imk_status read_rows(void *context, size_t rows_most, double *const *colu
     *rows = left < rows_most ? left : rows_most;
     for (size_t c = 0; c < s->column_count; c++)
         if (columns[c] && *rows > 0)
-            memcpy(columns[c], s->data[c] + s->next, *rows * sizeof **columns);
+            read_column(s, c, s->next, *rows, columns[c]);
     s->next += *rows;
     return IMK_OK;
 }
@@ -101,18 +137,30 @@ static void count_not_finite(imk_array_source *s)
     }
 }
 
-static imk_status find_times(const double *time, imk_array_source *s, imk_error *error)
+static void add_times(const imk_array_source *s, size_t column, imki_record_times *times)
+{
+    double seconds[256];
+    const size_t room = sizeof seconds / sizeof *seconds;
+    for (size_t row = 0; row < s->rows; row += room) {
+        const size_t count = s->rows - row < room ? s->rows - row : room;
+        read_column(s, column, row, count, seconds);
+        imki_record_times_add(times, row + 1, count, seconds);
+    }
+}
+
+/* @param time  index of that column; -1: there is none */
+static imk_status find_times(int time, imk_array_source *s, imk_error *error)
 {
     imki_arena scratch = {.blocks = NULL};
     imki_record_times *times = imki_arena_take(&scratch, sizeof *times);
     if (!times)
         return imk_error_set(error, IMK_ERROR_MEMORY, "time", NULL, NULL);
     imki_record_times_start(times, s->rate > 0 ? 1 / s->rate : 0);
-    if (time)
-        imki_record_times_add(times, 1, s->rows, time);
+    if (time >= 0)
+        add_times(s, (size_t)time, times);
     s->findings = imki_record_times_findings(times);
     s->findings.rows = s->rows;
-    if (!time && s->rows > 0)
+    if (time < 0 && s->rows > 0)
         s->findings.last_time = (double)(s->rows - 1) / s->rate;
     imki_arena_free(&scratch);
     count_not_finite(s);
@@ -124,22 +172,24 @@ imk_status imk_array_source_make(size_t column_count, const char *const *names,
                                  imk_array_source *memory, imk_record_source *source,
                                  imk_error *error)
 {
-    const double *time = NULL;
+    int time = -1;
     if (column_count == 0 || column_count > IMK_LOG_COLUMNS_MAX)
         return imk_error_set(error, IMK_ERROR_COLUMN, "columns", NULL, "1 to 64 columns");
     imk_array_source made = {.column_count = column_count, .rows = rows, .rate = rate};
     for (size_t c = 0; c < column_count; c++) {
-        for (size_t k = 0; k < c; k++)
-            if (strcmp(names[c], names[k]) == 0)
-                return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL, "a name once");
         if (!data[c])
             return imk_error_set(error, IMK_ERROR_ARGUMENT, names[c], NULL, "an array");
-        made.column[c] = imk_record_column(names[c]);
+        const imk_status status = column_of(names[c], &made.column[c], error);
+        if (status != IMK_OK)
+            return status;
+        for (size_t k = 0; k < c; k++)
+            if (strcmp(made.column[c].name, made.column[k].name) == 0)
+                return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL, "a name once");
         made.data[c] = data[c];
         if (made.column[c].quantity == IMK_QUANTITY_TIME)
-            time = data[c];
+            time = (int)c;
     }
-    if (!(rate > 0 && isfinite(rate)) && !time)
+    if (!(rate > 0 && isfinite(rate)) && time < 0)
         return imk_error_set(error, IMK_ERROR_RATE_MISSING, "rate", NULL,
                              "a rate in Hz, or a column named time");
     const imk_status status = find_times(time, &made, error);
