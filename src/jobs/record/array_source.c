@@ -131,7 +131,8 @@ imk_status imk_array_source_make(size_t column_count, const char *const *names,
     for (size_t c = 0; c < column_count; c++) {
         for (size_t k = 0; k < c; k++)
             if (strcmp(names[c], names[k]) == 0)
-                return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL, "a name once");
+                return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL,
+                                     "use each column name only once");
         if (!data[c])
             return imk_error_set(error, IMK_ERROR_ARGUMENT, names[c], NULL, "an array");
         made.column[c] = imk_record_column(names[c]);
