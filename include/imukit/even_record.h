@@ -12,8 +12,8 @@ IMK_BEGIN_C
 
 /** Treatment of rows that are missing, not finite or out of order. */
 typedef enum imk_gap_policy {
-    IMK_GAPS_REFUSE = 0, /**< the record is refused; if up to 0.1 % are missing, they are
-                            interpolated, with a warning */
+    IMK_GAPS_REFUSE = 0, /**< the record is refused; but up to 0.1 % missing samples are
+                              interpolated, with a warning, if no row is bad */
     IMK_GAPS_BRIDGE,     /**< they are interpolated linearly */
     IMK_GAPS_LONGEST,    /**< only the longest stretch without faults is used */
     IMK_GAPS_KEEP        /**< the samples are kept as missing: NaN */

@@ -25,7 +25,7 @@ static imk_status check_settings(const imk_firmware_settings *settings, imk_erro
 {
     if (settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
-                             "settings from imk_firmware_default()");
+                             "start from imk_firmware_default()");
     if ((unsigned)settings->arithmetic > IMK_FIRMWARE_FIXED)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "arithmetic", "",
                              "float, double or fixed point");
@@ -128,7 +128,7 @@ static imk_status set_channel(imk_firmware *f, const imk_compensator *reference,
     if (!has_range && !f->limit_stated[sensor])
         return imk_error_set(error, IMK_ERROR_KEY_MISSING, keys[sensor], "",
                              "add the range, or --rate-limit and --force-limit: fixed point needs "
-                             "to know how large the numbers are");
+                             "the largest values");
     channel->flag = has_range ? IMK_FLAG_SATURATED : IMK_FLAG_LIMIT;
     channel->bits = channel->in_counts ? 0 : imki_firmware_bits(reach);
     if (channel->bits < 0)
@@ -242,7 +242,7 @@ static imk_status plan_operations(imk_firmware *f, double left[2], imk_error *er
             break;
     }
     return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "model",
-                         "numbers too far apart for 32-bit integers",
+                         "numbers that differ too much in size for 32-bit integers",
                          "choose float, or state a smaller range");
 }
 

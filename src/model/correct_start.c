@@ -30,7 +30,7 @@ static imk_status check_settings(const imk_correction_settings *settings, imk_er
 {
     if (settings->cookie != IMKI_CORRECTION_SETTINGS_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
-                             "settings from imk_correction_default()");
+                             "start from imk_correction_default()");
     const double values[3] = {settings->rate_limit, settings->force_limit, settings->tolerance};
     static const char *const fields[3] = {"rate_limit", "force_limit", "tolerance"};
     const double largest[3] = {DBL_MAX, DBL_MAX, 0.1};
@@ -192,10 +192,9 @@ static imk_status find_limits(imki_inversion *v, const imk_triad *triad, int sen
         return IMK_OK;
     }
     if (!(stated > 0.0) && needs_limit(v->distortion, sensor))
-        return imki_correct_refuse(
-            error, IMK_ERROR_KEY_MISSING, sensor, "range", "",
-            "add the range: the model has terms that are not linear, and how far they "
-            "are to be taken out must be known");
+        return imki_correct_refuse(error, IMK_ERROR_KEY_MISSING, sensor, "range", "",
+                                   "add the range: the model has nonlinear terms, and their "
+                                   "correction needs a known range");
     const double limit = stated > 0.0 ? stated : nominal_limit[sensor];
     for (int i = 0; i < triad->axis_count; i++) {
         const double *e = triad->direction[i];
@@ -311,7 +310,7 @@ imk_status imk_correction_start(imk_correction *correction, const imk_model *mod
         return status;
     if (imki_invert_middle(&v, &singular) != IMK_OK)
         return imki_correct_refuse(error, IMK_ERROR_SINGULAR, singular, "misalignment",
-                                   "the axes with their errors do not span space",
+                                   "the axes with their errors do not span three dimensions",
                                    "check direction, misalignment, cross_axis and scale_factor");
     status = imki_count_iterations(&v, with->tolerance, &made.iterations, &made.contraction, left);
     if (status != IMK_OK)

@@ -51,7 +51,7 @@ static imk_status check_cross_products(const imk_triad *triad, imk_error *error)
         if (has_cross_products(triad, i) && !imki_cross_axes(triad, i, p, o)) {
             imk_error_set(
                 error, IMK_ERROR_CONFLICT, "accel.cross_products",
-                "cross_products of a sensor that is along no body axis need a pendulous axis",
+                "cross_products of a sensor that is not along a body axis need a pendulous axis",
                 "add pendulous_axis, a row x y z for each axis");
             if (error)
                 error->index = i;

@@ -338,13 +338,16 @@ static imk_status check_directions(const imk_triad *triad, const double (*direct
         if (pendulous && square == 0)
             continue;
         if (!(square >= 1 - 2 * direction_tolerance && square <= 1 + 2 * direction_tolerance))
-            return refuse(fault, IMK_ERROR_RANGE, i, square, 1,
-                          pendulous ? "a direction of unit length, or zeros (this is its square)"
-                                    : "a direction of unit length (this is its square)");
+            return refuse(
+                fault, IMK_ERROR_RANGE, i, square, 1,
+                pendulous
+                    ? "a direction of unit length, or zeros (the value shown is the square of the "
+                      "length)"
+                    : "a direction of unit length (the value shown is the square of the length)");
         if (pendulous && !(along >= -direction_tolerance && along <= direction_tolerance))
             return refuse(fault, IMK_ERROR_RANGE, i, along, 0,
-                          "a direction at right angles to the sensing direction (this is the "
-                          "cosine between them)");
+                          "a direction at right angles to the sensing direction (the value shown "
+                          "is the cosine of the angle)");
     }
     return IMK_OK;
 }
@@ -355,7 +358,7 @@ static imk_status check_density(const imk_triad *triad, imki_fault *fault)
     return density >= IMK_DENSITY_UNSTATED && density <= IMK_DENSITY_ONE_SIDED
                ? IMK_OK
                : refuse(fault, IMK_ERROR_RANGE, -1, density, IMK_DENSITY_ONE_SIDED,
-                        "one of imk_density");
+                        "one of the values of imk_density");
 }
 
 static imk_status refuse_field(imki_fault *fault, const char *field, double value, double limit,
@@ -427,7 +430,7 @@ static imk_status check_together(const imk_triad *triad, imki_fault *fault)
         if (counts != (triad->sensitivity.value[0] != 0))
             return conflict(fault, "sensitivity", i,
                             "some axes have a sensitivity and some have none",
-                            "give all of them one, or none");
+                            "give all axes a sensitivity, or none");
         if (triad->zero_offset.value[i] != 0 && !counts)
             return conflict(fault, "zero_offset", i, "zero_offset needs a sensitivity",
                             "add sensitivity, or remove zero_offset");

@@ -93,7 +93,7 @@ static imk_status check_correlated(const imk_model *model, int index, imki_fault
     for (int i = 0; i < index; i++)
         if (memcmp(&model->correlation.parameter[i], &parameter, sizeof parameter) == 0)
             return refuse(fault, place, IMK_ERROR_KEY_DUPLICATE, index, 0, 0,
-                          "every parameter once");
+                          "name every parameter once");
     return IMK_OK;
 }
 
@@ -112,7 +112,7 @@ static imk_status check_correlation(const imk_model *model, imki_fault *fault)
             const double value = (double)correlation->value[i * (i - 1) / 2 + j];
             if (!(value >= -1 && value <= 1))
                 return refuse(fault, place, IMK_ERROR_RANGE, i, value, 1,
-                              "correlations from -1 to 1");
+                              "use correlations from -1 to 1");
         }
     return status;
 }

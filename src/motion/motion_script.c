@@ -60,11 +60,11 @@ static imk_status check_place(const compiler *c)
     const imk_geodetic *place = &c->knot.place;
     if (!(fabs(place->latitude) <= latitude_limit))
         return imki_step_refuse(c->error, "step.latitude", c->index, place->latitude,
-                                latitude_limit, "a way that stays 0.1 deg away from the poles");
+                                latitude_limit, "a path that stays 0.1 deg away from the poles");
     if (!(place->height >= -1e4 && place->height <= 1e7))
         return imki_step_refuse(c->error, "step.height", c->index, place->height,
                                 place->height < 0.0 ? -1e4 : 1e7,
-                                "a way between -10 km and 10000 km of height");
+                                "a path at heights between -10 km and 10000 km");
     return IMK_OK;
 }
 
@@ -72,7 +72,7 @@ static imk_status too_many(const compiler *c)
 {
     return imki_step_refuse(
         c->error, "step", c->index, (double)c->count, IMK_MOTION_PIECES_MAX,
-        "at most 1e7 pieces in all: fewer turns and cycles, or less time on the way");
+        "at most 1e7 pieces in all: use fewer turns and cycles, or less time on the way");
 }
 
 static imk_status keep(compiler *c, const imk_trajectory_piece *piece)
@@ -81,8 +81,9 @@ static imk_status keep(compiler *c, const imk_trajectory_piece *piece)
         return too_many(c);
     if (c->piece) {
         if (c->count >= c->capacity)
-            return imk_error_set(c->error, IMK_ERROR_WORKSPACE, "piece", "",
-                                 "as many as imk_motion_script_pieces() says");
+            return imk_error_set(
+                c->error, IMK_ERROR_WORKSPACE, "piece", "",
+                "provide room for as many pieces as imk_motion_script_pieces() states");
         c->piece[c->count] = *piece;
     }
     c->count++;
@@ -128,8 +129,9 @@ static imki_knot next_knot(const compiler *c, double time, const imki_local_moti
 static imk_status advance(compiler *c, double time, const imki_local_motion *motion)
 {
     if (!(time > c->knot.time))
-        return imki_step_refuse(c->error, "step", c->index, time, c->knot.time,
-                                "a step that is not lost beside the time so far");
+        return imki_step_refuse(
+            c->error, "step", c->index, time, c->knot.time,
+            "a longer step: this one is lost in the rounding of the time so far");
     const imki_knot next = next_knot(c, time, motion);
     const imk_trajectory_piece piece = imki_knot_piece(&c->knot, &next);
     const imk_status status = keep(c, &piece);
@@ -189,7 +191,7 @@ static imk_status compile_step(compiler *c, const imk_motion_script *script)
         imki_step_begin(&script->step[c->index], script->smoothing, c->vehicle, gravity);
     if (!(run.end.speed >= 0.0))
         return imki_step_refuse(c->error, "step.amount", c->index, run.step->amount,
-                                -c->vehicle.speed, "braking to rest at most");
+                                -c->vehicle.speed, "a change of speed that brakes at most to rest");
     if (!(run.end.speed <= IMKI_SPEED_LIMIT))
         return imki_step_refuse(c->error, "step.amount", c->index, run.step->amount,
                                 IMKI_SPEED_LIMIT - c->vehicle.speed, "a speed below 100 km/s");

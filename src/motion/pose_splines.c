@@ -49,7 +49,7 @@ static imk_status check_row(const double *time, const double *const position[3],
         return imki_refuse_at(error, IMK_ERROR_NOT_FINITE, "time", row, time[row], 0.0, "a time");
     if (row > 0 && !(time[row] > time[row - 1]))
         return imki_refuse_at(error, IMK_ERROR_TIME_ORDER, "time", row, time[row], time[row - 1],
-                              "times that increase");
+                              "use times that increase");
     if (row > 0 &&
         !(time[row] - time[row - 1] >= shortest_step && time[row] - time[row - 1] <= longest_step))
         return imki_refuse_at(error, IMK_ERROR_RANGE, "time", row, time[row] - time[row - 1],
@@ -70,8 +70,9 @@ static imk_status check_row(const double *time, const double *const position[3],
         return IMK_OK;
     const double cosine = fabs(product(attitude[row], attitude[row - 1]));
     if (!(cosine >= 0.5 * sqrt(square * product(attitude[row - 1], attitude[row - 1]))))
-        return imki_refuse_at(error, IMK_ERROR_RANGE, "attitude", row, cosine, 0.5,
-                              "attitudes less than 120 deg apart: more poses per second");
+        return imki_refuse_at(
+            error, IMK_ERROR_RANGE, "attitude", row, cosine, 0.5,
+            "give more poses per second: successive attitudes must be less than 120 deg apart");
     return IMK_OK;
 }
 

@@ -149,7 +149,7 @@ imk_status imki_script_check(const imk_motion_script *script, imk_error *error)
 {
     if (!script || script->cookie != IMKI_MOTION_SCRIPT_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "motion script", "",
-                             "a structure from imk_motion_script_default()");
+                             "start from imk_motion_script_default()");
     imk_status status = check_start(script, error);
     if (status != IMK_OK)
         return status;

@@ -158,7 +158,7 @@ imk_status imk_temperature_validate(const imk_temperature_profile *profile, imk_
                                   "a temperature");
         if (i > 0 && !(time >= profile->time[i - 1]))
             return imki_refuse_at(error, IMK_ERROR_TIME_ORDER, "time", i, time,
-                                  profile->time[i - 1], "times that do not decrease");
+                                  profile->time[i - 1], "use times that do not decrease");
         if (!(temperature > 0.0))
             return imki_refuse_at(error, IMK_ERROR_RANGE, "temperature", i, temperature, 0.0,
                                   "a temperature above absolute zero");

@@ -119,7 +119,8 @@ static imk_status check_seam(const imk_trajectory_piece *before, const imk_traje
     if (!(time > before->start) ||
         !(gap <= 1e-15 * fabs(time) * 8.0 || gap <= 1e-9 * before->length))
         return imki_refuse_at(error, IMK_ERROR_TIME_ORDER, "start", index, time,
-                              before->start + before->length, "the end of the piece before");
+                              before->start + before->length,
+                              "start each piece at the end of the piece before it");
     /* free of gravity and vibration, so that force is the acceleration */
     const imk_trajectory bare = {.earth = false};
     imki_instant a, b;
@@ -171,7 +172,7 @@ static imk_status check_lines(const imk_trajectory *trajectory, imk_error *error
         (trajectory->line_count > 0 && !trajectory->line))
         return imki_refuse_at(error, IMK_ERROR_ARGUMENT, "vibration", trajectory->line_count,
                               (double)trajectory->line_count, IMK_VIBRATION_LINES_MAX,
-                              "up to 512 lines");
+                              "at most 512 lines");
     for (size_t i = 0; i < trajectory->line_count; i++) {
         const imk_vibration_line *line = &trajectory->line[i];
         if (line->axis < 0 || line->axis > 5)
@@ -191,14 +192,16 @@ static imk_status check_lines(const imk_trajectory *trajectory, imk_error *error
                                   line->amplitude, 0.0, NULL);
         sum[line->axis] += fabs(line->amplitude);
         if (line->axis < 3 && !(sum[line->axis] <= IMK_VIBRATION_DISPLACEMENT_MAX))
-            return imki_refuse_at(error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude,
-                                  IMK_VIBRATION_DISPLACEMENT_MAX,
-                                  "displacements up to 10 km, together, along an axis");
+            return imki_refuse_at(
+                error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude,
+                IMK_VIBRATION_DISPLACEMENT_MAX,
+                "at most 10 km for the displacements of all lines along an axis together");
         if (line->axis >= 3 &&
             !(fabs(line->amplitude) <= 0.1 && sum[line->axis] <= LARGEST_VIBRATION))
             return imki_refuse_at(error, IMK_ERROR_RANGE, "vibration.amplitude", i, line->amplitude,
                                   0.1,
-                                  "rotations up to 0.1 rad, together up to 1 rad about an axis");
+                                  "at most 0.1 rad for a rotation, and 1 rad for all rotations "
+                                  "about an axis together");
     }
     return IMK_OK;
 }

@@ -73,11 +73,11 @@ static imk_status check_density(int axis, size_t corners, const double *frequenc
                       "at least two corners");
     if (line_count < 8 || line_count > IMK_VIBRATION_LINES_MAX)
         return refuse(error, IMK_ERROR_RANGE, "line_count", 0, (double)line_count,
-                      "from 8 to 512 lines");
+                      "8 to 512 lines");
     for (size_t i = 0; i < corners; i++) {
         if (!isfinite(frequency[i]) || !isfinite(density[i]))
             return refuse(error, IMK_ERROR_NOT_FINITE, "density", i, density[i],
-                          "a frequency and a density");
+                          "a finite frequency and a finite density");
         if (!(density[i] >= 1e-100 && density[i] <= 1e100))
             return refuse(error, IMK_ERROR_RANGE, "density", i, density[i],
                           "a positive density, up to 1e100 (m/s^2)^2/Hz");
@@ -85,7 +85,7 @@ static imk_status check_density(int axis, size_t corners, const double *frequenc
               frequency[i] >= IMK_VIBRATION_FREQUENCY_MIN &&
               frequency[i] <= IMK_VIBRATION_FREQUENCY_MAX))
             return refuse(error, IMK_ERROR_RANGE, "frequency", i, frequency[i],
-                          "frequencies that increase, from 1e-6 Hz to 1e9 Hz");
+                          "use increasing frequencies from 1e-6 Hz to 1e9 Hz");
     }
     return IMK_OK;
 }

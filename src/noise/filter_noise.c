@@ -186,14 +186,15 @@ static imk_status check(const imk_triad *triad, int axis, const imk_filter_noise
 {
     if (!settings || settings->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
-                             "settings from imk_filter_noise_default()");
+                             "start from imk_filter_noise_default()");
     if (axis < 0 || axis >= triad->axis_count)
         return imk_error_set(error, IMK_ERROR_RANGE, "axis", "", "an axis of the triad");
     if (!(settings->from >= 1e-9 && settings->to >= settings->from && settings->to <= 1e9))
         return imk_error_set(error, IMK_ERROR_RANGE, "from", "",
                              "two averaging times from 1e-9 s to 1e9 s, the shorter first");
     if ((unsigned)settings->flicker > IMK_FILTER_FLICKER_LEFT_OUT)
-        return imk_error_set(error, IMK_ERROR_ARGUMENT, "flicker", "", "one of the enumeration");
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "flicker", "",
+                             "one of the values of the enumeration");
     return IMK_OK;
 }
 

@@ -84,7 +84,7 @@ static imk_status check_settings(const imk_physics_settings *settings, imk_error
 {
     if (settings->cookie != SETTINGS_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "settings made by imk_physics_default()");
+                             "start from imk_physics_default()");
     if (!isfinite(settings->rate) || !isfinite(settings->step))
         return imki_refuse(error, IMK_ERROR_NOT_FINITE, isfinite(settings->rate) ? "step" : "rate",
                            settings->rate, 0.0, NULL);
@@ -97,7 +97,7 @@ static imk_status check_settings(const imk_physics_settings *settings, imk_error
                            "a step above 0, or 0 for the instrument's own");
     if (settings->level != IMK_LEVEL_FULL && settings->level != IMK_LEVEL_SLOW)
         return imki_refuse(error, IMK_ERROR_RANGE, "level", (double)settings->level, 1.0,
-                           "full or slow");
+                           "\"full\" or \"slow\"");
     return IMK_OK;
 }
 

@@ -71,11 +71,11 @@ static imk_status check_recorded(const imk_model *model, const imk_simulation *s
     const imk_recorded_motion *recorded = simulation->motion.recorded;
     const imk_timing *timing = &model->timing;
     if (simulation->motion.trajectory)
-        return conflict(error, "motion", "either a trajectory or a recorded motion");
+        return conflict(error, "motion", "give either a trajectory or a recorded motion");
     if (recorded->count == 0)
         return imk_error_set(error, IMK_ERROR_EMPTY, "motion", "", "at least one recorded sample");
     if (!(fabs(recorded->rate - simulation->rate) <= 1e-6 * simulation->rate))
-        return conflict(error, "rate", "the sample rate of the recorded motion");
+        return conflict(error, "rate", "use the sample rate of the recorded motion");
     if (simulation->substeps > 1)
         return conflict(error, "substeps", "1 for a recorded motion: its samples are means");
     if (timing->rate_error.value != 0.0 || timing->jitter.value != 0.0 || timing->skew.value != 0.0)

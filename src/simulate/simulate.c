@@ -39,7 +39,7 @@ static imk_status check_simulation(const imk_simulation *simulation, imk_error *
     const imk_simulation *s = simulation;
     if (s->cookie != COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "simulation", "",
-                             "a structure from imk_simulation_default()");
+                             "start from imk_simulation_default()");
     if (!(s->rate >= 1e-9 && s->rate <= 1e12))
         return range_error(error, "rate", s->rate, "a rate between 1e-9 and 1e12 Hz");
     if (!(fabs(s->latitude) <= 0.5 * IMKI_PI))

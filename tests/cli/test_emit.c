@@ -190,8 +190,7 @@ static void test_refusals(void **state)
     check_message("$I compensate any.yaml --emit-c . --arithmetic fixed", 1,
                   "imukit compensate: error: any.yaml: gyro.range: a required key is missing; add "
                   "the range, or "
-                  "--rate-limit and --force-limit: fixed point needs to know how large the numbers "
-                  "are\n");
+                  "--rate-limit and --force-limit: fixed point needs the largest values\n");
     check_message("$I compensate any.yaml --emit-c file", 1,
                   "imukit compensate: error: file/imukit_unit.h: the file cannot be opened: Not a "
                   "directory; check the path\n");

@@ -172,7 +172,7 @@ static void test_parts_of_a_unit(void **state)
     put("one.yaml", "imukit: 1\ngyro: {direction: [1 0 0], bias: {repeatability: 1 deg/h}}\n"
                     "accel: {bias: {repeatability: 1 mg}}\n");
     assert_int_equal(run("$I grade one.yaml"), 0);
-    check_contains(out, "Position: not computed; it takes three gyros and three acc", out);
+    check_contains(out, "Position: not computed; a position needs three gyros and three acc", out);
     /* Without a stated bias there is a position still, and no class by the table. */
     models = models_of("$I grade 'Groves aviation' --json");
     assert_string_equal(word(json_array_get(models, 0), "overall"), "null");

@@ -185,7 +185,7 @@ imk_status imk_calibration_compare(const imk_model *a, const imk_model *b, size_
     *turned = *b;
     if (!align(a, turned, total))
         return imk_error_set(error, IMK_ERROR_SINGULAR, "direction", NULL,
-                             "triads whose axes are near the body axes of their numbers");
+                             "triads whose axes 1, 2, 3 are near body x, y, z");
     if (rotation)
         memcpy(rotation, total, sizeof total);
     for (size_t p = 0; p < count; p++) {

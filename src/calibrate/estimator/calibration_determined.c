@@ -22,8 +22,9 @@ static imk_status not_determined(const imki_estimator *e, size_t p, double value
     char name[IMK_MODEL_PARAMETER_NAME] = "fixture";
     if (p < e->parameters && imk_model_parameter_name(e->problem->parameter[p], name) != IMK_OK)
         name[0] = '\0';
-    imk_error_set(error, IMK_ERROR_SINGULAR, name, "the observations do not determine it",
-                  "further poses or inputs that move it, or leave it out");
+    imk_error_set(
+        error, IMK_ERROR_SINGULAR, name, "the observations do not determine this parameter",
+        "add poses or inputs in which this parameter changes the readings, or do not estimate it");
     if (error) {
         error->value = value;
         error->limit = limit;

@@ -36,7 +36,7 @@ static imk_status check_forces(const imk_calibration *c, imk_error *error)
         if (o->knowledge != IMK_INPUT_GRAVITY || imki_dot3(o->force, o->force) > 0.0)
             continue;
         imk_error_set(error, IMK_ERROR_KEY_MISSING, "force", NULL,
-                      "the direction of gravity in the pose");
+                      "state the direction of gravity in the pose");
         if (error)
             error->index = (int)i;
         return IMK_ERROR_KEY_MISSING;

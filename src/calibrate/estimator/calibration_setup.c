@@ -148,12 +148,14 @@ static imk_status check_readings(const imk_calibration *c, size_t index, imk_err
             const double sigma = o->sigma[sensor][axis];
             if (!(fabs(reading) < HUGE_VAL) || !(sigma > 0.0) || !(sigma < HUGE_VAL))
                 return refuse(error, IMK_ERROR_NOT_FINITE, "observation", index, NULL,
-                              "finite readings with sigmas above 0; NaN where not observed");
+                              "use finite readings with sigmas above 0, and NaN for readings that "
+                              "were not observed");
             const imk_test_record *record = record_of(c, o);
             if (record && record->counts[sensor] && triad->sensitivity.value[axis] == 0.0)
                 return refuse(error, IMK_ERROR_UNIT_MISSING,
                               sensor == IMK_GYRO ? "gyro.sensitivity" : "accel.sensitivity",
-                              (size_t)axis, "readings in counts", "the nominal sensitivity");
+                              (size_t)axis, "readings in counts",
+                              "state the nominal sensitivity in the model");
         }
     return IMK_OK;
 }
@@ -172,7 +174,7 @@ static imk_status check_observation(const imk_calibration *c, size_t index, imk_
         (!isnan(o->temperature) && !(fabs(o->temperature_rate) < HUGE_VAL)) ||
         (o->knowledge == IMK_INPUT_PLACED && !(o->placement_sigma < HUGE_VAL)))
         return refuse(error, IMK_ERROR_NOT_FINITE, "observation", index, NULL,
-                      "finite inputs; a temperature not known is NaN");
+                      "use finite inputs, and NaN for an unknown temperature");
     return check_readings(c, index, error);
 }
 
@@ -209,8 +211,9 @@ static imk_status check_turns(const imk_calibration *c, imk_error *error)
         if (!record || c->observation[turn->to].record != c->observation[turn->from].record ||
             turn->begin >= turn->end || turn->end > record->count || !(turn->sigma > 0.0) ||
             !(turn->sigma < HUGE_VAL))
-            return refuse(error, IMK_ERROR_ARGUMENT, "turn", t, NULL,
-                          "samples between two observations under gravity of one record");
+            return refuse(
+                error, IMK_ERROR_ARGUMENT, "turn", t, NULL,
+                "a stretch of samples between two observations under gravity in one record");
     }
     return IMK_OK;
 }
@@ -259,11 +262,13 @@ static imk_status check_frame(const imk_calibration *c, imk_error *error)
         if (c->frame == IMK_FRAME_SYMMETRIC &&
             (place.term == IMK_MODEL_CROSS_AXIS || !has_pair(c, place)))
             return frame_conflict(error, "not all pairs of misalignments are free",
-                                  "both of a pair, no cross-axis terms, or another frame");
+                                  "free both misalignments of each pair and no cross-axis terms, "
+                                  "or choose another frame");
         if ((c->frame == IMK_FRAME_UPPER && place.element < place.axis) ||
             (c->frame == IMK_FRAME_LOWER && place.element > place.axis))
-            return frame_conflict(error, "free terms that a triangular frame holds at 0",
-                                  "the reference frame, or the terms of one triangle");
+            return frame_conflict(
+                error, "some of the free terms are held at 0 by the triangular frame",
+                "choose the reference frame, or free only the terms of one triangle");
     }
     return IMK_OK;
 }
@@ -294,14 +299,16 @@ static imk_status enter_frame(imk_calibration *c, imk_error *error)
     if (frame == IMK_FRAME_REFERENCE)
         return rows <= 3 || held > 0 || attitudes_are_given(c)
                    ? IMK_OK
-                   : frame_conflict(error, "no attitude is known",
-                                    "upper-triangular, lower-triangular or symmetric");
+                   : frame_conflict(
+                         error, "no attitude is known",
+                         "choose the frame upper-triangular, lower-triangular or symmetric");
     return imk_triad_frame_convert(&c->model,
                                    frame == IMK_FRAME_LOWER ? IMK_FRAME_LOWER : IMK_FRAME_UPPER, 0,
                                    NULL, NULL, NULL) == IMK_OK
                ? IMK_OK
-               : imk_error_set(error, IMK_ERROR_SINGULAR, "frame", NULL,
-                               "a triad of accelerometers near the body axes of their numbers");
+               : imk_error_set(
+                     error, IMK_ERROR_SINGULAR, "frame", NULL,
+                     "a triad of accelerometers whose axes 1, 2, 3 are near body x, y, z");
 }
 
 /* ---- start ----------------------------------------------------------------------------------- */
@@ -386,8 +393,8 @@ static imk_status start_parameters(imki_estimator *e, imk_error *error)
                              place.element >= triad->scale_factor.temperature.order);
         if (!e->place[p] || beyond)
             return refuse(error, IMK_ERROR_ARGUMENT, "parameters", p, NULL,
-                          beyond ? "a power within the polynomial's order"
-                                 : "numbers that the model has");
+                          beyond ? "a power up to the order of the polynomial"
+                                 : "a parameter that the model has");
         e->start[p] = e->now.global[p] = *e->place[p];
         const int k = e->axis_parameters[place.sensor][place.axis]++;
         e->axis_parameter[place.sensor][place.axis][k] = (uint8_t)p;
@@ -408,7 +415,7 @@ static imk_status check(const imk_calibration *c, size_t workspace_size, imk_err
     if (status == IMK_OK)
         status = check_turns(c, error);
     if (status == IMK_OK && c->parameter_count == 0)
-        status = imk_error_set(error, IMK_ERROR_ARGUMENT, "parameters", "nothing is free",
+        status = imk_error_set(error, IMK_ERROR_ARGUMENT, "parameters", "no parameter is free",
                                "at least one parameter to estimate");
     if (status == IMK_OK && workspace_size < imki_estimator_size(c))
         status = imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,

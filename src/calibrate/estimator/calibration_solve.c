@@ -48,7 +48,7 @@ static imk_status check_count(const imki_estimator *e, int sensor, imk_error *er
     if (scalars >= wanted)
         return IMK_OK;
     imk_error_set(error, IMK_ERROR_TOO_SHORT, names[sensor], NULL,
-                  "more poses or inputs than parameters ask for");
+                  "add poses or inputs: there are too few readings for the parameters");
     if (error) {
         error->value = (double)observations;
         error->limit = axes > 0 ? ceil((double)wanted / (double)axes) : (double)wanted;
@@ -118,7 +118,7 @@ static imk_status solve(imki_estimator *e, imki_fit *fit, double *weakest, imk_e
         status = settle(e, 0.01, &converged);
     if (status == IMK_OK && !converged)
         return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, NULL, NULL,
-                             "a model closer to the unit to start from");
+                             "start from a model that is closer to the unit");
     if (status == IMK_OK || status == IMK_ERROR_SINGULAR)
         status = imki_check_determined(e, weakest, error);
     if (status == IMK_OK) {
@@ -321,11 +321,12 @@ imk_status imk_calibration_solve(imk_calibration *calibration, imk_calibration_r
     made->weakest = weakest;
     status = fill_parameters(&e, calibration, freedom, made, rotation);
     if (status != IMK_OK)
-        return imk_error_set(error, status, "frame", NULL, "axes that span space");
+        return imk_error_set(error, status, "frame", NULL,
+                             "at least three axes that do not lie in one plane");
     fill_model(calibration, made);
     if (!all_finite(made))
         return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, NULL, NULL,
-                             "readings that the model can follow");
+                             "check that the readings fit the model");
     fill_outputs(&e, made);
     fill_groups(&e, &fit, made);
     turn_verticals(calibration, rotation);

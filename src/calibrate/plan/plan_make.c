@@ -348,7 +348,7 @@ static imk_status choose(plan_job *job, double *hold)
     memcpy(job->sum, job->before, job->n * job->n * sizeof(double));
     if ((imki_plan_is_list(s->procedure) ? job->candidates : needed) > s->steps_maximum)
         return imk_error_set(job->error, IMK_ERROR_RANGE, "steps_maximum", NULL,
-                             "as many steps as the procedure needs");
+                             "allow as many steps as the procedure needs");
     imk_status status = take_more(job, needed, &last, false);
     if (status == IMK_OK)
         status = search_hold(job, hold);
@@ -395,7 +395,7 @@ static imk_status check_settings(const imk_plan_settings *s, const imk_calibrati
     };
     if (s->cookie != IMKI_PLAN_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "plan_settings", NULL,
-                             "imk_plan_default()");
+                             "start from imk_plan_default()");
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
         if (!rules[i].valid)
             return imk_error_set(error, IMK_ERROR_RANGE, rules[i].field, NULL,
@@ -404,7 +404,7 @@ static imk_status check_settings(const imk_plan_settings *s, const imk_calibrati
     if (c->observation_capacity - c->observation_count < s->steps_maximum ||
         (turns && c->turn_capacity - c->turn_count < s->steps_maximum))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "observation", NULL,
-                             "room for steps_maximum observations and turns");
+                             "provide room for steps_maximum observations and turns");
     return IMK_OK;
 }
 
@@ -417,7 +417,7 @@ static imk_status check_noise(const imk_model *model, imk_error *error)
             if (!(imki_plan_mean_variance(triads[sensor], i, 0.01, 1.0) > 0.0)) {
                 imk_error_set(error, IMK_ERROR_KEY_MISSING,
                               sensor == IMK_GYRO ? "gyro.noise" : "accel.noise", NULL,
-                              "the noise of every axis, such as angle_random_walk");
+                              "state the noise of every axis, such as angle_random_walk");
                 if (error)
                     error->index = i;
                 return IMK_ERROR_KEY_MISSING;

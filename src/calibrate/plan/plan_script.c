@@ -46,7 +46,7 @@ imk_status imk_plan_script(const imk_plan_settings *settings, size_t step_count,
 {
     if (!settings || settings->cookie != IMKI_PLAN_COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "plan_settings", NULL,
-                             "imk_plan_default()");
+                             "start from imk_plan_default()");
     const double level[3] = {0.0, 0.0, 0.0};
     const double *last = level;
     size_t count = 0;
@@ -54,7 +54,7 @@ imk_status imk_plan_script(const imk_plan_settings *settings, size_t step_count,
         const imk_plan_step *s = &step[k];
         if (s->action == IMK_PLAN_FORCE)
             return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "centrifuge", NULL,
-                                 "poses and rates: a motion script has no centrifuge");
+                                 "use poses and rates: a motion script has no centrifuge");
         const bool turned = k > 0 && step[k - 1].action == IMK_PLAN_RATE;
         if (turned || !is_same_pose(last, s->angle))
             motion_step[count++] =

@@ -255,8 +255,9 @@ imk_status imki_ferraris_observe(const imki_procedure_call *call)
         return status;
     force_meter meter;
     if (!force_meter_of(&list, c->gravity, &meter))
-        return imk_error_set(call->error, IMK_ERROR_SINGULAR, "accel", NULL,
-                             "accelerometers that tell the six holds apart");
+        return imk_error_set(
+            call->error, IMK_ERROR_SINGULAR, "accel", NULL,
+            "check the accelerometers: their readings do not distinguish the six holds");
     if (!imki_unit_known(&c->model, record, IMK_GYRO))
         nominal_counts(record, &list, call->settings->turn_angle, &c->model.gyro);
     status = imki_holds_observe(call, &list, 0, &fixture);

@@ -25,7 +25,7 @@ typedef struct pool {
 static imk_status wrong_stretch(size_t k, imk_error *error)
 {
     return imki_refuse_at(error, IMK_ERROR_ARGUMENT, "stretch", k, 0.0, 0.0,
-                          "samples of the record, axis 0 to 2, sense 1 or -1");
+                          "a stretch within the record, axis 0 to 2, sense 1 or -1");
 }
 
 static void add_hold(const imk_test_record *record, const imk_ferraris_stretch *at, pool *p)
@@ -75,14 +75,14 @@ static imk_status gather(const imk_test_record *record, size_t count,
             add_hold(record, at, p);
         } else if (!add_turn(record, at, turn_angle, p)) {
             return imki_refuse_at(error, IMK_ERROR_GAP, "turn", k, 0.0, 0.0,
-                                  "a turn without gap and missing readings");
+                                  "a turn without gaps and missing readings");
         }
     }
     for (int a = 0; a < 3; a++) {
         static const char *const axis_names[3] = {"x", "y", "z"};
         if (p->samples[a][0] == 0.0 || p->samples[a][1] == 0.0)
             return imk_error_set(error, IMK_ERROR_TOO_SHORT, "hold", axis_names[a],
-                                 "holds with this axis up and down");
+                                 "add holds with this axis up and down");
         if (p->turns[a] == 0.0)
             return imk_error_set(error, IMK_ERROR_TOO_SHORT, "turn", axis_names[a],
                                  "a turn about this axis");
@@ -202,11 +202,12 @@ imk_status imk_ferraris_closed_form(const imk_test_record *record, size_t count,
     if (record->axis_count[IMK_GYRO] != 3 || record->axis_count[IMK_ACCEL] != 3)
         return imk_error_set(error, IMK_ERROR_KEY_MISSING,
                              record->axis_count[IMK_GYRO] != 3 ? "gyro" : "accel", NULL,
-                             "the readings of three gyros and three accelerometers");
+                             "three gyros and three accelerometers");
     if (!(gravity > 0.0) || !(fabs(turn_angle) > 0.0) || !(angle_sigma >= 0.0) ||
         !isfinite(gravity + turn_angle + angle_sigma))
-        return imk_error_set(error, IMK_ERROR_RANGE, "gravity, turn_angle, angle_sigma", NULL,
-                             "gravity above 0, an angle that is not 0, a sigma of 0 or more");
+        return imk_error_set(
+            error, IMK_ERROR_RANGE, "gravity, turn_angle, angle_sigma", NULL,
+            "use a gravity above 0, an angle other than 0 and a sigma of 0 or more");
     const imk_status status = gather(record, count, stretch, turn_angle, &p, error);
     if (status != IMK_OK)
         return status;
@@ -221,14 +222,15 @@ imk_status imk_ferraris_closed_form(const imk_test_record *record, size_t count,
     memcpy(response.m, m, sizeof m);
     if (!split_rows(m, variance, &f.accel))
         return imk_error_set(error, IMK_ERROR_NOT_FINITE, "accel", NULL,
-                             "readings of every axis in every hold");
+                             "check that every axis has readings in every hold");
     if (imk_matrix3_inverse(response, &to_force) != IMK_OK)
-        return imk_error_set(error, IMK_ERROR_SINGULAR, "accel", NULL,
-                             "accelerometers that tell the six holds apart");
+        return imk_error_set(
+            error, IMK_ERROR_SINGULAR, "accel", NULL,
+            "check the accelerometers: their readings do not distinguish the six holds");
     solve_turns(&p, record->dt, to_force, angle_sigma, &f, m, variance);
     if (!split_rows(m, variance, &f.gyro))
         return imk_error_set(error, IMK_ERROR_NOT_FINITE, "gyro", NULL,
-                             "readings of every axis in every hold and turn");
+                             "check that every axis has readings in every hold and turn");
     *result = f;
     return IMK_OK;
 }

@@ -138,7 +138,7 @@ static void detect_turns(const imk_test_record *record, const imk_procedure_sett
 
 static imk_status turns_missing(int axes, const bool seen[3], imk_error *error)
 {
-    char missing[96] = "also a full turn about ";
+    char missing[96] = "add a full turn about ";
     bool first = true;
     for (int i = 0; i < 3; i++) {
         if (seen[i])
@@ -157,8 +157,7 @@ imk_status imki_turns_find(const imk_test_record *record, const imk_procedure_se
     bool seen[3] = {false};
     size_t kept = 0;
     if (record->axis_count[IMK_GYRO] != 3)
-        return imk_error_set(error, IMK_ERROR_KEY_MISSING, "gyro", NULL,
-                             "the readings of three gyros");
+        return imk_error_set(error, IMK_ERROR_KEY_MISSING, "gyro", NULL, "three gyros");
     rest_readings(list, rest);
     if (list->detected)
         detect_turns(record, settings, model, rest, list);

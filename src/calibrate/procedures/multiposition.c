@@ -216,8 +216,9 @@ static imk_status find_accel_nominal(gathering *g)
         return IMK_OK;
     if (g->record->axis_count[IMK_ACCEL] != 3 ||
         !imki_start_accelerometers(g->hold_count, g->hold, g->call->calibration->gravity, &found))
-        return no_nominal(g, "accel.sensitivity",
-                          "poses on all sides of a triad, or the sensitivity in the model");
+        return no_nominal(
+            g, "accel.sensitivity",
+            "log a triad in poses on all its sides, or state the sensitivity in the model");
     set_nominal(g, IMK_ACCEL, &found);
     return IMK_OK;
 }
@@ -230,8 +231,9 @@ static imk_status find_gyro_nominal(gathering *g)
     mean_at_rest(g, found.zero);
     if (g->record->axis_count[IMK_GYRO] != 3 || g->record->axis_count[IMK_ACCEL] != 3 ||
         !imki_start_gyros(g->record, &g->scaling[IMK_ACCEL], g->turn_count, g->turn, &found))
-        return no_nominal(g, "gyro.sensitivity",
-                          "turns about all axes, or the sensitivity in the model");
+        return no_nominal(
+            g, "gyro.sensitivity",
+            "log two triads in turns about all axes, or state the sensitivity in the model");
     set_nominal(g, IMK_GYRO, &found);
     return IMK_OK;
 }
@@ -319,10 +321,10 @@ static imk_status check_amount(const gathering *g)
     const size_t turns = g->turn_count + calibration->turn_count;
     if (g->hold_count == 0 || (!g->call->keep_free && holds < HOLDS_NEEDED))
         return too_few(error, "hold", holds, HOLDS_NEEDED,
-                       "more poses at rest, each another way up");
+                       "add poses at rest, each with another side up");
     if (!g->call->keep_free && with_turns(g) && turns < TURNS_NEEDED)
         return too_few(error, "turn", turns, TURNS_NEEDED,
-                       "holds of one record with nothing missing between them");
+                       "log successive holds in one record, with no samples missing between them");
     const size_t observations = calibration->observation_count + g->hold_count;
     if (observations > calibration->observation_capacity || turns > calibration->turn_capacity) {
         const bool of_turns = observations <= calibration->observation_capacity;
@@ -330,7 +332,7 @@ static imk_status check_amount(const gathering *g)
             error, IMK_ERROR_WORKSPACE, of_turns ? "turn" : "observation",
             (double)(of_turns ? turns : observations),
             (double)(of_turns ? calibration->turn_capacity : calibration->observation_capacity),
-            "room for them");
+            "provide room for all of them");
     }
     return IMK_OK;
 }
@@ -401,7 +403,7 @@ static imk_status append(gathering *g)
         const imk_observation o = observation_of(g, &noise, &g->hold[k]);
         if (imk_calibration_observe(calibration, &o) < 0)
             return imk_error_set(call->error, IMK_ERROR_WORKSPACE, "observation", NULL,
-                                 "room for them");
+                                 "provide room for all of them");
     }
     const int first = (int)findings->first_observation;
     for (size_t t = 0; with_turns(g) && t < g->turn_count; t++) {

@@ -14,7 +14,7 @@ imk_status imk_repeatability_runs(const imk_test_record *record, double trim, do
 {
     if (!(trim >= 0.0) || !(settle >= 0.0) || !(minimum >= 0.0) || !(record->dt > 0.0))
         return imk_error_set(error, IMK_ERROR_RANGE, "trim, settle, minimum", NULL,
-                             "0 or more seconds, and a sample interval");
+                             "0 or more seconds, and a sample interval above 0");
     const double head = (trim + settle) / record->dt, tail = trim / record->dt;
     size_t found = 0;
     for (size_t k = 0; k < record->count;) {
@@ -32,8 +32,9 @@ imk_status imk_repeatability_runs(const imk_test_record *record, double trim, do
         k = end;
     }
     if (found == 0)
-        return imk_error_set(error, IMK_ERROR_TOO_SHORT, "hold", NULL,
-                             "a stretch at rest, longer than what is left out at its ends");
+        return imk_error_set(
+            error, IMK_ERROR_TOO_SHORT, "hold", NULL,
+            "a stretch at rest that is longer than settle, twice trim and minimum together");
     *count = found;
     return IMK_OK;
 }

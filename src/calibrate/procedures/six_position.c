@@ -115,7 +115,7 @@ imk_status imki_holds_observe(const imki_procedure_call *call, const imki_sessio
     if (needed > c->observation_capacity) {
         return imki_refuse(call->error, IMK_ERROR_WORKSPACE, "observations", (double)needed,
                            (double)c->observation_capacity,
-                           "room for an observation a hold and turn");
+                           "provide room for one observation per hold and turn");
     }
     *fixture = add_fixture(call);
     if (*fixture == -2)

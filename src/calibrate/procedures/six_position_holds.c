@@ -257,8 +257,8 @@ static bool settle_face(const yardstick *y, imki_session_stretch *hold, size_t *
 static imk_status contradicted(const char *label, imk_error *error)
 {
     return imk_error_set(error, IMK_ERROR_CONFLICT, "section", label,
-                         "labels that name the axis that reads gravity: x_up where accel_x is "
-                         "largest. Swapped or inverted axes are mapped with --axes");
+                         "label each hold by the axis that reads gravity (x_up where accel_x is "
+                         "largest), or map swapped or inverted axes with --axes");
 }
 
 static imk_status settle_faces(const yardstick *y, imki_session_stretches *list, imk_error *error)
@@ -289,17 +289,16 @@ static imk_status yardstick_of(yardstick *y, const imk_test_record *record, cons
                      .record = record,
                      .model = model};
     if (record->axis_count[IMK_ACCEL] == 0)
-        return imk_error_set(error, IMK_ERROR_KEY_MISSING, "accel", NULL,
-                             "the readings of three accelerometers");
+        return imk_error_set(error, IMK_ERROR_KEY_MISSING, "accel", NULL, "three accelerometers");
     if (record->axis_count[IMK_ACCEL] != 3 || (accel->present && accel->axis_count != 3))
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, "accel", NULL,
-                             "three accelerometers; other sets by multiposition or tumble");
+                             "three accelerometers; use multiposition or tumble for other sets");
     if (accel->present) {
         imk_matrix3 directions;
         memcpy(directions.m, accel->direction, sizeof directions.m);
         if (imk_matrix3_inverse(directions, &y->from_axes) != IMK_OK)
             return imk_error_set(error, IMK_ERROR_SINGULAR, "accel.direction", NULL,
-                                 "three directions that span space");
+                                 "three directions that do not lie in one plane");
     }
     return IMK_OK;
 }
@@ -352,7 +351,7 @@ imk_status imki_faces_complete(const imki_session_stretches *list, imk_error *er
         if (!at->turn)
             seen[2 * at->axis + (at->sense < 0)] = true;
     }
-    char missing[160] = "also a hold with ";
+    char missing[160] = "add a hold with ";
     bool first = true;
     for (int f = 0; f < FACES; f++) {
         faces += seen[f];

@@ -89,20 +89,22 @@ static imk_status check_record(const imki_procedure_call *call, const imk_test_r
     switch (call->procedure) {
     case IMK_PROCEDURE_RATE_TABLE:
         if (record->axis_count[IMK_GYRO] == 0)
-            return missing(call, "gyro", "a rate table shows errors of gyros");
+            return missing(call, "gyro", "log the gyros: a rate table shows their errors");
         return rate ? IMK_OK
-                    : missing(call, "reference_rate", "say at which rates the table turned");
+                    : missing(call, "reference_rate",
+                              "give the rates of the table: reference_rate columns in the log, or "
+                              "the programme of the motion");
     case IMK_PROCEDURE_SPIN:
         if (record->axis_count[IMK_ACCEL] == 0)
-            return missing(call, "accel", "a spin shows where the accelerometers are");
+            return missing(call, "accel", "log the accelerometers: a spin shows their positions");
         return rate || record->axis_count[IMK_GYRO] >= 3
                    ? IMK_OK
                    : missing(call, "reference_rate",
-                             "say how fast the unit turned, or log its gyros too");
+                             "give the rate of the unit, or also log its gyros");
     default:
         return force ? IMK_OK
                      : missing(call, "reference_force",
-                               "say to which forces the unit was exposed, or in which attitudes");
+                               "give the specific forces or the attitudes of the unit");
     }
 }
 
@@ -119,7 +121,7 @@ static imk_status check_units(const imki_procedure_call *call, const imk_test_re
         for (int axis = 0; axis < record->axis_count[sensor] && !unread; axis++)
             if (record->counts[sensor] && triad->sensitivity.value[axis] == 0.0)
                 return imki_reference_refuse(call, IMK_ERROR_UNIT_MISSING, fields[sensor], axis,
-                                             0.0, 0.0, "say how many counts are a unit");
+                                             0.0, 0.0, "state the sensitivity, in counts per unit");
     }
     return IMK_OK;
 }
@@ -189,9 +191,10 @@ static imk_status find_sensitivity(const observed *o)
         if (triad->sensitivity.value[axis] != 0.0 || !moved[axis])
             continue;
         if (!(fit[axis].share > 0.5) || !(fit[axis].slope[0] > 0.0))
-            return imki_reference_refuse(
-                o->call, IMK_ERROR_CONFLICT, "gyro", axis, fit[axis].slope[0], 0.0,
-                "readings that grow with the rate about their axis: check signs and order of axes");
+            return imki_reference_refuse(o->call, IMK_ERROR_CONFLICT, "gyro", axis,
+                                         fit[axis].slope[0], 0.0,
+                                         "check signs and order of the axes: readings must grow "
+                                         "with the rate about their axis");
         triad->sensitivity.value[axis] = fit[axis].slope[0];
         triad->zero_offset.value[axis] = fit[axis].intercept;
         sum += fit[axis].slope[0];
@@ -201,9 +204,9 @@ static imk_status find_sensitivity(const observed *o)
         if (triad->sensitivity.value[axis] != 0.0)
             continue;
         if (count == 0)
-            return imki_reference_refuse(o->call, IMK_ERROR_UNIT_MISSING, "gyro.sensitivity", axis,
-                                         0.0, 0.0,
-                                         "say how many counts are a unit: no axis was turned");
+            return imki_reference_refuse(
+                o->call, IMK_ERROR_UNIT_MISSING, "gyro.sensitivity", axis, 0.0, 0.0,
+                "state the sensitivity, in counts per unit: no axis was turned");
         triad->sensitivity.value[axis] = sum / count;
         triad->zero_offset.value[axis] = fit[axis].intercept;
     }
@@ -223,8 +226,8 @@ static imk_status check_following(const observed *o, int sensor)
             continue;
         return imki_reference_refuse(
             o->call, IMK_ERROR_CONFLICT, sensor == IMK_GYRO ? "gyro" : "accel", axis, slope, 1.0,
-            "readings that follow the reference one to one: check units, signs, order of axes, and "
-            "that both begin at the same time");
+            "check units, signs and order of axes, and that readings and reference begin at the "
+            "same time: the readings must follow the reference one to one");
     }
     return IMK_OK;
 }
@@ -419,7 +422,7 @@ static imk_status take_fixture(observed *o)
     if (c->fixture_count >= IMK_FIXTURES_MAX)
         return imki_reference_refuse(o->call, IMK_ERROR_RANGE, "fixture", -1,
                                      (double)c->fixture_count + 1.0, IMK_FIXTURES_MAX,
-                                     "fewer logs with a mounting of their own");
+                                     "fewer logs: each log has a mounting of its own");
     c->fixture_sigma[c->fixture_count] = o->call->settings->fixture_sigma;
     o->fixture = (int)c->fixture_count++;
     return IMK_OK;
@@ -473,8 +476,7 @@ static imk_status enough(const observed *o, size_t first)
         return IMK_OK;
     return imki_reference_refuse(
         o->call, IMK_ERROR_TOO_SHORT, o->call->procedure == IMK_PROCEDURE_TUMBLE ? "hold" : "step",
-        -1, found, limit,
-        "stretches in which the reference is constant: hold longer, or allow more variation");
+        -1, found, limit, "hold the reference constant for longer, or allow more variation");
 }
 
 imk_status imki_reference_observe(const imki_procedure_call *call)

@@ -210,8 +210,9 @@ static imk_status check(const imk_test_record *record, double max_shift, size_t 
     if (!(record->dt > 0.0) || !(max_shift > 0.0 && max_shift < HUGE_VAL))
         return imki_refuse(error, IMK_ERROR_RANGE, "max_shift", max_shift, 0.0, "a time above 0");
     if (!(length >= 3.0 * max_shift) || record->count < 16)
-        return imki_refuse(error, IMK_ERROR_TOO_SHORT, "record", length, 3.0 * max_shift,
-                           "a log of three times the largest shift, or a smaller shift");
+        return imki_refuse(
+            error, IMK_ERROR_TOO_SHORT, "record", length, 3.0 * max_shift,
+            "a log at least three times as long as the largest shift, or a smaller shift");
     if (workspace_size < imk_reference_offset_workspace_size(record, max_shift))
         return imki_refuse(error, IMK_ERROR_WORKSPACE, "workspace", (double)workspace_size, 0.0,
                            "imk_reference_offset_workspace_size() bytes");
@@ -241,9 +242,9 @@ imk_status imk_reference_offset(const imk_test_record *record, double max_shift,
     double lag = ((double)best - (double)s.shift) * (double)s.part;
     const double limit = 4.0 * (double)s.part + 4.0;
     if (!imki_reference_lag(record, s.used[0] + 2 * s.used[1], limit, &lag, &found.sigma))
-        return imki_refuse(
-            error, IMK_ERROR_NO_CONVERGENCE, "max_shift", lag * record->dt, max_shift,
-            "readings that follow the reference, and a shift within the one allowed");
+        return imki_refuse(error, IMK_ERROR_NO_CONVERGENCE, "max_shift", lag * record->dt,
+                           max_shift,
+                           "check that the readings follow the reference, or allow a larger shift");
     find_rival(&s, best, &found);
     find_axis(&s, lag, &found);
     found.offset = lag * record->dt;

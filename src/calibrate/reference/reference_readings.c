@@ -28,9 +28,9 @@ imk_status imki_reference_room(const imki_procedure_call *call, size_t wanted)
     const imk_calibration *c = call->calibration;
     if (c->observation && c->observation_count + wanted <= c->observation_capacity)
         return IMK_OK;
-    return imki_reference_refuse(call, IMK_ERROR_WORKSPACE, "observation", -1,
-                                 (double)(c->observation_count + wanted),
-                                 (double)c->observation_capacity, "room for so many observations");
+    return imki_reference_refuse(
+        call, IMK_ERROR_WORKSPACE, "observation", -1, (double)(c->observation_count + wanted),
+        (double)c->observation_capacity, "provide room for all observations");
 }
 
 double imki_reference_sensitivity(const imki_procedure_call *call, int sensor, int axis)

@@ -161,9 +161,10 @@ static imk_status take_rests_off(const imki_procedure_call *call, const rests *r
             continue;
         c->observation[kept] = c->observation[i];
         if (!take_off(r, noise, &c->observation[kept++]))
-            return imki_reference_refuse(
-                call, IMK_ERROR_KEY_MISSING, "reference_force", -1, 0.0, 0.0,
-                "without it the unit must turn about the vertical, with rests between");
+            return imki_reference_refuse(call, IMK_ERROR_KEY_MISSING, "reference_force", -1, 0.0,
+                                         0.0,
+                                         "without the specific force, the unit must turn about the "
+                                         "vertical, with rests between the turns");
     }
     c->observation_count = kept;
     return IMK_OK;

@@ -269,9 +269,9 @@ imk_status imk_reference_stretches(const imk_test_record *record,
         s.channel[s.channels++] = channel;
     }
     if (s.channels == 0)
-        return imk_error_set(error, IMK_ERROR_KEY_MISSING, "reference", NULL,
-                             "say what the unit was exposed to: reference columns in the log, or "
-                             "the programme of the motion");
+        return imk_error_set(
+            error, IMK_ERROR_KEY_MISSING, "reference", NULL,
+            "give the reference: reference columns in the log, or the programme of the motion");
     const lengths l = lengths_of(record, settings);
     *count = find(&s, &l, stretch, capacity);
     return IMK_OK;

@@ -329,10 +329,10 @@ static imk_status check(const imk_test_record *record, const imk_static_settings
 {
     if (settings->cookie != COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "static_settings", NULL,
-                             "imk_static_default()");
+                             "start from imk_static_default()");
     if (!(settings->window >= 0.0 && settings->window <= 1e6))
         return imki_refuse(error, IMK_ERROR_RANGE, "window", settings->window, 0.0,
-                           "a time in seconds, or 0 to have it chosen");
+                           "a time in seconds, or 0 to choose it automatically");
     if (!(settings->false_alarm > 1e-12 && settings->false_alarm < 0.5))
         return imki_refuse(error, IMK_ERROR_RANGE, "false_alarm", settings->false_alarm, 0.5,
                            "a probability, such as 1e-4");
@@ -341,10 +341,10 @@ static imk_status check(const imk_test_record *record, const imk_static_settings
                            "a time in seconds");
     if (!(settings->guard >= -1.0 && settings->guard <= 1e6))
         return imki_refuse(error, IMK_ERROR_RANGE, "guard", settings->guard, 0.0,
-                           "a time in seconds, or -1 for a window");
+                           "a time in seconds, or -1 for the length of a window");
     if (!(settings->initial_rest >= 0.0 && settings->initial_rest <= 1e6))
         return imki_refuse(error, IMK_ERROR_RANGE, "initial_rest", settings->initial_rest, 0.0,
-                           "a time in seconds, or 0 to have the quietest part searched for");
+                           "a time in seconds, or 0 to search for the quietest part");
     if (!(record->dt > 0.0 && isfinite(record->dt)) || axes_of(record) == 0)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "record", NULL,
                              "a sample interval and readings");
@@ -353,7 +353,7 @@ static imk_status check(const imk_test_record *record, const imk_static_settings
     if (record->count < needed || record->count < SAMPLES_MIN)
         return imki_refuse(error, IMK_ERROR_TOO_SHORT, "samples", (double)record->count,
                            (double)(needed > SAMPLES_MIN ? needed : SAMPLES_MIN),
-                           "two windows at least");
+                           "at least two windows");
     if (workspace_size < imk_static_workspace_size(record, settings))
         return imki_refuse(error, IMK_ERROR_WORKSPACE, "workspace", (double)workspace_size,
                            (double)imk_static_workspace_size(record, settings),
@@ -403,7 +403,7 @@ imk_status imk_static_detect(const imk_test_record *record, const imk_static_set
         usable += !(job.blocks.flag[k] & IMKI_BLOCK_INVALID);
     if (usable == 0)
         return imk_error_set(error, IMK_ERROR_NOT_FINITE, "record", NULL,
-                             "samples that are numbers within the range, without gaps");
+                             "a record with finite samples within the range, without gaps");
     const outcome best = settings->window > 0.0 ? detect_at(&job, settings, true)
                                                 : choose_window(&job, settings, &kept);
     report(&job, best, &found);

@@ -348,7 +348,7 @@ static imk_status check(const imk_test_record *record, const imk_thermal_setting
 {
     if (settings->cookie != COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "settings made by imk_thermal_default()");
+                             "start from imk_thermal_default()");
     if (settings->order_max < 1 || settings->order_max > IMK_TEMPERATURE_ORDER_MAX ||
         settings->order < -1 || settings->order > settings->order_max)
         return imk_error_set(error, IMK_ERROR_RANGE, "order", NULL, "0 … 5");
@@ -362,14 +362,14 @@ static imk_status check(const imk_test_record *record, const imk_thermal_setting
                              "a sample interval above 0");
     if (!record->temperature)
         return imk_error_set(error, IMK_ERROR_KEY_MISSING, "temperature", NULL,
-                             "a column of temperature");
+                             "a temperature column");
     for (int sensor = 0; sensor < 2; sensor++) {
         const imk_triad *triad = imk_model_triad(model, sensor);
         for (int axis = 0; axis < record->axis_count[sensor]; axis++)
             if (record->counts[sensor] && !(triad->sensitivity.value[axis] != 0.0))
                 return imk_error_set(error, IMK_ERROR_UNIT_MISSING,
                                      sensor == IMK_GYRO ? "gyro.sensitivity" : "accel.sensitivity",
-                                     NULL, "the sensitivity of readings in counts");
+                                     NULL, "state the sensitivity of readings in counts");
     }
     return IMK_OK;
 }
@@ -384,7 +384,7 @@ imk_status imk_thermal_analyse(const imk_test_record *record, const imk_thermal_
     const size_t turned = imki_thermal_turned(record, model);
     if (turned < record->count) {
         imk_error_set(error, IMK_ERROR_CONFLICT, "pose", NULL,
-                      "one pose, or several through the thermal procedure");
+                      "one pose; calibrate several poses with the thermal procedure");
         if (error)
             error->index = turned > INT32_MAX ? INT32_MAX : (int)turned;
         return IMK_ERROR_CONFLICT;
@@ -435,8 +435,8 @@ imk_status imk_thermal_apply(const imk_thermal_findings *findings, bool polynomi
                                  NULL, "a model with as many axes as the log");
     if (strcmp(findings->residual_of, model->residual_of) != 0)
         return imk_error_set(error, IMK_ERROR_CONFLICT, "residual_of", findings->residual_of,
-                             "a model of the same residual: a log that was compensated tells what "
-                             "is left, which does not replace what was taken out");
+                             "a model of the same residual: the errors left after compensation do "
+                             "not replace the errors that were taken out");
     for (int sensor = 0; sensor < 2; sensor++) {
         imk_temperature_polynomial *p = &triads[sensor]->bias.temperature;
         int order = 0;

@@ -326,7 +326,7 @@ imk_status imki_thermal_divide(const imk_test_record *record, const imk_model *m
     for (size_t b = 1; b < blocks->count; b++)
         if (!(blocks->end[b] > blocks->end[b - 1]))
             return imk_error_set(error, IMK_ERROR_NOT_FINITE, "time", NULL,
-                                 "times that are numbers and increase");
+                                 "check the times: they must be finite and increase");
     follow_temperature(blocks);
     scale_columns(blocks);
     return IMK_OK;

@@ -124,7 +124,7 @@ static imk_status look_around(const imki_procedure_call *call, const imk_thermal
         s->force[k] *= c->gravity / length;
     if (c->fixture_count >= IMK_FIXTURES_MAX)
         return imk_error_set(call->error, IMK_ERROR_RANGE, "fixtures", NULL,
-                             "fewer logs with a mounting of their own");
+                             "fewer logs: each log has a mounting of its own");
     s->fixture = (int)c->fixture_count;
     c->fixture_sigma[c->fixture_count++] = attitude_sigma;
     return IMK_OK;
@@ -293,7 +293,7 @@ imk_status imki_thermal_observe(const imki_procedure_call *call)
     const imk_test_record *record = call->calibration->record[call->record];
     if (!record->temperature)
         return imk_error_set(call->error, IMK_ERROR_KEY_MISSING, "temperature", NULL,
-                             "a column of temperature");
+                             "a temperature column");
     for (int sensor = 0; sensor < 2; sensor++)
         for (int i = 0; record->counts[sensor] && i < record->axis_count[sensor]; i++)
             if (!(imk_model_triad_to_set(&call->calibration->model, sensor)->sensitivity.value[i] !=

@@ -130,7 +130,7 @@ imk_status imki_thermal_observe_poses(const imki_procedure_call *call)
     const int levels = levels_of(count, interval, high - low);
     if (levels < 2) {
         return imki_refuse(call->error, IMK_ERROR_TOO_SHORT, "temperature", levels, 2.0,
-                           "poses at two temperatures at least");
+                           "add poses: at least two temperatures are needed");
     }
     const double usual = 298.15, set = call->settings->reference_temperature;
     const double reference = isfinite(set)                   ? set

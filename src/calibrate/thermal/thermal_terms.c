@@ -35,5 +35,6 @@ imk_status imki_thermal_add(const imki_procedure_call *call, const imk_observati
         return IMK_OK;
     return imki_refuse(call->error, IMK_ERROR_WORKSPACE, "observations",
                        (double)call->calibration->observation_count + 1.0,
-                       (double)call->calibration->observation_capacity, "room for more");
+                       (double)call->calibration->observation_capacity,
+                       "provide room for more observations");
 }

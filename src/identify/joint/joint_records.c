@@ -106,7 +106,7 @@ static imk_status check(const imk_identify_settings *settings, size_t count,
                                  "identify each record with settings.summary first");
         if (!(fabs(summaries[r]->bands.dt / summaries[0]->bands.dt - 1) < 1e-3)) {
             return imki_refuse_at(error, IMK_ERROR_CONFLICT, "sample interval", r, 0.0, 0.0,
-                                  "records of one sample rate");
+                                  "use records of the same sample rate");
         }
     }
     return IMK_OK;
@@ -157,7 +157,7 @@ imk_status imk_identify_joint(const imk_identify_settings *settings, size_t coun
     imki_bands *other = imki_take(&parts, sizeof *other);
     if (!join(count, summaries, work.bands, other))
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "records", NULL,
-                             "fewer of them, or of the same length");
+                             "fewer records, or records of the same length");
     work.n = work.bands->n;
     imk_identification found = {0};
     gather_resonances(count, single, &found, work.scale);

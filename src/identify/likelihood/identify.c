@@ -86,7 +86,7 @@ static imk_status check_arguments(const imk_identify_settings *settings, size_t 
         return status;
     if (n < SAMPLES_MIN)
         return imk_error_set(error, IMK_ERROR_TOO_SHORT, NULL, NULL,
-                             "record at least 256 samples; hours of them tell the slow terms");
+                             "record at least 256 samples; the slow terms need hours");
     if (workspace_size < imk_identify_workspace_size(n))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
                              "imk_identify_workspace_size() bytes");
@@ -112,9 +112,10 @@ static imk_status check_arguments(const imk_identify_settings *settings, size_t 
             "whole record");
     }
     if (*missing > missing_maximum(n) || n - *missing < SAMPLES_MIN)
-        return imk_error_set(error, IMK_ERROR_TOO_SHORT, NULL, NULL,
-                             "more than three quarters of the samples are missing, or fewer than "
-                             "256 are left: check the sample rate, or give the parts apart");
+        return imk_error_set(
+            error, IMK_ERROR_TOO_SHORT, NULL, NULL,
+            "more than three quarters of the samples are missing, or fewer than 256 are left: "
+            "check the sample rate, or analyse the parts separately");
     return IMK_OK;
 }
 

@@ -492,7 +492,8 @@ static imk_status check(const imk_expected_noise *noise, const imk_bounds_settin
     double sum = 0;
     for (int term = 0; term < IMK_NOISE_RAMP; term++) {
         if (!(noise->term[term] >= 0 && noise->term[term] < HUGE_VAL))
-            return imk_error_set(error, IMK_ERROR_RANGE, "noise", NULL, "strengths >= 0, finite");
+            return imk_error_set(error, IMK_ERROR_RANGE, "noise", NULL,
+                                 "use finite strengths >= 0");
         sum += noise->term[term];
     }
     for (int i = 0; i < noise->gauss_markov_count; i++) {
@@ -500,13 +501,13 @@ static imk_status check(const imk_expected_noise *noise, const imk_bounds_settin
         if (!(g->sigma > 0 && g->sigma < HUGE_VAL && g->correlation_time > 0 &&
               g->correlation_time < HUGE_VAL))
             return imk_error_set(error, IMK_ERROR_RANGE, "noise.gauss_markov", NULL,
-                                 "sigma and correlation time > 0, finite");
+                                 "use a finite sigma and correlation time > 0");
         sum += g->sigma;
     }
     return sum > 0 ? IMK_OK
                    : imk_error_set(error, IMK_ERROR_RANGE, "noise", NULL,
-                                   "some white noise, bias instability, random walk, quantization "
-                                   "or Gauss-Markov noise");
+                                   "at least one of white noise, bias instability, random walk, "
+                                   "quantization and Gauss-Markov noise");
 }
 
 imk_status imk_identify_bounds(const imk_expected_noise *noise, const imk_bounds_settings *settings,
@@ -526,7 +527,7 @@ imk_status imk_identify_bounds(const imk_expected_noise *noise, const imk_bounds
     imk_identification_bounds found = {0};
     if (invert(p) != IMK_OK)
         return imk_error_set(error, IMK_ERROR_SINGULAR, "noise", NULL,
-                             "terms that a record can tell apart");
+                             "leave out terms that a record cannot separate");
     store(p, &found);
     *bounds = found;
     return IMK_OK;

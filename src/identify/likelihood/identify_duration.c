@@ -36,7 +36,7 @@ imk_status imk_identify_duration(const imk_expected_noise *noise,
             break;
         if (!(high < 1e12 * dt))
             return imk_error_set(error, IMK_ERROR_NO_CONVERGENCE, "requirement", NULL,
-                                 "something that a record of 1e12 samples can tell");
+                                 "a requirement that a record of 1e12 samples can meet");
     }
     while (high > 1.001 * low) {
         imk_identification_bounds bounds;

@@ -275,7 +275,7 @@ imk_status imk_identify_record_add(imk_identify_record *r, size_t count, const d
     while (count > 0) {
         if (r->block > r->chunk / 2)
             return imk_error_set(error, IMK_ERROR_RANGE, NULL, NULL,
-                                 "fewer samples, or their number at the start");
+                                 "fewer samples, or state their number at the start");
         const size_t room = r->handled + r->chunk - r->filled;
         const size_t part = count < room ? count : room;
         memcpy(r->buffer + r->filled, samples, part * sizeof(double));

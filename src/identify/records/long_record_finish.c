@@ -89,9 +89,9 @@ static imk_status check_record(const imk_identify_record *r, const imk_identify_
     if (status != IMK_OK)
         return status;
     if (r->samples < SEGMENTS_LEAST * r->sizes.segment)
-        return imk_error_set(error, IMK_ERROR_TOO_SHORT, NULL, NULL,
-                             "imk_identify_channel() for records of less than half a million "
-                             "samples");
+        return imk_error_set(
+            error, IMK_ERROR_TOO_SHORT, NULL, NULL,
+            "use imk_identify_channel() for records of fewer than half a million samples");
     if (workspace_size < imk_identify_record_workspace_size(r))
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "workspace", NULL,
                              "imk_identify_record_workspace_size() bytes");

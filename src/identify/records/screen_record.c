@@ -119,7 +119,7 @@ imk_status imk_screen_channel(const imk_screen_settings *settings, size_t n, con
     take_samples(n, samples, copy, &f);
     if (f.present < PRESENT_MIN)
         return imk_error_set(error, IMK_ERROR_TOO_SHORT, NULL, NULL,
-                             "at least 64 samples that are there");
+                             "at least 64 samples that are not missing");
     if (f.deviation == 0)
         return imk_error_set(error, IMK_ERROR_CONSTANT, NULL, NULL,
                              "a channel that changes: check its wiring and driver");

@@ -63,7 +63,7 @@ static imk_status check_settings(const imk_spectrum_settings *s, imk_error *erro
 {
     if (!s || s->cookie != settings_cookie)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
-                             "settings from imk_spectrum_default()");
+                             "start from imk_spectrum_default()");
     if (!(s->dt > 0 && s->dt < HUGE_VAL))
         return imk_error_set(error, IMK_ERROR_RANGE, "dt", "", "a positive sample interval");
     if (!(s->resolution >= 0 && s->resolution < HUGE_VAL))
@@ -80,7 +80,8 @@ static imk_status check_settings(const imk_spectrum_settings *s, imk_error *erro
                              "at most twice the time-bandwidth product, and at most 24");
     if ((unsigned)s->method > IMK_SPECTRUM_MULTITAPER ||
         (unsigned)s->window > IMK_WINDOW_RECTANGULAR)
-        return imk_error_set(error, IMK_ERROR_ARGUMENT, "method", "", "one of the enumeration");
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "method", "",
+                             "one of the values of the enumeration");
     return IMK_OK;
 }
 
@@ -115,7 +116,7 @@ imk_status imki_segments_plan(const imk_spectrum_settings *s, size_t n, imki_seg
     const double least = tapered ? fmax(LENGTH_MIN, 4 * s->time_bandwidth) : LENGTH_MIN;
     if (!(wanted >= least))
         return imk_error_set(error, IMK_ERROR_RANGE, "resolution", "coarser than the method allows",
-                             "a narrower bandwidth: segments of 16 samples at least");
+                             "a narrower bandwidth: segments need at least 16 samples");
     *segments = (imki_segments){
         .settings = s, .n = n, .length = good_length((size_t)(wanted * (1 + 1e-9)))};
     segments->tapers = !tapered ? 1 : s->tapers > 0 ? s->tapers : (int)(2 * s->time_bandwidth) - 1;
@@ -430,9 +431,10 @@ static imk_status inspect(estimation *e, imk_spectrum *s, imk_error *error)
         sum += e->samples[i] - e->offset;
     }
     if (finite == 0)
-        return imk_error_set(error, IMK_ERROR_GAP, "samples", "none is finite", "a record");
+        return imk_error_set(error, IMK_ERROR_GAP, "samples", "no sample is finite",
+                             "a record with finite samples");
     if (different == 0)
-        return imk_error_set(error, IMK_ERROR_CONSTANT, "samples", "", "samples that vary");
+        return imk_error_set(error, IMK_ERROR_CONSTANT, "samples", "", "use samples that vary");
     s->mean = e->offset + sum / (double)finite;
     return IMK_OK;
 }
@@ -491,7 +493,7 @@ imk_status imk_spectrum_estimate(const imk_spectrum_settings *settings, size_t n
         return imk_error_set(error, status, "workspace", "", "");
     if (u.used == 0)
         return imk_error_set(error, IMK_ERROR_GAP, "samples", "every segment has missing samples",
-                             "shorter segments: a coarser resolution");
+                             "use shorter segments, which means a coarser resolution");
     finish(&e, &s, &u);
     for (size_t bin = 0; bin < s.count; bin++)
         if (!(density[bin] < HUGE_VAL))

@@ -158,8 +158,9 @@ static imk_status align(imki_convert_motion *m, size_t rows, imk_error *error)
         force_moves = moves > force_moves ? moves : force_moves;
     }
     if (!(imk_vector3_norm(force) > 0))
-        return imk_error_set(error, IMK_ERROR_NOT_FINITE, "accel", "no finite specific force",
-                             "a unit that is still at first");
+        return imk_error_set(error, IMK_ERROR_NOT_FINITE, "accel", NULL,
+                             "check the log: at its start the unit must be at rest, with a finite "
+                             "specific force other than 0");
     if (rate_moves > still_rate || force_moves > still_force)
         imki_find(m->findings, IMK_FINDING_WARNING, "moves", NULL,
                   IMKI_NUMBERS(o->still, rate_moves / imk_unit_of("deg").scale, force_moves));

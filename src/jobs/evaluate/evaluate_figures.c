@@ -31,16 +31,17 @@ static const definition definitions[] = {
     {"sensitivity", "sensitivity (scale factor)",
      "Slope of the straight line fitted to the mean readings by least squares.", IN_SLOPE, PLAIN,
      false, AT(sensitivity), 0},
-    {"scale_factor_error", "scale factor error", "Sensitivity less 1.", IN_PPM, SLOPE_ERROR, true,
+    {"scale_factor_error", "scale factor error", "Sensitivity minus 1.", IN_PPM, SLOPE_ERROR, true,
      AT(sensitivity), 0},
-    {"zero", "reading at zero (bias)", "Reading of that line where the reference is 0.", IN_READING,
-     PLAIN, true, AT(zero), 0},
+    {"zero", "reading at zero (bias)",
+     "Reading of the least-squares line where the reference is 0.", IN_READING, PLAIN, true,
+     AT(zero), 0},
     {"accuracy", "accuracy",
      "Largest difference between the mean reading of a level and its reference.", IN_READING, PLAIN,
      false, AT(accuracy), AT(accuracy_level)},
     {"coverage", "accuracy with coverage",
-     "Half width about the reference that holds the stated share of single readings at the worst "
-     "level: mean error and noise together.",
+     "Half-width of the interval about the reference that contains the stated share of single "
+     "readings at the worst level; mean error and noise are both included.",
      IN_READING, PLAIN, false, AT(coverage), AT(accuracy_level)},
     {"precision", "precision",
      "Standard deviation of readings under repeatability conditions: the same reference, reached "
@@ -51,35 +52,38 @@ static const definition definitions[] = {
      "in % of full scale.",
      IN_PERCENT, PLAIN, false, AT(linearity), AT(linearity_level)},
     {"linearity_best", "linearity, best line",
-     "The same from the line for which it is smallest (minimax line).", IN_PERCENT, PLAIN, false,
-     AT(linearity_best), AT(alternation)},
+     "Largest distance of a level's mean reading from the line that makes this distance smallest "
+     "(minimax line), in % of full scale.",
+     IN_PERCENT, PLAIN, false, AT(linearity_best), AT(alternation)},
     {"hysteresis", "hysteresis",
      "Largest difference between the mean readings with rising and with falling reference, in % of "
      "full scale.",
      IN_PERCENT, PLAIN, false, AT(hysteresis), AT(hysteresis_level)},
     {"asymmetry", "asymmetry (K+ - K-)/K",
-     "Difference of the slopes for positive and negative reference, of two lines that meet at "
-     "reference 0, over their mean.",
+     "Difference of the slopes for positive and negative reference, divided by their mean; the two "
+     "lines meet at reference 0.",
      IN_PPM, PLAIN, true, AT(asymmetry), 0},
     {"resolution", "resolution",
-     "Smallest step of the reference from which on every tested step changed the reading by at "
-     "least half of what the sensitivity lets one expect.",
+     "Smallest step of the reference such that it and all larger tested steps changed the reading "
+     "by at least half of the change expected from the sensitivity.",
      IN_REFERENCE, PLAIN, false, AT(resolution), 0},
-    {"threshold", "threshold", "The same for changes of the reference from 0.", IN_REFERENCE, PLAIN,
-     false, AT(threshold), 0},
+    {"threshold", "threshold", "Resolution for changes of the reference from 0.", IN_REFERENCE,
+     PLAIN, false, AT(threshold), 0},
     {"zero_repeatability", "bias repeatability",
-     "Standard deviation, from run to run, of the reading at zero; what noise within the runs "
-     "explains is taken off.",
+     "Standard deviation, from run to run, of the reading at zero, less the contribution of the "
+     "noise within the runs.",
      IN_READING, OF_RUNS, false, AT(run_zero), 0},
-    {"sensitivity_repeatability", "scale factor repeatability", "The same of the sensitivity.",
+    {"sensitivity_repeatability", "scale factor repeatability",
+     "Standard deviation, from run to run, of the sensitivity, less the contribution of the noise "
+     "within the runs.",
      IN_PPM, OF_RUNS, false, AT(run_sensitivity), 0},
     {"bias_instability", "bias instability B, fitted",
-     "Flicker coefficient of the noise at rest, told apart from white noise and random walk by "
+     "Flicker coefficient of the noise at rest, separated from white noise and random walk by "
      "maximum likelihood.",
      IN_READING, AT_REST, false, 0, 0},
     {"allan_minimum", "Allan minimum / 0.664",
-     "Smallest Allan deviation over 0.664. White noise N and random walk K raise it above B: "
-     "minimum^2 = 0.4413 B^2 + 2 N K/sqrt(3) for the three together.",
+     "Smallest Allan deviation divided by 0.664. White noise N and random walk K raise it above B: "
+     "for the three together, minimum^2 = 0.4413 B^2 + 2 N K/sqrt(3).",
      IN_READING, AT_REST, false, 0, 0},
 };
 enum { DEFINITIONS = sizeof definitions / sizeof *definitions };

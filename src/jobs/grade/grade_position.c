@@ -147,7 +147,7 @@ static const char *why_no_position(const imk_model *model)
     if (!model->gyro.present || !model->accel.present)
         return model->gyro.present ? "the model has no accelerometers" : "the model has no gyros";
     return imk_drift_validate(model, &settings, NULL) == IMK_ERROR_UNSUPPORTED
-               ? "it takes three gyros and three accelerometers along x, y and z"
+               ? "a position needs three gyros and three accelerometers along x, y and z"
                : NULL;
 }
 

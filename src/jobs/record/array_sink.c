@@ -11,7 +11,8 @@ static imk_status begin(void *context, size_t column_count, const imk_log_column
     imk_array_sink *s = context;
     (void)decimals;
     if (column_count > s->column_count || rows > s->capacity)
-        return imk_error_set(error, IMK_ERROR_WORKSPACE, "sink", NULL, "more or longer arrays");
+        return imk_error_set(error, IMK_ERROR_WORKSPACE, "sink", NULL,
+                             "provide more or longer arrays");
     s->column_count = column_count;
     memcpy(s->column, columns, column_count * sizeof *columns);
     return IMK_OK;

@@ -184,7 +184,8 @@ imk_status imk_array_source_make(size_t column_count, const char *const *names,
             return status;
         for (size_t k = 0; k < c; k++)
             if (strcmp(made.column[c].name, made.column[k].name) == 0)
-                return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL, "a name once");
+                return imk_error_set(error, IMK_ERROR_COLUMN, names[c], NULL,
+                                     "use each column name only once");
         made.data[c] = data[c];
         if (made.column[c].quantity == IMK_QUANTITY_TIME)
             time = (int)c;

@@ -29,7 +29,7 @@ static imk_status check(const imk_alignment_settings *s, imk_error *error)
 {
     if (s->cookie != COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "alignment", "",
-                             "a structure from imk_alignment_default()");
+                             "start from imk_alignment_default()");
     if ((unsigned)s->method > (unsigned)IMK_ALIGNMENT_FINE)
         return refuse(error, "method", (double)s->method, "one of the three methods");
     if (!(fabs(s->place.latitude) <= 90.0 * degree))
@@ -42,7 +42,7 @@ static imk_status check(const imk_alignment_settings *s, imk_error *error)
         return refuse(error, "duration", s->duration, "a time above 0");
     if (fabs(s->place.latitude) > 89.0 * degree)
         return imk_error_set(error, IMK_ERROR_CONFLICT, "place.latitude", "",
-                             "a place more than 1 deg from a pole, where there is a north");
+                             "a place more than 1 deg from a pole, so that north is defined");
     if (s->model == NULL)
         return IMK_OK;
     const imk_status status = imk_model_validate(s->model, error);
@@ -133,7 +133,7 @@ imk_status imk_alignment_finish(const imk_alignment *alignment, imk_alignment_re
     if (!(alignment->time >= 1.0 - 1e-9)) /* the sum of a second's samples */
         return imk_error_set(error,
                              isnan(alignment->time) ? IMK_ERROR_SINGULAR : IMK_ERROR_TOO_SHORT,
-                             "alignment", "", "at least a second of samples");
+                             "alignment", "", "at least one second of samples");
     return alignment->settings.method == IMK_ALIGNMENT_MEANS
                ? imki_alignment_means_finish(alignment, result, error)
                : imki_alignment_inertial_finish(alignment, result, error);

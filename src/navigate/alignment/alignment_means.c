@@ -93,8 +93,9 @@ imk_status imki_alignment_means_finish(const imk_alignment *alignment, imk_align
     const imk_vector3 rate = imk_vector3_scale(alignment->angle, per_time);
     imk_matrix3 c_nb;
     if (imki_alignment_of_means(force, rate, &c_nb) != IMK_OK)
-        return imk_error_set(error, IMK_ERROR_SINGULAR, "alignment", "",
-                             "force and rate that are not zero and not parallel");
+        return imk_error_set(
+            error, IMK_ERROR_SINGULAR, "alignment", "",
+            "check the samples: force and rate must not be zero and not be parallel");
     const double gravity = imk_normal_gravity(settings->place.latitude, settings->place.height);
     imk_matrix3 force_error, rate_error;
     if (settings->model != NULL) {

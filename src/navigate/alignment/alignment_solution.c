@@ -266,12 +266,13 @@ imk_status imki_alignment_inertial_finish(const imk_alignment *alignment,
     const imk_alignment *a = alignment;
     if (a->epochs < EPOCHS_MIN)
         return imk_error_set(error, IMK_ERROR_TOO_SHORT, "alignment", "",
-                             "at least a 32nd of the duration");
+                             "at least 1/32 of the duration");
     const imk_vector3 gravity = imk_gravity_ecef(a->velocities.position);
     solution s = {.force = imki_alignment_to_reference(a, a->time, imki_scaled(-1.0, gravity))};
     if (!assess(a, &a->equal, &s.equal) || !mix(a, &s))
-        return imk_error_set(error, IMK_ERROR_SINGULAR, "alignment", "",
-                             "force and a turn of it that are finite and not zero");
+        return imk_error_set(
+            error, IMK_ERROR_SINGULAR, "alignment", "",
+            "check the samples: the force and its rotation must be finite and not zero");
     to_result(a, &s, result);
     return IMK_OK;
 }

@@ -38,8 +38,9 @@ static imk_status check_triad(const imk_triad *triad, const char *kind, imk_erro
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             if (!(fabs(triad->direction[i][j] - (i == j ? 1.0 : 0.0)) <= tolerance)) {
-                imk_error_set(error, IMK_ERROR_UNSUPPORTED, kind, "",
-                              "axes along body x, y, z: the navigator takes them as these");
+                imk_error_set(
+                    error, IMK_ERROR_UNSUPPORTED, kind, "",
+                    "align the axes with body x, y, z: the navigator assumes these directions");
                 if (error)
                     error->index = i;
                 return IMK_ERROR_UNSUPPORTED;
@@ -50,7 +51,7 @@ static imk_status check_triad(const imk_triad *triad, const char *kind, imk_erro
 static imk_status check_times(const imk_drift_settings *settings, imk_error *error)
 {
     if (settings->time_count == 0 || !settings->time)
-        return imk_error_set(error, IMK_ERROR_EMPTY, "time", "", "at least one time to look at");
+        return imk_error_set(error, IMK_ERROR_EMPTY, "time", "", "at least one time to evaluate");
     double before = 0.0;
     for (size_t i = 0; i < settings->time_count; i++) {
         const double t = settings->time[i];
@@ -84,15 +85,15 @@ static imk_status check_numbers(const imk_drift_settings *s, imk_error *error)
         if (!(fabs(angle[i]) <= 1e4))
             return refuse(error, name[i], angle[i], "an angle");
     if (s->vertical != IMK_VERTICAL_SLAVED && s->vertical != IMK_VERTICAL_FREE)
-        return refuse(error, "vertical", (double)s->vertical, "slaved or free");
+        return refuse(error, "vertical", (double)s->vertical, "\"slaved\" or \"free\"");
     if (s->alignment != IMK_ALIGNED_GIVEN && s->alignment != IMK_ALIGNED_SELF)
-        return refuse(error, "alignment", (double)s->alignment, "given or self");
+        return refuse(error, "alignment", (double)s->alignment, "\"given\" or \"self\"");
     if (s->alignment == IMK_ALIGNED_SELF && !(s->alignment_time >= 1.0 && s->alignment_time <= 1e7))
         return refuse(error, "alignment_time", s->alignment_time, "1 s to 1e7 s");
     for (int i = 0; i < IMK_DRIFT_STATES; i++)
         if (!(s->initial_sigma[i] >= 0.0 && s->initial_sigma[i] <= 1e9)) {
-            const imk_status status =
-                refuse(error, "initial_sigma", s->initial_sigma[i], "a standard deviation");
+            const imk_status status = refuse(error, "initial_sigma", s->initial_sigma[i],
+                                             "a standard deviation of 0 or more");
             if (error)
                 error->index = i;
             return status;
@@ -121,7 +122,7 @@ static imk_status check_motion(const imk_drift_settings *settings, imk_error *er
     if (settings->motion) {
         if (!settings->motion->earth)
             return imk_error_set(error, IMK_ERROR_CONFLICT, "motion", "",
-                                 "a motion on the Earth: there is nothing to navigate on without");
+                                 "a motion on the Earth: the navigator needs the Earth");
         const imk_status status = imk_trajectory_validate(settings->motion, error);
         if (status != IMK_OK)
             return status;
@@ -153,7 +154,7 @@ imk_status imk_drift_validate(const imk_model *model, const imk_drift_settings *
         return status;
     if (settings->cookie != COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", "",
-                             "a structure from imk_drift_default()");
+                             "start from imk_drift_default()");
     status = check_triad(&model->gyro, "gyro", error);
     if (status == IMK_OK)
         status = check_triad(&model->accel, "accel", error);

@@ -96,7 +96,7 @@ imk_status imk_standstill_ready(imk_standstill *d, imk_error *error)
 {
     if (d->learnt < WINDOWS_MIN)
         return imk_error_set(error, IMK_ERROR_TOO_SHORT, "standstill", "",
-                             "at least 11 windows of standing still to learn from");
+                             "at least 11 stationary windows to learn from");
     const double n = (double)d->learnt;
     for (int i = 0; i < IMK_STANDSTILL_FIGURES; i++) {
         const double mean = d->sum[i] / n;

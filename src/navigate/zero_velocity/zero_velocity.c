@@ -58,7 +58,7 @@ static imk_status check_triad(const imk_triad_errors *triad, const char *field, 
             if (!is_size(part->sigma[i]) || !is_size(part->walk[i]))
                 return refuse(error, field,
                               is_size(part->sigma[i]) ? part->walk[i] : part->sigma[i],
-                              "sizes of 0 or more");
+                              "a sigma or random walk of 0 or more");
             if (!is_size(part->correlation_time))
                 return refuse(error, field, part->correlation_time, "a time of 0 or more");
         }
@@ -70,7 +70,7 @@ static imk_status check(const imk_zero_velocity_settings *s, imk_error *error)
 {
     if (s->cookie != COOKIE)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "zero_velocity", "",
-                             "a structure from imk_zero_velocity_default()");
+                             "start from imk_zero_velocity_default()");
     imk_status status = check_triad(&s->gyro, "gyro", error);
     if (status == IMK_OK)
         status = check_triad(&s->accel, "accel", error);
@@ -171,7 +171,7 @@ imk_status imk_zero_velocity_start(const imk_zero_velocity_settings *settings,
     const size_t need = imk_zero_velocity_size(settings);
     if (!memory || memory_size < need)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "zero_velocity", "",
-                             "memory of imk_zero_velocity_size()");
+                             "provide imk_zero_velocity_size() bytes");
     imk_zero_velocity *f = (void *)imki_align(memory);
     memset(f, 0, need - IMKI_ALIGNMENT_SLACK);
     f->settings = *settings;

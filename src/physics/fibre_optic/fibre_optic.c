@@ -123,7 +123,7 @@ static imk_status check_optics(const imk_fibre_optic *design, imk_error *error)
     const imki_fibre_optic_point point = imki_fibre_optic_operate(design);
     if (!(point.half_power > 0.0))
         return imki_conflict(error, "optics.loss", design->optics_loss, 0.0,
-                             "losses that leave some light on the detector");
+                             "a loss that leaves some light on the detector");
     if (!(point.depth < 3.1))
         return imki_conflict(error, "modulator.depth_error", design->depth_error, 3.1,
                              "a depth that stays below 3.1 rad");
@@ -142,10 +142,9 @@ static imk_status check_converter(const imk_fibre_optic *design, imk_error *erro
     const double sigma = sqrt(imki_fibre_optic_demodulated_noise(design, &point) /
                               (2.0 * transits * imk_fibre_optic_transit_time(design)));
     if (point.count > 2.0 * sigma)
-        return imki_conflict(
-            error, "detector.converter_bits", point.count, 2.0 * sigma,
-            "so many bits that a step is below two standard deviations of the noise, "
-            "which is its dither");
+        return imki_conflict(error, "detector.converter_bits", point.count, 2.0 * sigma,
+                             "use more bits: a step must be below two standard deviations of the "
+                             "noise, which serves as dither");
     return IMK_OK;
 }
 
@@ -154,11 +153,11 @@ static imk_status check_open_range(const imk_fibre_optic *design, double phase, 
     if (!(phase <= 0.5 * IMKI_PI * (1.0 + 1e-9)))
         return imki_conflict(
             error, "loop.range", phase, 0.5 * IMKI_PI,
-            "a range up to a phase of pi/2, where the open loop's reading turns back");
+            "a range up to a phase of pi/2, beyond which the open loop's reading decreases");
     const double harmonic = imki_fibre_optic_operate(design).slope * imk_sin(phase);
     if (design->converter_range > 0.0 && !(design->converter_range >= harmonic))
         return imki_conflict(error, "detector.converter_range", design->converter_range, harmonic,
-                             "a range that holds the harmonic at the end of loop.range");
+                             "a range that includes the harmonic at the end of loop.range");
     return IMK_OK;
 }
 
@@ -181,10 +180,9 @@ static imk_status check_loop(const imk_fibre_optic *design, imk_error *error)
     const double deviation =
         noise * sqrt(gain / (2.0 - gain) / (4.0 * imk_fibre_optic_transit_time(design)));
     if (!(deviation < 0.3))
-        return imki_conflict(
-            error, "source.power", deviation, 0.3,
-            "so much light that the loop's phase noise stays below 0.3 rad: it would "
-            "slip fringes");
+        return imki_conflict(error, "source.power", deviation, 0.3,
+                             "use more light: the loop's phase noise must stay below 0.3 rad, or "
+                             "the loop slips fringes");
     return IMK_OK;
 }
 
@@ -220,9 +218,9 @@ static const imk_signal signals[IMKI_FIBRE_OPTIC_SIGNALS] = {
 static const imk_view views[] = {
     {.title = "Light on the fringe",
      .caption =
-         "Power on the detector against the phase between the two waves, from switching on: the "
-         "modulation throws it from one side of the fringe to the other, and the loop moves both "
-         "until they are equally bright. Resets of the ramp lead to the next fringes.",
+         "Power on the detector against the phase between the two waves, from switching on. The "
+         "modulation moves the phase from one side of the fringe to the other, and the loop shifts "
+         "both points until they are equally bright. Resets of the ramp lead to the next fringes.",
      .x = IMKI_FIBRE_OPTIC_DIFFERENCE,
      .curve_count = 1,
      .y = {IMKI_FIBRE_OPTIC_POWER},
@@ -241,8 +239,7 @@ static const imk_view views[] = {
      .settle = 2e-3,
      .input = 10.0 * IMKI_DEGREE},
     {.title = "The loop locks",
-     .caption =
-         "From switching on: the rate of the coil and the rate that the feedback stands for.",
+     .caption = "Rate of the coil, and rate that the feedback represents, from switching on.",
      .x = -1,
      .curve_count = 2,
      .y = {IMKI_FIBRE_OPTIC_FEEDBACK, IMKI_FIBRE_OPTIC_INPUT},

@@ -323,8 +323,8 @@ imk_status imki_fibre_optic_init(const void *design, const imk_physics_settings 
     const double longest = imki_fibre_optic_step_length(d, settings);
     imk_status status =
         imki_divide_sample(settings, longest, longest * (1.0 + 1e-9),
-                           "at most the transit time: the light is modulated and read once a "
-                           "transit (slow level: the sample)",
+                           "at most the transit time (slow level: the sample interval): the light "
+                           "is modulated and read once a transit",
                            &count, &step, error);
     if (status != IMK_OK)
         return status;

@@ -114,8 +114,8 @@ static const imk_signal signals[] = {
 
 static const imk_view views[] = {
     {.title = "Path of the spin axis",
-     .caption = "Inner against outer angle while the case turns slowly: round and round, the "
-                "nutation, along the way that the case goes",
+     .caption = "Inner against outer angle while the case turns slowly: the circles are the "
+                "nutation, and their centre follows the case",
      .x = OUTER,
      .curve_count = 1,
      .y = {INNER},
@@ -131,8 +131,8 @@ static const imk_view views[] = {
      .duration = 60.0,
      .rate = 10.0},
     {.title = "Nutation dies away",
-     .caption = "Its amplitude, which bearing friction takes away: dry friction in equal steps, "
-                "viscous in equal parts",
+     .caption = "Amplitude of the nutation. Friction of the bearings reduces it: dry friction by "
+                "equal steps, viscous friction by equal fractions",
      .x = -1,
      .curve_count = 1,
      .y = {NUTATION},
@@ -178,15 +178,14 @@ static imk_status check(const void *given, imk_error *error)
     const double swing = fabs(design->start_inner) + design->start_nutation;
     if (!(swing < design->stop))
         return imki_conflict(error, "start.inner", swing, design->stop,
-                             "inner angle and nutation within gimbal.stop");
+                             "keep inner angle and nutation together below gimbal.stop");
     /* cos x >= 1 - 2 x/pi in a quarter turn: no function is needed for a bound */
     const double momentum = imk_free_gyro_momentum(design) * (1.0 - 2.0 / IMKI_PI * design->stop);
     const imki_free_gyro_parts parts = imki_free_gyro_parts_of(design);
     if (!(parts.slope <= 0.5 * momentum))
-        return imki_conflict(
-            error, "friction.coulomb", parts.slope, 0.5 * momentum,
-            "friction per relative rate (viscous, and coulomb over friction.rate) below "
-            "half the momentum of the wheel at the stop");
+        return imki_conflict(error, "friction.coulomb", parts.slope, 0.5 * momentum,
+                             "a friction per relative rate (viscous, plus coulomb over "
+                             "friction.rate) below half the momentum of the wheel at the stop");
     /* weight of 10 m/s^2: the steady precession is real while 4 (A - C) M < H^2 */
     const double *m = parts.moment;
     const double weight = 10.0 * imki_norm3(m);
@@ -194,7 +193,7 @@ static imk_status check(const void *given, imk_error *error)
     if (!(weight < most))
         return imki_conflict(
             error, "unbalance.z", weight, most,
-            "a weight times its arm that the wheel can carry: below H^2/4(A + Ao + B)");
+            "a weight times its arm below H^2/4(A + Ao + B), which the wheel can carry");
     return IMK_OK;
 }
 
@@ -269,7 +268,7 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
         step_within(design, settings->level, true),
         settings->level == IMK_LEVEL_FULL ? "at least 6 steps to a cycle of the nutation, and 5 to "
                                             "its decay by friction"
-                                          : "at most 0.1 s: the case turns between",
+                                          : "at most 0.1 s: the case turns between steps",
         &steps, &step, error);
     if (status != IMK_OK)
         return status;

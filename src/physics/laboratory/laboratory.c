@@ -45,10 +45,10 @@ static imk_status check(const imk_laboratory *l, void *state, imk_error *error)
 {
     if (l->cookie != COOKIE || !l->instrument || !l->design)
         return imk_error_set(error, IMK_ERROR_UNINITIALISED, "laboratory", NULL,
-                             "settings made by imk_laboratory_default(), with an instrument");
+                             "start from imk_laboratory_default(), with an instrument");
     if (!(l->full_scale >= 0.0 && l->full_scale <= 1e9))
         return imki_refuse(error, IMK_ERROR_RANGE, "full_scale", l->full_scale, 0.0,
-                           "a full scale above 0");
+                           "a full scale above 0, or 0 for the default");
     if (l->points != 0 &&
         !(l->points >= 7 && l->points <= IMK_LABORATORY_POINTS_MAX && l->points % 2 == 1))
         return imki_refuse(error, IMK_ERROR_RANGE, "points", l->points, 0.0,

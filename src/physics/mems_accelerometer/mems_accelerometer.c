@@ -154,8 +154,9 @@ static const imk_view views[] = {
      .rate = 100e3,
      .settle = 0.02},
     {.title = "Limit cycle",
-     .caption = "The compensated position of a sigma-delta loop in its limit cycle, and the mass "
-                "that swings in it: an input too small to change a sign is not seen.",
+     .caption =
+         "The compensated position of a sigma-delta loop in its limit cycle, and the mass that "
+         "swings in it. The loop does not see an input that is too small to change a sign.",
      .x = -1,
      .curve_count = 2,
      .y = {COMPENSATED, DISPLACEMENT},
@@ -179,15 +180,15 @@ static imk_status check_rest(const imk_mems_accelerometer *d, imk_error *error)
     const double end = d->stop * d->gap, pull_in = imk_mems_accelerometer_pull_in(d);
     if (!(fabs(d->offset) < end))
         return imki_conflict(error, "electrodes.offset", d->offset, end,
-                             "springs that rest between the stops");
+                             "an offset between the stops");
     imk_mems_accelerometer open = *d;
     open.loop = IMK_MEMS_OPEN;
     if (!imki_mems_operating_point(&open).exists)
         return imki_conflict(error, "electrodes.voltage", d->voltage, pull_in,
-                             "a voltage below pull-in, with the equilibrium off the stops");
+                             "a voltage below pull-in, with an equilibrium between the stops");
     if (d->loop != IMK_MEMS_OPEN && d->plates == IMK_MEMS_SINGLE)
         return imki_conflict(error, "electrodes.plates", (double)d->plates, (double)IMK_MEMS_DOUBLE,
-                             "plates on both sides: one plate can only pull");
+                             "use plates on both sides: one plate can only pull");
     if (d->loop != IMK_MEMS_OPEN && !(fabs(d->pickoff_offset) < end))
         return imki_conflict(error, "pickoff.offset", d->pickoff_offset, end,
                              "a null between the stops");
@@ -205,8 +206,8 @@ static imk_status check_force(const imk_mems_accelerometer *d, imk_error *error)
     const double bias = fabs(d->bias) + 6.0 * d->bias_repeatability;
     if (!(bias < limit))
         return imki_conflict(error, "bias.fixed", bias, limit,
-                             "a bias, and six times its repeatability, within what the mass "
-                             "or the loop can bear");
+                             "a bias (and six times its repeatability) below the largest input of "
+                             "the mass or the loop");
     return IMK_OK;
 }
 
@@ -227,8 +228,9 @@ static imk_status check_analog(const imk_mems_accelerometer *d, imk_error *error
                              sqrt(stiffness) / (2.0 * IMKI_PI),
                              "a loop stiffer than the softened springs");
     if (!imki_mems_loop_stable(d, stiffness) || !imki_mems_loop_stable(d, p.a1))
-        return imki_conflict(error, "analog.bandwidth", d->bandwidth, d->amplifier,
-                             "a stable loop: lower bandwidth or reset, a faster amplifier");
+        return imki_conflict(
+            error, "analog.bandwidth", d->bandwidth, d->amplifier,
+            "a stable loop: use a lower bandwidth or reset, or a faster amplifier");
     if (!imki_mems_loop_stable(d, at_full_scale))
         return imki_conflict(error, "analog.bandwidth", d->bandwidth, u,
                              "a loop that is stable at full scale too, where the control "
@@ -245,8 +247,8 @@ static imk_status check_sigma_delta(const imk_mems_accelerometer *d, imk_error *
     const imk_mems_limit_cycle cycle = imk_mems_accelerometer_limit_cycle(d);
     if (cycle.half_period == 0 || cycle.half_period > CYCLE_HALF_MAX)
         return imki_conflict(error, "sigma_delta.lead", d->lead, 0.0,
-                             "more lead: the loop has no limit cycle of 16 clocks or less, "
-                             "it swings ever further");
+                             "use more lead: the loop has no limit cycle of 16 clocks or less, and "
+                             "its swing keeps growing");
     if (!(cycle.amplitude < 0.5 * d->stop * d->gap))
         return imki_conflict(error, "sigma_delta.clock", d->clock, 0.0,
                              "a clock whose limit cycle stays within half the stops");

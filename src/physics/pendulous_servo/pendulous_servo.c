@@ -92,13 +92,13 @@ static imk_status check(const void *design, imk_error *error)
     if (!(weakest > 0.0))
         return imki_conflict(error, "torquer.repeatability", d->torquer_repeatability,
                              (1.0 + d->torquer_error) / 6.0,
-                             "so little that the torquer pulls in every run: less than a "
-                             "sixth of its constant");
+                             "a value below a sixth of the torquer's constant, so that the torquer "
+                             "pulls in every run");
     const double bend = fabs(d->torquer_quadratic) * d->largest_current;
     if (!(bend < 0.25))
         return imki_conflict(error, "torquer.quadratic", bend, 0.25,
-                             "less than a quarter over the largest current: the torque grows "
-                             "with it");
+                             "a value below a quarter over the largest current, so that the torque "
+                             "grows with the current");
     const double largest = d->torquer_constant * (1.0 + d->torquer_error) * d->largest_current;
     const double error_torque = fabs(d->hinge_torque) + 6.0 * d->hinge_torque_repeatability;
     if (!(error_torque < largest))
@@ -108,9 +108,9 @@ static imk_status check(const void *design, imk_error *error)
     /* Routh: J s^3 + b s^2 + K s + K_i has its roots on the left when b K > J K_i. */
     const double limit = d->damping * imki_servo_stiffness(d) / d->inertia;
     if (d->integral > 0.0 && !(d->integral < limit))
-        return imki_conflict(error, "controller.integral", d->integral, limit,
-                             "less than damping x stiffness / inertia: the loop would not be "
-                             "stable");
+        return imki_conflict(
+            error, "controller.integral", d->integral, limit,
+            "a value below damping x stiffness / inertia, so that the loop is stable");
     return IMK_OK;
 }
 
@@ -125,9 +125,8 @@ static const imk_signal signals[] = {
 };
 static const imk_view views[] = {
     {.title = "The pendulum is pulled back",
-     .caption =
-         "Deflection of the pendulum behind the beginning of the input: "
-         "the loop answers within a millisecond, and the integral brings the angle back to zero.",
+     .caption = "Deflection of the pendulum after the input begins: the loop answers within a "
+                "millisecond, and the integral brings the angle back to zero.",
      .x = -1,
      .curve_count = 1,
      .y = {0},
@@ -135,7 +134,7 @@ static const imk_view views[] = {
      .rate = 50000.0,
      .input = IMK_STANDARD_GRAVITY},
     {.title = "The torquer takes over",
-     .caption = "Control torque: it ends where it balances the input.",
+     .caption = "Control torque: it settles where it balances the input.",
      .x = -1,
      .curve_count = 1,
      .y = {1},

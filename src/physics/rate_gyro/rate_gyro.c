@@ -62,7 +62,7 @@ static imk_status check(const void *given, imk_error *error)
     if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
         return imki_conflict(error, "gimbal.output_inertia", d->output_inertia,
                              d->input_inertia + d->spin_inertia,
-                             "moments of inertia none of which exceeds the sum of the others");
+                             "a moment of inertia of at most the sum of the others, for each axis");
     const double range = d->stop / imk_rate_gyro_sensitivity(d);
     const double softening = (d->spin_inertia - d->input_inertia) * range * range;
     if (!(softening < imki_rate_gyro_stiffness(d)))

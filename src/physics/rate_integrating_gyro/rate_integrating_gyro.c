@@ -76,7 +76,7 @@ static imk_status check(const void *given, imk_error *error)
     if (!imki_inertias_possible(d->output_inertia, d->input_inertia, d->spin_inertia))
         return imki_conflict(error, "float.output_inertia", d->output_inertia,
                              d->input_inertia + d->spin_inertia,
-                             "moments of inertia none of which exceeds the sum of the others");
+                             "a moment of inertia of at most the sum of the others, for each axis");
     imk_rate_integrating_gyro_loop(d, &k1, &k2);
     /* Routh: C (K1 + k) > I K2, with the gain of the torquer in both */
     if (d->rebalance == IMK_REBALANCE_ANALOG &&

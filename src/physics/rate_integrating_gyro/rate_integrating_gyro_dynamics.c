@@ -70,7 +70,7 @@ static imk_status divide(gyro *s, const imk_rate_integrating_gyro *d,
                                   : cycle(d) / fewest_steps;
     const imk_status status =
         imki_divide_sample(settings, longest, limit,
-                           pulsed ? "at least a step to a pulse"
+                           pulsed ? "at least one step to a pulse"
                                   : "at least 10 steps to a cycle of the loop, or a tenth of I/C",
                            &s->count, &s->step, error);
     if (status != IMK_OK || slow || !pulsed)
@@ -79,7 +79,7 @@ static imk_status divide(gyro *s, const imk_rate_integrating_gyro *d,
     const double whole = floor(pulses + 0.5);
     if (!(whole >= 1.0 && fabs(pulses - whole) <= 1e-9 * whole))
         return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, d->pulse_frequency,
-                           "whole pulses of the torquer to a sample");
+                           "a whole number of torquer pulses to a sample");
     const double parts = ceil((double)s->count / whole * (1.0 - 1e-9));
     s->steps_per_pulse = (size_t)parts;
     s->count = s->steps_per_pulse * (size_t)whole;

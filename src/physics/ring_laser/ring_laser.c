@@ -118,10 +118,9 @@ static const imk_view views[] = {
      .rate = 4e6,
      .settle = 0.36e-3},
     {.title = "Phase of the beat without the dither",
-     .caption =
-         "Random dither: a walk along the straight line of the input. Without dither, just "
-         "outside the lock-in band, the staircase of lock-in: the beat lingers, then slips a "
-         "fringe.",
+     .caption = "With random dither, the phase wanders along the straight line of the input. "
+                "Without dither, just outside the lock-in band, it forms a staircase: the beat "
+                "lingers, then slips a fringe.",
      .x = -1,
      .curve_count = 1,
      .y = {SLOW_PHASE},
@@ -138,9 +137,9 @@ static imk_status check(const void *given, imk_error *error)
         return imki_conflict(error, "dither.rate", design->dither.rate, design->lock_in.rate,
                              "a peak rate above lock_in.rate, or 0 for no dither");
     if (!(design->path_length.stroke >= design->cavity.wavelength))
-        return imki_conflict(error, "path_length.stroke", design->path_length.stroke,
-                             design->cavity.wavelength,
-                             "at least the wavelength, or there is no next mode to go to");
+        return imki_conflict(
+            error, "path_length.stroke", design->path_length.stroke, design->cavity.wavelength,
+            "at least the wavelength, so that the control can reach the next mode");
     if (!(design->temperature.minimum < design->temperature.reference))
         return imki_conflict(error, "temperature.minimum", design->temperature.minimum,
                              design->temperature.reference,
@@ -190,17 +189,18 @@ static imk_status check_slow(const imk_ring_laser *design, const imk_physics_set
     const double phase = dither_phase(design), half_cycle = 0.5 / design->dither.frequency;
     if (!(design->dither.rate > 0.0))
         return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level, 0.0,
-                           "the full level: without dither there are no kicks");
+                           "choose the full level: without dither there are no kicks");
     if (!(phase >= least))
         return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", phase, least,
-                           "the full level, or a dither of 20 rad of phase or more");
+                           "choose the full level, or a dither of 20 rad of phase or more");
     const double kick = design->lock_in.rate / design->dither.rate * sqrt(2.0 * IMKI_PI * phase);
     if (!(kick <= largest))
         return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", kick, largest,
-                           "the full level, or kicks of 0.5 rad or less: more dither");
+                           "choose the full level, or more dither for kicks of 0.5 rad or less");
     if (settings->step > half_cycle)
-        return imki_refuse(error, IMK_ERROR_RANGE, "step", settings->step, half_cycle,
-                           "at most half a cycle of the dither, which is a step of the map");
+        return imki_refuse(
+            error, IMK_ERROR_RANGE, "step", settings->step, half_cycle,
+            "at most half a cycle of the dither, which is one step of the slow level");
     return IMK_OK;
 }
 
@@ -282,9 +282,10 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
         const double limit =
             imki_ring_laser_step(design, IMKI_RING_LASER_BEND_LIMIT, IMKI_RING_LASER_PULL_LIMIT,
                                  IMKI_RING_LASER_CYCLE_LIMIT);
-        status = imki_divide_sample(settings, step_length(design, settings), limit,
-                                    "steps that follow the turns of the dither and lock-in",
-                                    &gyro->steps, &gyro->step, error);
+        status = imki_divide_sample(
+            settings, step_length(design, settings), limit,
+            "use shorter steps, which follow the turns of the dither and lock-in", &gyro->steps,
+            &gyro->step, error);
     }
     if (status != IMK_OK)
         return status;

@@ -155,22 +155,22 @@ static imk_status check(const void *given, imk_error *error)
     const double damping = 2.0 / imk_shell_gyro_decay_time(design);
     if (design->resonator.shape == IMK_SHELL_HEMISPHERE && design->resonator.mode_number != 2)
         return imki_conflict(error, "resonator.mode_number", design->resonator.mode_number, 2.0,
-                             "2 for a hemisphere; of another shape state the angular gain");
+                             "2 for a hemisphere; for another shape state the angular gain");
     const double drawn =
         6.0 * (design->anisotropy.damping_repeatability + design->anisotropy.damping_instability);
     if (!(drawn < damping))
-        return imki_conflict(
-            error, "anisotropy.damping_repeatability", drawn, damping,
-            "with the instability less than a sixth of 2/tau: damping is positive in "
-            "every run");
+        return imki_conflict(error, "anisotropy.damping_repeatability", drawn, damping,
+                             "a sum with the instability below a sixth of 2/tau, so that damping "
+                             "is positive in every run");
     if (!(design->anisotropy.damping_difference < damping))
-        return imki_conflict(error, "anisotropy.damping_difference",
-                             design->anisotropy.damping_difference, damping,
-                             "less than 2/tau = 2 pi f/Q: damping is positive in every direction");
+        return imki_conflict(
+            error, "anisotropy.damping_difference", design->anisotropy.damping_difference, damping,
+            "a value below 2/tau = 2 pi f/Q, so that damping is positive in every direction");
     if (!(design->anisotropy.frequency_split <= 0.01 * design->resonator.frequency))
-        return imki_conflict(error, "anisotropy.frequency_split",
-                             design->anisotropy.frequency_split, 0.01 * design->resonator.frequency,
-                             "at most a hundredth of the frequency: else these are two resonators");
+        return imki_conflict(
+            error, "anisotropy.frequency_split", design->anisotropy.frequency_split,
+            0.01 * design->resonator.frequency,
+            "at most a hundredth of the frequency: beyond it these are two resonators");
     const double hidden = design->mode == IMK_SHELL_FREE ? 0.0 : smallest_pattern(design);
     if (!(design->pattern.amplitude >= hidden))
         return imki_conflict(
@@ -218,9 +218,8 @@ static const imk_signal signals[SIGNALS] = {
 
 static const imk_view views[] = {
     {.title = "Motion of the two modes",
-     .caption = "A point of the rim, seen through both modes: a standing wave is a straight line, "
-                "whose angle "
-                "is the pattern's, and quadrature opens it to an ellipse.",
+     .caption = "Path of a point of the rim in the two modes. A standing wave is a straight line "
+                "at the angle of the pattern, and quadrature opens it to an ellipse.",
      .x = X,
      .curve_count = 1,
      .y = {Y},
@@ -237,8 +236,8 @@ static const imk_view views[] = {
      .rate = 100.0,
      .input = 10.0 * IMKI_DEGREE},
     {.title = "Forces of the loops",
-     .caption = "What keeps the amplitude, holds the pattern and cancels the "
-                "quadrature: the second of them is the reading of a force-to-rebalance gyro.",
+     .caption = "Forces that keep the amplitude, hold the pattern and cancel the quadrature. The "
+                "force that holds the pattern is the reading of a force-to-rebalance gyro.",
      .x = -1,
      .curve_count = 3,
      .y = {DRIVE_FORCE, REBALANCE_FORCE, QUADRATURE_FORCE},
@@ -293,10 +292,10 @@ static imk_status check_level(const imk_shell_gyro *design, const imk_physics_se
         return IMK_OK;
     if (design->mode == IMK_SHELL_FREE)
         return imki_refuse(error, IMK_ERROR_UNSUPPORTED, "level", (double)settings->level, 0.0,
-                           "full: a free pattern has no slow form");
+                           "choose the full level: a free pattern has no slow form");
     if (design->mode == IMK_SHELL_WHOLE_ANGLE && !(settings->rate <= fastest))
         return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, fastest,
-                           "at most one sample for an update of the loops");
+                           "at most one sample per update of the loops");
     return IMK_OK;
 }
 

@@ -132,7 +132,7 @@ static const imk_view views[] = {
      .rate = 20.0,
      .input = 10.0 * IMKI_DEGREE},
     {.title = "Drift by the shape of the ball",
-     .caption = "Preloads that are not equal turn an oblate ball: not where its axis is along or "
+     .caption = "Unequal preloads turn an oblate ball: not at all where its axis is along or "
                 "across their field, most in between",
      .x = AXIS_Y,
      .curve_count = 1,
@@ -227,7 +227,7 @@ static imk_status init(const void *given, const imk_physics_settings *settings, 
     double step = 0.0;
     imk_status status =
         imki_divide_sample(settings, LONGEST_STEP, STEP_LIMIT,
-                           "at most 0.1 s: the case turns between", &steps, &step, error);
+                           "at most 0.1 s: the case turns between steps", &steps, &step, error);
     if (status != IMK_OK)
         return status;
     const bool full = settings->level == IMK_LEVEL_FULL;

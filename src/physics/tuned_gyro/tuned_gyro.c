@@ -108,13 +108,12 @@ static imk_status check(const void *given, imk_error *error)
     if (!imki_inertias_possible(d->gimbal_inertia_x, d->gimbal_inertia_y, d->gimbal_inertia_z))
         return imki_conflict(error, "gimbal.inertia_z", d->gimbal_inertia_z,
                              d->gimbal_inertia_x + d->gimbal_inertia_y,
-                             "moments of inertia none of which exceeds the sum of the others");
+                             "a moment of inertia of at most the sum of the others, for each axis");
     if (!(imki_tuned_gyro_gimbal_sum(d) > 0.0))
         return imki_conflict(
             error, "gimbal.inertia_z", d->gimbal_inertia_z,
             d->gimbal_inertia_x + d->gimbal_inertia_y,
-            "a gimbal that nods against the springs: inertia_z below the sum of the "
-            "others, or no speed tunes it");
+            "a value below the sum of the other two inertias: otherwise no speed tunes the gyro");
     if (!(2.0 * (2.0 * d->transverse_inertia - d->axial_inertia) > imki_tuned_gyro_gimbal_sum(d)))
         return imki_conflict(
             error, "rotor.transverse_inertia", d->transverse_inertia,
@@ -124,8 +123,8 @@ static imk_status check(const void *given, imk_error *error)
     if (d->captured && !imki_capture_loop_stable(d, imki_tuned_gyro_longest_step(d)))
         return imki_conflict(
             error, "loop.frequency", d->loop_frequency, d->loop_filter,
-            "a loop that drives neither itself nor the nutation: lower it, and put its "
-            "filter between it and the nutation");
+            "a loop that excites neither itself nor the nutation: lower its frequency, and put its "
+            "filter between this frequency and the nutation");
     return IMK_OK;
 }
 

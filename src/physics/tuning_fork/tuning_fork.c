@@ -142,8 +142,7 @@ static imk_status check_temperature(const imk_tuning_fork *design, double temper
     if (!(coupling <= passive))
         return imki_conflict(error, "damping_coupling", design->damping_coupling,
                              passive / (2.0 * design->angular_gain),
-                             "a coupling that does not feed a motion: at most sqrt(wd ws/(Qd "
-                             "Qs))/2k");
+                             "a coupling that excites no motion: at most sqrt(wd ws/(Qd Qs))/2k");
     if (!(stiffness < p.drive * p.sense))
         return imki_conflict(error, "quadrature", design->quadrature,
                              p.sense / (2.0 * design->angular_gain),

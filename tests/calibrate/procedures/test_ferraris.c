@@ -533,14 +533,14 @@ static void test_refusals(void **state)
             m->section[k] = -1;
     CHECK_STATUS(observe(b, &m->record, &settings, &error), IMK_ERROR_TOO_SHORT);
     assert_string_equal(error.field, "turn");
-    assert_string_equal(error.expected, "also a full turn about y");
+    assert_string_equal(error.expected, "add a full turn about y");
     CHECK_CLOSE(error.value, 2.0, 0.0);
     for (size_t k = 0; k < m->count; k++)
         if (m->section[k] == 5 || m->section[k] == 0)
             m->section[k] = -1;
     CHECK_STATUS(observe(b, &m->record, &settings, &error), IMK_ERROR_TOO_SHORT);
     assert_string_equal(error.field, "hold");
-    assert_string_equal(error.expected, "also a hold with x up, z down");
+    assert_string_equal(error.expected, "add a hold with x up, z down");
     assert_int_equal(b->calibration.observation_count, 0);
     assert_int_equal(b->calibration.record_count, 0);
     m->record.axis_count[IMK_GYRO] = 0;

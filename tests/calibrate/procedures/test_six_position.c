@@ -187,7 +187,7 @@ static void test_refusals(void **state)
     for (int known = 0; known < 2; known++) {
         CHECK_STATUS(look(b, known, &findings, &error), IMK_ERROR_TOO_SHORT);
         assert_string_equal(error.field, "hold");
-        assert_string_equal(error.expected, "also a hold with y down");
+        assert_string_equal(error.expected, "add a hold with y down");
         CHECK_CLOSE(error.value, 5.0, 0.0);
         CHECK_CLOSE(error.limit, 6.0, 0.0);
         assert_int_equal(b->calibration.observation_count, 0);

@@ -492,8 +492,8 @@ static const struct {
     {"steps: [brake -5 m/s at 1 m/s^2]",
      "m.yaml:2:15: steps[0]: \"-5 m/s\" is outside its valid range; expected a number above 0"},
     {"steps: [accelerate -5 m/s at 1 m/s^2]",
-     "m.yaml:2:9: steps[0]: \"accelerate -5 m/s at 1 m/s^2\" is outside its valid range; braking "
-     "to rest at most"},
+     "m.yaml:2:9: steps[0]: \"accelerate -5 m/s at 1 m/s^2\" is outside its valid range; expected "
+     "a change of speed that brakes at most to rest"},
     {"steps: [rotate 90 deg at 10 deg/s]",
      "m.yaml:2:9: steps[0]: \"rotate 90 deg at 10 deg/s\" cannot be read; write rotate z 360 deg "
      "at 36 deg/s, rotate z 360 deg in 10 s or rotate z at -100 deg/s for 10 s"},
@@ -512,7 +512,7 @@ static const struct {
      "expected a duration from 1 us to 1e9 s"},
     {"steps: [hold 1e9 s, pose 180 45 0 deg in 1 us]",
      "m.yaml:2:21: steps[1]: \"pose 180 45 0 deg in 1 us\" is outside its valid range; expected a "
-     "step that is not lost beside the time so far"},
+     "longer step: this one is lost in the rounding of the time so far"},
     {"steps: [hold 1 s]\nvibration: [sine roll 0.11 rad at 30 Hz]",
      "m.yaml:3:23: vibration[0]: \"0.11 rad\" is outside its valid range; expected a rotation "
      "below "
