@@ -310,10 +310,11 @@ static void wrong_usage_is_explained(void **state)
     check_message("$I calibrate rest.csv " POSES " --with k2", 2,
                   "imukit calibrate: error: --with k2: expected nonlinearity, cross_products, "
                   "g_sensitivity, g2_sensitivity or gyro\n" TRY("calibrate"));
-    check_message("$I calibrate rest.csv " POSES " --model left.yaml", 1,
-                  "imukit calibrate: error: left.yaml describes the errors left after compensation with "
-                  "\"bench unit\"; calibrate the log before it was compensated, with that model "
-                  "and --into\n");
+    check_message(
+        "$I calibrate rest.csv " POSES " --model left.yaml", 1,
+        "imukit calibrate: error: left.yaml describes the errors left after compensation with "
+        "\"bench unit\"; calibrate the log before it was compensated, with that model "
+        "and --into\n");
     check_says("$I calibrate rest.csv " POSES " --estimate bais", 2,
                "--estimate bais: no such term; expected bias, scale_factor");
     check_says("$I calibrate rest.csv " POSES " --accel-sensitivity '415 count'", 2,
