@@ -100,8 +100,8 @@ typedef struct imk_array_source {
 
 /** Make a source of `rows` rows in one array per column.
  *  @param names   of the columns, in SI units: "gyro_x" [rad/s], "accel_x" [m/s^2], "time" [s],
- *                 "temperature" [K]; or with the unit in brackets: "gyro_x [deg/s]", "accel_x
- * [count]", "table_rate [deg/s]"
+ *                 "temperature" [K]; or with the unit in brackets, such as "gyro_x [deg/s]" or
+ *                 "table_rate [deg/s]"; counts are "[count]"
  *  @param rate    sampling rate [Hz]; 0: from a column named time
  *  @param memory  holds the state of the source; must live as long as the source is used
  *  @return IMK_ERROR_COLUMN (too many columns, or a name twice), _ARGUMENT (an array or a name is
