@@ -104,8 +104,8 @@ typedef struct imk_array_source {
  *                 "table_rate [deg/s]"; counts are "[count]"
  *  @param rate    sampling rate [Hz]; 0: from a column named time
  *  @param memory  holds the state of the source; must live as long as the source is used
- *  @return IMK_ERROR_COLUMN (too many columns, or a name twice), _ARGUMENT (an array or a name is
- * NULL), _RATE_MISSING (neither rate nor time), _DIMENSION, _MEMORY, errors of imk_unit_parse()
+ *  @return IMK_ERROR_COLUMN (too many columns, or a name twice), _ARGUMENT (no array or no name),
+ *          _RATE_MISSING (neither rate nor time), _DIMENSION, _MEMORY, errors of imk_unit_parse()
  */
 IMK_API imk_status imk_array_source_make(size_t column_count, const char *const *names,
                                          const double *const *data, size_t rows, double rate,
