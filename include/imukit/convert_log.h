@@ -22,7 +22,7 @@ typedef struct imk_convert_log_settings {
     bool to_point;           /**< give the specific force at `point`; default false */
     imk_vector3 point;       /**< position of the point in body axes, from the accelerometers [m] */
     bool gravity_free;       /**< give the acceleration relative to the Earth; default false */
-    double still;            /**< time at rest at the start [s]; default 10 */
+    double still;            /**< time at rest at the start, within the record [s]; default 10 */
     double latitude, height; /**< place, for gravity [rad], [m]; default NaN, 0 */
     double yaw;              /**< at the start, from north towards east [rad]; default 0 */
 } imk_convert_log_settings;

@@ -104,7 +104,7 @@ typedef struct imk_array_source {
  *                 "accel_x [count]", "table_rate [deg/s]"
  *  @param rate    sampling rate [Hz]; 0: from a column named time
  *  @param memory  holds the state of the source; must live as long as the source is used
- *  @return IMK_ERROR_COLUMN (too many columns, or a name twice), _ARGUMENT (an array is NULL),
+ *  @return IMK_ERROR_COLUMN (too many columns, or a name twice), _ARGUMENT (no array or no name),
  *          _RATE_MISSING (neither rate nor time), _DIMENSION, _MEMORY, errors of imk_unit_parse()
  */
 IMK_API imk_status imk_array_source_make(size_t column_count, const char *const *names,
@@ -130,13 +130,18 @@ typedef struct imk_record_sink {
 
 /** A sink that writes rows into arrays of the caller. */
 typedef struct imk_array_sink {
-    size_t column_count, capacity, rows; /**< capacity: rows that each array can hold */
-    double *const *data;                 /**< one array per column */
-    imk_log_column column[IMK_LOG_COLUMNS_MAX];
+    size_t column_count; /**< number of arrays */
+    size_t capacity;     /**< rows that each array can hold */
+    size_t rows;         /**< rows written so far */
+    double *const *data; /**< the arrays */
+    size_t columns;      /**< columns of the record written: the first arrays */
+    imk_log_column column[IMK_LOG_COLUMNS_MAX]; /**< what those columns are */
 } imk_array_sink;
 
-/** Make a sink into arrays. The caller sets column_count, capacity and data of `memory` before.
- *  More rows than the capacity, or more columns, give IMK_ERROR_WORKSPACE. */
+/** Make a sink into arrays. The caller sets column_count, capacity and data of `memory` before;
+ * they stay as they are. Set rows to 0 before another job writes into the same arrays. More rows
+ * than the capacity, or more columns, give IMK_ERROR_WORKSPACE: error.expected says how many arrays
+ * and rows there must be. */
 IMK_API imk_record_sink imk_array_sink_of(imk_array_sink *memory);
 
 /** "gyro_x", "accel_3": the name of a sensor's column. Axes 0 to 2 are called x, y and z, others by

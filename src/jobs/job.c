@@ -12,13 +12,25 @@ const imk_job *imki_job_of(const imk_job *job)
     return job ? job : &alone;
 }
 
-void *imki_result_new(const imk_job *job, const char *origin, size_t size, imk_status *status,
-                      imk_error *error)
+imk_status imki_check_call(const void *result, const void *settings, uint32_t cookie,
+                           const char *origin, imk_error *error)
 {
-    void *made = origin ? NULL : imki_resize(&job->allocator, NULL, size);
-    *status = origin ? imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL, origin)
-              : made ? IMK_OK
-                     : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    if (!result)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "result", NULL, "a place for the result");
+    if (!settings)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "settings", NULL, origin);
+    if (*(const uint32_t *)settings != cookie)
+        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL, origin);
+    return IMK_OK;
+}
+
+void *imki_result_new(const imk_job *job, size_t size, imk_status *status, imk_error *error)
+{
+    if (*status != IMK_OK)
+        return NULL;
+    void *made = imki_resize(&job->allocator, NULL, size);
+    if (!made)
+        *status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     return made ? memset(made, 0, size) : NULL;
 }
 
@@ -40,8 +52,11 @@ void imki_find(imk_findings *findings, imk_finding_level level, const char *code
 imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status, const char *code,
                      const char *name, size_t count, const double *numbers)
 {
+    char field[sizeof error->field];
     imki_find(findings, IMK_FINDING_FAILURE, code, name, count, numbers);
-    return imk_error_set(error, status, name, NULL, NULL);
+    snprintf(field, sizeof field, "%s", name ? name : "");
+    field[strcspn(field, "\t")] = '\0';
+    return imk_error_set(error, status, field, NULL, NULL);
 }
 
 imk_status imki_written(imk_findings *findings, imk_status status)

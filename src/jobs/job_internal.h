@@ -9,7 +9,7 @@
 void imki_find(imk_findings *findings, imk_finding_level level, const char *code, const char *name,
                size_t count, const double *numbers);
 
-/* A failure: adds it and fills the error. @return status */
+/* A failure: adds it and fills the error, whose field is the name up to a tab. @return status */
 imk_status imki_fail(imk_findings *findings, imk_error *error, imk_status status, const char *code,
                      const char *name, size_t count, const double *numbers);
 
@@ -26,11 +26,15 @@ imk_status imki_written(imk_findings *findings, imk_status status);
 /* The job, or, of NULL, one of zeros. */
 const imk_job *imki_job_of(const imk_job *job);
 
-/* Zeroed memory of a result.
- * @param origin  where settings that were not initialised come from; NULL: they were
- * @return NULL with the status and the error */
-void *imki_result_new(const imk_job *job, const char *origin, size_t size, imk_status *status,
-                      imk_error *error);
+/* A place for the result, and settings from their _default function.
+ * @param settings  begin with their cookie
+ * @param origin    the function that makes them */
+imk_status imki_check_call(const void *result, const void *settings, uint32_t cookie,
+                           const char *origin, imk_error *error);
+
+/* Zeroed memory of a result, where `status` is IMK_OK; else NULL.
+ * @return NULL with the status, and the error where memory is exhausted */
+void *imki_result_new(const imk_job *job, size_t size, imk_status *status, imk_error *error);
 
 /* Tell of progress. @return IMK_ERROR_CANCELLED where the caller gives up */
 imk_status imki_job_progress(const imk_job *job, const char *stage, const char *unit, uint64_t done,

@@ -92,6 +92,7 @@ static void test_without_gravity(void **state)
     imk_error error;
     imk_convert_log_settings settings = imk_convert_log_default();
     settings.gravity_free = true;
+    settings.still = 0.05;
     CHECK_STATUS(run(&settings, COLUMNS, &written, &findings, &error), IMK_ERROR_RANGE);
     assert_string_equal(error.field, "latitude");
     settings.latitude = 0.8;

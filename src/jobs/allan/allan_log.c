@@ -3,8 +3,10 @@
  * deviation is taken of what is there; the other statistics need every sample. */
 #include "allan_curve_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include <math.h>
 
@@ -161,16 +163,30 @@ static imk_status compute(imk_allan_log *a, const imk_job *job, imk_error *error
     return status;
 }
 
+static imk_status check_lists(const imk_allan_log_settings *s, imk_error *error)
+{
+    if (s->statistic_count > IMK_ALLAN_STATISTICS)
+        return imki_refuse(error, IMK_ERROR_RANGE, "statistic_count", (double)s->statistic_count,
+                           IMK_ALLAN_STATISTICS, NULL);
+    if (s->time_count > 0 && !s->times)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "times", NULL, "an array");
+    return IMK_OK;
+}
+
 imk_status imk_allan_log_run(const imk_record_source *source,
                              const imk_allan_log_settings *settings, const imk_job *job,
                              imk_allan_log **result, imk_error *error)
 {
-    imk_status status;
-    *result = NULL;
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_allan_log_default()", error);
+    if (result)
+        *result = NULL;
     job = imki_job_of(job);
-    imk_allan_log *made =
-        imki_result_new(job, settings->cookie == settings_cookie ? NULL : "imk_allan_log_default()",
-                        sizeof *made, &status, error);
+    if (status == IMK_OK)
+        status = imki_check_fraction("confidence", settings->confidence, error);
+    if (status == IMK_OK)
+        status = check_lists(settings, error);
+    imk_allan_log *made = imki_result_new(job, sizeof *made, &status, error);
     if (!made)
         return status;
     made->settings = *settings;

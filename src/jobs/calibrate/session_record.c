@@ -186,8 +186,13 @@ imk_status imk_calibrate_record_load(const imk_calibrate_log_settings *settings,
                                      const imk_record_source *source, const imk_job *job,
                                      imk_calibrate_record *record, imk_error *error)
 {
+    const uint32_t cookie = imk_calibrate_log_default().cookie;
+    imk_status status =
+        imki_check_call(record, settings, cookie, "imk_calibrate_log_default()", error);
+    if (status != IMK_OK)
+        return status;
     record->path = name;
-    imk_status status = imki_record_load(source, imki_job_of(job), &record->log, error);
+    status = imki_record_load(source, imki_job_of(job), &record->log, error);
     if (status == IMK_OK)
         status = make_record(record, settings->section, &record->loaded, error);
     if (status == IMK_OK)

@@ -5,8 +5,10 @@
  * from. */
 #include "compensate_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include "imukit/random.h"
 #include "imukit/samples.h"
@@ -102,8 +104,8 @@ static imk_status begin_sink(stream *s, imk_error *error)
     return imki_written(&s->log->findings, status);
 }
 
-/* The sample interval is known when the first block has been read. */
-static imk_status start(stream *s, imk_error *error)
+/* The sample interval is known when the first block has been read, of so many rows. */
+static imk_status start(stream *s, size_t rows, imk_error *error)
 {
     imk_compensate_log *log = s->log;
     imk_error why;
@@ -111,11 +113,14 @@ static imk_status start(stream *s, imk_error *error)
     settings.rate_limit = log->settings.rate_limit;
     settings.force_limit = log->settings.force_limit;
     settings.kernel = imk_random_seeded(0).kernel; /* the fastest there is */
-    double interval = s->source->findings(s->source->context).interval;
-    if (!(interval > 0)) /* a single row has none, and no use for it */
-        interval = 1;
+    imk_log_findings found;
     imk_status status =
-        imk_compensator_start(&log->compensator, &log->model, interval, &settings, &why);
+        imki_source_findings(s->source, rows, s->data, &log->allocator, &found, error);
+    if (status != IMK_OK)
+        return status;
+    /* A single row has no interval, and no use for it. */
+    const double interval = found.interval > 0 ? found.interval : 1;
+    status = imk_compensator_start(&log->compensator, &log->model, interval, &settings, &why);
     if (status == IMK_ERROR_KEY_MISSING)
         imki_find(&log->findings, IMK_FINDING_FAILURE, "no_limit", why.field, 0, NULL);
     else if (status != IMK_OK && status != IMK_ERROR_RANGE)
@@ -252,7 +257,7 @@ static imk_status next_block(stream *s, bool first, size_t *got, const imk_job *
         place[k] = s->data[k] + s->waiting;
     imk_status status = source->read(source->context, BLOCK_ROWS, place, got, error);
     if (status == IMK_OK && first)
-        status = start(s, error);
+        status = start(s, *got, error);
     if (status != IMK_OK)
         return status;
     const size_t rows = s->waiting + *got, ready = *got > 0 ? correct_rows(s, rows) : flush(s, 0);
@@ -307,17 +312,41 @@ static imk_status compensate(stream *s, const imk_job *job, imk_error *error)
     return status;
 }
 
+static imk_status check_handed(const imk_record_source *source, const imk_model *model,
+                               const imk_compensate_log_settings *s, const imk_record_sink *sink,
+                               imk_error *error)
+{
+    imk_status status = imki_check_source(source, error);
+    if (status == IMK_OK)
+        status = imki_check_sink(sink, error);
+    if (status == IMK_OK)
+        status = imki_check_model(model, error);
+    if (status == IMK_OK && s->terms)
+        status = imki_check_model(s->terms, error);
+    if (status == IMK_OK && s->temperature < 0)
+        status =
+            imki_refuse(error, IMK_ERROR_RANGE, "temperature", s->temperature, 0, "at least 0 K");
+    if (status == IMK_OK)
+        status = imki_check_unit(&s->gyro_unit, imk_unit_of("rad/s").dimension, "gyro_unit", error);
+    if (status == IMK_OK)
+        status =
+            imki_check_unit(&s->accel_unit, imk_unit_of("m/s^2").dimension, "accel_unit", error);
+    return status;
+}
+
 imk_status imk_compensate_log_run(const imk_record_source *source, const imk_model *model,
                                   const imk_compensate_log_settings *settings,
                                   const imk_record_sink *sink, const imk_job *job,
                                   imk_compensate_log **result, imk_error *error)
 {
-    imk_status status;
-    *result = NULL;
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_compensate_log_default()", error);
+    if (result)
+        *result = NULL;
     job = imki_job_of(job);
-    imk_compensate_log *log = imki_result_new(
-        job, settings->cookie == settings_cookie ? NULL : "imk_compensate_log_default()",
-        sizeof *log, &status, error);
+    if (status == IMK_OK)
+        status = check_handed(source, model, settings, sink, error);
+    imk_compensate_log *log = imki_result_new(job, sizeof *log, &status, error);
     if (!log)
         return status;
     log->settings = *settings;

@@ -6,6 +6,7 @@
 #include "convert_motion_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include "imukit/names.h"
 
@@ -86,21 +87,6 @@ static void make_rate(imk_log_column *column)
         imk_axis_name(gyro ? "gyro" : "accel", column->axis, column->name);
 }
 
-static imk_status set_unit(imk_unit *unit, const imk_unit *asked, const char *field,
-                           imk_error *error)
-{
-    char expected[160];
-    if (!(asked->scale > 0))
-        return IMK_OK;
-    if (!imk_dimension_equal(asked->dimension, unit->dimension)) {
-        snprintf(expected, sizeof expected, "%s such as %s", imk_dimension_name(unit->dimension),
-                 imk_dimension_examples(unit->dimension));
-        return imk_error_set(error, IMK_ERROR_DIMENSION, field, asked->text, expected);
-    }
-    *unit = *asked;
-    return IMK_OK;
-}
-
 static imk_status set_units(conversion *c, imk_error *error)
 {
     const imk_convert_log_settings *s = c->settings;
@@ -116,8 +102,11 @@ static imk_status set_units(conversion *c, imk_error *error)
     for (size_t k = 0; k < c->count; k++) {
         make_rate(&c->column[k]);
         for (size_t i = 0; i < sizeof asked / sizeof asked[0] && status == IMK_OK; i++)
-            if (c->column[k].quantity == asked[i].quantity)
-                status = set_unit(&c->column[k].unit, asked[i].unit, asked[i].field, error);
+            if (c->column[k].quantity == asked[i].quantity && asked[i].unit->scale > 0) {
+                status = imki_check_unit(asked[i].unit, c->column[k].unit.dimension, asked[i].field,
+                                         error);
+                c->column[k].unit = *asked[i].unit;
+            }
     }
     return status;
 }
@@ -162,8 +151,13 @@ static imk_status read_block(conversion *c, size_t *got, imk_error *error)
         status = source->read(source->context, BLOCK_ROWS, place, got, error);
     if (status != IMK_OK)
         return status;
-    if (m->interval == 0)
-        m->interval = source->findings(source->context).interval;
+    if (m->interval == 0) {
+        imk_log_findings found;
+        status = imki_source_findings(source, *got, place, &c->job->allocator, &found, error);
+        m->interval = found.interval;
+    }
+    if (status != IMK_OK)
+        return status;
     if (!(m->interval > 0)) /* a single row has none, and no use for it */
         m->interval = 1;
     m->stored += *got;
@@ -218,9 +212,14 @@ imk_status imk_convert_log_run(const imk_record_source *source,
                                imk_findings *findings, imk_error *error)
 {
     imk_findings unheard = {.count = 0};
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_convert_log_default()");
+    imk_status status =
+        imki_check_call(&unheard, settings, settings_cookie, "imk_convert_log_default()", error);
+    if (status == IMK_OK)
+        status = imki_check_source(source, error);
+    if (status == IMK_OK)
+        status = imki_check_sink(sink, error);
+    if (status != IMK_OK)
+        return status;
     conversion c = {.source = source,
                     .settings = settings,
                     .sink = sink,
@@ -228,7 +227,7 @@ imk_status imk_convert_log_run(const imk_record_source *source,
                     .findings = findings ? findings : &unheard};
     c.motion = (imki_convert_motion){.settings = settings, .findings = c.findings, .data = c.data};
     c.findings->count = 0;
-    imk_status status = select_columns(&c, error);
+    status = select_columns(&c, error);
     if (status == IMK_OK)
         status = set_units(&c, error);
     if (status == IMK_OK && (settings->to_point || settings->gravity_free))

@@ -14,6 +14,7 @@
  * over its interval, so gravity is turned by the attitude half-way. */
 #include "convert_motion_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/job_internal.h"
 
 #include "imukit/elementary.h"
@@ -51,11 +52,13 @@ static imk_status check_settings(const imk_convert_log_settings *s, imk_error *e
     if (!s->gravity_free)
         return IMK_OK;
     if (!(fabs(s->latitude) <= 90 * imk_unit_of("deg").scale))
-        return imk_error_set(error, IMK_ERROR_RANGE, "latitude", NULL, "within 90 deg");
+        return imki_refuse(error, IMK_ERROR_RANGE, "latitude", s->latitude, 0, "within 90 deg");
     if (!(s->height >= -1e4 && s->height <= 1e5))
-        return imk_error_set(error, IMK_ERROR_RANGE, "height", NULL, "between -10 and 100 km");
+        return imki_refuse(error, IMK_ERROR_RANGE, "height", s->height, s->height > 0 ? 1e5 : -1e4,
+                           "between -10 and 100 km");
     if (!(s->still > 0 && s->still <= 3600))
-        return imk_error_set(error, IMK_ERROR_RANGE, "still", NULL, "positive, at most 1 h");
+        return imki_refuse(error, IMK_ERROR_RANGE, "still", s->still, s->still > 0 ? 3600 : 0,
+                           "positive, at most 1 h");
     return IMK_OK;
 }
 
@@ -221,6 +224,10 @@ static imk_status free_rows(imki_convert_motion *m, imk_error *error)
             rows++;
         if (rows == m->moved && !m->over)
             return IMK_OK;
+        const double length = time_of(m, rows - 1) - time_of(m, 0) + m->interval;
+        if (m->settings->still > length * (1 + 1e-9))
+            return imki_refuse(error, IMK_ERROR_RANGE, "still", m->settings->still, length,
+                               "at most the length of the record");
         imk_status status = align(m, rows, error);
         if (status != IMK_OK)
             return status;

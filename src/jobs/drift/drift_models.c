@@ -2,7 +2,9 @@
 /* Covariance of each model, its figures, and the budget of its terms. */
 #include "drift_models_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -124,7 +126,7 @@ static imk_status analyse(const imk_drift_models *r, imk_drift_case *one, imki_a
 }
 
 static imk_status add_case(holder *h, size_t model, bool compensated, const char *label,
-                           const imk_executor *executor, imk_error *error)
+                           const imk_job *job, imk_error *error)
 {
     imk_drift_models *r = &h->models;
     imk_drift_case *one = &r->cases[r->case_count++];
@@ -133,7 +135,45 @@ static imk_status add_case(holder *h, size_t model, bool compensated, const char
     one->settings = r->settings.drift;
     one->settings.compensated = compensated;
     snprintf(one->label, sizeof one->label, "%.90s%s", r->name[model], label);
-    return analyse(r, one, &h->arena, executor, error);
+    const imk_status status = analyse(r, one, &h->arena, job->executor, error);
+    return status == IMK_OK
+               ? imki_job_progress(job, "analysing", "models", model + 1, r->model_count, error)
+               : status;
+}
+
+/* A requirement is of a time of the table, which is on a sample. */
+static imk_status check_wanted(const imk_drift_models_settings *s, const imk_drift_times *times,
+                               imk_error *error)
+{
+    double nearest = times->time[times->row[0]];
+    for (size_t k = 1; k < times->row_count; k++)
+        if (fabs(times->time[times->row[k]] - s->want.time) < fabs(nearest - s->want.time))
+            nearest = times->time[times->row[k]];
+    if (fabs(nearest - s->want.time) <= 1 / s->drift.rate)
+        return IMK_OK;
+    return imki_refuse(error, IMK_ERROR_RANGE, "want.time", s->want.time, nearest,
+                       "a time of the table");
+}
+
+static imk_status check_handed(size_t count, const imk_model *const *models,
+                               const char *const *names, const imk_drift_times *times,
+                               const imk_drift_models_settings *s, imk_error *error)
+{
+    imk_status status = IMK_OK;
+    if (!times || (count > 0 && (times->count == 0 || times->row_count == 0)))
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "times", NULL, "imk_drift_times_choose()");
+    if (count > IMK_DRIFT_MODELS_MAX)
+        return imki_refuse(error, IMK_ERROR_RANGE, "count", (double)count, IMK_DRIFT_MODELS_MAX,
+                           NULL);
+    for (size_t m = 0; m < count && status == IMK_OK; m++) {
+        if (!models || !names || !names[m])
+            return imk_error_set(error, IMK_ERROR_ARGUMENT, models ? "names" : "models", NULL,
+                                 "one for each model");
+        status = imki_check_model(models[m], error);
+    }
+    if (status == IMK_OK && count > 0 && s->want.asked)
+        status = check_wanted(s, times, error);
+    return status;
 }
 
 imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
@@ -141,12 +181,14 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
                                 const imk_drift_models_settings *settings, const imk_job *job,
                                 imk_drift_models **result, imk_error *error)
 {
-    imk_status status;
-    *result = NULL;
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_drift_models_default()", error);
+    if (result)
+        *result = NULL;
     job = imki_job_of(job);
-    holder *h = imki_result_new(
-        job, settings->cookie == settings_cookie ? NULL : "imk_drift_models_default()", sizeof *h,
-        &status, error);
+    if (status == IMK_OK)
+        status = check_handed(count, models, names, times, settings, error);
+    holder *h = imki_result_new(job, sizeof *h, &status, error);
     if (!h)
         return status;
     h->arena.allocator = job->allocator;
@@ -162,11 +204,11 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
         r->name[m] = names[m];
     }
     const bool after = settings->calibrated;
-    status = IMK_OK;
-    if (after && count == 1)
-        status = add_case(h, 0, false, "", job->executor, error);
+    status = imki_job_progress(job, "analysing", "models", 0, count, error);
+    if (status == IMK_OK && after && count == 1)
+        status = add_case(h, 0, false, "", job, error);
     for (size_t m = 0; m < count && status == IMK_OK; m++)
-        status = add_case(h, m, after, after ? ", compensated" : "", job->executor, error);
+        status = add_case(h, m, after, after ? ", compensated" : "", job, error);
     if (status == IMK_OK && count > 0 && settings->want.asked)
         status = imki_drift_answer(r, &h->arena, job->executor, error);
     return status;

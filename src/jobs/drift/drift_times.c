@@ -2,6 +2,7 @@
 /* When to look at a drift: round times for a table, and those between for curves. */
 #include "imukit/drift_models.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
 
 #include <math.h>
@@ -69,6 +70,13 @@ static size_t fill(double *time, size_t rows, size_t linear)
     return count;
 }
 
+static imk_status check_positive(const char *field, double value, imk_error *error)
+{
+    if (value > 0 && isfinite(value))
+        return IMK_OK;
+    return imki_refuse(error, IMK_ERROR_RANGE, field, value, 0, "a finite number above 0");
+}
+
 imk_status imk_drift_times_choose(double duration, size_t count, const double *stated,
                                   double wanted, double rate, bool curves,
                                   const imk_allocator *allocator, imk_drift_times *times,
@@ -76,10 +84,20 @@ imk_status imk_drift_times_choose(double duration, size_t count, const double *s
 {
     const double period = 84.4 * minute;
     double at[IMK_DRIFT_ROWS_MAX];
+    if (!times || (count > 0 && !stated))
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, times ? "stated" : "times", NULL, NULL);
     *times =
         (imk_drift_times){.allocator = allocator ? *allocator : (imk_allocator){.resize = NULL}};
     if (count + (wanted > 0) > IMK_DRIFT_ROWS_MAX)
-        return imk_error_set(error, IMK_ERROR_RANGE, "count", NULL, NULL);
+        return imki_refuse(error, IMK_ERROR_RANGE, "count", (double)count, IMK_DRIFT_ROWS_MAX,
+                           NULL);
+    imk_status status = check_positive("rate", rate, error);
+    if (status == IMK_OK && count == 0)
+        status = check_positive("duration", duration, error);
+    for (size_t i = 0; i < count && status == IMK_OK; i++)
+        status = check_positive("stated", stated[i], error);
+    if (status != IMK_OK)
+        return status;
     for (size_t i = 0; i < count; i++)
         at[i] = stated[i];
     size_t rows = count > 0 ? count : usual_times(duration, at);

@@ -5,6 +5,7 @@
 
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -158,6 +159,9 @@ static imk_status find_position(imk_graded *one, const imk_job *job, imk_error *
         imki_arena scratch = {.allocator = job->allocator};
         status = analyse_way(one, way, job, &scratch, error);
         imki_arena_free(&scratch);
+        if (status == IMK_OK)
+            status =
+                imki_job_progress(job, "grading", "ways", (uint64_t)way + 1, IMK_GRADE_WAYS, error);
     }
     for (size_t t = 0; t < IMK_GRADE_TIMES; t++)
         for (int way = IMK_GRADE_GIVEN; way <= IMK_GRADE_SELF; way++)
@@ -170,12 +174,14 @@ static imk_status find_position(imk_graded *one, const imk_job *job, imk_error *
 imk_status imk_grade_run(const imk_model *model, const imk_job *job, imk_graded **result,
                          imk_error *error)
 {
+    if (!result)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "result", NULL, "a place for the result");
     job = imki_job_of(job);
     *result = NULL;
-    imk_graded *one = imki_resize(&job->allocator, NULL, sizeof *one);
+    imk_status status = imki_check_model(model, error);
+    imk_graded *one = imki_result_new(job, sizeof *one, &status, error);
     if (!one)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    memset(one, 0, sizeof *one);
+        return status;
     *result = one;
     one->model = model;
     one->allocator = job->allocator;

@@ -4,10 +4,12 @@
 
 #include "identify_log_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/allan/allan_curve_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
 #include "jobs/record/even_record_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include "imukit/distributions.h"
 #include "imukit/samples.h"
@@ -198,22 +200,29 @@ static imk_status fit_all(imk_identify_log *log, const imk_record_source *source
     return status;
 }
 
+static imk_status check_settings(const imk_identify_curve_settings *s, imk_error *error)
+{
+    if (!(s->rate > 0))
+        return imki_refuse(error, IMK_ERROR_RANGE, "rate", s->rate, 0, "a rate above 0 Hz");
+    if (!(s->duration > 0))
+        return imki_refuse(error, IMK_ERROR_RANGE, "duration", s->duration, 0, "a time above 0 s");
+    return imki_check_fraction("confidence", s->confidence, error);
+}
+
 imk_status imk_identify_curve_run(const imk_record_source *source,
                                   const imk_identify_curve_settings *settings, const imk_job *job,
                                   imk_identify_log **result, imk_error *error)
 {
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_identify_curve_default()", error);
+    if (result)
+        *result = NULL;
     job = imki_job_of(job);
-    *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_identify_curve_default()");
-    if (!(settings->rate > 0) || !(settings->duration > 0))
-        return imk_error_set(error, IMK_ERROR_RANGE, settings->rate > 0 ? "duration" : "rate", NULL,
-                             NULL);
-    imk_identify_log *made = imki_resize(&job->allocator, NULL, sizeof *made);
+    if (status == IMK_OK)
+        status = check_settings(settings, error);
+    imk_identify_log *made = imki_result_new(job, sizeof *made, &status, error);
     if (!made)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    memset(made, 0, sizeof *made);
+        return status;
     made->settings = imk_identify_log_default();
     made->settings.confidence = settings->confidence;
     made->settings.significance = settings->significance;
@@ -221,7 +230,7 @@ imk_status imk_identify_curve_run(const imk_record_source *source,
     made->origin = IMK_IDENTIFY_CURVE;
     made->duration = settings->duration;
     *result = made;
-    const imk_status status = fit_all(made, source, settings, job, error);
+    status = fit_all(made, source, settings, job, error);
     made->record.log.allocator = job->allocator;
     return status;
 }

@@ -5,6 +5,7 @@
 #include "jobs/allan/allan_curve_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -88,7 +89,7 @@ static imk_status identify(imk_identify_log *log, const imk_record_source *sourc
 {
     bool taken = false;
     imk_status status = IMK_OK;
-    if (source->rewind && source->progress)
+    if (source->rewind && source->progress && source->findings)
         status = imki_identify_long(log, source, job, &taken, error);
     if (status == IMK_OK && !taken)
         status = imk_even_record_load(source, log->settings.gaps, job, &log->record, &log->findings,
@@ -104,12 +105,16 @@ imk_status imk_identify_log_run(const imk_record_source *source,
                                 const imk_identify_log_settings *settings, const imk_job *job,
                                 imk_identify_log **result, imk_error *error)
 {
-    imk_status status;
-    *result = NULL;
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_identify_log_default()", error);
+    if (result)
+        *result = NULL;
     job = imki_job_of(job);
-    imk_identify_log *made = imki_result_new(
-        job, settings->cookie == settings_cookie ? NULL : "imk_identify_log_default()",
-        sizeof *made, &status, error);
+    if (status == IMK_OK)
+        status = imki_check_source(source, error);
+    if (status == IMK_OK)
+        status = imki_check_fraction("confidence", settings->confidence, error);
+    imk_identify_log *made = imki_result_new(job, sizeof *made, &status, error);
     if (!made)
         return status;
     made->settings = *settings;

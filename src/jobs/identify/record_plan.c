@@ -2,8 +2,10 @@
 /* The bounds of imukit/identify_plan.h for the axes of a model. */
 #include "record_plan_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -225,19 +227,23 @@ static imk_status plan(const planning *about, imk_error *error)
 imk_status imk_record_plan_run(const imk_model *model, const imk_record_plan_settings *settings,
                                const imk_job *job, imk_record_plan **result, imk_error *error)
 {
-    imki_arena scratch = {.allocator = job ? job->allocator : (imk_allocator){0}};
-    *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_record_plan_default()");
+    imki_arena scratch = {.allocator = imki_job_of(job)->allocator};
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_record_plan_default()", error);
+    if (result)
+        *result = NULL;
+    if (status == IMK_OK)
+        status = imki_check_model(model, error);
+    if (status != IMK_OK)
+        return status;
     if (!(settings->rate > 0))
-        return imk_error_set(error, IMK_ERROR_RANGE, "rate", NULL, NULL);
+        return imki_refuse(error, IMK_ERROR_RANGE, "rate", settings->rate, 0, "a rate above 0 Hz");
     planning about = {.model = model, .settings = imk_bounds_default()};
     about.settings.dt = 1 / settings->rate;
     about.settings.significance = settings->significance;
     about.workspace = imki_arena_room(&scratch, imk_bounds_workspace_size());
     about.plan = *result = imki_resize(&scratch.allocator, NULL, sizeof *about.plan);
-    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (about.plan) {
         memset(about.plan, 0, sizeof *about.plan);
         about.plan->settings = *settings;

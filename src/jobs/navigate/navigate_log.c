@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Navigation by a record: what is asked, what its columns are, and the steps. */
+#include "base/refuse_internal.h"
 #include "imukit/samples.h"
+#include "jobs/record/record_check_internal.h"
 #include "navigate_log_internal.h"
 
 #include <math.h>
@@ -31,25 +33,31 @@ void imk_navigate_log_free(imk_navigate_log *result)
     imki_resize(&allocator, result, 0);
 }
 
-/* The first setting that is none, or NULL. */
-static const char *wrong_setting(const imk_navigate_log_settings *s)
+static imk_status check_settings(const imk_navigate_log_settings *s, imk_error *error)
 {
-    const bool timetable = s->stops == IMK_STOPS_TIMETABLE;
-    if (!(s->align >= 1 || s->align == 0))
-        return "align";
-    if (s->stops != IMK_STOPS_NONE && !s->model)
-        return "model";
-    if (s->stops == IMK_STOPS_FOUND && s->align == 0)
-        return "stops";
-    if (timetable && !(s->stop_length > 0 && s->stop_length <= s->stop_period))
-        return "stop_length";
-    if (!(s->still_velocity > 0))
-        return "still_velocity";
-    if (!(s->still_rotation >= 0))
-        return "still_rotation";
-    if (!(s->interval > 0))
-        return "interval";
-    return s->standard_gravity > 9.7 && s->standard_gravity < 9.9 ? NULL : "standard_gravity";
+    const bool timetable = s->stops == IMK_STOPS_TIMETABLE, stops = s->stops != IMK_STOPS_NONE;
+    const double g = s->standard_gravity;
+    const struct {
+        const char *field;
+        bool wrong;
+        double value, limit;
+        const char *expected;
+    } rules[] = {
+        {"align", !(s->align >= 1 || s->align == 0), s->align, 1, "at least 1 s, or 0"},
+        {"model", stops && !s->model, 0, 0, "a model: stops need one"},
+        {"stops", s->stops == IMK_STOPS_FOUND && s->align == 0, 0, 0, "an alignment before stops"},
+        {"stop_length", timetable && !(s->stop_length > 0 && s->stop_length <= s->stop_period),
+         s->stop_length, s->stop_period, "more than 0 s, at most the period"},
+        {"still_velocity", !(s->still_velocity > 0), s->still_velocity, 0, "more than 0 m/s"},
+        {"still_rotation", !(s->still_rotation >= 0), s->still_rotation, 0, "at least 0 rad/s"},
+        {"interval", !(s->interval > 0), s->interval, 0, "more than 0 s"},
+        {"standard_gravity", !(g > 9.7 && g < 9.9), g, g < 9.8 ? 9.7 : 9.9,
+         "between 9.7 and 9.9 m/s^2"}};
+    for (size_t k = 0; k < sizeof rules / sizeof *rules; k++)
+        if (rules[k].wrong)
+            return imki_refuse(error, IMK_ERROR_RANGE, rules[k].field, rules[k].value,
+                               rules[k].limit, rules[k].expected);
+    return s->model ? imki_check_model(s->model, error) : IMK_OK;
 }
 
 /* ---- columns --------------------------------------------------------------------------------- */
@@ -184,21 +192,19 @@ imk_status imk_navigate_log_run(const imk_record_source *source,
                                 const imk_navigate_log_settings *settings, const imk_job *job,
                                 imk_navigate_log **result, imk_error *error)
 {
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_navigate_log_default()", error);
+    if (result)
+        *result = NULL;
     job = imki_job_of(job);
-    *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_navigate_log_default()");
-    const char *wrong = wrong_setting(settings);
-    if (wrong)
-        return imk_error_set(error, IMK_ERROR_RANGE, wrong, NULL, NULL);
-    imk_navigate_log *made = imki_resize(&job->allocator, NULL, sizeof *made);
+    if (status == IMK_OK)
+        status = check_settings(settings, error);
+    imk_navigate_log *made = imki_result_new(job, sizeof *made, &status, error);
     if (!made)
-        return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
-    memset(made, 0, sizeof *made);
+        return status;
     made->settings = *settings;
     *result = made;
-    const imk_status status =
+    status =
         imk_even_record_load(source, settings->gaps, job, &made->record, &made->findings, error);
     made->record.log.allocator = job->allocator;
     return status == IMK_OK ? navigate(made, job, error) : status;

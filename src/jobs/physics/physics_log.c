@@ -3,8 +3,10 @@
  * the time (k + 1)/rate: the end of the sample whose mean it is. */
 #include "physics_log_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,6 +24,20 @@ imk_physics_log_settings imk_physics_log_default(void)
     settings.physics.rate = 100;
     settings.input.exposure.temperature = 293.15;
     return settings;
+}
+
+imk_status imki_physics_check(const void *result, const imk_physics_log_settings *settings,
+                              imk_error *error)
+{
+    const imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_physics_log_default()", error);
+    if (status != IMK_OK)
+        return status;
+    if (!settings->instrument || !settings->design)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT,
+                             settings->instrument ? "design" : "instrument", NULL,
+                             "an instrument, and a design of it");
+    return imk_design_check(settings->instrument, settings->design, error);
 }
 
 uint64_t imk_physics_rows(const imk_physics_log_settings *settings, double rate)
@@ -286,23 +302,38 @@ static imk_physics_log *create(const imk_physics_log_settings *settings,
     return log;
 }
 
+/* A sample fits, and a clock counts them. */
+static imk_status check_length(const imk_physics_log_settings *s, imk_error *error)
+{
+    const double samples = s->duration * s->physics.rate;
+    if (samples >= 0.5 && samples < 1e18)
+        return IMK_OK;
+    return imki_refuse(error, IMK_ERROR_RANGE, "duration", s->duration, 1 / s->physics.rate,
+                       "at least one sample");
+}
+
 imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                const imk_record_sink *outputs, const imk_record_sink *signals,
                                const imk_job *job, imk_physics_log **result, imk_error *error)
 {
+    imk_status status = imki_physics_check(result, settings, error);
+    if (result)
+        *result = NULL;
     job = imki_job_of(job);
-    *result = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_physics_log_default()");
+    if (status == IMK_OK && outputs)
+        status = imki_check_sink(outputs, error);
+    if (status == IMK_OK && signals)
+        status = imki_check_sink(signals, error);
+    if (status == IMK_OK)
+        status = check_length(settings, error);
+    if (status != IMK_OK)
+        return status;
     imki_arena arena = {.allocator = job->allocator};
     imk_physics_log *log = create(settings, &job->allocator);
     sheet *sheets = imki_arena_take(&arena, 2 * sizeof *sheets);
-    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     *result = log;
-    if (log && log->samples < 1) {
-        status = imk_error_set(error, IMK_ERROR_RANGE, "duration", NULL, NULL);
-    } else if (log && sheets) {
+    if (log && sheets) {
         sheets[0].sink = outputs;
         sheets[1].sink = signals;
         describe_outputs(settings, &sheets[0]);

@@ -5,6 +5,10 @@
 
 #include "imukit/physics_log.h"
 
+/* Settings with an instrument and a design of it.
+ * @param result  the place of the result */
+imk_status imki_physics_check(const void *result, const imk_physics_log_settings *settings,
+                              imk_error *error);
 /* What can be known of a run that went wrong quietly. */
 void imki_physics_warn(imk_physics_log *log);
 /* "beat frequency [kHz]"; pure numbers have no unit. @param text  IMK_PHYSICS_LABEL bytes */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the experiments of a laboratory say of an instrument, beside its closed forms. */
-#include "imukit/physics_log.h"
+#include "physics_log_internal.h"
 
 #include "jobs/arena_internal.h"
+#include "jobs/job_internal.h"
 
 #include <math.h>
 
@@ -11,8 +12,12 @@ static const double sigmas_allowed = 4, part_allowed = 0.1;
 imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_job *job,
                                  imk_physics_sweep **sweep, imk_error *error)
 {
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    imk_status status = imki_physics_check(sweep, s, error);
+    if (sweep)
+        *sweep = NULL;
+    if (status != IMK_OK)
+        return status;
+    job = imki_job_of(job);
     imk_laboratory settings = imk_laboratory_default();
     settings.instrument = s->instrument;
     settings.design = s->design;
@@ -25,7 +30,7 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
     void *workspace = imki_arena_take(&arena, size > 256 ? size : 256);
     imk_model *reduced = imki_arena_take(&arena, sizeof *reduced);
     imk_physics_sweep *made = imki_resize(&job->allocator, NULL, sizeof *made);
-    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (workspace && reduced && made)
         status =
             imk_laboratory_run(&settings, job->executor, &made->result, workspace, size, error);

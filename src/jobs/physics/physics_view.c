@@ -2,7 +2,9 @@
 /* A view of an instrument: some of its signals, against time or against one another. */
 #include "physics_log_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
+#include "jobs/job_internal.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -118,9 +120,16 @@ static bool is_empty(const imk_physics_view *v)
 imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t index,
                                 const imk_job *job, imk_physics_view *v, imk_error *error)
 {
+    imk_status status = imki_physics_check(v, settings, error);
+    if (v)
+        *v = (imk_physics_view){.points = 0};
+    if (status != IMK_OK)
+        return status;
     const imk_instrument *instrument = settings->instrument;
-    const imk_job alone = {.memory = 0};
-    job = job ? job : &alone;
+    if (index >= instrument->view_count)
+        return imki_refuse(error, IMK_ERROR_RANGE, "index", (double)index,
+                           (double)instrument->view_count, "fewer than the instrument has views");
+    job = imki_job_of(job);
     *v = (imk_physics_view){
         .view = instrument->views[index], .instrument = instrument, .allocator = job->allocator};
     imk_view *view = &v->view;
@@ -130,7 +139,7 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
         view->rate = settings->view_rate;
     const double samples = view->duration * view->rate;
     if (!(samples >= 2 && samples <= 1e9))
-        return imk_error_set(error, IMK_ERROR_RANGE, "view", NULL, NULL);
+        return imki_refuse(error, IMK_ERROR_RANGE, "view", samples, samples < 2 ? 2 : 1e9, NULL);
     const uint64_t stride = (uint64_t)floor(samples + 0.5) / VIEW_POINTS + 1;
     v->points = (size_t)((uint64_t)floor(samples + 0.5) / stride);
     imki_arena arena = {.allocator = job->allocator};
@@ -140,9 +149,9 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
                           ((size_t)(view->curve_count + 1) * v->points + 1) * sizeof *v->data);
     imk_physics_settings physics = settings->physics;
     physics.rate = view->rate;
-    imk_status status =
-        state && v->data ? imk_instrument_init(instrument, settings->design, &physics, state, error)
-                         : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    status = state && v->data
+                 ? imk_instrument_init(instrument, settings->design, &physics, state, error)
+                 : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (status == IMK_OK) {
         record(settings, v, stride, state);
         label_view(view->x < 0 ? scale_time(view, v->points, v->data)

@@ -2,8 +2,21 @@
 /* Rows of a record into arrays of the caller. */
 #include "imukit/record.h"
 
+#include "base/refuse_internal.h"
+
 #include <stdio.h>
 #include <string.h>
+
+static imk_status refuse_room(size_t columns, uint64_t rows, imk_error *error)
+{
+    char expected[96];
+    const int length =
+        snprintf(expected, sizeof expected, "provide more or longer arrays: %zu arrays", columns);
+    if (rows > 0)
+        snprintf(expected + length, sizeof expected - (size_t)length, " of %llu rows",
+                 (unsigned long long)rows);
+    return imk_error_set(error, IMK_ERROR_WORKSPACE, "sink", NULL, expected);
+}
 
 static imk_status begin(void *context, size_t column_count, const imk_log_column *columns,
                         const int *decimals, uint64_t rows, imk_error *error)
@@ -11,9 +24,11 @@ static imk_status begin(void *context, size_t column_count, const imk_log_column
     imk_array_sink *s = context;
     (void)decimals;
     if (column_count > s->column_count || rows > s->capacity)
-        return imk_error_set(error, IMK_ERROR_WORKSPACE, "sink", NULL,
-                             "provide more or longer arrays");
-    s->column_count = column_count;
+        return refuse_room(column_count, rows, error);
+    for (size_t c = 0; c < column_count; c++)
+        if (!s->data || !s->data[c])
+            return imki_refuse_at(error, IMK_ERROR_ARGUMENT, "sink.data", c, 0, 0, "an array");
+    s->columns = column_count;
     memcpy(s->column, columns, column_count * sizeof *columns);
     return IMK_OK;
 }
@@ -25,7 +40,7 @@ static imk_status write_rows(void *context, size_t rows, const double *const *co
     (void)executor;
     if (rows > s->capacity - s->rows)
         return imk_error_set(error, IMK_ERROR_WORKSPACE, "sink", NULL, "longer arrays");
-    for (size_t c = 0; c < s->column_count && rows > 0; c++)
+    for (size_t c = 0; c < s->columns && rows > 0; c++)
         memcpy(s->data[c] + s->rows, columns[c], rows * sizeof **columns);
     s->rows += rows;
     return IMK_OK;

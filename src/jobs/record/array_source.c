@@ -2,6 +2,7 @@
 /* Rows in memory as a source of records. */
 #include "record_times_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
 
 #include <math.h>
@@ -173,10 +174,15 @@ imk_status imk_array_source_make(size_t column_count, const char *const *names,
                                  imk_error *error)
 {
     int time = -1;
+    if (!names || !data || !memory || !source)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "columns", NULL,
+                             "names, arrays and memory");
     if (column_count == 0 || column_count > IMK_LOG_COLUMNS_MAX)
         return imk_error_set(error, IMK_ERROR_COLUMN, "columns", NULL, "1 to 64 columns");
     imk_array_source made = {.column_count = column_count, .rows = rows, .rate = rate};
     for (size_t c = 0; c < column_count; c++) {
+        if (!names[c])
+            return imki_refuse_at(error, IMK_ERROR_ARGUMENT, "names", c, 0, 0, "a name");
         if (!data[c])
             return imk_error_set(error, IMK_ERROR_ARGUMENT, names[c], NULL, "an array");
         const imk_status status = column_of(names[c], &made.column[c], error);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A whole record in memory. */
 #include "even_record_internal.h"
+#include "record_check_internal.h"
 
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
@@ -120,11 +121,13 @@ static imk_status take_labels(const imk_record_source *source, imk_log *log, imk
 imk_status imki_record_load(const imk_record_source *source, const imk_job *job, imk_log *log,
                             imk_error *error)
 {
+    imk_status status = imki_check_source(source, error);
+    if (status != IMK_OK)
+        return status;
     imk_log made = {.column_count = source->column_count, .allocator = job->allocator};
     const size_t row_bytes = made.column_count * sizeof(double);
     const size_t rows_most = job->memory > 0 ? job->memory / row_bytes : SIZE_MAX / row_bytes / 2;
     size_t capacity = FIRST_CAPACITY;
-    imk_status status = IMK_OK;
     bool more = true;
     while (status == IMK_OK && more) {
         if (made.rows == capacity)
@@ -137,12 +140,14 @@ imk_status imki_record_load(const imk_record_source *source, const imk_job *job,
     }
     if (status == IMK_OK)
         status = take_labels(source, &made, error);
+    if (status == IMK_OK)
+        status = imki_source_findings(source, made.rows, made.data, &job->allocator, &made.findings,
+                                      error);
     if (status != IMK_OK) {
         imk_log_free(&made);
         return status;
     }
     memcpy(made.column, source->columns, made.column_count * sizeof made.column[0]);
-    made.findings = source->findings(source->context);
     set_capacity(&made, made.rows); /* give back what is not used; cannot grow */
     *log = made;
     return IMK_OK;

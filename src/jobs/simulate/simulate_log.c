@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One run of a model into a record: its columns, and its rows as they are made. */
-#include "imukit/simulate_log.h"
+#include "simulate_log_internal.h"
 
+#include "base/refuse_internal.h"
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include <math.h>
 
@@ -175,14 +177,36 @@ static imk_status stream(recording *r, const imk_record_sink *sink, const char *
     return status;
 }
 
+imk_status imki_simulate_check(const imk_model *model, const imk_simulate_log_settings *s,
+                               const imk_record_sink *sink, imk_error *error)
+{
+    imk_status status =
+        imki_check_call(sink, s, settings_cookie, "imk_simulate_log_default()", error);
+    if (!sink || status == IMK_OK)
+        status = imki_check_sink(sink, error);
+    if (status == IMK_OK)
+        status = imki_check_model(model, error);
+    if (status == IMK_OK && s->rows == 0)
+        status = imki_refuse(error, IMK_ERROR_RANGE, "rows", 0, 1, "at least 1 row");
+    if (status == IMK_OK)
+        status =
+            imki_check_unit(&s->gyro_unit, imk_unit_of(s->increments ? "rad" : "rad/s").dimension,
+                            "gyro_unit", error);
+    if (status == IMK_OK)
+        status =
+            imki_check_unit(&s->accel_unit, imk_unit_of(s->increments ? "m/s" : "m/s^2").dimension,
+                            "accel_unit", error);
+    return status;
+}
+
 imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_settings *settings,
                                 const imk_record_sink *sink, const char *stage, const imk_job *job,
                                 imk_error *error)
 {
     job = imki_job_of(job);
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_simulate_log_default()");
+    imk_status status = imki_simulate_check(model, settings, sink, error);
+    if (status != IMK_OK)
+        return status;
     imki_arena arena = {.allocator = job->allocator};
     recording r = {.settings = settings,
                    .layout = make_layout(model, settings),
@@ -190,7 +214,7 @@ imk_status imk_simulate_log_run(const imk_model *model, const imk_simulate_log_s
     const size_t size = imk_simulator_size(model, &settings->simulation);
     void *memory = imki_arena_room(&arena, size > 256 ? size : 256); /* a cache line begins there */
     double *block = imki_arena_room(&arena, r.layout.count * BLOCK_ROWS * sizeof *block);
-    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     for (size_t c = 0; block && c < r.layout.count; c++)
         r.column[c] = block + c * BLOCK_ROWS;
     if (memory && block)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The truth behind a record, row by row: where the unit was at the stamp, and what perfect sensors
  * would have read over the row. */
-#include "imukit/simulate_log.h"
+#include "simulate_log_internal.h"
 
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
@@ -183,13 +183,16 @@ imk_status imk_simulate_truth_run(const imk_model *model, const imk_simulate_log
                                   const imk_record_sink *sink, const imk_job *job, imk_error *error)
 {
     job = imki_job_of(job);
+    imk_status status = imki_simulate_check(model, settings, sink, error);
+    if (status != IMK_OK)
+        return status;
     imki_arena arena = {.allocator = job->allocator};
     imk_trajectory_piece rest_piece;
     imk_trajectory rest;
     const size_t size = imk_simulator_size(model, &settings->simulation);
     void *memory = imki_arena_room(&arena, size > 256 ? size : 256); /* a cache line begins there */
     truth *t = imki_arena_take(&arena, sizeof *t);
-    imk_status status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    status = imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     if (memory && t) {
         t->settings = settings;
         t->random = imk_random_seeded(settings->simulation.seed);

@@ -4,6 +4,7 @@
 
 #include "jobs/arena_internal.h"
 #include "jobs/job_internal.h"
+#include "jobs/record/record_check_internal.h"
 
 #include <math.h>
 
@@ -217,12 +218,14 @@ imk_status imk_spectrum_log_run(const imk_record_source *source,
                                 const imk_spectrum_log_settings *settings, const imk_job *job,
                                 imk_spectrum_log **result, imk_error *error)
 {
-    imk_status status;
-    *result = NULL;
+    imk_status status =
+        imki_check_call(result, settings, settings_cookie, "imk_spectrum_log_default()", error);
+    if (result)
+        *result = NULL;
     job = imki_job_of(job);
-    imk_spectrum_log *made = imki_result_new(
-        job, settings->cookie == settings_cookie ? NULL : "imk_spectrum_log_default()",
-        sizeof *made, &status, error);
+    if (status == IMK_OK)
+        status = imki_check_fraction("confidence", settings->confidence, error);
+    imk_spectrum_log *made = imki_result_new(job, sizeof *made, &status, error);
     if (!made)
         return status;
     made->settings = *settings;
