@@ -382,6 +382,12 @@ static void test_settings(void **state)
     assert_int_equal(imk_calibrate_log_create(1, &(imk_procedure){IMK_PROCEDURES}, &settings, NULL,
                                               &found, &error),
                      IMK_ERROR_RANGE);
+    assert_int_equal(imk_calibrate_logs(1, NULL, &settings, NULL, &found, &error),
+                     IMK_ERROR_ARGUMENT);
+    assert_int_equal(imk_calibrate_log_create(1, &poses, NULL, NULL, &found, NULL),
+                     IMK_ERROR_ARGUMENT);
+    assert_int_equal(imk_calibrate_log_create(1, &poses, &settings, NULL, NULL, &error),
+                     IMK_ERROR_ARGUMENT);
     settings.cookie = 0;
     assert_int_equal(imk_calibrate_log_create(1, &poses, &settings, NULL, &found, &error),
                      IMK_ERROR_UNINITIALISED);

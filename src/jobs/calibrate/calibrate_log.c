@@ -57,17 +57,21 @@ imk_status imk_calibrate_log_create(size_t count, const imk_procedure *procedure
                                     const imk_calibrate_log_settings *settings, const imk_job *job,
                                     imk_calibrate_log **b, imk_error *error)
 {
-    *b = NULL;
-    if (settings->cookie != settings_cookie)
-        return imk_error_set(error, IMK_ERROR_UNINITIALISED, "settings", NULL,
-                             "imk_calibrate_log_default()");
+    imk_status status =
+        imki_check_call(b, settings, settings_cookie, "imk_calibrate_log_default()", error);
+    if (b)
+        *b = NULL;
+    if (status != IMK_OK)
+        return status;
+    if (!procedure)
+        return imk_error_set(error, IMK_ERROR_ARGUMENT, "procedure", NULL, "one for each record");
     if (count == 0 || count > IMK_TEST_RECORDS_MAX)
         return imk_error_set(error, IMK_ERROR_RANGE, "count", NULL, NULL);
     imk_calibrate_log *made = new_session(count, imki_job_of(job));
     if (!made)
         return imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
     made->settings = *settings;
-    const imk_status status = imki_calibrate_set_up(made, procedure, error);
+    status = imki_calibrate_set_up(made, procedure, error);
     if (status != IMK_OK)
         imk_calibrate_log_free(made);
     else
@@ -146,9 +150,10 @@ imk_status imk_calibrate_logs(size_t count, const imk_calibrate_input *input,
                               imk_calibrate_log **session, imk_error *error)
 {
     imk_procedure procedure[IMK_TEST_RECORDS_MAX] = {IMK_PROCEDURE_MULTIPOSITION};
-    for (size_t k = 0; k < count && k < IMK_TEST_RECORDS_MAX; k++)
+    for (size_t k = 0; input && k < count && k < IMK_TEST_RECORDS_MAX; k++)
         procedure[k] = input[k].procedure;
-    imk_status status = imk_calibrate_log_create(count, procedure, settings, job, session, error);
+    imk_status status =
+        imk_calibrate_log_create(count, input ? procedure : NULL, settings, job, session, error);
     for (size_t k = 0; status == IMK_OK && k < count; k++)
         status = imk_calibrate_log_load(*session, k, input[k].name, input[k].source, error);
     return status == IMK_OK ? imk_calibrate_log_run(*session, error) : status;
