@@ -5,29 +5,6 @@
 
 #include "jobs/job_internal.h"
 
-#include <math.h>
-#include <string.h>
-
-static const uint32_t settings_cookie = 0x43414C31; /* "CAL1" */
-
-imk_calibrate_log_settings imk_calibrate_log_default(void)
-{
-    const double none = (double)NAN;
-    return (imk_calibrate_log_settings){.cookie = settings_cookie,
-                                        .gravity = none,
-                                        .frame = -1,
-                                        .placement = none,
-                                        .mounting = none,
-                                        .turn_angle = none,
-                                        .initial_rest = none,
-                                        .window = none,
-                                        .minimum = none,
-                                        .trim = none,
-                                        .settle = none,
-                                        .reference_temperature = none,
-                                        .table_axis = -1};
-}
-
 /* ---- life ------------------------------------------------------------------------------------ */
 
 static imk_calibrate_log *new_session(size_t count, const imk_job *job)
@@ -57,10 +34,11 @@ imk_status imk_calibrate_log_create(size_t count, const imk_procedure *procedure
                                     const imk_calibrate_log_settings *settings, const imk_job *job,
                                     imk_calibrate_log **b, imk_error *error)
 {
-    imk_status status =
-        imki_check_call(b, settings, settings_cookie, "imk_calibrate_log_default()", error);
-    if (b)
-        *b = NULL;
+    const uint32_t cookie = imk_calibrate_log_default().cookie;
+    imk_status status = imki_check_call(b, settings, cookie, "imk_calibrate_log_default()", error);
+    if (!b)
+        return status;
+    *b = NULL;
     if (status != IMK_OK)
         return status;
     if (!procedure)

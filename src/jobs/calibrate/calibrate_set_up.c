@@ -16,6 +16,26 @@ static const double loose_mounting = 0.1;
 /* What there is on Earth [m/s^2]. */
 static const double gravity_least = 9.5, gravity_most = 10.1;
 
+static const uint32_t settings_cookie = 0x43414C31; /* "CAL1" */
+
+imk_calibrate_log_settings imk_calibrate_log_default(void)
+{
+    const double none = (double)NAN;
+    return (imk_calibrate_log_settings){.cookie = settings_cookie,
+                                        .gravity = none,
+                                        .frame = -1,
+                                        .placement = none,
+                                        .mounting = none,
+                                        .turn_angle = none,
+                                        .initial_rest = none,
+                                        .window = none,
+                                        .minimum = none,
+                                        .trim = none,
+                                        .settle = none,
+                                        .reference_temperature = none,
+                                        .table_axis = -1};
+}
+
 /* ---- place and frame ------------------------------------------------------------------------- */
 
 /* Gravity and the Earth's rotation. */

@@ -341,8 +341,9 @@ imk_status imk_compensate_log_run(const imk_record_source *source, const imk_mod
 {
     imk_status status =
         imki_check_call(result, settings, settings_cookie, "imk_compensate_log_default()", error);
-    if (result)
-        *result = NULL;
+    if (!result)
+        return status;
+    *result = NULL;
     job = imki_job_of(job);
     if (status == IMK_OK)
         status = check_handed(source, model, settings, sink, error);

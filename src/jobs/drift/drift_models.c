@@ -183,8 +183,9 @@ imk_status imk_drift_models_run(size_t count, const imk_model *const *models,
 {
     imk_status status =
         imki_check_call(result, settings, settings_cookie, "imk_drift_models_default()", error);
-    if (result)
-        *result = NULL;
+    if (!result)
+        return status;
+    *result = NULL;
     job = imki_job_of(job);
     if (status == IMK_OK)
         status = check_handed(count, models, names, times, settings, error);

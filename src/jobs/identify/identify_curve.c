@@ -215,8 +215,9 @@ imk_status imk_identify_curve_run(const imk_record_source *source,
 {
     imk_status status =
         imki_check_call(result, settings, settings_cookie, "imk_identify_curve_default()", error);
-    if (result)
-        *result = NULL;
+    if (!result)
+        return status;
+    *result = NULL;
     job = imki_job_of(job);
     if (status == IMK_OK)
         status = check_settings(settings, error);

@@ -107,8 +107,9 @@ imk_status imk_identify_log_run(const imk_record_source *source,
 {
     imk_status status =
         imki_check_call(result, settings, settings_cookie, "imk_identify_log_default()", error);
-    if (result)
-        *result = NULL;
+    if (!result)
+        return status;
+    *result = NULL;
     job = imki_job_of(job);
     if (status == IMK_OK)
         status = imki_check_source(source, error);

@@ -230,8 +230,9 @@ imk_status imk_record_plan_run(const imk_model *model, const imk_record_plan_set
     imki_arena scratch = {.allocator = imki_job_of(job)->allocator};
     imk_status status =
         imki_check_call(result, settings, settings_cookie, "imk_record_plan_default()", error);
-    if (result)
-        *result = NULL;
+    if (!result)
+        return status;
+    *result = NULL;
     if (status == IMK_OK)
         status = imki_check_model(model, error);
     if (status != IMK_OK)

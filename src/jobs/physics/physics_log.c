@@ -317,8 +317,9 @@ imk_status imk_physics_log_run(const imk_physics_log_settings *settings,
                                const imk_job *job, imk_physics_log **result, imk_error *error)
 {
     imk_status status = imki_physics_check(result, settings, error);
-    if (result)
-        *result = NULL;
+    if (!result)
+        return status;
+    *result = NULL;
     job = imki_job_of(job);
     if (status == IMK_OK && outputs)
         status = imki_check_sink(outputs, error);

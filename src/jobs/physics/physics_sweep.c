@@ -13,8 +13,9 @@ imk_status imk_physics_sweep_run(const imk_physics_log_settings *s, const imk_jo
                                  imk_physics_sweep **sweep, imk_error *error)
 {
     imk_status status = imki_physics_check(sweep, s, error);
-    if (sweep)
-        *sweep = NULL;
+    if (!sweep)
+        return status;
+    *sweep = NULL;
     if (status != IMK_OK)
         return status;
     job = imki_job_of(job);

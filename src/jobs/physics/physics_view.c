@@ -121,8 +121,9 @@ imk_status imk_physics_view_run(const imk_physics_log_settings *settings, size_t
                                 const imk_job *job, imk_physics_view *v, imk_error *error)
 {
     imk_status status = imki_physics_check(v, settings, error);
-    if (v)
-        *v = (imk_physics_view){.points = 0};
+    if (!v)
+        return status;
+    *v = (imk_physics_view){.points = 0};
     if (status != IMK_OK)
         return status;
     const imk_instrument *instrument = settings->instrument;

@@ -220,8 +220,9 @@ imk_status imk_spectrum_log_run(const imk_record_source *source,
 {
     imk_status status =
         imki_check_call(result, settings, settings_cookie, "imk_spectrum_log_default()", error);
-    if (result)
-        *result = NULL;
+    if (!result)
+        return status;
+    *result = NULL;
     job = imki_job_of(job);
     if (status == IMK_OK)
         status = imki_check_fraction("confidence", settings->confidence, error);
