@@ -46,7 +46,7 @@ static int parse_requirement(plan *p, const char *text, size_t length)
                                    "as %s",
                                    name, value, unit);
         if (p->settings.requirement_count == IMK_CORRELATED_MAX)
-            return command_misused("--want: these are more than %d numbers", IMK_CORRELATED_MAX);
+            return command_misused("--want: there are more than %d numbers", IMK_CORRELATED_MAX);
         p->requirement[p->settings.requirement_count++] =
             (imk_sigma_requirement){.parameter = parameter[k], .sigma = sigma};
     }
@@ -73,9 +73,8 @@ static int write_programme(const plan *p, const char *path)
     char *text = NULL;
     size_t size = 0;
     if (p->settings.procedure == IMK_PROCEDURE_CENTRIFUGE)
-        return command_misused("--output: a motion file turns the unit where it stands and has no "
-                               "arm to swing it on: leave --output out, and take the levels of the "
-                               "centrifuge from the table");
+        return command_misused("--output: a motion file cannot describe the arm of a centrifuge: "
+                               "leave --output out, and set the levels that the table shows");
     if (p->made->unscripted.status != IMK_OK)
         return command_error(&p->made->unscripted, path);
     const imk_geodetic *place = p->b->settings.place_known ? &p->b->settings.place : NULL;
@@ -99,8 +98,8 @@ static void show_next(const plan *p, imk_result *result)
     const char *model = p->b->path[0];
     const bool wants_motion = procedure >= IMK_PROCEDURE_RATE_TABLE;
     if (procedure == IMK_PROCEDURE_CENTRIFUGE)
-        imk_result_line(result, "These are the levels to set; a motion file has no arm to swing "
-                                "the unit on, so there is none. Next: log the test with columns "
+        imk_result_line(result, "Set these levels; a motion file cannot describe the arm of a "
+                                "centrifuge. Next: log the test with columns "
                                 "reference_force_x [g] …, and imukit calibrate LOG --procedure "
                                 "centrifuge");
     else if (!o->output)
@@ -129,8 +128,8 @@ static int make(plan *p)
     const imk_status status =
         imk_calibrate_plan_run(p->b->found->calibration, &p->settings, NULL, &p->made, &error);
     if (status == IMK_ERROR_KEY_MISSING && strstr(error.field, "noise"))
-        return command_failed("%s states no noise, from which to tell how long to measure: imukit "
-                              "identify finds it in a log at rest",
+        return command_failed("%s states no noise, so the length of the test cannot be computed: "
+                              "identify the noise from a log at rest (imukit identify)",
                               p->b->path[0]);
     return command_unless_memory(status) == IMK_OK ? -1 : command_error(&error, NULL);
 }
@@ -142,8 +141,8 @@ static int set_up(plan *p)
     imk_document *unused = NULL;
     int code = -1;
     if (b->settings.repeatability)
-        code = command_misused("--plan: repeatability needs no programme: as many power cycles as "
-                               "you can afford, ten or more");
+        code = command_misused("--plan: repeatability needs no programme; record as many power "
+                               "cycles as you can, ten or more");
     if (code < 0)
         code = command_model(b->path[0], &b->found->calibration->model, &unused);
     imk_document_free(unused);

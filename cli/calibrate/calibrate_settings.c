@@ -79,8 +79,8 @@ static int take_terms(session *b)
 {
     const calibrate_options *o = b->options;
     if (o->estimate && (o->with || o->without))
-        return command_misused("--estimate names all that is estimated: leave --with and --without "
-                               "out");
+        return command_misused(
+            "--estimate names all terms to estimate: leave --with and --without out");
     const int code = take_switches("with", o->with, &b->settings.with);
     return code < 0 ? take_switches("without", o->without, &b->settings.without) : code;
 }
@@ -104,7 +104,7 @@ int session_terms_refused(const char *option_name, const imk_error *error)
     if (error->status == IMK_ERROR_RANGE)
         return command_misused("--%s %s: there is no such axis", option_name, name);
     if (error->status == IMK_ERROR_WORKSPACE)
-        return command_misused("--%s: these are more than %d numbers", option_name,
+        return command_misused("--%s: there are more than %d numbers", option_name,
                                IMK_CORRELATED_MAX);
     char powers[128];
     name_powers(powers, sizeof powers);
@@ -149,9 +149,9 @@ static int assign_procedures(session *b)
     const char *text = b->options->procedure;
     size_t count = 1;
     if (!text)
-        return command_misused("what was done is missing: add --procedure multiposition for a unit "
-                               "turned by hand from rest to rest; the others are in imukit "
-                               "calibrate --help");
+        return command_misused(
+            "the procedure of the test is missing: add --procedure multiposition for a unit that "
+            "was turned by hand from rest to rest; imukit calibrate --help lists the others");
     for (const char *c = text; *c; c++)
         count += *c == ',';
     if (count != 1 && count != b->count)
@@ -168,7 +168,7 @@ static int assign_procedures(session *b)
     }
     if (b->settings.repeatability && count > 1)
         return command_misused("--procedure: repeatability compares all logs, each of one power "
-                               "cycle; it cannot stand beside another procedure");
+                               "cycle; it cannot be combined with another procedure");
     return -1;
 }
 
@@ -184,12 +184,12 @@ static int check_used(const session *b)
         referenced = referenced || p == IMK_PROCEDURE_RATE_TABLE || p == IMK_PROCEDURE_TUMBLE ||
                      p == IMK_PROCEDURE_CENTRIFUGE || p == IMK_PROCEDURE_SPIN;
     }
-    const char *none = "--%s is not used by --procedure %s: it is of %s";
+    const char *none = "--%s is not used by --procedure %s, only by %s: leave it out";
     if (o->motion && !referenced && !thermal)
         return command_misused(none, "motion", o->procedure,
                                "rate-table, tumble, centrifuge, spin and thermal");
     if (o->motion_offset && !o->motion)
-        return command_misused("--motion-offset is of --motion");
+        return command_misused("--motion-offset is used with --motion only: add --motion");
     if (o->table_axis >= 0 && !referenced)
         return command_misused(none, "table-axis", o->procedure, "rate-table");
     if (!isnan(o->turn_angle) && !ferraris)
@@ -207,12 +207,12 @@ static int check_closed_form(const session *b)
     if (!b->settings.closed_form || b->settings.repeatability)
         return -1;
     if (b->count != 1 || b->procedure[0] != IMK_PROCEDURE_FERRARIS)
-        return command_misused("--estimator closed-form: this is for one log of --procedure "
-                               "ferraris; the others, and several logs together, are solved by "
-                               "maximum likelihood");
+        return command_misused(
+            "--estimator closed-form solves one log of --procedure ferraris only: leave "
+            "--estimator out for other procedures and for several logs");
     if (o->estimate || o->with || o->without)
-        return command_misused("--estimator closed-form: what it finds is fixed; leave --estimate, "
-                               "--with and --without out");
+        return command_misused("--estimator closed-form always finds the same terms: leave "
+                               "--estimate, --with and --without out");
     return -1;
 }
 
@@ -247,9 +247,8 @@ static void take_numbers(session *b)
 static int refused(const imk_error *error)
 {
     if (strcmp(error->field, "gravity") == 0)
-        return command_misused("--gravity %.6g m/s^2: expected 9.5 to 10.1 m/s^2, which is what "
-                               "there is on Earth",
-                               error->value);
+        return command_misused(
+            "--gravity %.6g m/s^2: expected 9.5 to 10.1 m/s^2, the range on Earth", error->value);
     if (strcmp(error->field, "frame") == 0)
         return command_misused("--frame reference: gravity alone does not tell how the triad "
                                "stands in the housing; add a log of sixposition, ferraris, tumble "

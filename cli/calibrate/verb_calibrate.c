@@ -10,31 +10,32 @@
 
 static const option result_options[] = {
     {"procedure", OPTION_TEXT, AT(procedure), .letter = 'p', .value = "NAME",
-     .help =
-         "what was done: multiposition, sixposition, ferraris, rate-table, tumble, centrifuge, "
-         "spin, thermal or repeatability; one for all logs, or one for each, with commas between"},
+     .help = "procedure of the test: multiposition, sixposition, ferraris, rate-table, tumble, "
+             "centrifuge, spin, thermal or repeatability; one for all logs, or one for each log, "
+             "separated by commas"},
     {"output", OPTION_OUTPUT, AT(output), .letter = 'o', .value = "MODEL",
      .help = "write the model here (.yaml or .json)"},
     {"into", OPTION_INTO, AT(into), .value = "MODEL",
-     .help = "start from this model and replace only what is estimated; the changes are printed"},
+     .help = "start from this model and replace only the estimated terms; the changes are printed"},
     {"model", OPTION_FILE, AT(model), .letter = 'm', .value = "MODEL",
-     .help = "known before: sensitivities, and terms that are not estimated"},
+     .help = "model known before the test: sensitivities, and terms that are not estimated"},
     {"name", OPTION_TEXT, AT(name), .value = "TEXT",
-     .help = "name of the model; default: that of the log file"},
+     .help = "name of the model; default: the name of the log file"},
     REPORT_OPTION(AT(report),
                   "write one self-contained page: verdict, parameters, residuals, model"),
-    PLOT_OPTION(AT(plot), "draw the residuals, and where each log stands still"),
+    PLOT_OPTION(AT(plot), "draw the residuals, and the rests of each log"),
     {"poses", OPTION_FLAG, AT(poses), .help = "print every observation with its residuals"},
     JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
     STRICT_OPTION(AT(strict), "exit with 1 when there is a warning"),
     {"plan", OPTION_FLAG, AT(plan),
-     .help = "print the programme of a test instead; the operand is a model of the unit, with its "
-             "noise, and -o the motion file to write"},
+     .help = "plan a test instead and print its programme; the operand is a model of the unit with "
+             "its noise, -o names the motion file to write"},
     {"want", OPTION_TEXT, AT(want), .value = "REQUIREMENTS",
-     .help =
-         "with --plan: 1 sigma to reach, such as \"accel.scale_factor 50 ppm, gyro.bias 5 deg/h\""},
+     .help = "with --plan: uncertainties (1 sigma) to reach, such as \"accel.scale_factor 50 ppm, "
+             "gyro.bias 5 deg/h\""},
     {"soak", OPTION_QUANTITY, AT(soak), .value = "TIME", .unit = "s", .choices = "0..1e6",
-     .help = "with --plan, thermal: held at each temperature before it is measured; default 10min"},
+     .help =
+         "with --plan, thermal: time at each temperature before the measurement; default 10min"},
     {"anyway", OPTION_FLAG, AT(anyway),
      .help = "write the model although the verdict says that it is not usable"},
 };
@@ -44,33 +45,36 @@ static const option test_options[] = {
      .help = "latitude, longitude and height of the test, for gravity and the Earth's rotation, "
              "such as \"48.1 deg, 11.6 deg, 520 m\""},
     {"gravity", OPTION_QUANTITY, AT(gravity), .letter = 'g', .value = "G", .unit = "m/s^2",
-     .help = "local gravity when it is known better than by the position, such as 9.80743m/s^2"},
+     .help = "local gravity, if it is known better than from the position, such as 9.80743m/s^2"},
     {"no-earth", OPTION_FLAG, AT(no_earth),
-     .help = "references contain no rotation of the Earth: the gyros' bias takes it in"},
+     .help = "the references do not contain the Earth's rotation; the gyro bias then includes it"},
     {"frame", OPTION_CHOICE, AT(frame), .value = "FRAME",
      .choices = "upper-triangular|lower-triangular|symmetric|reference",
-     .help = "what fixes the rotation of the triads: gravity alone does not; default "
-             "upper-triangular, with a procedure of known attitudes reference"},
+     .help = "convention that fixes the rotation of the triads, which gravity alone does not; "
+             "default reference with a procedure of known attitudes, else upper-triangular"},
     {"estimate", OPTION_TEXT, AT(estimate), .value = "TERMS",
-     .help = "own list of what is estimated, such as \"bias,scale_factor,accel.misalignment\"; "
-             "default: what the procedure determines"},
+     .help = "terms to estimate, such as \"bias,scale_factor,accel.misalignment\"; "
+             "default: the terms that the procedure determines"},
     {"with", OPTION_TEXT, AT(with), .value = "TERMS",
-     .help = "estimate these besides: nonlinearity, cross_products, g_sensitivity, g2_sensitivity, "
+     .help = "estimate these terms in addition: nonlinearity, cross_products, g_sensitivity, "
+             "g2_sensitivity, "
              "gyro"},
-    {"without", OPTION_TEXT, AT(without), .value = "TERMS", .help = "do not estimate these"},
+    {"without", OPTION_TEXT, AT(without), .value = "TERMS", .help = "do not estimate these terms"},
     {"accel-sensitivity", OPTION_TEXT, AT(sensitivity[1]), .value = "NUMBER",
-     .help = "nominal, of logs in counts, such as \"415 count/(m/s^2)\""},
+     .help = "nominal sensitivity of the accelerometers, for logs in counts, such as \"415 "
+             "count/(m/s^2)\""},
     {"gyro-sensitivity", OPTION_TEXT, AT(sensitivity[0]), .value = "NUMBER",
-     .help = "the same, such as \"4778 count/(rad/s)\""},
+     .help = "nominal sensitivity of the gyros, such as \"4778 count/(rad/s)\""},
     {"accel-zero", OPTION_TEXT, AT(zero_offset[1]), .value = "NUMBER",
-     .help = "counts at zero input, such as \"32768 count\""},
-    {"gyro-zero", OPTION_TEXT, AT(zero_offset[0]), .value = "NUMBER", .help = "the same"},
+     .help = "counts of the accelerometers at zero input, such as \"32768 count\""},
+    {"gyro-zero", OPTION_TEXT, AT(zero_offset[0]), .value = "NUMBER",
+     .help = "counts of the gyros at zero input"},
     {"robust", OPTION_CHOICE, AT(robust), .value = "CHOICE", .choices = "yes|no",
-     .help = "observations that do not fit the others lose their weight (the default)"},
+     .help = "yes (default): observations that do not fit the others lose their weight"},
     {"estimator", OPTION_CHOICE, AT(estimator), .value = "CHOICE",
      .choices = "maximum-likelihood|closed-form",
-     .help = "ferraris: closed-form solves the session as published for it, with --trim 0s to the "
-             "last digit; for comparison. Default maximum-likelihood"},
+     .help = "ferraris: closed-form uses the published solution, and gives its digits with --trim "
+             "0s; for comparison. Default maximum-likelihood"},
 };
 
 static const option log_options[] = {
@@ -79,36 +83,39 @@ static const option log_options[] = {
          "column of texts that name the holds, turns or runs; default: the only column of texts"},
     {"initial-rest", OPTION_QUANTITY, AT(initial_rest), .value = "TIME", .unit = "s",
      .choices = "not negative",
-     .help = "the log begins with so long a rest; default: the quietest part is searched for"},
+     .help = "length of the rest at the beginning of the log; default: the quietest part is used"},
     {"window", OPTION_QUANTITY, AT(window), .value = "TIME", .unit = "s", .choices = "not negative",
-     .help = "over which scatter is assessed; default: chosen from the log"},
+     .help = "length of the window in which rest is detected; default: chosen from the log"},
     {"minimum", OPTION_QUANTITY, AT(minimum), .value = "TIME", .unit = "s", .choices = "positive",
-     .help = "shortest rest, step or run that counts; default 1s at rest, 0.5s of a reference"},
+     .help =
+         "shortest rest, step or run to use; default 1s for rests, 0.5s for steps of a reference"},
     {"trim", OPTION_QUANTITY, AT(trim), .value = "TIME", .unit = "s", .choices = "not negative",
-     .help = "left out at both ends of a step or run; default 0.2s"},
+     .help = "time left out at both ends of a step or run; default 0.2s"},
     {"settle", OPTION_QUANTITY, AT(settle), .value = "TIME", .unit = "s", .choices = "not negative",
-     .help = "left out at its beginning besides, until filters have settled; default 0s"},
+     .help = "time left out in addition at the beginning, until filters have settled; default 0s"},
     {"placement", OPTION_QUANTITY, AT(placement), .value = "ANGLE", .unit = "deg",
      .choices = "0..180",
-     .help = "1 sigma of each placement on a face; default 0.1deg for sixposition and ferraris"},
+     .help = "1 sigma of the attitude of each placement on a face; default 0.1deg for sixposition "
+             "and ferraris"},
     {"mounting", OPTION_QUANTITY, AT(mounting), .value = "ANGLE", .unit = "deg",
      .choices = "0..180",
-     .help = "1 sigma of the unit's attitude on its fixture or table, which all holds share; "
-             "default 0deg"},
+     .help = "1 sigma of the unit's attitude on its fixture or table, which is the same for all "
+             "holds; default 0deg"},
     {"turn-angle", OPTION_QUANTITY, AT(turn_angle), .value = "ANGLE", .unit = "deg",
      .choices = "-36000..36000",
      .help = "ferraris: angle of each turn about its axis, with sign; default 360deg"},
     {"motion", OPTION_FILE, AT(motion), .value = "PROGRAMME",
-     .help = "motion file that the table ran: the reference"},
+     .help = "motion file that the table ran; it is the reference"},
     {"motion-offset", OPTION_TEXT, AT(motion_offset), .value = "TIME|auto",
      .help = "time of the log at which the programme begins; auto finds it; default 0s"},
     {"table-axis", OPTION_CHOICE, AT(table_axis), .value = "AXIS", .choices = "x|y|z",
-     .help = "of the unit, about which a column table_rate [deg/s] turns it"},
+     .help = "axis of the unit about which the table turns it, for a column table_rate [deg/s]"},
     {"temperature-order", OPTION_INTEGER, AT(temperature_order), .value = "N", .choices = "1-5",
-     .help = "thermal: order of the bias, 1 to 5; default: chosen by cross-validation"},
+     .help = "thermal: order of the bias polynomial, 1 to 5; default: chosen by cross-validation"},
     {"reference-temperature", OPTION_QUANTITY, AT(reference_temperature), .value = "T",
      .unit = "degC",
-     .help = "thermal: where the polynomials vanish; default 25degC if within the sweep"},
+     .help = "thermal: temperature at which the polynomials are 0; default 25degC if the sweep "
+             "contains it"},
 };
 
 #define COUNT(table) (sizeof(table) / sizeof *(table))
@@ -132,12 +139,12 @@ static int find_result(session *b)
 static int check(const calibrate_options *o)
 {
     if (o->into && o->model)
-        return command_misused("--into names the model to start from, as --model does: leave one "
-                               "out");
+        return command_misused(
+            "--into and --model both name the model to start from: leave one of them out");
     if (o->want && !o->plan)
-        return command_misused("--want is of --plan");
+        return command_misused("--want is used with --plan only: add --plan");
     if (!isnan(o->soak) && !o->plan)
-        return command_misused("--soak is of --plan");
+        return command_misused("--soak is used with --plan only: add --plan");
     return command_check_plot(o->plot);
 }
 
@@ -174,7 +181,7 @@ static int run(int count, char **words)
     if (code < 0)
         code = check(&o);
     if (code < 0 && o.plan && b->count != 1)
-        code = command_misused("--plan takes one MODEL, of the unit that will be tested");
+        code = command_misused("--plan takes one MODEL, that of the unit to be tested");
     if (code < 0)
         code = find_result(b);
     free_session(b);
@@ -195,19 +202,19 @@ const verb calibrate_verb = {
                   "--motion programme.yaml -o model.yaml --report report.html",
                   "two tests solved together; the table ran the programme"}},
     .description =
-        "LOG is CSV (also .gz, .zst){ or logs}, in physical units or raw counts. A procedure looks "
-        "at "
-        "each log and adds what it observed; all logs are solved at once, robustly, and every "
-        "parameter comes with 1 sigma, a 95 % interval, and correlations. A verdict says in plain "
-        "words whether the result can be used.\n\n"
-        "multiposition needs no equipment: attitudes at rest, turned by hand between. sixposition "
-        "and ferraris want the faces of a housing, the latter full turns about three axes. "
-        "rate-table, tumble, centrifuge and spin want to know what the unit was exposed to: "
-        "columns reference_rate_x [deg/s] …, reference_force_x [g] … in the log (mean over the "
-        "sample, in inertial space, gravity included), table_rate [deg/s] with --table-axis, or "
-        "the programme of the table as a motion file. thermal wants a column temperature. "
-        "repeatability compares power cycles: a log, a section or a MODEL of each; models compare "
-        "the scale factors too.\n\n"
+        "LOG is CSV (also .gz, .zst){ or logs}, in physical units or raw counts. A procedure "
+        "takes observations from each log. All logs are solved together, robustly, and every "
+        "parameter comes with 1 sigma, a 95 % interval and correlations. A verdict says whether "
+        "the result can be used.\n\n"
+        "multiposition needs no equipment: the unit rests in different attitudes and is turned by "
+        "hand between them. sixposition and ferraris need the faces of a housing, and ferraris "
+        "full turns about three axes as well. rate-table, tumble, centrifuge and spin need the "
+        "rates or forces that acted on the unit: columns reference_rate_x [deg/s] …, "
+        "reference_force_x [g] … in the log (mean over the sample, in inertial space, gravity "
+        "included), table_rate [deg/s] with --table-axis, or the programme of the table as a "
+        "motion file. thermal needs a column temperature. repeatability compares power cycles, "
+        "each given as a log, a section of a log or a MODEL; models compare the scale factors "
+        "too.\n\n"
         "docs/calibrate.md says how to do each test.",
     .groups = {{"Options", COUNT(result_options), result_options, 0},
                {"The test", COUNT(test_options), test_options, 0},

@@ -149,7 +149,7 @@ static void temperatures_are_soaked(void **state)
         CHECK_RELATIVE(slope, 0.01 * 0.017453292519943295, 1e-2);
     }
     assert_int_equal(run("$I calibrate t.csv -p thermal --soak 2min"), 2);
-    check_contains(err, "--soak is of --plan", "soak");
+    check_contains(err, "--soak is used with --plan only", "soak");
     check_message("$I calibrate --plan unit.yaml -p thermal --soak 1e308s", 2,
                   "imukit calibrate: error: --soak 1e308s: expected 0s to 1e6s\n" TRY("calibrate"));
     sweep();
@@ -180,9 +180,9 @@ static void a_centrifuge_is_no_motion(void **state)
     put_unit();
     assert_int_equal(run("$I calibrate --plan unit.yaml -p centrifuge" PLACE), 0);
     check_contains(out, "force +10 +0 +0 g", "levels");
-    check_contains(out, "a motion file has no arm to swing the unit on", "why");
+    check_contains(out, "a motion file cannot describe the arm of a centrifuge", "why");
     assert_int_equal(run("$I calibrate --plan unit.yaml -p centrifuge -o p.yaml" PLACE), 2);
-    check_contains(err, "leave --output out, and take the levels of the centrifuge from the table",
+    check_contains(err, "leave --output out, and set the levels that the table shows",
                    "what to do");
     sweep();
 }

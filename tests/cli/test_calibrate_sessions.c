@@ -83,7 +83,7 @@ static void published_matrices(void **state)
     assert_int_equal(run("$I calibrate " SESSION " -p sixposition --gravity 9.81m/s^2 --rate "
                          "204.8Hz --estimator closed-form"),
                      2);
-    check_contains(err, "this is for one log of --procedure ferraris", "procedure");
+    check_contains(err, "solves one log of --procedure ferraris only", "procedure");
     sweep();
 }
 

@@ -69,10 +69,10 @@ static void options_of_other_procedures_are_refused(void **state)
     check_says("$I calibrate turns.csv " POSES " --motion turns.yaml", 2,
                "--motion is not used by --procedure multiposition");
     check_says("$I calibrate turns.csv " POSES " --turn-angle 360deg", 2,
-               "--turn-angle is not used by --procedure multiposition: it is of ferraris");
-    check_says("$I calibrate turns.csv " POSES " --temperature-order 3", 2, "it is of thermal");
+               "--turn-angle is not used by --procedure multiposition, only by ferraris");
+    check_says("$I calibrate turns.csv " POSES " --temperature-order 3", 2, "only by thermal");
     check_says("$I calibrate turns.csv " POSES " --motion-offset auto", 2,
-               "--motion-offset is of --motion");
+               "--motion-offset is used with --motion only");
     check_says("$I calibrate turns.csv -p rate-table --table-axis z", 1,
                "turns.csv has no column table_rate [deg/s], which --table-axis needs");
     sweep();
