@@ -25,6 +25,6 @@ sed -n '/^channel/,/^$/p' "$directory/identify.txt"
 
 echo "The page with verdict, parameters, Allan plots and model: $directory/report.html"
 echo "The model file: $directory/model.yaml    The whole output: $directory/identify.txt"
-say "Now with a log of your own (the sensor still, an hour or more):"
+say "Now with a log of your own (the sensor at rest, an hour or more):"
 echo "   $imukit identify LOG.csv -o model.yaml --report report.html"
 echo "If units or sample rate are not in the file, the message names the option to add."

@@ -30,7 +30,7 @@ int session_done(const session *b, imk_status status, const imk_error *error)
         return command_failed("%s", text);
     const bool of_name = status == IMK_ERROR_KEY_UNKNOWN || status == IMK_ERROR_RANGE ||
                          status == IMK_ERROR_WORKSPACE;
-    if (b->options->estimate && !found->result && of_name && found->failed == found->count)
+    if (b->options->settings.estimate && !found->result && of_name && found->failed == found->count)
         return session_terms_refused("estimate", error);
     return command_error(error, path);
 }

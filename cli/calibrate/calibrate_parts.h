@@ -12,18 +12,16 @@
 
 typedef struct calibrate_options {
     log_input log;
-    const char *procedure, *position, *estimate, *with, *without;
+    imk_calibrate_log_settings settings; /* what options set as it is */
+    const char *procedure, *position, *with, *without;
     const char *sensitivity[2], *zero_offset[2]; /* gyro, accel */
-    const char *section, *motion, *motion_offset, *want;
+    const char *motion, *motion_offset, *want;
     const char *model, *into, *name, *output, *plot, *report;
-    /* NaN: not given. */
-    double gravity, placement, mounting, turn_angle, initial_rest, window, minimum, trim, settle;
-    double reference_temperature, soak;
+    double soak; /* NaN: not given */
     option_integer temperature_order;
-    int frame, table_axis; /* -1: not given */
-    int robust;            /* 0 yes, 1 no */
-    int estimator;         /* 0 maximum likelihood, 1 closed form */
-    bool no_earth, plan, anyway, poses, json, strict;
+    int robust;    /* 0 yes, 1 no */
+    int estimator; /* 0 maximum likelihood, 1 closed form */
+    bool plan, anyway, poses, json, strict;
 } calibrate_options;
 
 typedef struct session {

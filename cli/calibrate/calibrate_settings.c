@@ -78,7 +78,7 @@ _Static_assert(IMK_CALIBRATE_NONLINEARITY == 1 << 0 && IMK_CALIBRATE_GYRO_TURNS 
 static int take_terms(session *b)
 {
     const calibrate_options *o = b->options;
-    if (o->estimate && (o->with || o->without))
+    if (o->settings.estimate && (o->with || o->without))
         return command_misused(
             "--estimate names all terms to estimate: leave --with and --without out");
     const int code = take_switches("with", o->with, &b->settings.with);
@@ -190,13 +190,13 @@ static int check_used(const session *b)
                                "rate-table, tumble, centrifuge, spin and thermal");
     if (o->motion_offset && !o->motion)
         return command_misused("--motion-offset is used with --motion only: add --motion");
-    if (o->table_axis >= 0 && !referenced)
+    if (o->settings.table_axis >= 0 && !referenced)
         return command_misused(none, "table-axis", o->procedure, "rate-table");
-    if (!isnan(o->turn_angle) && !ferraris)
+    if (!isnan(o->settings.turn_angle) && !ferraris)
         return command_misused(none, "turn-angle", o->procedure, "ferraris");
     if (o->temperature_order.given && !thermal)
         return command_misused(none, "temperature-order", o->procedure, "thermal");
-    if (!isnan(o->reference_temperature) && !thermal)
+    if (!isnan(o->settings.reference_temperature) && !thermal)
         return command_misused(none, "reference-temperature", o->procedure, "thermal");
     return -1;
 }
@@ -210,38 +210,13 @@ static int check_closed_form(const session *b)
         return command_misused(
             "--estimator closed-form solves one log of --procedure ferraris only: leave "
             "--estimator out for other procedures and for several logs");
-    if (o->estimate || o->with || o->without)
+    if (o->settings.estimate || o->with || o->without)
         return command_misused("--estimator closed-form always finds the same terms: leave "
                                "--estimate, --with and --without out");
     return -1;
 }
 
 /* ---- all of them ----------------------------------------------------------------------------- */
-
-static void take_numbers(session *b)
-{
-    const calibrate_options *o = b->options;
-    imk_calibrate_log_settings *s = &b->settings;
-    s->gravity = o->gravity;
-    s->no_earth = o->no_earth;
-    s->frame = o->frame;
-    s->estimate = o->estimate;
-    s->closed_form = o->estimator != 0;
-    s->least_squares = o->robust != 0;
-    s->section = o->section;
-    s->placement = o->placement;
-    s->mounting = o->mounting;
-    s->turn_angle = o->turn_angle;
-    s->initial_rest = o->initial_rest;
-    s->window = o->window;
-    s->minimum = o->minimum;
-    s->trim = o->trim;
-    s->settle = o->settle;
-    s->reference_temperature = o->reference_temperature;
-    s->temperature_order = (int)o->temperature_order.value;
-    s->table_axis = o->table_axis;
-    s->activity = o->plot || o->report;
-}
 
 /* Settings that exclude each other. */
 static int refused(const imk_error *error)
@@ -261,8 +236,11 @@ int session_choose(session *b)
 {
     const calibrate_options *o = b->options;
     imk_error error;
-    b->settings = imk_calibrate_log_default();
-    take_numbers(b);
+    b->settings = o->settings;
+    b->settings.closed_form = o->estimator != 0;
+    b->settings.least_squares = o->robust != 0;
+    b->settings.temperature_order = (int)o->temperature_order.value;
+    b->settings.activity = o->plot || o->report;
     int code = assign_procedures(b);
     if (code < 0)
         code = check_used(b);

@@ -44,15 +44,15 @@ static const option test_options[] = {
     {"position", OPTION_TEXT, AT(position), .value = "POSITION",
      .help = "latitude, longitude and height of the test, for gravity and the Earth's rotation, "
              "such as \"48.1 deg, 11.6 deg, 520 m\""},
-    {"gravity", OPTION_QUANTITY, AT(gravity), .letter = 'g', .value = "G", .unit = "m/s^2",
+    {"gravity", OPTION_QUANTITY, AT(settings.gravity), .letter = 'g', .value = "G", .unit = "m/s^2",
      .help = "local gravity, if it is known better than from the position, such as 9.80743m/s^2"},
-    {"no-earth", OPTION_FLAG, AT(no_earth),
+    {"no-earth", OPTION_FLAG, AT(settings.no_earth),
      .help = "the references do not contain the Earth's rotation; the gyro bias then includes it"},
-    {"frame", OPTION_CHOICE, AT(frame), .value = "FRAME",
+    {"frame", OPTION_CHOICE, AT(settings.frame), .value = "FRAME",
      .choices = "upper-triangular|lower-triangular|symmetric|reference",
      .help = "convention that fixes the rotation of the triads, which gravity alone does not; "
              "default reference with a procedure of known attitudes, else upper-triangular"},
-    {"estimate", OPTION_TEXT, AT(estimate), .value = "TERMS",
+    {"estimate", OPTION_TEXT, AT(settings.estimate), .value = "TERMS",
      .help = "terms to estimate, such as \"bias,scale_factor,accel.misalignment\"; "
              "default: the terms that the procedure determines"},
     {"with", OPTION_TEXT, AT(with), .value = "TERMS",
@@ -78,41 +78,45 @@ static const option test_options[] = {
 };
 
 static const option log_options[] = {
-    {"section", OPTION_TEXT, AT(section), .value = "COLUMN",
+    {"section", OPTION_TEXT, AT(settings.section), .value = "COLUMN",
      .help =
          "column of texts that name the holds, turns or runs; default: the only column of texts"},
-    {"initial-rest", OPTION_QUANTITY, AT(initial_rest), .value = "TIME", .unit = "s",
+    {"initial-rest", OPTION_QUANTITY, AT(settings.initial_rest), .value = "TIME", .unit = "s",
      .choices = "not negative",
      .help = "length of the rest at the beginning of the log; default: the quietest part is used"},
-    {"window", OPTION_QUANTITY, AT(window), .value = "TIME", .unit = "s", .choices = "not negative",
+    {"window", OPTION_QUANTITY, AT(settings.window), .value = "TIME", .unit = "s",
+     .choices = "not negative",
      .help = "length of the window in which rest is detected; default: chosen from the log"},
-    {"minimum", OPTION_QUANTITY, AT(minimum), .value = "TIME", .unit = "s", .choices = "positive",
+    {"minimum", OPTION_QUANTITY, AT(settings.minimum), .value = "TIME", .unit = "s",
+     .choices = "positive",
      .help =
          "shortest rest, step or run to use; default 1s for rests, 0.5s for steps of a reference"},
-    {"trim", OPTION_QUANTITY, AT(trim), .value = "TIME", .unit = "s", .choices = "not negative",
+    {"trim", OPTION_QUANTITY, AT(settings.trim), .value = "TIME", .unit = "s",
+     .choices = "not negative",
      .help = "time left out at both ends of a step or run; default 0.2s"},
-    {"settle", OPTION_QUANTITY, AT(settle), .value = "TIME", .unit = "s", .choices = "not negative",
+    {"settle", OPTION_QUANTITY, AT(settings.settle), .value = "TIME", .unit = "s",
+     .choices = "not negative",
      .help = "time left out in addition at the beginning, until filters have settled; default 0s"},
-    {"placement", OPTION_QUANTITY, AT(placement), .value = "ANGLE", .unit = "deg",
+    {"placement", OPTION_QUANTITY, AT(settings.placement), .value = "ANGLE", .unit = "deg",
      .choices = "0..180",
      .help = "1 sigma of the attitude of each placement on a face; default 0.1deg for sixposition "
              "and ferraris"},
-    {"mounting", OPTION_QUANTITY, AT(mounting), .value = "ANGLE", .unit = "deg",
+    {"mounting", OPTION_QUANTITY, AT(settings.mounting), .value = "ANGLE", .unit = "deg",
      .choices = "0..180",
      .help = "1 sigma of the unit's attitude on its fixture or table, which is the same for all "
              "holds; default 0deg"},
-    {"turn-angle", OPTION_QUANTITY, AT(turn_angle), .value = "ANGLE", .unit = "deg",
+    {"turn-angle", OPTION_QUANTITY, AT(settings.turn_angle), .value = "ANGLE", .unit = "deg",
      .choices = "-36000..36000",
      .help = "ferraris: angle of each turn about its axis, with sign; default 360deg"},
     {"motion", OPTION_FILE, AT(motion), .value = "PROGRAMME",
      .help = "motion file that the table ran; it is the reference"},
     {"motion-offset", OPTION_TEXT, AT(motion_offset), .value = "TIME|auto",
      .help = "time of the log at which the programme begins; auto finds it; default 0s"},
-    {"table-axis", OPTION_CHOICE, AT(table_axis), .value = "AXIS", .choices = "x|y|z",
+    {"table-axis", OPTION_CHOICE, AT(settings.table_axis), .value = "AXIS", .choices = "x|y|z",
      .help = "axis of the unit about which the table turns it, for a column table_rate [deg/s]"},
     {"temperature-order", OPTION_INTEGER, AT(temperature_order), .value = "N", .choices = "1-5",
      .help = "thermal: order of the bias polynomial, 1 to 5; default: chosen by cross-validation"},
-    {"reference-temperature", OPTION_QUANTITY, AT(reference_temperature), .value = "T",
+    {"reference-temperature", OPTION_QUANTITY, AT(settings.reference_temperature), .value = "T",
      .unit = "degC",
      .help = "thermal: temperature at which the polynomials are 0; default 25degC if the sweep "
              "contains it"},
@@ -159,20 +163,7 @@ static void free_session(session *b)
 
 static int run(int count, char **words)
 {
-    const double none = (double)NAN;
-    calibrate_options o = {.gravity = none,
-                           .placement = none,
-                           .mounting = none,
-                           .turn_angle = none,
-                           .initial_rest = none,
-                           .window = none,
-                           .minimum = none,
-                           .trim = none,
-                           .settle = none,
-                           .reference_temperature = none,
-                           .soak = none,
-                           .frame = -1,
-                           .table_axis = -1};
+    calibrate_options o = {.settings = imk_calibrate_log_default(), .soak = (double)NAN};
     session *b = command_zeroed(sizeof *b);
     b->options = &o;
     int code = options_parse(&calibrate_verb, count, words, &o, b->path);

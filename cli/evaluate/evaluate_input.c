@@ -25,10 +25,7 @@ static int load_log(evaluation *v, const char *path)
     imk_error error;
     const calibrate_options *o = &v->options->session;
     imk_calibrate_record *record = command_zeroed(sizeof *record);
-    imk_calibrate_log_settings settings = imk_calibrate_log_default();
-    settings.section = o->section;
-    settings.table_axis = o->table_axis;
-    settings.minimum = o->minimum;
+    imk_calibrate_log_settings settings = o->settings;
     v->has_log = true;
     int code = session_motion(o, NULL, &v->motion, &settings);
     if (code < 0)

@@ -47,16 +47,16 @@ static const option test_options[] = {
      .help = "motion file that the table ran: the reference of a log"},
     {"motion-offset", OPTION_TEXT, SESSION(motion_offset), .value = "TIME|auto",
      .help = "time of the log at which the programme begins; auto finds it; default 0s"},
-    {"table-axis", OPTION_CHOICE, SESSION(table_axis), .value = "AXIS", .choices = "x|y|z",
+    {"table-axis", OPTION_CHOICE, SESSION(settings.table_axis), .value = "AXIS", .choices = "x|y|z",
      .help = "axis of the unit about which the column table_rate [deg/s] turns the unit"},
-    {"section", OPTION_TEXT, SESSION(section), .value = "COLUMN",
+    {"section", OPTION_TEXT, SESSION(settings.section), .value = "COLUMN",
      .help = "column of texts that names the runs of a log"},
-    {"minimum", OPTION_QUANTITY, SESSION(minimum), .value = "TIME", .unit = "s",
+    {"minimum", OPTION_QUANTITY, SESSION(settings.minimum), .value = "TIME", .unit = "s",
      .choices = "positive",
      .help = "shortest stretch of constant reference that counts; default 0.5s"},
-    {"trim", OPTION_QUANTITY, SESSION(trim), .value = "TIME", .unit = "s",
+    {"trim", OPTION_QUANTITY, SESSION(settings.trim), .value = "TIME", .unit = "s",
      .choices = "not negative", .help = "time left out at both ends of a stretch; default 0.2s"},
-    {"settle", OPTION_QUANTITY, SESSION(settle), .value = "TIME", .unit = "s",
+    {"settle", OPTION_QUANTITY, SESSION(settings.settle), .value = "TIME", .unit = "s",
      .choices = "not negative",
      .help = "time also left out at the beginning of a stretch, until filters have settled; "
              "default 0s"},
@@ -100,8 +100,8 @@ static int check_company(const evaluation *v)
         bool given;
     } of_logs[] = {{"motion", o->session.motion != NULL},
                    {"motion-offset", o->session.motion_offset != NULL},
-                   {"table-axis", o->session.table_axis >= 0},
-                   {"section", o->session.section != NULL}};
+                   {"table-axis", o->session.settings.table_axis >= 0},
+                   {"section", o->session.settings.section != NULL}};
     bool counts = false;
     for (size_t k = 0; k < v->log->channel_count; k++)
         counts = counts || in_counts(&v->log->channel[k]);
@@ -194,10 +194,10 @@ static int evaluate(evaluation *v)
     const calibrate_options *logs = &v->options->session;
     imk_evaluate_log_settings settings = imk_evaluate_log_default();
     settings.confidence = v->options->confidence;
-    settings.minimum = logs->minimum;
-    settings.trim = logs->trim;
-    settings.settle = logs->settle;
-    settings.sections = logs->section != NULL;
+    settings.minimum = logs->settings.minimum;
+    settings.trim = logs->settings.trim;
+    settings.settle = logs->settings.settle;
+    settings.sections = logs->settings.section != NULL;
     (void)command_unless_memory(imk_evaluate_log_create(&settings, NULL, &v->log, NULL));
     int code = evaluate_read_limits(v);
     if (code < 0)
@@ -215,10 +215,7 @@ static int evaluate(evaluation *v)
 
 static int run(int count, char **words)
 {
-    const double none = (double)NAN;
-    evaluate_options o = {
-        .confidence = 0.95,
-        .session = {.minimum = none, .trim = none, .settle = none, .table_axis = -1}};
+    evaluate_options o = {.confidence = 0.95, .session = {.settings = imk_calibrate_log_default()}};
     evaluation *v = command_zeroed(sizeof *v);
     v->options = &o;
     int code = options_parse(&evaluate_verb, count, words, &o, v->path);
