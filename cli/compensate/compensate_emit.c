@@ -5,6 +5,7 @@
 
 #include "imukit/show.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,12 +52,26 @@ static void show_files(const char *directory, const char *name, imk_result *resu
     imk_result_end(result);
 }
 
+/* The motion up to which the bound of every output holds. */
+static double least_limit(const imk_firmware *plan, int sensor)
+{
+    double limit = (double)INFINITY;
+    for (int j = 0; j < plan->output_count[sensor]; j++)
+        limit = fmin(limit, plan->limit[sensor][j]);
+    return limit;
+}
+
 static void show_cost(const imk_firmware *plan, imk_result *result)
 {
     imk_result_object(result, "bound");
     for (int sensor = 0; sensor < 2; sensor++)
         if (plan->axis_count[sensor] > 0)
             imk_result_quantity(result, motions[sensor], plan->bound[sensor], units[sensor]);
+    imk_result_end(result);
+    imk_result_object(result, "limit");
+    for (int sensor = 0; sensor < 2; sensor++)
+        if (plan->axis_count[sensor] > 0)
+            imk_result_quantity(result, motions[sensor], least_limit(plan, sensor), units[sensor]);
     imk_result_end(result);
     imk_result_object(result, "cost");
     imk_result_count(result, "multiplications", plan->cost.multiplications);
@@ -65,15 +80,27 @@ static void show_cost(const imk_firmware *plan, imk_result *result)
     imk_result_end(result);
 }
 
+/* Faster motion than a model states is flagged; whoever wrote the model should know. */
+static void warn_of_ranges(const imk_firmware *plan)
+{
+    static const char *const names[2] = {"gyro", "accel"}, *const options[2] = {"rate", "force"};
+    for (int sensor = 0; sensor < 2; sensor++)
+        if (plan->axis_count[sensor] > 0 && !plan->limit_stated[sensor])
+            command_warn("no_range",
+                         "the model states no %s.range: the code sets its flag LIMIT beyond %.4g "
+                         "%s; add the range to the model, or give --%s-limit",
+                         names[sensor], least_limit(plan, sensor), units[sensor], options[sensor]);
+}
+
 static void show_summary(const char *directory, const char *name, const imk_firmware *plan,
                          imk_result *result)
 {
     for (int sensor = 0; sensor < 2; sensor++)
         if (plan->axis_count[sensor] > 0)
-            imk_result_line(
-                result, "The %s is within %.2g %s of the exact correction%s", motions[sensor],
-                plan->bound[sensor], units[sensor],
-                plan->limit_stated[sensor] ? "" : " (no range is stated: for small motions)");
+            imk_result_line(result,
+                            "The %s is within %.2g %s of the exact correction up to %.4g %s",
+                            motions[sensor], plan->bound[sensor], units[sensor],
+                            least_limit(plan, sensor), units[sensor]);
     imk_result_line(result, "%d multiplications, %d additions, %d comparisons a sample",
                     plan->cost.multiplications, plan->cost.additions, plan->cost.comparisons);
     imk_result_line(result,
@@ -103,6 +130,7 @@ static int emit(const compensate_options *o, const char *model_name, const imk_m
         command_warn("nothing", "%s has no deterministic term: there is nothing to take out",
                      model_name);
     warn_of_terms(&left_in);
+    warn_of_ranges(plan);
     if (imk_firmware_write(o->emission.directory, plan, whole, &files, &error) != IMK_OK)
         return command_error(&error, NULL);
     imk_firmware_name(&files, whole, name);

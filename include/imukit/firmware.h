@@ -99,14 +99,15 @@ typedef struct imk_firmware_channel {
     bool in_counts;
     int32_t origin;      /**< subtracted as an integer [count]; 0 in physical units */
     double lower, upper; /**< readings at or beyond these are flagged; the bound holds between */
-    unsigned flag;       /**< the flag; 0: none, and lower and upper follow from the limits */
+    unsigned flag;       /**< IMK_FLAG_SATURATED; without a range IMK_FLAG_LIMIT, and lower and upper
+                            follow from the limits */
     int bits;            /**< fixed point: the reading is the integer times 2^-bits */
 } imk_firmware_channel;
 
 /** Number of arithmetic operations in all; a coefficient of 1 costs no multiplication. */
 typedef struct imk_firmware_cost {
     int multiplications, additions;
-    int comparisons; /**< for clipping and flags */
+    int comparisons; /**< for clipping and flags, in a sample without flags */
 } imk_firmware_cost;
 
 enum { IMK_FIRMWARE_OPERATIONS_MAX = 768, IMK_FIRMWARE_TERMS_MAX = 4096 };

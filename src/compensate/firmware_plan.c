@@ -13,6 +13,10 @@ static const double kelvin = 273.15;
 /* What imk_correct() itself does wrong by rounding, of the limit: correct.h. */
 static const double reference_rounding = 4e-15;
 
+/* The largest motion of a sensor without range or limit, which only a linear model may have: that
+ * of the usual MEMS unit, 2000 deg/s and 16 g. */
+static const double usual_limit[2] = {35.0 /* rad/s */, 160.0 /* m/s^2 */};
+
 /* Integers between which the scale of a temperature in fixed point lies: 1/65536 degC. */
 enum { TEMPERATURE_BITS = 16 };
 
@@ -48,6 +52,16 @@ static void leave_out(imk_model *model)
     memset(&model->accel.lever_arm, 0, sizeof model->accel.lever_arm);
 }
 
+/* Do the settings or the ranges of all axes limit the motion? */
+static bool is_limited(const imk_model *model, int sensor, double stated)
+{
+    const imk_triad *triad = imk_model_triad(model, sensor);
+    bool has_ranges = triad->present;
+    for (int i = 0; has_ranges && i < triad->axis_count; i++)
+        has_ranges = triad->range.value[i] > 0;
+    return has_ranges || stated > 0;
+}
+
 static imk_status compile(imk_firmware *f, const imk_firmware_settings *settings,
                           imk_compensator *reference, imk_error *error)
 {
@@ -57,6 +71,16 @@ static imk_status compile(imk_firmware *f, const imk_firmware_settings *settings
     with.force_limit = settings->force_limit;
     /* The sample interval matters to what is left out only. */
     imk_status status = imk_compensator_start(reference, &f->model, 1e9, &with, error);
+    if (status != IMK_OK)
+        return status;
+    for (int sensor = 0; sensor < 2; sensor++)
+        f->limit_stated[sensor] =
+            is_limited(&f->model, sensor, sensor == IMK_GYRO ? with.rate_limit : with.force_limit);
+    if (!f->limit_stated[IMK_GYRO])
+        with.rate_limit = usual_limit[IMK_GYRO];
+    if (!f->limit_stated[IMK_ACCEL])
+        with.force_limit = usual_limit[IMK_ACCEL];
+    status = imk_compensator_start(reference, &f->model, 1e9, &with, error);
     if (status != IMK_OK)
         return status;
     with.tolerance =
@@ -114,7 +138,7 @@ static imk_status set_channel(imk_firmware *f, const imk_compensator *reference,
     channel->in_counts = triad->sensitivity.value[axis] != 0;
     channel->lower = zero - reach;
     channel->upper = zero + reach;
-    channel->flag = has_range ? IMK_FLAG_SATURATED : 0;
+    channel->flag = has_range ? IMK_FLAG_SATURATED : IMK_FLAG_LIMIT;
     if (channel->in_counts) {
         channel->lower = floor(channel->lower);
         channel->upper = ceil(channel->upper);
@@ -129,7 +153,6 @@ static imk_status set_channel(imk_firmware *f, const imk_compensator *reference,
         return imk_error_set(error, IMK_ERROR_KEY_MISSING, keys[sensor], "",
                              "add the range, or --rate-limit and --force-limit: fixed point needs "
                              "the largest values");
-    channel->flag = has_range ? IMK_FLAG_SATURATED : IMK_FLAG_LIMIT;
     channel->bits = channel->in_counts ? 0 : imki_firmware_bits(reach);
     if (channel->bits < 0)
         return imk_error_set(error, IMK_ERROR_UNSUPPORTED, keys[sensor],
@@ -137,11 +160,9 @@ static imk_status set_channel(imk_firmware *f, const imk_compensator *reference,
     return IMK_OK;
 }
 
-static imk_status set_frame(imk_firmware *f, const imk_firmware_settings *settings,
-                            const imk_compensator *reference, imk_error *error)
+static imk_status set_frame(imk_firmware *f, const imk_compensator *reference, imk_error *error)
 {
     const imk_triad *triads[2] = {&f->model.gyro, &f->model.accel};
-    const double stated[2] = {settings->rate_limit, settings->force_limit};
     f->iterations = 1;
     f->needs_temperature = reference->needs_temperature;
     f->temperature_minimum = reference->temperature_minimum - kelvin;
@@ -149,14 +170,10 @@ static imk_status set_frame(imk_firmware *f, const imk_firmware_settings *settin
     f->temperature_bits = TEMPERATURE_BITS;
     for (int sensor = 0; sensor < 2; sensor++) {
         const bool present = triads[sensor]->present;
-        bool has_ranges = present;
         f->axis_count[sensor] = present ? triads[sensor]->axis_count : 0;
         f->output_count[sensor] = f->correction.output_count[sensor];
         f->limited[sensor] = reference->limited[sensor];
         memcpy(f->limit[sensor], f->correction.limit[sensor], sizeof f->limit[sensor]);
-        for (int i = 0; i < f->axis_count[sensor]; i++)
-            has_ranges = has_ranges && triads[sensor]->range.value[i] > 0;
-        f->limit_stated[sensor] = has_ranges || stated[sensor] > 0;
         for (int i = 0; i < f->axis_count[sensor]; i++) {
             const imk_status status = set_channel(f, reference, sensor, i, error);
             if (status != IMK_OK)
@@ -192,17 +209,18 @@ static void count_cost(imk_firmware *f)
     for (int i = 0; i < f->operation_count; i++) {
         const imk_firmware_operation *o = &f->operation[i];
         const bool product = o->kind == IMK_FIRMWARE_PRODUCT;
+        const bool clips = o->kind == IMK_FIRMWARE_CLIP ||
+                           (o->kind == IMK_FIRMWARE_READING && f->arithmetic == IMK_FIRMWARE_FIXED);
         int addends = o->kind == IMK_FIRMWARE_SUM ? o->count : 0;
         cost->multiplications += product;
-        cost->comparisons += o->kind == IMK_FIRMWARE_CLIP ? 2 : o->kind == IMK_FIRMWARE_SIZE;
+        cost->comparisons += clips ? 2 : o->kind == IMK_FIRMWARE_SIZE;
         cost->additions += product && o->constant != 0;
         for (int k = 0; k < addends; k++)
             cost->multiplications += fabs(f->term[o->first + k].coefficient) != 1;
         cost->additions += addends > 0 ? addends - 1 + (o->constant != 0) : 0;
     }
     for (int sensor = 0; sensor < 2; sensor++) {
-        for (int i = 0; i < f->axis_count[sensor]; i++)
-            cost->comparisons += f->channel[sensor][i].flag != 0 ? 2 : 0;
+        cost->comparisons += 2 * f->axis_count[sensor];
         cost->comparisons += f->limited[sensor] ? 2 * f->output_count[sensor] : 0;
     }
     cost->comparisons += f->needs_temperature ? 2 : 0;
@@ -265,7 +283,7 @@ imk_status imk_firmware_plan(imk_firmware *firmware, const imk_model *model,
     leave_out(&f->model);
     status = compile(f, settings, &reference, error);
     if (status == IMK_OK)
-        status = set_frame(f, settings, &reference, error);
+        status = set_frame(f, &reference, error);
     if (status == IMK_OK) {
         round_thresholds(f);
         status = plan_operations(f, left, error);

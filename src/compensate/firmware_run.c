@@ -155,7 +155,7 @@ static unsigned flags_of(const imk_firmware *f, const imk_firmware_sample *s)
             const double r = s->reading[sensor][i];
             if (!(fabs(r) <= DBL_MAX))
                 flags |= IMK_FLAG_NOT_FINITE;
-            else if (channel->flag && !(r > channel->lower && r < channel->upper))
+            else if (!(r > channel->lower && r < channel->upper))
                 flags |= channel->flag;
         }
         for (int j = 0; j < f->output_count[sensor] && f->limited[sensor]; j++)

@@ -131,8 +131,9 @@ static void test_messages(void **state)
         "warning: the code does not correct accel.lever_arm, which needs more than one sample; "
         "imukit compensate LOG MODEL takes it out of a log\nTaken out: gyro.bias.fixed, "
         "accel.bias.fixed\nLeft in: gyro.bias.warm_up, gyro.noise, accel.lever_arm\nThe rate is "
-        "within 2.5e-07 rad/s of the exact correction\nThe force is within 5.9e-06 m/s^2 of the "
-        "exact correction\n0 multiplications, 6 additions, 12 comparisons a sample\nWrote "
+        "within 2.5e-07 rad/s of the exact correction up to 4.4 rad/s\nThe force is within 5.9e-06 "
+        "m/s^2 of the exact correction up to 107.9 m/s^2\n0 multiplications, 6 additions, 12 "
+        "comparisons a sample\nWrote "
         "made/imukit_my_unit_no_7.h, .c and _test.c. Next, for example:\n    arm-none-eabi-gcc "
         "-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard -O2 -c made/imukit_my_unit_no_7.c\n");
     assert_string_equal(out, "");
@@ -164,6 +165,34 @@ static void test_messages(void **state)
     sweep();
 }
 
+/* The comparisons of a sample without flags, counted in the code: each side of a condition, two in
+ * clip() and one in size(). */
+static const char count_line[] =
+    "awk '/^unsigned/ { inside = 1 } inside { n += 2 * gsub(/clip\\(/, \"\") + gsub(/size\\(/, "
+    "\"\"); gsub(/>>|->/, \"\"); n += gsub(/[<>]/, \"\") } END { print n }' unit.c";
+
+static void test_comparisons(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {"float", "double", "fixed"};
+    static const char *const models[] = {"linear", "nonlinear"};
+    for (int k = 0; k < 6; k++) {
+        char line[500];
+        snprintf(line, sizeof line,
+                 "$I compensate " SOURCE_DIRECTORY "/tests/firmware/%s.yaml --emit-c . --prefix "
+                 "unit --arithmetic %s --json",
+                 models[k / 3], kinds[k % 3]);
+        assert_int_equal(run(line), 0);
+        json_t *document = json_loads(out, 0, NULL), *result = json_object_get(document, "result");
+        const json_t *cost = json_object_get(result, "cost");
+        const long long stated = json_integer_value(json_object_get(cost, "comparisons"));
+        json_decref(document);
+        assert_int_equal(run(count_line), 0);
+        assert_int_equal(strtoll(out, NULL, 10), stated);
+    }
+    sweep();
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -183,7 +212,7 @@ static void test_refusals(void **state)
     check_message(
         "$I compensate unit.yaml --emit-c . --vectors 0", 2,
         "imukit compensate: error: --vectors 0: expected 1 to 1000000\n" TRY("compensate"));
-    check_message("$I compensate any.yaml --emit-c . --prefix 7up", 1,
+    check_message("$I compensate any.yaml --emit-c . --prefix 7up --rate-limit 9rad/s", 1,
                   "imukit compensate: error: prefix: an argument is not valid: 7up; expected a "
                   "name of letters, digits and _, "
                   "at most 47, that does not begin with a digit\n");
@@ -192,7 +221,10 @@ static void test_refusals(void **state)
                   "the range, or "
                   "--rate-limit and --force-limit: fixed point needs the largest values\n");
     check_message("$I compensate any.yaml --emit-c file", 1,
-                  "imukit compensate: error: file/imukit_unit.h: the file cannot be opened: Not a "
+                  "imukit compensate: warning: the model states no gyro.range: the code sets its "
+                  "flag LIMIT beyond 35 rad/s; add the range to the model, or give "
+                  "--rate-limit\nimukit compensate: error: file/imukit_unit.h: the file cannot be "
+                  "opened: Not a "
                   "directory; check the path\n");
     assert_int_equal(run("$I compensate any.yaml --emit-c . --arithmetic fixed --rate-limit "
                          "300deg/s"),
@@ -205,7 +237,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_self_tests),         cmocka_unit_test(test_random_models),
         cmocka_unit_test(test_self_test_can_fail), cmocka_unit_test(test_messages),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_comparisons),        cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -129,11 +129,47 @@ static void test_cost(void **state)
     /* Of Horner's rule 18, t 1, readings less bias 6, weights 15 + 6. */
     assert_int_equal(plan.cost.additions, 18 + 1 + 6 + 15 + 6);
     assert_int_equal(plan.iterations, 1);
+    /* Each reading with its range, the temperature with its own, which is clipped too. */
+    assert_int_equal(plan.cost.comparisons, 6 * 2 + 2 + 2);
     /* A perfect unit costs nothing but looking at its readings. */
     imk_model perfect;
     imk_model_default(&perfect);
     make_plan(&perfect, IMK_FIRMWARE_FLOAT);
-    assert_int_equal(plan.cost.multiplications + plan.cost.additions + plan.cost.comparisons, 0);
+    assert_int_equal(plan.cost.multiplications + plan.cost.additions, 0);
+    assert_int_equal(plan.cost.comparisons, 6 * 2);
+}
+
+/* A linear model without a range is flagged beyond the motion that its bound holds for, which is
+ * the usual unit's or the one stated: in every sample without a flag the bound holds. */
+static void test_no_range(void **state)
+{
+    (void)state;
+    uint64_t random = 11;
+    double worst = 0;
+    int held = 0;
+    imk_model model = third_order();
+    for (int i = 0; i < 3; i++)
+        model.gyro.range.value[i] = model.accel.range.value[i] = 0;
+    for (int stated = 0; stated < 2; stated++) {
+        imk_error error;
+        imk_firmware_settings settings = imk_firmware_default();
+        settings.rate_limit = stated ? 20 : 0;
+        CHECK_OK(imk_firmware_plan(&plan, &model, &settings, &error));
+        CHECK_OK(imk_correction_start(&exact, &plan.model, NULL, &error));
+        CHECK_CLOSE(plan.limit[IMK_GYRO][0], stated ? 20 : 35, 1e-6);
+        assert_int_equal(plan.limit_stated[IMK_GYRO], stated);
+        for (int k = 0; k < 1000; k++) {
+            imk_firmware_sample sample;
+            draw_sample(&random, &plan, 3, &sample);
+            imk_firmware_run(&plan, &sample);
+            held += run_sample(&random, 3 * random_unit(&random), &worst);
+            for (int i = 0; i < 3; i++)
+                if (fabs(sample.reading[IMK_GYRO][i]) > 1.5 * plan.limit[IMK_GYRO][i])
+                    assert_true(sample.flags & IMK_FLAG_LIMIT);
+        }
+    }
+    CHECK_BELOW(worst, 1.0);
+    assert_in_range(held, 200, 1800);
 }
 
 /* Flags are those of the compensator, in every arithmetic, at the edges too: readings at the range,
@@ -271,11 +307,12 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bound_float), cmocka_unit_test(test_bound_double),
-        cmocka_unit_test(test_bound_fixed), cmocka_unit_test(test_bound_can_fail),
-        cmocka_unit_test(test_cost),        cmocka_unit_test(test_flags),
-        cmocka_unit_test(test_not_finite),  cmocka_unit_test(test_far_readings),
-        cmocka_unit_test(test_left_out),    cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_bound_float),  cmocka_unit_test(test_bound_double),
+        cmocka_unit_test(test_bound_fixed),  cmocka_unit_test(test_bound_can_fail),
+        cmocka_unit_test(test_cost),         cmocka_unit_test(test_no_range),
+        cmocka_unit_test(test_flags),        cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_far_readings), cmocka_unit_test(test_left_out),
+        cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -139,10 +139,10 @@ static void print_bound(const imki_emission *e)
             limit = fmin(limit, f->limit[sensor][j]);
         imki_text_add(out, " *  %-12s ", imki_emit_motion[sensor]);
         imki_emit_decimal(out, f->bound[sensor], 2);
-        imki_text_add(out, " %s, for motion up to %s", imki_emit_unit[sensor],
-                      f->limit_stated[sensor] ? "" : "(no limit stated) ");
+        imki_text_add(out, " %s, for motion up to ", imki_emit_unit[sensor]);
         imki_emit_decimal(out, limit, 4);
-        imki_text_add(out, " %s\n", imki_emit_unit[sensor]);
+        imki_text_add(out, " %s%s\n", imki_emit_unit[sensor],
+                      f->limit_stated[sensor] ? "" : " (the model states no range)");
     }
     imki_text_add(out,
                   " * in samples without flags, whether the compiler fuses multiplications and "

@@ -349,13 +349,6 @@ static void reading_flags(source *s, int sensor, int i)
     imki_text *out = &s->body;
     char name[32];
     snprintf(name, sizeof name, "%s[%d]", imki_emit_sensor[sensor], i);
-    if (!channel->flag && integer)
-        return;
-    if (!channel->flag) {
-        imki_text_add(out, "    if (!(%s - %s == 0)", name, name);
-        raise_flag(s, IMK_FLAG_NOT_FINITE, NULL);
-        return;
-    }
     imki_text_add(out, "    if (!(%s > ", name);
     threshold(s, channel->lower, integer, channel->bits);
     imki_text_add(out, " && %s < ", name);
