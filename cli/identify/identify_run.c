@@ -6,6 +6,7 @@
 
 #include "imukit/identify_curve.h"
 
+#include <math.h>
 #include <string.h>
 
 static imk_status run_log(const identify_options *o, const imk_record_source *source,
@@ -16,7 +17,7 @@ static imk_status run_log(const identify_options *o, const imk_record_source *so
     settings.confidence = o->confidence;
     settings.significance = o->significance;
     settings.from_allan = o->method == METHOD_ALLAN;
-    settings.tolerance = o->tolerance;
+    settings.tolerance = isnan(o->tolerance) ? 0 : o->tolerance;
     settings.gauss_markov_max = (int)o->gauss_markov.value;
     settings.summarise = o->runs;
     settings.take_out = o->take_out;

@@ -2,6 +2,7 @@
 /* imukit identify: log at rest -> stochastic model with confidence intervals and a verdict. */
 #include "identify_parts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,8 +66,10 @@ static const option allan_option_table[] = {
     {"plain", OPTION_FLAG, AT(plain),
      .help = "the clusters of the curve do not overlap; default: they do"},
     {"tolerance", OPTION_FRACTION, AT(tolerance), .value = "FRACTION",
-     .help = "error of the model allowed in each deviation, in addition to the statistical error: "
-             "2% for a curve read from a page"},
+     .help =
+         "error allowed in each deviation, in addition to the statistical error, such as 2% for a "
+         "curve read from a page; default for --curve: the smallest with which the terms explain "
+         "the curve, which is told; for a log 0"},
     {"gauss-markov", OPTION_INTEGER, AT(gauss_markov), .value = "N", .choices = "0-8",
      .help = "number of Gauss-Markov terms to look for in the Allan deviations; default 0 (the "
              "likelihood looks for them by itself)"},
@@ -156,9 +159,9 @@ static int check_allan(const identify_options *o)
         return command_misused("--duration goes with --plan or --curve; a log has its own length");
     if (o->plain && !o->curve)
         return command_misused("--plain goes with --curve");
-    if ((o->tolerance > 0 || o->gauss_markov.given) && !o->curve && o->method != METHOD_ALLAN)
+    if ((!isnan(o->tolerance) || o->gauss_markov.given) && !o->curve && o->method != METHOD_ALLAN)
         return command_misused("%s goes with --method allan or --curve",
-                               o->tolerance > 0 ? "--tolerance" : "--gauss-markov");
+                               !isnan(o->tolerance) ? "--tolerance" : "--gauss-markov");
     if (o->tolerance > 0.5)
         return command_misused("--tolerance: at most 50%%");
     return -1;
@@ -250,6 +253,7 @@ static int run(int count, char **words)
 {
     identify_options o = {.confidence = 0.95,
                           .significance = 0.01,
+                          .tolerance = (double)NAN,
                           .seed = {.value = 1},
                           .log = {.gaps = IMK_GAPS_KEEP, .missing_allowed = true}};
     const char *operands[IMK_JOINT_RECORDS_MAX];

@@ -18,7 +18,9 @@ typedef struct imk_identify_curve_settings {
     double rate, duration; /**< sampling rate [Hz] and length [s] of the record behind the table;
                               must be set */
     double confidence, significance; /**< see imk_identify_log_settings; default 0.95, 0.01 */
-    double tolerance;                /**< see imk_allan_fit_settings; default 0 */
+    /** See imk_allan_fit_settings. NaN (default): the smallest of 0 to 20 % with which the terms
+     *  explain the curve; a finding states it if it is not 0. */
+    double tolerance;
     int gauss_markov_max;            /**< see imk_allan_fit_settings; default 0 */
     bool plain;                      /**< the table is of non-overlapping clusters; default false */
 } imk_identify_curve_settings;

@@ -20,8 +20,7 @@
 #define LEFT_OUT "deviations at tau below {3.3g} s are left out: the terms do not explain them."
 #define CURVE_MISFIT                                                                               \
     "Either the terms do not explain the curve, or the options do not describe it: add --plain "   \
-    "if its clusters do not overlap, --tolerance if it was read from a page. Do not trust the "    \
-    "intervals."
+    "if its clusters do not overlap, and check --rate and --duration. Do not trust the intervals."
 #define PLAN_LENGTH "--plan: a record of {0g} s at {1g} Hz does not have 256 to 1e12 samples; "
 
 #define SAMPLES_FIRST ": {0} of {1} samples (first: row {2})"
@@ -96,6 +95,14 @@ static const struct message {
      "{0} values of tau are multiples of 1/{1g} s and at most half of {2g} s; a fit needs 4"},
     {"curve", CURVE_FIT "."},
     {"curve_from", CURVE_FIT "; " LEFT_OUT},
+    {"curve_tolerance",
+     "{name}: an error of {0g} % is allowed in each deviation, as of a curve read "
+     "from a page: statistical errors alone do not explain its scatter; "
+     "--tolerance states another error."},
+    {"curve_failed",
+     "column {name}: no sum of the five terms comes near this curve, with any error "
+     "of its deviations up to 20 % ({0t}); check --rate and --duration, the units "
+     "and the columns, and add --plain if its clusters do not overlap"},
     {"curve_misfit", CURVE_FIT ". " CURVE_MISFIT},
     {"curve_misfit_from", CURVE_FIT "; " LEFT_OUT " " CURVE_MISFIT},
     /* record_plan.c, plan_requirement.c */

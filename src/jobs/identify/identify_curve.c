@@ -25,6 +25,14 @@ static const double least_ratio = 1.1;
 /* Below this chance the terms do not explain the curve. */
 static const double misfit_chance = 0.001;
 
+/* Errors of each deviation that are tried where none is stated, from none to those of a sketch, and
+ * the chance at which one is enough. */
+static const double tolerances[] = {0, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2};
+static const double tolerance_chance = 0.05;
+
+/* A curve that needs more than this was read badly, or its record holds other terms. */
+static const double tolerance_told = 0.05;
+
 /* The tau in the table that are used. */
 typedef struct used_rows {
     size_t count, row[IMK_ALLAN_FIT_FACTORS_MAX], factor[IMK_ALLAN_FIT_FACTORS_MAX];
@@ -33,8 +41,10 @@ typedef struct used_rows {
 
 imk_identify_curve_settings imk_identify_curve_default(void)
 {
-    return (imk_identify_curve_settings){
-        .cookie = settings_cookie, .confidence = 0.95, .significance = 0.01};
+    return (imk_identify_curve_settings){.cookie = settings_cookie,
+                                         .confidence = 0.95,
+                                         .significance = 0.01,
+                                         .tolerance = (double)NAN};
 }
 
 static int find_column(const imk_log *log, const char *name)
@@ -131,15 +141,56 @@ static imk_status keep_curve(imk_identify_log *log, size_t channel, const imk_al
 }
 
 static void tell_fit(imk_identify_log *log, size_t channel, const imk_allan_fit *fit,
-                     const used_rows *used)
+                     const used_rows *used, double found)
 {
     static const char *const codes[2][2] = {{"curve", "curve_from"},
                                             {"curve_misfit", "curve_misfit_from"}};
+    const char *name = imk_even_record_column(&log->record, channel)->name;
     const bool bad = fit->probability < misfit_chance;
     imki_find(&log->findings, bad ? IMK_FINDING_NOTE : IMK_FINDING_GOOD, codes[bad][fit->first > 0],
-              imk_even_record_column(&log->record, channel)->name,
+              name,
               IMKI_NUMBERS(fit->chi_square, (double)fit->degrees, fit->probability,
                            used->tau[fit->first]));
+    if (found > 0)
+        imki_find(&log->findings, found > tolerance_told ? IMK_FINDING_WARNING : IMK_FINDING_NOTE,
+                  "curve_tolerance", name, IMKI_NUMBERS(100 * found));
+}
+
+/* Fit with the smallest error of the deviations that makes the terms explain the curve and leaves
+ * out few of its tau. Errors of reading are many times the statistical ones at short tau: without
+ * them a fit fails, or leaves out the tau that tell the white noise. A curve that no error mends
+ * but leaving out does (an output filter shapes the short tau of a computed one) is fitted so.
+ * @param found  set to the error taken */
+static imk_status fit_within(imk_allan_fit_settings *settings, const imk_allan_table *table,
+                             imk_allan_fit *fit, imk_allan_fit *other, double *found,
+                             void *workspace, size_t size)
+{
+    enum { COUNT = sizeof tolerances / sizeof tolerances[0] };
+    const size_t few = 3 + table->count / 16;
+    bool kept = false;
+    imk_status status = IMK_OK;
+    for (size_t k = 0; k < COUNT; k++) {
+        settings->tolerance = tolerances[k];
+        const imk_status now = imk_allan_fit_table(settings, table, other, workspace, size, NULL);
+        const double enough = k == 0 ? misfit_chance : tolerance_chance;
+        const bool explained = now == IMK_OK && other->probability >= enough;
+        if (explained && other->first <= few) {
+            *fit = *other;
+            *found = tolerances[k];
+            return IMK_OK;
+        }
+        if (explained && !kept) {
+            *fit = *other;
+            *found = tolerances[k];
+            kept = true;
+        }
+        status = now;
+    }
+    if (kept)
+        return IMK_OK;
+    *fit = *other;
+    *found = tolerances[COUNT - 1];
+    return status;
 }
 
 static imk_status fit_channel(imk_identify_log *log, size_t channel,
@@ -166,15 +217,18 @@ static imk_status fit_channel(imk_identify_log *log, size_t channel,
     settings.gauss_markov_max = s->gauss_markov_max;
     const size_t size = imk_allan_fit_workspace_size(&settings, used->count, 0);
     void *workspace = imki_arena_room(scratch, size);
-    imk_allan_fit *fit = imki_arena_take(scratch, sizeof *fit);
+    imk_allan_fit *fit = imki_arena_take(scratch, 2 * sizeof *fit);
     if (!workspace || !fit)
         return IMK_ERROR_MEMORY;
-    imk_status status = imk_allan_fit_table(&settings, &table, fit, workspace, size, NULL);
+    double found = 0;
+    imk_status status = isnan(s->tolerance)
+                            ? fit_within(&settings, &table, fit, fit + 1, &found, workspace, size)
+                            : imk_allan_fit_table(&settings, &table, fit, workspace, size, NULL);
     if (status == IMK_OK)
         status = keep_curve(log, channel, fit, deviations, used, &scratch->allocator);
     if (status == IMK_OK) {
         store(&log->result[channel], fit, deviations, used);
-        tell_fit(log, channel, fit, used);
+        tell_fit(log, channel, fit, used, found);
     }
     return status;
 }
@@ -194,7 +248,7 @@ static imk_status fit_all(imk_identify_log *log, const imk_record_source *source
         if (status == IMK_ERROR_MEMORY)
             imk_error_set(error, status, NULL, NULL, NULL);
         else if (status != IMK_OK)
-            imki_fail(&log->findings, error, status, "column_failed",
+            imki_fail(&log->findings, error, status, "curve_failed",
                       imk_even_record_column(&log->record, c)->name, IMKI_NUMBERS(status));
     }
     return status;
@@ -206,6 +260,9 @@ static imk_status check_settings(const imk_identify_curve_settings *s, imk_error
         return imki_refuse(error, IMK_ERROR_RANGE, "rate", s->rate, 0, "a rate above 0 Hz");
     if (!(s->duration > 0))
         return imki_refuse(error, IMK_ERROR_RANGE, "duration", s->duration, 0, "a time above 0 s");
+    if (!isnan(s->tolerance) && !(s->tolerance >= 0 && s->tolerance <= 0.5))
+        return imki_refuse(error, IMK_ERROR_RANGE, "tolerance", s->tolerance, 0.5,
+                           "a fraction from 0 to 0.5");
     return imki_check_fraction("confidence", s->confidence, error);
 }
 
