@@ -59,7 +59,8 @@ static imk_verdict assess(const session *b, imk_result *result)
     imk_message *before = command_memory(NULL, (count + 1) * sizeof *before);
     for (size_t k = 0; k < count; k++) {
         const command_warning *warning = command_warning_get(k);
-        before[k] = (imk_message){IMK_FINDING_WARNING, warning->code, warning->message};
+        before[k] = (imk_message){
+            .level = IMK_FINDING_WARNING, .code = warning->code, .text = warning->message};
     }
     const imk_verdict v = imk_calibrate_verdict(b->found, count, before, result);
     free(before);

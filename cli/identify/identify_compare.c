@@ -82,7 +82,7 @@ static int identify_each(several_logs *s, const imk_executor *executor, imk_resu
         imk_identify_log_let_samples_go(s->log[r]);
         shown->log = s->log[r];
         shown->verdict = imk_identify_verdict(s->log[r], shown->label, result);
-        identify_warn(&shown->verdict);
+        identify_warn(s->options, &shown->verdict);
         code = check_channels(s, r);
     }
     return code;
@@ -103,7 +103,7 @@ static int compare(several_logs *s, identification *joint, const imk_executor *e
     }
     joint->shown.log = &several->joint;
     joint->shown.verdict = imk_several_verdict(several, s->label, result);
-    identify_warn(&joint->shown.verdict);
+    identify_warn(s->options, &joint->shown.verdict);
     bool warns = imk_verdict_warns(&joint->shown.verdict);
     for (size_t r = 0; r < s->count; r++)
         warns = warns || imk_verdict_warns(&s->shown[r].verdict);

@@ -18,7 +18,7 @@ typedef struct identify_options {
     option_integer seed, threads, gauss_markov;
     int method;        /* identify_method */
     unsigned take_out; /* IMK_SCREEN_… bits: all but --keep */
-    bool twin, json, strict, runs, devices, curve, plain;
+    bool twin, json, strict, verbose, runs, devices, curve, plain;
 } identify_options;
 
 /* Everything found on a log, or on several together. */
@@ -50,8 +50,8 @@ int identify_several(identification *joint, size_t count, const char *const *pat
 int identify_plan(const identify_options *o);
 
 /* verb_identify.c */
-/* The warnings of a verdict to standard error and into the JSON. */
-void identify_warn(const imk_verdict *verdict);
+/* The warnings of a verdict to standard error, in a few words, and into the JSON. */
+void identify_warn(const identify_options *o, const imk_verdict *verdict);
 /* Where the files are, and what to do next; then everything is shown. @return the exit code */
 int identify_end(const identification *i, imk_result *result, bool warns);
 

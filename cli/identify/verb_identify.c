@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define AT(field) offsetof(identify_options, field)
 
@@ -39,6 +40,8 @@ static const option identify_option_table[] = {
     {"devices", OPTION_FLAG, AT(devices),
      .help = "several logs are of different sensors: estimate the mean and the spread of each "
              "term, and show where the sensors differ"},
+    {"verbose", OPTION_FLAG, AT(verbose),
+     .help = "print the messages of the verdict with all details, as the page has them"},
     STRICT_OPTION(AT(strict), "exit with 1 when the verdict contains a warning"),
     JSON_OPTION(AT(json), "print the result as JSON instead of tables"),
     THREADS_OPTION(AT(threads), "threads to use; default: all processors"),
@@ -77,12 +80,17 @@ static const option allan_option_table[] = {
 
 _Static_assert(IMK_TERMS_MAX == 8, "as the range of --gauss-markov says");
 
-void identify_warn(const imk_verdict *verdict)
+void identify_warn(const identify_options *o, const imk_verdict *verdict)
 {
     (void)command_unless_memory(verdict->message ? IMK_OK : IMK_ERROR_MEMORY);
-    for (size_t k = 0; verdict->message && k < verdict->count; k++)
-        if (verdict->message[k].level == IMK_FINDING_WARNING)
-            command_warn(verdict->message[k].code, "%s", verdict->message[k].text);
+    /* On a terminal the sentence and the list below it say the same. */
+    if (!o->json && isatty(STDOUT_FILENO))
+        return;
+    for (size_t k = 0; verdict->message && k < verdict->count; k++) {
+        const imk_message *m = &verdict->message[k];
+        if (m->level >= IMK_FINDING_WARNING && !m->told)
+            command_warn(m->code, "%s", m->clause && !o->json && !o->verbose ? m->clause : m->text);
+    }
 }
 
 int identify_end(const identification *i, imk_result *result, bool warns)
@@ -131,7 +139,7 @@ static int identify_log(identification *i, const imk_executor *executor)
         imk_result *result = show_begin("identify");
         i->shown.log = log;
         i->shown.verdict = imk_identify_verdict(log, NULL, result);
-        identify_warn(&i->shown.verdict);
+        identify_warn(i->options, &i->shown.verdict);
         code = identify_make_model(i, executor);
         if (code < 0) {
             imk_show_identify_log(&i->shown, result);
@@ -231,6 +239,7 @@ static int identify_operands(const identify_options *o, size_t logs, const char 
     identification *i = command_zeroed(sizeof *i);
     i->options = o;
     i->shown.name = operands[0];
+    i->shown.verbose = o->verbose;
     int code = -1;
     if (o->truth) {
         code = command_model(o->truth, &i->truth, NULL);

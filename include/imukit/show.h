@@ -60,9 +60,20 @@ IMK_API void imk_show_grade(const imk_graded_several *r, imk_grade_map map, imk_
  *  @{ */
 /** One message of a verdict. */
 typedef struct imk_message {
-    imk_finding_level level; /**< good, note or warning */
+    imk_finding_level level; /**< good, note, warning, or failure: not usable */
     const char *code, *text;
+    const char *brief;  /**< the same in a few words; NULL: the text is short */
+    const char *clause; /**< what it does to the estimates, part of a sentence; NULL: nothing */
+    uint64_t channels;  /**< channels concerned, bit c for channel c; 0: the record as a whole */
+    bool told; /**< a finding of the job, which the caller reports with imk_finding_message() */
 } imk_message;
+
+/** What a record can be used for. */
+typedef enum imk_usability {
+    IMK_USABLE = 0,       /**< no test found a fault */
+    IMK_USABLE_WITH_CARE, /**< a fault affects some terms */
+    IMK_NOT_USABLE
+} imk_usability;
 
 /** Assessment of a record: the uses it is good for, and its faults. The memory belongs to the
  *  result. */
@@ -79,14 +90,20 @@ IMK_API imk_verdict imk_identify_verdict(const imk_identify_log *log, const char
 /** Assess several records together. @param labels  of the records */
 IMK_API imk_verdict imk_several_verdict(const imk_identify_several *several,
                                         const char *const *labels, imk_result *result);
-/** True when a message of the verdict is a warning. */
+/** True when a message of the verdict is a warning or a failure. */
 IMK_API bool imk_verdict_warns(const imk_verdict *verdict);
+/** The usability that the levels of the messages mean. */
+IMK_API imk_usability imk_verdict_usability(const imk_verdict *verdict);
+/** One sentence: whether the record of an identification is usable, and what is affected, why. The
+ *  memory belongs to the result. */
+IMK_API const char *imk_identify_sentence(const imk_verdict *verdict);
 
 /** Results of one record, or of several together, and related data that are shown, too. */
 typedef struct imk_identify_shown {
     const imk_identify_log *log;
     const char *name, *label; /**< such as its path and the last part of the path */
     imk_verdict verdict;
+    bool verbose;           /**< show the whole messages of the verdict on the terminal, too */
     const imk_model *truth; /**< true model, for comparison; NULL: not known */
     /** Simulated deviations per channel (imk_identify_log_twin()); NULL: none. */
     const imk_allan_curve *twin;

@@ -26,7 +26,8 @@ static void warn(imk_verdict *v, const char *code, const char *format, ...)
     va_end(arguments);
     v->message = imki_arena_extend(arena, v->message, v->count, sizeof *v->message);
     if (v->message)
-        v->message[v->count++] = (imk_message){IMK_FINDING_WARNING, code, words};
+        v->message[v->count++] =
+            (imk_message){.level = IMK_FINDING_WARNING, .code = code, .text = words};
     else
         v->count = 0;
 }

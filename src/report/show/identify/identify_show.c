@@ -182,6 +182,8 @@ void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result)
     imk_result_heading(result, "Verdict");
     imki_verdict_boxes(&shown->verdict, result);
     imk_result_heading(result, "Parameters");
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    imk_result_line(result, "%s", imk_identify_sentence(&shown->verdict));
     imk_result_for(result, IMK_FOR_BOTH);
     imki_identify_tables(log, result);
     imk_result_for(result, IMK_FOR_PAGE);
@@ -198,7 +200,7 @@ void imk_show_identify_log(const imk_identify_shown *shown, imk_result *result)
         imki_truth_table(shown, result);
     }
     imk_result_for(result, IMK_FOR_TERMINAL);
-    imki_verdict_lines(&shown->verdict, result);
+    imki_verdict_lines(&shown->verdict, shown->verbose, result);
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, "Allan deviation");
     imki_identify_figure(

@@ -14,12 +14,18 @@ void imki_verdict_add(imk_verdict *verdict, imk_finding_level level, const char 
 /* The same of a list, unless it is empty; it is freed. */
 void imki_verdict_list(imk_verdict *verdict, imk_finding_level level, const char *code,
                        const char *before, imki_text *list, const char *after);
-/* The array "verdict". */
+/* The channels that the last message concerns; from its code follow its few words. */
+void imki_verdict_about(imk_verdict *verdict, const imk_even_record *record, uint64_t channels);
+/* "usability" with its sentence, and the array "verdict". */
 void imki_verdict_data(const imk_verdict *verdict, imk_result *result);
 /* Coloured boxes. */
 void imki_verdict_boxes(const imk_verdict *verdict, imk_result *result);
-/* Lines of all but the warnings, which go to standard error. */
-void imki_verdict_lines(const imk_verdict *verdict, imk_result *result);
+/* Lines of the whole messages, or of a few words each and at most 120 in all. */
+void imki_verdict_lines(const imk_verdict *verdict, bool verbose, imk_result *result);
+/* verdict_vibration.c: tones that several channels share. */
+void imki_assess_vibration(imk_verdict *verdict, const imk_identify_log *log);
+/* verdict_words.c */
+void imki_verdict_briefly(const imk_verdict *verdict, imk_result *result);
 
 /* ---- parts: identify_show.c, identify_tables.c, identify_figure_show.c ------------------------
  */

@@ -305,6 +305,12 @@ void imk_show_identify_several(const imk_identify_several *s, const imk_identify
     imk_result_for(result, IMK_FOR_PAGE);
     imk_result_heading(result, "Verdict");
     imki_verdict_boxes(&joint->verdict, result);
+    imk_result_for(result, IMK_FOR_TERMINAL);
+    imk_result_line(result, "%s", imk_identify_sentence(&joint->verdict));
+    for (size_t r = 0; r < s->count; r++)
+        if (imk_verdict_usability(&records[r].verdict) != IMK_USABLE)
+            imk_result_line(result, "%s: %s", records[r].label,
+                            imk_identify_sentence(&records[r].verdict));
     if (s->runs)
         show_joint(joint, result);
     imk_result_for(result, IMK_FOR_PAGE);
@@ -320,7 +326,7 @@ void imk_show_identify_several(const imk_identify_several *s, const imk_identify
         imki_verdict_boxes(&records[r].verdict, result);
     imk_result_for(result, IMK_FOR_TERMINAL);
     for (size_t r = 0; r < s->count; r++)
-        imki_verdict_lines(&records[r].verdict, result);
-    imki_verdict_lines(&joint->verdict, result);
+        imki_verdict_lines(&records[r].verdict, joint->verbose, result);
+    imki_verdict_lines(&joint->verdict, joint->verbose, result);
     imk_result_for(result, IMK_FOR_BOTH);
 }

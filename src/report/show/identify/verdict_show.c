@@ -32,7 +32,8 @@ void imki_verdict_add(imk_verdict *v, imk_finding_level level, const char *code,
     }
     if (v->label)
         text = imk_result_key(v->result, "%.200s: %s", v->label, text);
-    v->message[v->count++] = (imk_message){level, code, text};
+    v->message[v->count++] = (imk_message){.level = level, .code = code, .text = text};
+    imki_verdict_about(v, NULL, 0);
 }
 
 void imki_verdict_list(imk_verdict *v, imk_finding_level level, const char *code,
@@ -48,14 +49,19 @@ void imki_verdict_list(imk_verdict *v, imk_finding_level level, const char *code
 bool imk_verdict_warns(const imk_verdict *v)
 {
     for (size_t k = 0; k < v->count; k++)
-        if (v->message[k].level == IMK_FINDING_WARNING)
+        if (v->message[k].level >= IMK_FINDING_WARNING)
             return true;
     return false;
 }
 
 void imki_verdict_data(const imk_verdict *v, imk_result *result)
 {
-    static const char *const levels[] = {"good", "note", "warning"};
+    static const char *const levels[] = {"good", "note", "warning", "failure"};
+    static const char *const grades[] = {"usable", "usable with care", "not usable"};
+    imk_result_object(result, "usability");
+    imk_result_text(result, "grade", grades[imk_verdict_usability(v)]);
+    imk_result_text(result, "sentence", imk_identify_sentence(v));
+    imk_result_end(result);
     imk_result_array(result, "verdict");
     for (size_t k = 0; k < v->count; k++) {
         imk_result_object(result, NULL);
@@ -69,14 +75,18 @@ void imki_verdict_data(const imk_verdict *v, imk_result *result)
 
 void imki_verdict_boxes(const imk_verdict *v, imk_result *result)
 {
+    imk_result_finding(result, (int)imk_verdict_level(v), imk_identify_sentence(v));
     for (size_t k = 0; k < v->count; k++)
-        imk_result_finding(result, (int)v->message[k].level, v->message[k].text);
+        if (strcmp(v->message[k].code, "good") != 0)
+            imk_result_finding(result, (int)v->message[k].level, v->message[k].text);
 }
 
-void imki_verdict_lines(const imk_verdict *v, imk_result *result)
+void imki_verdict_lines(const imk_verdict *v, bool verbose, imk_result *result)
 {
-    for (size_t k = 0; k < v->count; k++)
-        if (v->message[k].level != IMK_FINDING_WARNING)
+    if (!verbose)
+        imki_verdict_briefly(v, result);
+    for (size_t k = 0; verbose && k < v->count; k++)
+        if (strcmp(v->message[k].code, "good") != 0)
             imk_result_line(result, "%s", v->message[k].text);
 }
 
@@ -242,7 +252,7 @@ static const struct concern {
      "samples are missing; the estimate uses those that are there, and its intervals allow for "
      "the gaps",
      NULL},
-    {IMK_VERDICT_SHORT, find_short, 0, IMK_FINDING_WARNING, "short",
+    {IMK_VERDICT_SHORT, find_short, 0, IMK_FINDING_NOTE, "short",
      "the record is too short for the slowest terms: they are bounded, not measured; log for "
      "longer",
      NULL},
@@ -276,6 +286,7 @@ static const struct concern {
 static void assess_concern(imk_verdict *v, const imk_identify_log *log, const struct concern *about)
 {
     imki_text list = {.bytes = NULL};
+    uint64_t channels = 0;
     for (size_t c = 0; c < log->record.count; c++) {
         imki_text detail = {.bytes = NULL};
         imki_text_put(&detail, "");
@@ -283,6 +294,7 @@ static void assess_concern(imk_verdict *v, const imk_identify_log *log, const st
             (!about->find || about->find(log, c, &detail))) {
             imki_text_add(&list, "%s%s", list.size > 0 ? ", " : "",
                           imk_even_record_column(&log->record, c)->name);
+            channels |= (uint64_t)1 << c;
             if (detail.size > 0)
                 imki_text_add(&list, " (%s)", detail.bytes);
         }
@@ -293,6 +305,8 @@ static void assess_concern(imk_verdict *v, const imk_identify_log *log, const st
     if (list.size > 0)
         imki_text_add(&list, ": %s.", kept ? about->kept : about->text);
     imki_verdict_list(v, about->level, about->code, "", &list, "");
+    if (channels)
+        imki_verdict_about(v, &log->record, channels);
 }
 
 /* ---- the record as a whole ------------------------------------------------------------------- */
@@ -344,6 +358,7 @@ static void assess_gravity(imk_verdict *v, const imk_identify_log *log)
 static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
 {
     imki_text list = {.bytes = NULL};
+    uint64_t channels = 0;
     for (size_t c = 0; c < log->record.count; c++) {
         const imk_identification *r = &log->result[c];
         if (r->five_terms_from <= 1.5 * log->record.dt)
@@ -356,6 +371,7 @@ static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
                       {r->sinusoid_count > 0, "lines"},
                       {r->gauss_markov_count > 0, "Gauss-Markov noise"}};
         bool any = false;
+        channels |= (uint64_t)1 << c;
         imki_text_add(&list, "%s%s from %.3g s (", list.size > 0 ? "; " : "",
                       imk_even_record_column(&log->record, c)->name, r->five_terms_from);
         for (size_t k = 0; k < sizeof causes / sizeof causes[0]; k++)
@@ -370,6 +386,8 @@ static void assess_five_terms(imk_verdict *v, const imk_identify_log *log)
                       "explain the log only from some averaging time on. At shorter times other "
                       "terms of the model dominate the log: ",
                       &list, ".");
+    if (channels)
+        imki_verdict_about(v, &log->record, channels);
 }
 
 static void assess_length(imk_verdict *v, const imk_identify_log *log)
@@ -392,22 +410,28 @@ static void assess_length(imk_verdict *v, const imk_identify_log *log)
                          1 / record->dt);
 }
 
-/* Findings of the job itself, without its warnings, which are not part of the verdict. For a curve,
- * only the quality of the fit is known. */
+/* What a job found that is allowed for in the estimate. */
+static bool is_harmless(const imk_finding *f)
+{
+    return strcmp(f->code, "missing") == 0 || strcmp(f->code, "curve_tolerance") == 0;
+}
+
+/* Findings of the job itself. For a curve, only the quality of the fit is known. */
 static void add_findings(imk_verdict *v, const imk_identify_log *log)
 {
     char text[900];
     for (size_t k = 0; k < log->findings.count; k++) {
         const imk_finding *f = &log->findings.item[k];
         const bool misfit = strncmp(f->code, "curve_misfit", 12) == 0;
-        if (f->level >= IMK_FINDING_WARNING)
-            continue;
+        const size_t before = v->count;
         imk_finding_text(f, text, sizeof text);
         if (misfit)
             imki_verdict_add(v, IMK_FINDING_WARNING, "misfit", "%s", text);
-        else
+        else if (f->level < IMK_FINDING_WARNING || !is_harmless(f))
             imki_verdict_add(v, f->level, f->level == IMK_FINDING_GOOD ? "curve" : f->code, "%s",
                              text);
+        if (f->level == IMK_FINDING_WARNING && v->count > before)
+            v->message[before].told = true;
     }
 }
 
@@ -425,6 +449,7 @@ imk_verdict imk_identify_verdict(const imk_identify_log *log, const char *label,
     for (size_t k = 0; k < sizeof concerns / sizeof concerns[0]; k++)
         if (log->screened || concerns[k].bit || concerns[k].find == find_missing)
             assess_concern(&v, log, &concerns[k]);
+    imki_assess_vibration(&v, log);
     assess_five_terms(&v, log);
     assess_length(&v, log);
     if (log->record.bridged > 0)

@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A verdict in one sentence, and its messages in a few words. Every code has a clause for the
+ * sentence and a title for the list; %s stands for the channels. The whole text of a message is for
+ * the page and the JSON. */
+#include "identify_show_internal.h"
+
+#include "report/result_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CLAUSES_MOST = 3, WORDS_MOST = 110 };
+
+static const struct words {
+    const char *code;
+    const char *clause; /* what it does to which estimates; NULL: it does nothing to them */
+    const char *title;  /* NULL: the text of the message is short enough */
+} words[] = {
+    {"steps", "the slow terms of %s include jumps of the level", "Jumps of the level: %s."},
+    {"coarse", "the output step is too coarse for the white noise of %s",
+     "An output step coarser than the noise: %s."},
+    {"saturated", "samples stick at the end of the range in %s",
+     "Samples at an extreme value: %s."},
+    {"frozen", "samples are repeated in %s, so that the true rate is lower", "Repeats: %s."},
+    {"warm_up", "the slow terms of %s include a start that drifts differently",
+     "A start that drifts differently: %s."},
+    {"misfit", "the model does not describe %s at all averaging times",
+     "Model and log differ: %s."},
+    {"gravity", "the accelerometers do not read gravity", NULL},
+    {"runs_differ", "the logs do not have the same noise", NULL},
+    {"outliers", NULL, "Outliers, left out: %s."},
+    {"stuck", NULL, "Stuck samples, left out: %s."},
+    {"at_limit", NULL, "Samples at the end of the range, left out: %s."},
+    {"warm_up_removed", NULL, "A warm-up at the start, subtracted: %s."},
+    {"temperature", NULL, "An effect of temperature, subtracted: %s."},
+    {"missing", NULL, "Missing samples, allowed for: %s."},
+    {"short", NULL, "Too short for the slowest terms, which are bounded: %s."},
+    {"lines", NULL, "Spectral lines, modelled: %s."},
+    {"vibration", NULL, "Vibration of what the sensor stands on, in %s."},
+    {"resonance", NULL, "Resonances, modelled: %s."},
+    {"filtered", NULL, "A low-pass filter in the band, modelled: %s."},
+    {"five_terms", NULL, "The five terms alone do not hold at short averaging times: %s."},
+};
+
+static const struct words *words_of(const char *code)
+{
+    for (size_t k = 0; k < sizeof words / sizeof words[0]; k++)
+        if (strcmp(words[k].code, code) == 0)
+            return &words[k];
+    return NULL;
+}
+
+/* ---- channels -------------------------------------------------------------------------------- */
+
+/* Are all channels of a kind of sensor among these, and are there two of them at least? */
+static bool all_of_kind(const imk_even_record *record, uint64_t channels, imk_channel_kind kind)
+{
+    int count = 0;
+    for (size_t c = 0; c < record->count; c++)
+        if (imk_channel_kind_of(imk_even_record_column(record, c)) == kind) {
+            if (!(channels >> c & 1))
+                return false;
+            count++;
+        }
+    return count > 1;
+}
+
+static uint64_t without_kind(const imk_even_record *record, uint64_t channels,
+                             imk_channel_kind kind)
+{
+    for (size_t c = 0; c < record->count; c++)
+        if (imk_channel_kind_of(imk_even_record_column(record, c)) == kind)
+            channels &= ~((uint64_t)1 << c);
+    return channels;
+}
+
+/* "the gyros, accel_x and accel_z" */
+static void name_channels(const imk_even_record *record, uint64_t channels, imki_text *text)
+{
+    const uint64_t all = ~(uint64_t)0 >> (64 - record->count);
+    if (record->count > 2 && channels == all) {
+        imki_text_put(text, "all channels");
+        return;
+    }
+    static const struct {
+        imk_channel_kind kind;
+        const char *name;
+    } groups[] = {{IMK_CHANNEL_GYRO, "the gyros"}, {IMK_CHANNEL_ACCEL, "the accelerometers"}};
+    const char *names[2 + IMK_LOG_COLUMNS_MAX];
+    size_t count = 0;
+    for (size_t g = 0; g < 2; g++)
+        if (all_of_kind(record, channels, groups[g].kind)) {
+            channels = without_kind(record, channels, groups[g].kind);
+            names[count++] = groups[g].name;
+        }
+    for (size_t c = 0; c < record->count; c++)
+        if (channels >> c & 1)
+            names[count++] = imk_even_record_column(record, c)->name;
+    for (size_t k = 0; k < count; k++)
+        imki_text_add(text, "%s%s", k == 0 ? "" : k + 1 == count ? " and " : ", ", names[k]);
+}
+
+/* A pattern with %s replaced; without a channel "the record". */
+static const char *filled(imk_verdict *v, const char *pattern, const char *names)
+{
+    const char *place = strstr(pattern, "%s");
+    if (!place)
+        return pattern;
+    return imk_result_key(v->result, "%.*s%s%s", (int)(place - pattern), pattern, names, place + 2);
+}
+
+void imki_verdict_about(imk_verdict *v, const imk_even_record *record, uint64_t channels)
+{
+    imki_text names = {.bytes = NULL};
+    if (!v->message || v->count == 0)
+        return;
+    imk_message *m = &v->message[v->count - 1];
+    const struct words *w = words_of(m->code);
+    m->channels = channels;
+    imki_text_put(&names, "");
+    if (record)
+        name_channels(record, channels, &names);
+    if (w && !names.failed && names.bytes) {
+        const char *text = names.size > 0 ? names.bytes : "the record";
+        m->clause = w->clause ? filled(v, w->clause, text) : NULL;
+        m->brief = w->title ? filled(v, w->title, text) : NULL;
+        if (v->label && m->brief)
+            m->brief = imk_result_key(v->result, "%.200s: %s", v->label, m->brief);
+    }
+    if (names.failed)
+        v->result->arena.failed = true;
+    free(names.bytes);
+}
+
+/* ---- sentence -------------------------------------------------------------------------------- */
+
+imk_usability imk_verdict_usability(const imk_verdict *v)
+{
+    const imk_finding_level level = imk_verdict_level(v);
+    return level == IMK_FINDING_FAILURE   ? IMK_NOT_USABLE
+           : level == IMK_FINDING_WARNING ? IMK_USABLE_WITH_CARE
+                                          : IMK_USABLE;
+}
+
+static bool has_code(const imk_verdict *v, const char *code)
+{
+    for (size_t k = 0; k < v->count; k++)
+        if (strcmp(v->message[k].code, code) == 0)
+            return true;
+    return false;
+}
+
+const char *imk_identify_sentence(const imk_verdict *v)
+{
+    static const char *const grades[] = {"Usable", "Usable with care", "Not usable"};
+    const imk_usability usability = imk_verdict_usability(v);
+    const imk_finding_level level =
+        usability == IMK_NOT_USABLE ? IMK_FINDING_FAILURE : IMK_FINDING_WARNING;
+    if (usability == IMK_USABLE)
+        return has_code(v, "short") ? "Usable for the white noise: no test found a fault, but the "
+                                      "record is too short "
+                                      "for some slow terms, which are bounded."
+                                    : "Usable: no test found a fault.";
+    const char *text = imk_result_key(v->result, "%s", grades[usability]);
+    size_t told = 0, left = 0;
+    for (size_t k = 0; k < v->count; k++) {
+        const imk_message *m = &v->message[k];
+        if (m->level != level)
+            continue;
+        if (told == CLAUSES_MOST) {
+            left++;
+            continue;
+        }
+        text = imk_result_key(v->result, "%s%s %s", text, told++ == 0 ? ":" : ";",
+                              m->clause ? m->clause : m->text);
+    }
+    if (left > 0)
+        text = imk_result_key(v->result, "%s; and %zu more", text, left);
+    const size_t length = strlen(text);
+    return length > 0 && text[length - 1] == '.' ? text : imk_result_key(v->result, "%s.", text);
+}
+
+/* ---- list ------------------------------------------------------------------------------------ */
+
+static size_t count_words(const char *text)
+{
+    size_t count = 0;
+    for (size_t i = 0; text[i]; i++)
+        count += text[i] != ' ' && (i == 0 || text[i - 1] == ' ');
+    return count;
+}
+
+void imki_verdict_briefly(const imk_verdict *v, imk_result *result)
+{
+    size_t used = count_words(imk_identify_sentence(v)), left = 0;
+    bool more = false;
+    for (size_t k = 0; k < v->count; k++) {
+        const imk_message *m = &v->message[k];
+        const char *text = m->brief ? m->brief : m->text;
+        if (strcmp(m->code, "good") == 0 || (m->level >= IMK_FINDING_WARNING && !m->brief))
+            continue;
+        more = more || m->brief != NULL;
+        used += count_words(text);
+        if (used > WORDS_MOST)
+            left++;
+        else
+            imk_result_line(result, "%s", text);
+    }
+    if (left > 0)
+        imk_result_line(result, "%zu more notes, and all details: --verbose", left);
+    else if (more)
+        imk_result_line(result, "Details: --verbose");
+}

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What identify says first: one sentence that is true of the log, and little after it. */
+#include "run_command.h"
+
+/* A quarter of an hour of three gyros and three accelerometers at 20 Hz. The awk program changes a
+ * row after the header. */
+static void make_log(const char *change)
+{
+    char line[1200];
+    put("model.yaml", "imukit: 1\n"
+                      "gyro: {noise: {angle_random_walk: 0.3 deg/sqrt(h)}}\n"
+                      "accel: {noise: {velocity_random_walk: 0.05 m/s/sqrt(h)}}\n");
+    assert_int_equal(
+        run("$I simulate model.yaml --rate 20Hz --duration 15min --seed 4 -o sound.csv"), 0);
+    snprintf(line, sizeof line,
+             "awk -F, -v OFS=, 'NR == 1 { print; next } { t = $1; %s; print }' sound.csv > log.csv",
+             change);
+    assert_int_equal(run(line), 0);
+}
+
+static void identify_log(const char *options)
+{
+    char line[300];
+    snprintf(line, sizeof line, "$I identify log.csv %s", options);
+    assert_int_equal(run(line), 0);
+}
+
+static void check_first(const char *sentence)
+{
+    check_contains(out, sentence, "first line");
+    assert_ptr_equal(strstr(out, sentence), out);
+}
+
+/* Words that are no table: the first line, and the lines after the last table. */
+static size_t words_of_verdict(void)
+{
+    size_t words = 0;
+    bool last_space = true;
+    const char *after = strstr(out, "\n\n"), *next = after;
+    while ((next = strstr(after + 2, "\n\n")) != NULL)
+        after = next;
+    for (const char *c = out; *c; c++) {
+        if (*c == '\n' && c < after)
+            c = after;
+        words += last_space && *c != ' ' && *c != '\n';
+        last_space = *c == ' ' || *c == '\n';
+    }
+    return words;
+}
+
+static void test_sound(void **state)
+{
+    (void)state;
+    make_log("");
+    identify_log("");
+    check_first("Usable for the white noise: no test found a fault, but the record is too short");
+    assert_string_equal(err, "");
+    assert_int_equal(run("$I identify log.csv --strict"), 0);
+    sweep();
+}
+
+static void test_step(void **state)
+{
+    (void)state;
+    make_log("if (t > 450) $3 += 1");
+    identify_log("");
+    check_first("Usable with care: the slow terms of gyro_y include jumps of the level.\n");
+    check_contains(out, "\nJumps of the level: gyro_y.\n", "list");
+    check_contains(err, "warning: the slow terms of gyro_y include jumps of the level\n",
+                   "warning");
+    assert_null(strstr(out, "was touched"));
+    identify_log("--verbose");
+    check_contains(out, "was touched", "whole message");
+    assert_int_equal(run("$I identify log.csv --strict"), 1);
+    sweep();
+}
+
+static void test_json(void **state)
+{
+    (void)state;
+    make_log("if (t > 450) $3 += 1");
+    identify_log("--json");
+    json_t *root = json_loads(out, 0, NULL);
+    json_t *usability = json_object_get(json_object_get(root, "result"), "usability");
+    assert_string_equal(json_string_value(json_object_get(usability, "grade")), "usable with care");
+    assert_string_equal(json_string_value(json_object_get(usability, "sentence")),
+                        "Usable with care: the slow terms of gyro_y include jumps of the level.");
+    json_decref(root);
+    sweep();
+}
+
+/* Two channels with a tone and its harmonic stand on one table; one alone is interference. */
+static void test_vibration(void **state)
+{
+    (void)state;
+    make_log("s = sin(6.2831853 * 2.7 * t) + sin(6.2831853 * 5.4 * t) / 2; $2 += s / 20; $3 += s / "
+             "15");
+    identify_log("--verbose");
+    check_contains(out, "vibrates (a fan, a motor, the building), at 2.",
+                   "tones");
+    identify_log("");
+    check_contains(out, "Vibration of what the sensor stands on, in gyro_x and gyro_y.", "list");
+    make_log("$2 += sin(6.2831853 * 2.7 * t) / 20");
+    identify_log("--verbose");
+    assert_null(strstr(out, "what the sensor stands on"));
+    check_contains(out, "2.7 Hz", "tone");
+    sweep();
+}
+
+/* Many things at once: a jump, tones, outliers, gaps. */
+static void test_length(void **state)
+{
+    (void)state;
+    make_log("for (c = 2; c <= 7; c++) $c += (t > 450) + sin(6.2831853 * 2.7 * t) / 2; if (NR % "
+             "4001 == 0) $2 += 10; if (NR % 300 == 0) next");
+    identify_log("");
+    check_first("Usable with care: ");
+    assert_in_range(words_of_verdict(), 20, 140); /* the sentence and 120 */
+    check_contains(out, "all channels", "names");
+    sweep();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sound), cmocka_unit_test(test_step), cmocka_unit_test(test_json),
+        cmocka_unit_test(test_vibration), cmocka_unit_test(test_length)};
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
