@@ -1,0 +1,135 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""The gallery: sound logs and faulty ones through imukit identify. See README.md."""
+import argparse
+import json
+import multiprocessing
+import re
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import faults
+import measure
+import sound
+import tables
+
+HERE = Path(__file__).resolve().parent
+SOUND_SEEDS, MIDDLE_SEEDS, OTHER_SEEDS = 20, 40, 8
+
+
+def _seeds_of(level, cap):
+    if level == 1:
+        return min(MIDDLE_SEEDS, cap)
+    return min(OTHER_SEEDS, max(1, cap // 4))
+
+
+def plan(only, cap, what):
+    """The tasks: (kind, seed, report the sound log?, [(fault, level)])."""
+    chosen = re.compile(only)
+    tasks = {}
+    for kind in sound.KINDS:
+        if what != "faults" and chosen.search(kind.name):
+            for seed in range(min(SOUND_SEEDS, cap)):
+                tasks[kind.name, seed] = [True, []]
+    for fault in faults.FAULTS:
+        if what != "sound" and chosen.search(fault.name):
+            for level in range(3):
+                for seed in range(_seeds_of(level, cap)):
+                    task = tasks.setdefault((fault.base, seed), [False, []])
+                    task[1].append((fault.name, level))
+    return [(name, seed, *task) for (name, seed), task in tasks.items()]
+
+
+def _identify(settings, record, name):
+    operands = record.write(settings["folder"], name)
+    result = measure.identify(settings["imukit"], operands)
+    record.remove(operands[0])
+    return result
+
+
+def _doubts(result):
+    return {"doubted": measure.doubted(result), "verdict_doubts": measure.verdict_doubts(result),
+            "codes": measure.codes(result), "notes": result["notes"],
+            "refused": result["refused"], "channels": result["channels"]}
+
+
+def _sound_entry(kind, seed, clean):
+    def truth_of(channel):
+        return sound.truth(kind, channel)
+    return {"kind": kind.name, "seed": seed, **_doubts(clean),
+            "covered": measure.covered(clean, truth_of),
+            "claimed": measure.claimed(clean, truth_of)}
+
+
+def _pair_entry(fault, level, seed, clean, faulty):
+    factor = fault.factor(fault.strengths[level]) if fault.factor else 1
+    return {"fault": fault.name, "level": level, "seed": seed, **_doubts(faulty),
+            "move": measure.move(clean, faulty, factor),
+            "new_extras": measure.new_extras(clean, faulty), "clean_codes": measure.codes(clean)}
+
+
+def work(job):
+    settings, (name, seed, report, pairs) = job
+    kind = sound.BY_NAME[name]
+    record = sound.make(kind, seed)
+    label = f"{name}-{seed}"
+    clean = _identify(settings, record, label)
+    entries = [("sound", _sound_entry(kind, seed, clean))] if report else []
+    for fault_name, level in pairs:
+        fault = faults.BY_NAME[fault_name]
+        faulty = _identify(settings, faults.make(fault, level, record, seed),
+                           f"{label}-{fault_name}-{level}")
+        entries.append(("pairs", _pair_entry(fault, level, seed, clean, faulty)))
+    return entries
+
+
+def run(settings, tasks, jobs):
+    results = {"sound": [], "pairs": []}
+    start = time.time()
+    todo = [(settings, task) for task in tasks]
+    with multiprocessing.Pool(jobs) as pool:
+        for done, entries in enumerate(pool.imap_unordered(work, todo), 1):
+            for which, entry in entries:
+                results[which].append(entry)
+            if done % 20 == 0 or done == len(todo):
+                print(f"{done} of {len(todo)} clean logs, {time.time() - start:.0f} s",
+                      file=sys.stderr)
+    results["sound"].sort(key=lambda e: (e["kind"], e["seed"]))
+    results["pairs"].sort(key=lambda e: (e["fault"], e["level"], e["seed"]))
+    return results
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("what", nargs="?", choices=("all", "sound", "faults"), default="all")
+    parser.add_argument("--only", default="", help="kinds and faults whose name matches REGEX")
+    parser.add_argument("--seeds", type=int, default=40,
+                        help="at most so many logs of a kind or a fault; default 40")
+    parser.add_argument("--imukit", default=str(HERE.parent.parent / "build" / "imukit"))
+    parser.add_argument("--jobs", type=int, default=1, help="processes; default 1")
+    parser.add_argument("--scratch", help="folder for the logs; default: a temporary one")
+    parser.add_argument("-o", "--output", help="write the results to this JSON file")
+    parser.add_argument("--list", action="store_true", help="print kinds and faults only")
+    return parser.parse_args()
+
+
+def main():
+    options = arguments()
+    if options.list:
+        print(tables.catalogue())
+        return
+    tasks = plan(options.only, options.seeds, options.what)
+    if options.scratch:
+        Path(options.scratch).mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=options.scratch) as folder:
+        settings = {"imukit": options.imukit, "folder": folder}
+        results = run(settings, tasks, options.jobs)
+    if options.output:
+        Path(options.output).write_text(json.dumps(results), encoding="utf-8")
+    print(tables.report(results))
+
+
+if __name__ == "__main__":
+    main()
