@@ -25,7 +25,8 @@ typedef enum imk_quantity {
     IMK_QUANTITY_TIME,
     IMK_QUANTITY_ANGULAR_RATE,
     IMK_QUANTITY_SPECIFIC_FORCE,
-    IMK_QUANTITY_TEMPERATURE
+    IMK_QUANTITY_TEMPERATURE,
+    IMK_QUANTITY_MAGNETIC /**< magnetic flux density */
 } imk_quantity;
 
 /** One column of a log. */
@@ -85,7 +86,8 @@ typedef struct imk_record_source {
 /** Index of the column of a quantity and axis, or -1. */
 IMK_API int imk_record_find(const imk_record_source *source, imk_quantity quantity, int axis);
 
-/** A column of a sensor in SI units, by name: gyro_x, accel_z, time, temperature, or any other.
+/** A column of a sensor in SI units, by name: gyro_x, accel_z, mag_x, time, temperature, or any
+ * other.
  *  @return the column; its quantity is IMK_QUANTITY_OTHER for a name that is not known */
 IMK_API imk_log_column imk_record_column(const char *name);
 
@@ -99,8 +101,8 @@ typedef struct imk_array_source {
 } imk_array_source;
 
 /** Make a source of `rows` rows in one array per column.
- *  @param names   of the columns, in SI units: "gyro_x" [rad/s], "accel_x" [m/s^2], "time" [s],
- *                 "temperature" [K]; or with the unit in brackets: "gyro_x [deg/s]",
+ *  @param names   of the columns, in SI units: "gyro_x" [rad/s], "accel_x" [m/s^2], "mag_x" [T],
+ *                 "time" [s], "temperature" [K]; or with the unit in brackets: "gyro_x [deg/s]",
  *                 "accel_x [count]", "table_rate [deg/s]"
  *  @param rate    sampling rate [Hz]; 0: from a column named time
  *  @param memory  holds the state of the source; must live as long as the source is used
@@ -146,7 +148,7 @@ IMK_API imk_record_sink imk_array_sink_of(imk_array_sink *memory);
 
 /** "gyro_x", "accel_3": the name of a sensor's column. Axes 0 to 2 are called x, y and z, others by
  *  their number.
- *  @param sensor  "gyro" or "accel"
+ *  @param sensor  "gyro", "accel" or "mag"
  *  @param text    receives the name, 48 bytes */
 IMK_API void imk_axis_name(const char *sensor, int axis, char *text);
 

@@ -168,6 +168,16 @@ static const dimension_entry entries[] = {
      "count/g or count/(m/s^2)",
      {{"count/g", 0.0}}},
 
+    /* magnetometers */
+    {{{0, -4, 0, 0, 0, 2, -2}},
+     "a magnetic flux density",
+     "uT, nT or gauss",
+     {{"nT", 0.0}, {"uT", 0.1}, {"mT", 1.0}}},
+    {{{0, -3, 0, 0, 0, 2, -2}},
+     "a white-noise density of magnetic flux density",
+     "nT/sqrt(Hz)",
+     {{"nT/sqrt(Hz)", 0.0}}},
+
     /* scale factors over temperature */
     {{{0, 0, 0, -2, 0}}, "a ratio per temperature", "ppm/degC or 1/K", {{"ppm/degC", 0.0}}},
     {{{0, 0, 0, -4, 0}}, "a ratio per squared temperature", "ppm/degC^2", {{"ppm/degC^2", 0.0}}},

@@ -111,6 +111,12 @@
             4, -6, 0, 0, 0, 2, -4                                                                  \
         }                                                                                          \
     }
+#define FLUX_DENSITY                                                                               \
+    {                                                                                              \
+        {                                                                                          \
+            0, -4, 0, 0, 0, 2, -2                                                                  \
+        }                                                                                          \
+    }
 #define CAPACITANCE                                                                                \
     {                                                                                              \
         {                                                                                          \
@@ -227,6 +233,14 @@ static const imki_named_unit units[] = {
     {"nF", 1e-9, 0.0, CAPACITANCE, false},
     {"pF", 1e-12, 0.0, CAPACITANCE, false},
     {"fF", 1e-15, 0.0, CAPACITANCE, false},
+    /* magnetic flux density; G and mG are gauss, g and mg accelerations */
+    {"T", 1.0, 0.0, FLUX_DENSITY, false},
+    {"mT", 1e-3, 0.0, FLUX_DENSITY, false},
+    {"uT", 1e-6, 0.0, FLUX_DENSITY, false},
+    {"nT", 1e-9, 0.0, FLUX_DENSITY, false},
+    {"gauss", 1e-4, 0.0, FLUX_DENSITY, false},
+    {"G", 1e-4, 0.0, FLUX_DENSITY, false},
+    {"mG", 1e-7, 0.0, FLUX_DENSITY, false},
     /* temperature */
     {"K", 1.0, 0.0, TEMPERATURE, false},
     {"mK", 1e-3, 0.0, TEMPERATURE, false},

@@ -16,7 +16,7 @@ typedef struct kind {
     imk_quantity quantity;
     bool has_axis, increment;
     const char *unit;   /* one of the right dimension */
-    const char *option; /* states the unit */
+    const char *option; /* states the unit; NULL: without a unit it is a column like any other */
     const char *due;    /* end of the message when it is missing */
 } kind;
 
@@ -36,6 +36,7 @@ static const kind kinds[] = {{"time", "time", IMK_QUANTITY_TIME, false, false, "
                               "--accel-unit", "add --accel-unit g (or m/s^2, mg, count)"},
                              {"dvel_", "dvel_", IMK_QUANTITY_SPECIFIC_FORCE, true, true, "m/s",
                               "--accel-unit", "add --accel-unit m/s (or count)"},
+                             {"mag_", "mag_", IMK_QUANTITY_MAGNETIC, true, false, "T", NULL, NULL},
                              {"temperature", "temperature", IMK_QUANTITY_TEMPERATURE, false, false,
                               "K", "--temperature-unit", "add --temperature-unit degC"},
                              {"temp", "temperature", IMK_QUANTITY_TEMPERATURE, false, false, "K",
@@ -125,6 +126,7 @@ static const char *unit_setting(const kind *k, const imk_log_settings *settings)
         return settings->accel_unit;
     case IMK_QUANTITY_TEMPERATURE:
         return settings->temperature_unit;
+    case IMK_QUANTITY_MAGNETIC:
     case IMK_QUANTITY_OTHER:
         break;
     }
@@ -160,7 +162,8 @@ imk_status imki_log_column_make(imki_log_piece name, const imk_log_settings *set
     *column = (imk_log_column){.axis = -1};
     copy_piece(column->name, sizeof column->name, name);
     const kind *k = find_kind(column->name, &column->axis);
-    if (!k) {
+    if (!k || (!k->option && unit.begin == unit.end)) {
+        column->axis = -1;
         if (imk_unit_parse(unit.begin, unit.end, &column->unit, NULL) != IMK_OK) {
             column->unit = (imk_unit){.scale = 1.0};
             copy_piece(column->unit.text, sizeof column->unit.text, unit);
@@ -228,7 +231,7 @@ static const kind *misfit(const imki_log_layout_read *layout, const kind *asked,
     bool fits = false;
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         const kind *k = &kinds[i];
-        if (strcmp(k->option, asked->option) != 0)
+        if (!k->option || strcmp(k->option, asked->option) != 0)
             continue;
         fits = fits || has_dimension(k, unit);
         for (size_t j = 0; j < layout->column_count; j++) {
@@ -273,10 +276,10 @@ static imk_status check_layout(const imki_log_layout_read *layout, const imk_log
     for (size_t i = 0; i < layout->column_count; i++)
         known |= layout->column[i].quantity != IMK_QUANTITY_OTHER;
     if (!known)
-        return imk_error_set(error, IMK_ERROR_COLUMN, layout->column[0].name,
-                             "no column has a known name",
-                             "known are time, gyro_x, dtheta_x, accel_x, dvel_x, temperature; add "
-                             "--columns with a name for each column (- skips a column)");
+        return imk_error_set(
+            error, IMK_ERROR_COLUMN, layout->column[0].name, "no column has a known name",
+            "known are time, gyro_x, dtheta_x, accel_x, dvel_x, mag_x, temperature; add "
+            "--columns with a name for each column (- skips a column)");
     if (layout->time_column < 0 && settings->rate == 0.0)
         return imk_error_set(error, IMK_ERROR_RATE_MISSING, "time", "the log has no time column",
                              "add --rate 100Hz (samples per second)");

@@ -36,10 +36,11 @@ imk_log_column imk_record_column(const char *name)
         const char *prefix, *unit;
         imk_quantity quantity;
     } sensors[] = {{"gyro_", "rad/s", IMK_QUANTITY_ANGULAR_RATE},
-                   {"accel_", "m/s^2", IMK_QUANTITY_SPECIFIC_FORCE}};
+                   {"accel_", "m/s^2", IMK_QUANTITY_SPECIFIC_FORCE},
+                   {"mag_", "T", IMK_QUANTITY_MAGNETIC}};
     imk_log_column column = {.quantity = IMK_QUANTITY_OTHER, .axis = -1, .unit = imk_unit_of("1")};
     snprintf(column.name, sizeof column.name, "%s", name);
-    for (size_t k = 0; k < 2; k++)
+    for (size_t k = 0; k < 3; k++)
         if (axis_behind(name, sensors[k].prefix) >= 0) {
             column.axis = axis_behind(name, sensors[k].prefix);
             column.quantity = sensors[k].quantity;

@@ -49,9 +49,12 @@ void imk_even_record_choose(imk_even_record *record)
     }
     if (record->count > 0)
         return;
-    for (size_t c = 0; c < log->column_count; c++)
-        if (log->column[c].quantity == IMK_QUANTITY_OTHER && !log->column[c].label)
+    for (size_t c = 0; c < log->column_count; c++) {
+        const imk_quantity quantity = log->column[c].quantity;
+        if ((quantity == IMK_QUANTITY_OTHER || quantity == IMK_QUANTITY_MAGNETIC) &&
+            !log->column[c].label)
             record->column[record->count++] = (int)c;
+    }
 }
 
 /* Numbers that are no readings become NaN: missing. Times stay. */
