@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file model.h
- *  The sensor model: every error a set of gyros and accelerometers can have, in SI units.
+ *  The sensor model: every error a set of gyros and accelerometers can have, in SI units, and those
+ *  of a magnetometer beside them.
  *
  *  This is the one object of imukit. Instruments reduce to it, logs are identified into it, and
- *  simulation, compensation and error budgets start from it. Gyros and accelerometers are two
- *  imk_triad of the same type; `unit` below is rad/s for a gyro and m/s^2 for an accelerometer.
+ *  simulation, compensation and error budgets start from it. Gyros, accelerometers and
+ *  magnetometers are three imk_triad of the same type; `unit` below is rad/s for a gyro, m/s^2 for
+ *  an accelerometer and T for a magnetometer. Hard iron is the bias of a magnetometer; soft iron,
+ *  scale factors and misalignment together are its scale factor and cross-axis response.
  *  A term that is zero is absent. Equations: docs/theory. */
 #ifndef IMUKIT_MODEL_H
 #define IMUKIT_MODEL_H
@@ -204,7 +207,7 @@ typedef struct imk_correlation {
                 2]; /**< correlation of parameters i > j at i (i - 1)/2 + j; -1 … 1 */
 } imk_correlation;
 
-/** The sensor model. Start from imk_model_default(), then change fields. About 53 kB. */
+/** The sensor model. Start from imk_model_default(), then change fields. About 84 kB. */
 typedef struct imk_model {
     uint32_t cookie;
     char name[96];
@@ -213,21 +216,23 @@ typedef struct imk_model {
                              the model named here */
     imk_triad gyro;       /**< [rad/s] */
     imk_triad accel;      /**< [m/s^2] */
+    imk_triad mag;        /**< magnetometers [T] */
     imk_timing timing;
-    imk_evidence gyro_evidence, accel_evidence;
+    imk_evidence gyro_evidence, accel_evidence, mag_evidence;
     imk_correlation correlation;
 } imk_model;
 
 /** Kinds of sensors; also the index of arrays with one element for gyros and one for
  *  accelerometers. */
-enum { IMK_GYRO = 0, IMK_ACCEL = 1 };
+enum { IMK_GYRO = 0, IMK_ACCEL = 1, IMK_MAG = 2, IMK_KINDS = 3 };
 
-/** The triad of a kind of sensor, IMK_GYRO or IMK_ACCEL. */
+/** The triad of a kind of sensor: IMK_GYRO, IMK_ACCEL or IMK_MAG. */
 IMK_API const imk_triad *imk_model_triad(const imk_model *model, int sensor);
 /** The triad of a kind of sensor, to be changed. */
 IMK_API imk_triad *imk_model_triad_to_set(imk_model *model, int sensor);
 
-/** A perfect unit: orthogonal triads of gyros and accelerometers without any error. */
+/** A perfect unit: orthogonal triads of gyros and accelerometers without any error, and no
+ *  magnetometer. */
 IMK_API void imk_model_default(imk_model *model);
 
 /** Check every field: finite numbers, sizes, signs, unit directions, correlation times, polynomial
@@ -236,8 +241,8 @@ IMK_API void imk_model_default(imk_model *model);
  *  frequency or q may be 0 on an axis where the term's sigma or amplitude is 0.
  *  @param error  field is the dotted path ("gyro.noise.gauss_markov[1].correlation_time"), index
  *                the axis
- *  @return IMK_OK, IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT, _KEY_MISSING (neither
- *          gyro nor accel), _KEY_UNKNOWN or _KEY_DUPLICATE (key of an interval, parameter of the
+ *  @return IMK_OK, IMK_ERROR_UNINITIALISED, _NOT_FINITE, _RANGE, _CONFLICT, _KEY_MISSING (no
+ *          sensor), _KEY_UNKNOWN or _KEY_DUPLICATE (key of an interval, parameter of the
  *          correlation), _ARGUMENT (a text without a terminating zero) */
 IMK_API imk_status imk_model_validate(const imk_model *model, imk_error *error);
 

@@ -7,9 +7,9 @@
 
 #include <string.h>
 
-static void set_triad(imk_triad *triad)
+static void set_triad(imk_triad *triad, bool present)
 {
-    triad->present = true;
+    triad->present = present;
     triad->axis_count = 3;
     for (int i = 0; i < 3; i++)
         triad->direction[i][i] = 1;
@@ -19,18 +19,19 @@ void imk_model_default(imk_model *model)
 {
     memset(model, 0, sizeof *model);
     model->cookie = IMKI_MODEL_COOKIE;
-    set_triad(&model->gyro);
-    set_triad(&model->accel);
+    set_triad(&model->gyro, true);
+    set_triad(&model->accel, true);
+    set_triad(&model->mag, false);
 }
 
 const imk_triad *imk_model_triad(const imk_model *model, int sensor)
 {
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    return sensor == IMK_GYRO ? &model->gyro : sensor == IMK_ACCEL ? &model->accel : &model->mag;
 }
 
 imk_triad *imk_model_triad_to_set(imk_model *model, int sensor)
 {
-    return sensor == IMK_GYRO ? &model->gyro : &model->accel;
+    return sensor == IMK_GYRO ? &model->gyro : sensor == IMK_ACCEL ? &model->accel : &model->mag;
 }
 
 /* ---- comparison -------------------------------------------------------------------------------
@@ -58,5 +59,6 @@ bool imk_model_equal(const imk_model *a, const imk_model *b)
     for (size_t i = 0; i < imki_timing_field_count; i++)
         if (!imki_numbers_equal(&imki_timing_fields[i], &a->timing, &b->timing, 1, false))
             return false;
-    return equal_triads(&a->gyro, &b->gyro) && equal_triads(&a->accel, &b->accel);
+    return equal_triads(&a->gyro, &b->gyro) && equal_triads(&a->accel, &b->accel) &&
+           equal_triads(&a->mag, &b->mag);
 }

@@ -400,13 +400,16 @@ static imk_status check_own(const imki_field *field, const imk_triad *triad, int
 static imk_status check_field(const imki_field *field, const imk_triad *triad, int kind,
                               imki_fault *fault)
 {
+    static const char *const founds[IMK_KINDS] = {"a gyro has no such error",
+                                                  "an accelerometer has no such error",
+                                                  "a magnetometer has no such error"};
     if (!field->path[kind])
         return imki_field_absent(field, triad)
                    ? IMK_OK
-                   : conflict(fault, field->path[1 - kind], -1,
-                              kind == IMK_GYRO ? "a gyro has no such error"
-                                               : "an accelerometer has no such error",
-                              "set it to 0");
+                   : conflict(fault,
+                              field->path[IMK_GYRO] ? field->path[IMK_GYRO]
+                                                    : field->path[IMK_ACCEL],
+                              -1, founds[kind], "set it to 0");
     const imk_status status = check_own(field, triad, kind, fault);
     fault->field = field->path[kind];
     return status;

@@ -6,66 +6,73 @@
 #include <stddef.h>
 #include <string.h>
 
-#define UNITS(gyro, accel)                                                                         \
+#define UNITS(gyro, accel, mag)                                                                    \
+    {                                                                                              \
+        gyro, accel, mag                                                                           \
+    }
+#define PAIR(gyro, accel)                                                                          \
     {                                                                                              \
         gyro, accel                                                                                \
     }
-#define UNIT(both) UNITS(both, both)
-#define NO_UNITS UNITS(NULL, NULL)
-#define BOTH(path) UNITS(path, path)
-#define GYRO(path) UNITS(path, NULL)
-#define ACCEL(path) UNITS(NULL, path)
+#define UNIT(all) UNITS(all, all, all)
+#define NO_UNITS UNITS(NULL, NULL, NULL)
+#define ALL(path) UNITS(path, path, path)
+#define BOTH(path) UNITS(path, path, NULL)
+#define GYRO(path) UNITS(path, NULL, NULL)
+#define ACCEL(path) UNITS(NULL, path, NULL)
 #define ANY -DBL_MAX, DBL_MAX
 #define NOT_NEGATIVE 0.0, DBL_MAX
 #define AT(member) offsetof(imk_triad, member)
 #define IN(term, member) offsetof(struct term, member)
 #define NO_COUNT 0
 
-const char *const imki_kind_names[2] = {"gyro", "accel"};
+const char *const imki_kind_names[IMK_KINDS] = {"gyro", "accel", "mag"};
 
 const imki_field imki_triad_fields[] = {
-    {BOTH("direction"), IMKI_DIRECTION, IMKI_BARE | IMKI_OUTPUT, AT(direction), AT(axis_count),
+    {ALL("direction"), IMKI_DIRECTION, IMKI_BARE | IMKI_OUTPUT, AT(direction), AT(axis_count),
      UNIT("1"), NO_UNITS, UNIT("1"), ANY},
-    {BOTH("sensitivity"), IMKI_AXES, IMKI_OUTPUT, AT(sensitivity), NO_COUNT,
-     UNITS("count/(rad/s)", "count/(m/s^2)"), NO_UNITS, UNITS("count/(rad/s)", "count/(m/s^2)"),
-     ANY},
-    {BOTH("zero_offset"), IMKI_AXES, IMKI_OUTPUT, AT(zero_offset), NO_COUNT, UNIT("count"),
-     NO_UNITS, UNIT("count"), ANY},
-    {BOTH("bias.fixed"), IMKI_AXES, 0, AT(bias.fixed), NO_COUNT, UNITS("deg/h", "mg"), NO_UNITS,
-     UNITS("rad/s", "m/s^2"), ANY},
-    {BOTH("bias.repeatability"), IMKI_AXES, 0, AT(bias.repeatability), NO_COUNT,
-     UNITS("deg/h", "mg"), NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("bias.temperature"), IMKI_POLYNOMIAL, 0, AT(bias.temperature), NO_COUNT,
-     UNITS("deg/h", "mg"), NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
-    {BOTH("bias.temperature_rate"), IMKI_AXES, 0, AT(bias.temperature_rate), NO_COUNT,
-     UNITS("deg/h/(K/min)", "mg/(K/min)"), NO_UNITS, UNITS("rad/s/(K/s)", "m/s^2/(K/s)"), ANY},
-    {BOTH("bias.warm_up.amplitude"), IMKI_AXES, 0, AT(bias.warm_up_amplitude), NO_COUNT,
-     UNITS("deg/h", "mg"), NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
-    {BOTH("bias.warm_up.time"), IMKI_SCALAR, IMKI_COMPANION, AT(bias.warm_up_time), NO_COUNT,
+    {ALL("sensitivity"), IMKI_AXES, IMKI_OUTPUT, AT(sensitivity), NO_COUNT,
+     UNITS("count/(rad/s)", "count/(m/s^2)", "count/uT"), NO_UNITS,
+     UNITS("count/(rad/s)", "count/(m/s^2)", "count/uT"), ANY},
+    {ALL("zero_offset"), IMKI_AXES, IMKI_OUTPUT, AT(zero_offset), NO_COUNT, UNIT("count"), NO_UNITS,
+     UNIT("count"), ANY},
+    {ALL("bias.fixed"), IMKI_AXES, 0, AT(bias.fixed), NO_COUNT, UNITS("deg/h", "mg", "uT"),
+     NO_UNITS, UNITS("rad/s", "m/s^2", "T"), ANY},
+    {ALL("bias.repeatability"), IMKI_AXES, 0, AT(bias.repeatability), NO_COUNT,
+     UNITS("deg/h", "mg", "uT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {ALL("bias.temperature"), IMKI_POLYNOMIAL, 0, AT(bias.temperature), NO_COUNT,
+     UNITS("deg/h", "mg", "uT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), ANY},
+    {ALL("bias.temperature_rate"), IMKI_AXES, 0, AT(bias.temperature_rate), NO_COUNT,
+     UNITS("deg/h/(K/min)", "mg/(K/min)", "nT/(K/min)"), NO_UNITS,
+     UNITS("rad/s/(K/s)", "m/s^2/(K/s)", "T/(K/s)"), ANY},
+    {ALL("bias.warm_up.amplitude"), IMKI_AXES, 0, AT(bias.warm_up_amplitude), NO_COUNT,
+     UNITS("deg/h", "mg", "uT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), ANY},
+    {ALL("bias.warm_up.time"), IMKI_SCALAR, IMKI_COMPANION, AT(bias.warm_up_time), NO_COUNT,
      UNIT("s"), NO_UNITS, UNIT("s"), NOT_NEGATIVE},
-    {BOTH("bias.hysteresis"), IMKI_AXES, 0, AT(bias.hysteresis), NO_COUNT, UNITS("deg/h", "mg"),
-     NO_UNITS, UNITS("rad/s", "m/s^2"), ANY},
-    {BOTH("scale_factor.fixed"), IMKI_AXES, IMKI_OPEN, AT(scale_factor.fixed), NO_COUNT,
-     UNIT("ppm"), NO_UNITS, UNIT("1"), -1.0, DBL_MAX},
-    {BOTH("scale_factor.repeatability"), IMKI_AXES, 0, AT(scale_factor.repeatability), NO_COUNT,
+    {ALL("bias.hysteresis"), IMKI_AXES, 0, AT(bias.hysteresis), NO_COUNT,
+     UNITS("deg/h", "mg", "uT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), ANY},
+    {ALL("scale_factor.fixed"), IMKI_AXES, IMKI_OPEN, AT(scale_factor.fixed), NO_COUNT, UNIT("ppm"),
+     NO_UNITS, UNIT("1"), -1.0, DBL_MAX},
+    {ALL("scale_factor.repeatability"), IMKI_AXES, 0, AT(scale_factor.repeatability), NO_COUNT,
      UNIT("ppm"), NO_UNITS, UNIT("1"), NOT_NEGATIVE},
-    {BOTH("scale_factor.temperature"), IMKI_POLYNOMIAL, 0, AT(scale_factor.temperature), NO_COUNT,
+    {ALL("scale_factor.temperature"), IMKI_POLYNOMIAL, 0, AT(scale_factor.temperature), NO_COUNT,
      UNIT("ppm"), NO_UNITS, UNIT("1"), ANY},
     {BOTH("nonlinearity.k2"), IMKI_AXES, 0, AT(nonlinearity.k2), NO_COUNT,
-     UNITS("ppm/(deg/s)", "ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
+     UNITS("ppm/(deg/s)", "ppm/g", NULL), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)", NULL), ANY},
     {BOTH("nonlinearity.koq"), IMKI_AXES, 0, AT(nonlinearity.koq), NO_COUNT,
-     UNITS("ppm/(deg/s)", "ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
+     UNITS("ppm/(deg/s)", "ppm/g", NULL), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)", NULL), ANY},
     {BOTH("nonlinearity.k3"), IMKI_AXES, 0, AT(nonlinearity.k3), NO_COUNT,
-     UNITS("ppm/(deg/s)^2", "ppm/g^2"), NO_UNITS, UNITS("1/(rad/s)^2", "1/(m/s^2)^2"), ANY},
+     UNITS("ppm/(deg/s)^2", "ppm/g^2", NULL), NO_UNITS, UNITS("1/(rad/s)^2", "1/(m/s^2)^2", NULL),
+     ANY},
     {BOTH("nonlinearity.asymmetry"), IMKI_AXES, IMKI_OPEN, AT(nonlinearity.asymmetry), NO_COUNT,
      UNIT("ppm"), NO_UNITS, UNIT("1"), -2.0, 2.0},
     {ACCEL("cross_products"), IMKI_ROWS, 0, AT(nonlinearity.cross_products), NO_COUNT,
-     UNIT("ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)"), ANY},
+     UNIT("ppm/g"), NO_UNITS, UNITS("1/(rad/s)", "1/(m/s^2)", NULL), ANY},
     {ACCEL("pendulous_axis"), IMKI_PENDULOUS, IMKI_BARE | IMKI_COMPANION,
      AT(nonlinearity.pendulous_axis), NO_COUNT, UNIT("1"), NO_UNITS, UNIT("1"), ANY},
-    {BOTH("misalignment"), IMKI_OFF_DIAGONAL, 0, AT(misalignment), NO_COUNT, UNIT("mrad"), NO_UNITS,
+    {ALL("misalignment"), IMKI_OFF_DIAGONAL, 0, AT(misalignment), NO_COUNT, UNIT("mrad"), NO_UNITS,
      UNIT("rad"), ANY},
-    {BOTH("cross_axis"), IMKI_OFF_DIAGONAL, 0, AT(cross_axis), NO_COUNT, UNIT("%"), NO_UNITS,
+    {ALL("cross_axis"), IMKI_OFF_DIAGONAL, 0, AT(cross_axis), NO_COUNT, UNIT("%"), NO_UNITS,
      UNIT("1"), ANY},
     {GYRO("g_sensitivity"), IMKI_ROWS, 0, AT(g_sensitivity), NO_COUNT, UNIT("deg/h/g"), NO_UNITS,
      UNIT("rad/s/(m/s^2)"), ANY},
@@ -73,45 +80,48 @@ const imki_field imki_triad_fields[] = {
      NO_UNITS, UNIT("rad/s/(m/s^2)^2"), ANY},
     {ACCEL("lever_arm"), IMKI_ROWS, 0, AT(lever_arm), NO_COUNT, UNIT("mm"), NO_UNITS, UNIT("m"),
      ANY},
-    {BOTH("noise.density"), IMKI_DENSITY, IMKI_COMPANION, AT(noise.density), NO_COUNT, NO_UNITS,
+    {ALL("noise.density"), IMKI_DENSITY, IMKI_COMPANION, AT(noise.density), NO_COUNT, NO_UNITS,
      NO_UNITS, NO_UNITS, ANY},
-    {UNITS("noise.angle_random_walk", "noise.velocity_random_walk"), IMKI_AXES, 0, AT(noise.white),
-     NO_COUNT, UNITS("deg/sqrt(h)", "m/s/sqrt(h)"), UNITS("deg/s/sqrt(Hz)", "ug/sqrt(Hz)"),
-     UNITS("rad/sqrt(s)", "m/s/sqrt(s)"), NOT_NEGATIVE},
-    {BOTH("noise.bias_instability"), IMKI_AXES, 0, AT(noise.bias_instability), NO_COUNT,
-     UNITS("deg/h", "ug"), NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("noise.allan_floor"), IMKI_AXES, IMKI_FLOOR, AT(noise.bias_instability), NO_COUNT,
-     UNITS("deg/h", "ug"), NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {UNITS("noise.rate_random_walk", "noise.acceleration_random_walk"), IMKI_AXES, 0,
-     AT(noise.random_walk), NO_COUNT, UNITS("deg/h/sqrt(h)", "ug/sqrt(h)"), NO_UNITS,
-     UNITS("rad/s/sqrt(s)", "m/s^2/sqrt(s)"), NOT_NEGATIVE},
-    {UNITS("noise.rate_ramp", "noise.acceleration_ramp"), IMKI_AXES, 0, AT(noise.ramp), NO_COUNT,
-     UNITS("deg/h/h", "ug/h"), NO_UNITS, UNITS("rad/s^2", "m/s^3"), ANY},
+    {UNITS("noise.angle_random_walk", "noise.velocity_random_walk", "noise.white_noise"), IMKI_AXES,
+     0, AT(noise.white), NO_COUNT, UNITS("deg/sqrt(h)", "m/s/sqrt(h)", "nT*sqrt(s)"),
+     UNITS("deg/s/sqrt(Hz)", "ug/sqrt(Hz)", "nT/sqrt(Hz)"),
+     UNITS("rad/sqrt(s)", "m/s/sqrt(s)", "T*sqrt(s)"), NOT_NEGATIVE},
+    {ALL("noise.bias_instability"), IMKI_AXES, 0, AT(noise.bias_instability), NO_COUNT,
+     UNITS("deg/h", "ug", "nT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {ALL("noise.allan_floor"), IMKI_AXES, IMKI_FLOOR, AT(noise.bias_instability), NO_COUNT,
+     UNITS("deg/h", "ug", "nT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {UNITS("noise.rate_random_walk", "noise.acceleration_random_walk", "noise.random_walk"),
+     IMKI_AXES, 0, AT(noise.random_walk), NO_COUNT,
+     UNITS("deg/h/sqrt(h)", "ug/sqrt(h)", "nT/sqrt(h)"), NO_UNITS,
+     UNITS("rad/s/sqrt(s)", "m/s^2/sqrt(s)", "T/sqrt(s)"), NOT_NEGATIVE},
+    {UNITS("noise.rate_ramp", "noise.acceleration_ramp", "noise.ramp"), IMKI_AXES, 0,
+     AT(noise.ramp), NO_COUNT, UNITS("deg/h/h", "ug/h", "nT/h"), NO_UNITS,
+     UNITS("rad/s^2", "m/s^3", "T/s"), ANY},
     {BOTH("noise.quantization"), IMKI_AXES, 0, AT(noise.quantization), NO_COUNT,
-     UNITS("arcsec", "m/s"), NO_UNITS, UNITS("rad", "m/s"), NOT_NEGATIVE},
-    {BOTH("noise.gauss_markov"), IMKI_LIST, 0, AT(noise.gauss_markov), AT(noise.gauss_markov_count),
+     UNITS("arcsec", "m/s", NULL), NO_UNITS, UNITS("rad", "m/s", NULL), NOT_NEGATIVE},
+    {ALL("noise.gauss_markov"), IMKI_LIST, 0, AT(noise.gauss_markov), AT(noise.gauss_markov_count),
      NO_UNITS, NO_UNITS, NO_UNITS, ANY},
-    {BOTH("noise.sinusoid"), IMKI_LIST, 0, AT(noise.sinusoid), AT(noise.sinusoid_count), NO_UNITS,
+    {ALL("noise.sinusoid"), IMKI_LIST, 0, AT(noise.sinusoid), AT(noise.sinusoid_count), NO_UNITS,
      NO_UNITS, NO_UNITS, ANY},
-    {BOTH("noise.resonance"), IMKI_LIST, 0, AT(noise.resonance), AT(noise.resonance_count),
-     NO_UNITS, NO_UNITS, NO_UNITS, ANY},
-    {BOTH("bandwidth"), IMKI_AXES, 0, AT(bandwidth), NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"),
+    {ALL("noise.resonance"), IMKI_LIST, 0, AT(noise.resonance), AT(noise.resonance_count), NO_UNITS,
+     NO_UNITS, NO_UNITS, ANY},
+    {ALL("bandwidth"), IMKI_AXES, 0, AT(bandwidth), NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"),
      NOT_NEGATIVE},
     /* The limits of imk_low_pass in noise.h. */
-    {BOTH("damping"), IMKI_AXES, IMKI_BARE | IMKI_TYPICAL | IMKI_COMPANION, AT(damping), NO_COUNT,
+    {ALL("damping"), IMKI_AXES, IMKI_BARE | IMKI_TYPICAL | IMKI_COMPANION, AT(damping), NO_COUNT,
      UNIT("1"), NO_UNITS, UNIT("1"), 0.05, 50.0},
-    {BOTH("dead_band"), IMKI_AXES, 0, AT(dead_band), NO_COUNT, UNITS("deg/s", "mg"), NO_UNITS,
-     UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("range"), IMKI_AXES, IMKI_COMPANION, AT(range), NO_COUNT, UNITS("deg/s", "g"), NO_UNITS,
-     UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("resolution"), IMKI_AXES, 0, AT(resolution), NO_COUNT, UNITS("deg/s", "mg"), NO_UNITS,
-     UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
+    {ALL("dead_band"), IMKI_AXES, 0, AT(dead_band), NO_COUNT, UNITS("deg/s", "mg", "nT"), NO_UNITS,
+     UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {ALL("range"), IMKI_AXES, IMKI_COMPANION, AT(range), NO_COUNT, UNITS("deg/s", "g", "uT"),
+     NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {ALL("resolution"), IMKI_AXES, 0, AT(resolution), NO_COUNT, UNITS("deg/s", "mg", "nT"),
+     NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
 };
 const size_t imki_triad_field_count = sizeof imki_triad_fields / sizeof imki_triad_fields[0];
 
 /* ---- terms ----------------------------------------------------------------------------------- */
 
-#define TEXTS(words) UNITS("gyro " words, "accelerometer " words)
+#define TEXTS(words) PAIR("gyro " words, "accelerometer " words)
 /* Numbers of draws that no row has: 4 bias.hysteresis, 18 and 19 of the timing. */
 const imki_term imki_terms[IMKI_TERMS] = {
     [IMK_MODEL_BIAS] = {AT(bias.fixed), IMKI_FORM_ONE, 0, "bias", TEXTS("bias, fixed")},
@@ -137,15 +147,15 @@ const imki_term imki_terms[IMKI_TERMS] = {
                                   TEXTS("g2-sensitivity")},
     [IMK_MODEL_LEVER_ARM] = {AT(lever_arm), IMKI_FORM_PLACE, 16, "place", TEXTS("lever arms")},
     [IMK_MODEL_BIAS_TEMPERATURE] = {AT(bias.temperature), IMKI_FORM_WARMTH, 1,
-                                    "bias over temperature", NO_UNITS},
+                                    "bias over temperature", PAIR(NULL, NULL)},
     [IMK_MODEL_SCALE_TEMPERATURE] = {AT(scale_factor.temperature), IMKI_FORM_WARM_INPUT, 6,
-                                     "scale factor over temperature", NO_UNITS},
+                                     "scale factor over temperature", PAIR(NULL, NULL)},
     [IMK_MODEL_TEMPERATURE_RATE] = {AT(bias.temperature_rate), IMKI_FORM_WARMING, 2,
-                                    "bias by temperature rate", NO_UNITS},
+                                    "bias by temperature rate", PAIR(NULL, NULL)},
     [IMKI_TERM_WARM_UP] = {AT(bias.warm_up_amplitude), IMKI_FORM_DECAY, 3, "warm-up",
                            TEXTS("warm-up")},
     [IMKI_TERM_RAMP] = {AT(noise.ramp), IMKI_FORM_TIME, 17, "ramp",
-                        UNITS("gyro rate ramp", "accelerometer ramp")},
+                        PAIR("gyro rate ramp", "accelerometer ramp")},
 };
 
 /* In the order in which they are summed: that of their fields. */
@@ -240,37 +250,37 @@ const char *imki_form_element(imki_form form, int element)
 /* ---- lists, units ---------------------------------------------------------------------------- */
 
 static const imki_field gauss_markov_fields[] = {
-    {BOTH("sigma"), IMKI_AXES, 0, IN(imk_gauss_markov_term, sigma), NO_COUNT, UNITS("deg/h", "ug"),
-     NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("correlation_time"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL,
+    {ALL("sigma"), IMKI_AXES, 0, IN(imk_gauss_markov_term, sigma), NO_COUNT,
+     UNITS("deg/h", "ug", "nT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {ALL("correlation_time"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL,
      IN(imk_gauss_markov_term, correlation_time), NO_COUNT, UNIT("s"), NO_UNITS, UNIT("s"),
      NOT_NEGATIVE},
 };
 
 static const imki_field sinusoid_fields[] = {
-    {BOTH("amplitude"), IMKI_AXES, 0, IN(imk_sinusoid_term, amplitude), NO_COUNT,
-     UNITS("deg/h", "ug"), NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("frequency"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL, IN(imk_sinusoid_term, frequency),
+    {ALL("amplitude"), IMKI_AXES, 0, IN(imk_sinusoid_term, amplitude), NO_COUNT,
+     UNITS("deg/h", "ug", "nT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {ALL("frequency"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL, IN(imk_sinusoid_term, frequency),
      NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"), NOT_NEGATIVE},
 };
 
 static const imki_field resonance_fields[] = {
-    {BOTH("sigma"), IMKI_AXES, 0, IN(imk_resonance_term, sigma), NO_COUNT, UNITS("deg/h", "ug"),
-     NO_UNITS, UNITS("rad/s", "m/s^2"), NOT_NEGATIVE},
-    {BOTH("frequency"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL, IN(imk_resonance_term, frequency),
+    {ALL("sigma"), IMKI_AXES, 0, IN(imk_resonance_term, sigma), NO_COUNT,
+     UNITS("deg/h", "ug", "nT"), NO_UNITS, UNITS("rad/s", "m/s^2", "T"), NOT_NEGATIVE},
+    {ALL("frequency"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL, IN(imk_resonance_term, frequency),
      NO_COUNT, UNIT("Hz"), NO_UNITS, UNIT("Hz"), NOT_NEGATIVE},
-    {BOTH("q"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL | IMKI_BARE, IN(imk_resonance_term, q),
-     NO_COUNT, UNIT("1"), NO_UNITS, UNIT("1"), 0.5, DBL_MAX},
+    {ALL("q"), IMKI_AXES, IMKI_OPEN | IMKI_TYPICAL | IMKI_BARE, IN(imk_resonance_term, q), NO_COUNT,
+     UNIT("1"), NO_UNITS, UNIT("1"), 0.5, DBL_MAX},
 };
 
 const imki_field imki_timing_fields[] = {
-    {BOTH("rate_error"), IMKI_SCALAR, IMKI_OPEN, offsetof(imk_timing, rate_error), NO_COUNT,
+    {ALL("rate_error"), IMKI_SCALAR, IMKI_OPEN, offsetof(imk_timing, rate_error), NO_COUNT,
      UNIT("ppm"), NO_UNITS, UNIT("1"), -1.0, DBL_MAX},
-    {BOTH("jitter"), IMKI_SCALAR, 0, offsetof(imk_timing, jitter), NO_COUNT, UNIT("us"), NO_UNITS,
+    {ALL("jitter"), IMKI_SCALAR, 0, offsetof(imk_timing, jitter), NO_COUNT, UNIT("us"), NO_UNITS,
      UNIT("s"), NOT_NEGATIVE},
-    {BOTH("skew"), IMKI_SCALAR, 0, offsetof(imk_timing, skew), NO_COUNT, UNIT("us"), NO_UNITS,
+    {ALL("skew"), IMKI_SCALAR, 0, offsetof(imk_timing, skew), NO_COUNT, UNIT("us"), NO_UNITS,
      UNIT("s"), ANY},
-    {BOTH("drops"), IMKI_SCALAR, 0, offsetof(imk_timing, drops), NO_COUNT, UNIT("%"), NO_UNITS,
+    {ALL("drops"), IMKI_SCALAR, 0, offsetof(imk_timing, drops), NO_COUNT, UNIT("%"), NO_UNITS,
      UNIT("1"), 0.0, 0.99},
 };
 const size_t imki_timing_field_count = sizeof imki_timing_fields / sizeof imki_timing_fields[0];
@@ -290,20 +300,22 @@ imki_list imki_list_of(const imki_field *field)
 
 const char *imki_polynomial_si(const imki_field *field, int kind, int order)
 {
-    static const char *const units[3][IMK_TEMPERATURE_ORDER_MAX] = {
+    static const char *const units[IMK_KINDS + 1][IMK_TEMPERATURE_ORDER_MAX] = {
         {"rad/s/K", "rad/s/K^2", "rad/s/K^3", "rad/s/K^4", "rad/s/K^5"},
         {"m/s^2/K", "m/s^2/K^2", "m/s^2/K^3", "m/s^2/K^4", "m/s^2/K^5"},
+        {"T/K", "T/K^2", "T/K^3", "T/K^4", "T/K^5"},
         {"1/K", "1/K^2", "1/K^3", "1/K^4", "1/K^5"}};
     bool is_bias = field->offset == AT(bias.temperature);
-    return units[is_bias ? kind : 2][order - 1];
+    return units[is_bias ? kind : IMK_KINDS][order - 1];
 }
 
 const char *imki_polynomial_unit(const imki_field *field, int kind, int order)
 {
-    static const char *const units[3][IMK_TEMPERATURE_ORDER_MAX] = {
+    static const char *const units[IMK_KINDS + 1][IMK_TEMPERATURE_ORDER_MAX] = {
         {"deg/h/K", "deg/h/K^2", "deg/h/K^3", "deg/h/K^4", "deg/h/K^5"},
         {"mg/K", "mg/K^2", "mg/K^3", "mg/K^4", "mg/K^5"},
+        {"nT/K", "nT/K^2", "nT/K^3", "nT/K^4", "nT/K^5"},
         {"ppm/K", "ppm/K^2", "ppm/K^3", "ppm/K^4", "ppm/K^5"}};
     bool is_bias = field->offset == AT(bias.temperature);
-    return units[is_bias ? kind : 2][order - 1];
+    return units[is_bias ? kind : IMK_KINDS][order - 1];
 }

@@ -32,19 +32,21 @@ enum {
 };
 
 typedef struct imki_field {
-    const char *path[2]; /* dotted, below the sensor (or below the list); NULL: not of this kind */
+    const char
+        *path[IMK_KINDS]; /* dotted, below the sensor (or below the list); NULL: not of this kind */
     imki_shape shape;
     unsigned flags;
-    size_t offset;          /* in imk_triad; of a list's field in the list's element */
-    size_t count_offset;    /* IMKI_LIST: of the int that counts the elements */
-    const char *unit[2];    /* as written when the file does not have it otherwise */
-    const char *density[2]; /* the same where the file states a density; NULL: no difference */
-    const char *si[2];      /* the unit of the struct; gives the dimension */
+    size_t offset;               /* in imk_triad; of a list's field in the list's element */
+    size_t count_offset;         /* IMKI_LIST: of the int that counts the elements */
+    const char *unit[IMK_KINDS]; /* as written when the file does not have it otherwise */
+    const char
+        *density[IMK_KINDS];   /* the same where the file states a density; NULL: no difference */
+    const char *si[IMK_KINDS]; /* the unit of the struct; gives the dimension */
     double minimum, maximum;
 } imki_field;
 
-/* What a sensor is called: of IMK_GYRO and IMK_ACCEL. */
-extern const char *const imki_kind_names[2];
+/* What a sensor is called in the file, by its kind. */
+extern const char *const imki_kind_names[IMK_KINDS];
 
 /* A kind of list term. */
 typedef struct imki_list {

@@ -79,7 +79,8 @@ static bool is_known(const char *name)
 {
     for (size_t i = 0; i < imki_triad_field_count; i++)
         if (names_field(name, &imki_triad_fields[i], IMK_GYRO) ||
-            names_field(name, &imki_triad_fields[i], IMK_ACCEL))
+            names_field(name, &imki_triad_fields[i], IMK_ACCEL) ||
+            names_field(name, &imki_triad_fields[i], IMK_MAG))
             return true;
     for (size_t i = 0; i < imki_timing_field_count; i++)
         if (names_timing(name, &imki_timing_fields[i]))
@@ -100,9 +101,9 @@ static void add_path(const char **candidates, size_t *count, const char *path)
 /* Names that could have been meant, below the sensor that is named already. */
 static size_t find_candidates(bool has_sensor, const char **candidates)
 {
-    static const char *const groups[] = {"bias",         "bias.warm_up", "warm_up",
-                                         "scale_factor", "nonlinearity", "noise",
-                                         "timing",       "gyro",         "accel"};
+    static const char *const groups[] = {"bias",         "bias.warm_up", "warm_up", "scale_factor",
+                                         "nonlinearity", "noise",        "timing",  "gyro",
+                                         "accel",        "mag"};
     enum { GROUPS = sizeof groups / sizeof groups[0], OF_A_SENSOR = 6 };
     size_t count = 0;
     for (size_t i = 0; i < imki_triad_field_count; i++) {
@@ -110,6 +111,8 @@ static size_t find_candidates(bool has_sensor, const char **candidates)
         add_path(candidates, &count, field->path[IMK_GYRO]);
         if (!field->path[IMK_GYRO] || field->path[IMK_GYRO] != field->path[IMK_ACCEL])
             add_path(candidates, &count, field->path[IMK_ACCEL]);
+        if (field->path[IMK_MAG] != field->path[IMK_GYRO])
+            add_path(candidates, &count, field->path[IMK_MAG]);
     }
     for (size_t i = 0; !has_sensor && i < imki_timing_field_count; i++)
         add_path(candidates, &count, imki_timing_fields[i].path[0]);
@@ -121,7 +124,7 @@ static size_t find_candidates(bool has_sensor, const char **candidates)
 static imk_status refuse_name(const char *name, imk_error *error)
 {
     const char *candidates[CANDIDATES_MAX + 16], *sensor = NULL, *below = name;
-    for (int kind = 0; kind < 2; kind++) {
+    for (int kind = 0; kind < IMK_KINDS; kind++) {
         const size_t length = strlen(imki_kind_names[kind]);
         if (strncmp(name, imki_kind_names[kind], length) == 0 && name[length] == '.') {
             sensor = imki_kind_names[kind];
@@ -201,11 +204,11 @@ static bool is_named(const imki_field *field, int kind, bool keep, size_t count,
 imk_status imk_model_select(imk_model *model, bool keep, size_t count, const char *const *names,
                             imk_error *error)
 {
-    imk_triad *const triads[2] = {&model->gyro, &model->accel};
+    imk_triad *const triads[IMK_KINDS] = {&model->gyro, &model->accel, &model->mag};
     for (size_t j = 0; j < count; j++)
         if (!is_known(names[j]))
             return refuse_name(names[j], error);
-    for (int kind = 0; kind < 2; kind++)
+    for (int kind = 0; kind < IMK_KINDS; kind++)
         for (size_t i = 0; i < imki_triad_field_count; i++) {
             const imki_field *field = &imki_triad_fields[i];
             if (field->path[kind] && !is_no_error(field) &&

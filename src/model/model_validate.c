@@ -120,17 +120,18 @@ static imk_status check_correlation(const imk_model *model, imki_fault *fault)
 /* The first that is wrong. */
 static imk_status check(const imk_model *model, imki_fault *fault)
 {
-    const imk_triad *triads[2] = {&model->gyro, &model->accel};
-    const imk_evidence *evidence[2] = {&model->gyro_evidence, &model->accel_evidence};
+    const imk_triad *triads[IMK_KINDS] = {&model->gyro, &model->accel, &model->mag};
+    const imk_evidence *evidence[IMK_KINDS] = {&model->gyro_evidence, &model->accel_evidence,
+                                               &model->mag_evidence};
     imk_status status = check_text(model->name, sizeof model->name, "name", fault);
     if (status == IMK_OK)
         status = check_text(model->description, sizeof model->description, "description", fault);
     if (status == IMK_OK)
         status = check_text(model->residual_of, sizeof model->residual_of, "residual_of", fault);
-    if (status == IMK_OK && !model->gyro.present && !model->accel.present)
+    if (status == IMK_OK && !model->gyro.present && !model->accel.present && !model->mag.present)
         status =
             refuse(fault, "gyro", IMK_ERROR_KEY_MISSING, -1, 0, 0, "a gyro, an accel, or both");
-    for (int kind = 0; status == IMK_OK && kind < 2; kind++) {
+    for (int kind = 0; status == IMK_OK && kind < IMK_KINDS; kind++) {
         status = imki_triad_check(triads[kind], kind, fault);
         fault->part = imki_kind_names[kind];
     }
@@ -138,7 +139,7 @@ static imk_status check(const imk_model *model, imki_fault *fault)
         status = imki_timing_check(&model->timing, fault);
         fault->part = "timing";
     }
-    for (int kind = 0; status == IMK_OK && kind < 2; kind++) {
+    for (int kind = 0; status == IMK_OK && kind < IMK_KINDS; kind++) {
         status = check_evidence(evidence[kind], triads[kind], kind, fault);
         fault->part = imki_kind_names[kind];
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Everything a model file can say, as a numbered list: the fields of the schema for both sensors,
+/* Everything a model file can say, as a numbered list: the fields of the schema for all sensors,
  * and what only the file has (texts, evidence). */
 #include "model_yaml_internal.h"
 
@@ -24,13 +24,18 @@ enum { HEAD_TEXTS = 3, EVIDENCE_TEXTS = 3, EVIDENCE_ITEMS = EVIDENCE_TEXTS + 2 }
 
 const imk_evidence *imki_evidence_of(const imk_model *model, int kind)
 {
-    return kind == IMK_GYRO ? &model->gyro_evidence : &model->accel_evidence;
+    return kind == IMK_GYRO    ? &model->gyro_evidence
+           : kind == IMK_ACCEL ? &model->accel_evidence
+                               : &model->mag_evidence;
 }
 
 /* Item `index` of one sensor: its presence, its fields, its evidence. A field that the kind does
  * not have leaves the path empty. */
 static void sensor_item(size_t index, int kind, imki_item *item)
 {
+    static const size_t evidence[IMK_KINDS] = {offsetof(imk_model, gyro_evidence),
+                                               offsetof(imk_model, accel_evidence),
+                                               offsetof(imk_model, mag_evidence)};
     item->kind = kind;
     if (index == 0) {
         item->type = IMKI_ITEM_SENSOR;
@@ -47,9 +52,7 @@ static void sensor_item(size_t index, int kind, imki_item *item)
         item->type = is_text ? IMKI_ITEM_TEXT : IMKI_ITEM_INTERVALS;
         item->is_bound = which == EVIDENCE_TEXTS + 1;
         if (is_text)
-            item->offset = evidence_texts[which].offset +
-                           (kind == IMK_GYRO ? offsetof(imk_model, gyro_evidence)
-                                             : offsetof(imk_model, accel_evidence));
+            item->offset = evidence_texts[which].offset + evidence[kind];
         snprintf(item->path, sizeof item->path, "%s.evidence.%s", imki_kind_names[kind],
                  is_text          ? evidence_texts[which].path
                  : item->is_bound ? "upper_bound"
@@ -67,11 +70,11 @@ bool imki_item_at(size_t index, imki_item *item)
         return true;
     }
     index -= HEAD_TEXTS;
-    if (index < 2 * per_sensor) {
+    if (index < IMK_KINDS * per_sensor) {
         sensor_item(index % per_sensor, (int)(index / per_sensor), item);
         return true;
     }
-    index -= 2 * per_sensor;
+    index -= IMK_KINDS * per_sensor;
     if (index == imki_timing_field_count) {
         item->type = IMKI_ITEM_CORRELATION;
         snprintf(item->path, sizeof item->path, "correlation");

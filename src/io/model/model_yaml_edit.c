@@ -232,7 +232,8 @@ static imk_status exchange_value(const imk_document *document, int node, const i
 /* The entry that states bias_instability by its other name. */
 static int floor_entry(const imk_document *document, const imki_item *item)
 {
-    static const char *const paths[2] = {"gyro.noise.allan_floor", "accel.noise.allan_floor"};
+    static const char *const paths[IMK_KINDS] = {
+        "gyro.noise.allan_floor", "accel.noise.allan_floor", "mag.noise.allan_floor"};
     bool complete = false;
     bool is_instability = item->type == IMKI_ITEM_FIELD &&
                           strcmp(item->field->path[item->kind], "noise.bias_instability") == 0;
@@ -268,7 +269,7 @@ static bool first_difference(const imk_model *a, const imk_model *b, size_t *ind
 
 static bool same_axes(const imk_model *a, const imk_model *b)
 {
-    for (int kind = 0; kind < 2; kind++) {
+    for (int kind = 0; kind < IMK_KINDS; kind++) {
         const imk_triad *x = imk_model_triad(a, kind), *y = imk_model_triad(b, kind);
         if (x->present && y->present && x->axis_count != y->axis_count)
             return false;

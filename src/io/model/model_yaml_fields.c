@@ -82,11 +82,12 @@ static quantity read_quantity(imki_reader *r, int node, const char *si, unsigned
     const imki_node *n = imki_reader_node(r, node);
     if (says_infinite(n->text)) {
         bool is_time = imki_reader_node(r, n->key != IMKI_NONE ? n->key : node)->text[0] == 'c';
-        const char *walk = r->kind == IMK_GYRO
-                               ? "a finite time; for an infinite one, use rate_random_walk"
-                               : "a finite time; for an infinite one, use acceleration_random_walk";
+        static const char *const walks[IMK_KINDS] = {
+            "a finite time; for an infinite one, use rate_random_walk",
+            "a finite time; for an infinite one, use acceleration_random_walk",
+            "a finite time; for an infinite one, use random_walk"};
         imki_refuse_value(r->reading, node, IMK_ERROR_NOT_FINITE,
-                          is_time ? walk : "a finite number");
+                          is_time ? walks[r->kind] : "a finite number");
         return q;
     }
     const imk_status status = imki_parse_quantity(n->text, n->length, si, flags, max_count, q.value,

@@ -11,28 +11,29 @@ enum { NAMES_MAX = 64, PATH_SIZE = 160 };
 
 /* ---- keys ------------------------------------------------------------------------------------ */
 
-/* The other kind's name of the same term: angle_random_walk under accel. */
-static const imki_field *field_of_other_kind(const char *path, int kind)
+/* Another kind's name of the same term: angle_random_walk under accel. */
+static const imki_field *field_of_other_kind(const char *path, int kind, int *other)
 {
-    for (size_t i = 0; i < imki_triad_field_count; i++) {
-        const char *name = imki_triad_fields[i].path[1 - kind];
-        if (name && strcmp(name, path) == 0)
-            return &imki_triad_fields[i];
-    }
+    for (size_t i = 0; i < imki_triad_field_count; i++)
+        for (*other = 0; *other < IMK_KINDS; ++*other) {
+            const char *name = imki_triad_fields[i].path[*other];
+            if (*other != kind && name && strcmp(name, path) == 0)
+                return &imki_triad_fields[i];
+        }
     return NULL;
 }
 
 static void refuse_key(imki_reader *r, int key, const char *path, const char *prefix)
 {
-    static const char *const owners[2] = {"gyros", "accelerometers"};
+    static const char *const owners[IMK_KINDS] = {"gyros", "accelerometers", "magnetometers"};
+    int which;
     char expected[sizeof r->reading->error->expected];
-    const imki_field *other = field_of_other_kind(path, r->kind);
+    const imki_field *other = field_of_other_kind(path, r->kind, &which);
     const char *own = other ? other->path[r->kind] : NULL, *last = own ? strrchr(own, '.') : NULL;
     if (own)
         snprintf(expected, sizeof expected, "%s have %s", owners[r->kind], last ? last + 1 : own);
     else if (other)
-        snprintf(expected, sizeof expected, "only %s has this key",
-                 r->kind == IMK_GYRO ? "accel" : "gyro");
+        snprintf(expected, sizeof expected, "only %s has this key", imki_kind_names[which]);
     if (other) {
         imki_refuse_value(r->reading, key, IMK_ERROR_KEY_UNKNOWN, expected);
         return;
@@ -192,7 +193,7 @@ static void read_evidence(imki_reader *r, int mapping, imk_evidence *evidence)
 static void read_sensor(imki_reading *reading, int kind, imk_triad *triad, imk_evidence *evidence)
 {
     const imk_document *document = reading->document;
-    int node = imki_document_value(document, 0, kind == IMK_GYRO ? "gyro" : "accel");
+    int node = imki_document_value(document, 0, imki_kind_names[kind]);
     triad->present = node != IMKI_NONE;
     if (!triad->present || !imki_value_require(reading, node, IMKI_NODE_MAPPING,
                                                "a mapping with the terms of the sensor, or {}"))
@@ -237,8 +238,8 @@ static void read_timing(imki_reading *reading, imk_timing *timing)
 imk_status imki_document_read_model(const imk_document *document, imk_model *model,
                                     imk_error *error)
 {
-    static const char *const names[] = {"imukit", "name",  "description", "residual_of",
-                                        "gyro",   "accel", "timing",      "correlation"};
+    static const char *const names[] = {"imukit", "name", "description", "residual_of", "gyro",
+                                        "accel",  "mag",  "timing",      "correlation"};
     imki_reading r = {.document = document, .error = error};
     imk_model_default(model);
     imki_value_keys(&r, 0, sizeof names / sizeof names[0], names);
@@ -251,6 +252,7 @@ imk_status imki_document_read_model(const imk_document *document, imk_model *mod
     imki_value_name(&r, "residual_of", model->residual_of, sizeof model->residual_of);
     read_sensor(&r, IMK_GYRO, &model->gyro, &model->gyro_evidence);
     read_sensor(&r, IMK_ACCEL, &model->accel, &model->accel_evidence);
+    read_sensor(&r, IMK_MAG, &model->mag, &model->mag_evidence);
     read_timing(&r, &model->timing);
     imki_read_correlation(&r, &model->correlation);
     return r.status;
