@@ -15,7 +15,7 @@ typedef struct simulate_options {
     bool no_earth, increments;
     const char *output, *format;
     imk_unit gyro_unit, accel_unit; /* scale 0: not given */
-    const char *motion, *temperature, *truth;
+    const char *motion, *temperature, *truth, *field;
     term_selection terms;
 } simulate_options;
 

@@ -86,7 +86,8 @@ static int open_temperature(const simulate_options *o, const imk_model *model, s
 {
     imk_error error;
     if (!o->temperature) {
-        if (has_temperature_terms(&model->gyro) || has_temperature_terms(&model->accel))
+        if (has_temperature_terms(&model->gyro) || has_temperature_terms(&model->accel) ||
+            has_temperature_terms(&model->mag))
             command_warn("temperature_unknown", "the model's temperature terms are left out: add "
                                                 "--temperature 25degC or a profile");
         return -1;
@@ -94,6 +95,49 @@ static int open_temperature(const simulate_options *o, const imk_model *model, s
     if (imk_temperature_read(o->temperature, &s->temperature, &error) != IMK_OK)
         return table_error(&error, o->temperature);
     s->settings.simulation.temperature = imk_temperature_file_profile(s->temperature);
+    return -1;
+}
+
+/* A magnetometer needs a field, and a motion with an attitude. */
+static int choose_field(const simulate_options *o, const imk_model *model, scene *s)
+{
+    imk_simulation *simulation = &s->settings.simulation;
+    const imk_trajectory *trajectory = simulation->motion.trajectory;
+    imk_error error;
+    imk_unit unit;
+    double sigma[3];
+    size_t count = 0;
+    if (o->field && !model->mag.present)
+        return command_misused(
+            "--field is for a model with a magnetometer (mag:), and this has none");
+    if (model->mag.present && simulation->motion.recorded) {
+        command_warn("no_attitude",
+                     "the magnetometer is left out: %s states rates and forces, but "
+                     "not the attitude in the field",
+                     o->motion);
+        return -1;
+    }
+    if (o->field) {
+        const imk_status status =
+            imk_quantity_parse(o->field, o->field + strlen(o->field), imk_unit_of("T").dimension, 3,
+                               simulation->field, sigma, &count, &unit, &error);
+        return status == IMK_OK && count == 3
+                   ? -1
+                   : command_misused(
+                         "--field \"%s\": expected three numbers and a unit, north, east "
+                         "and down, such as \"20 1 43 uT\"",
+                         o->field);
+    }
+    double latitude = simulation->latitude, last;
+    if (trajectory) {
+        imk_motion_state state;
+        double first;
+        imk_trajectory_span(trajectory, &first, &last);
+        imk_trajectory_state(trajectory, first, &state);
+        latitude = state.place.latitude;
+    }
+    if (model->mag.present)
+        imk_dipole_field(latitude, simulation->field);
     return -1;
 }
 
@@ -180,6 +224,8 @@ int scene_open(const simulate_options *o, const imk_model *model, scene *s)
         code = check_clock(o, model, s);
     if (code < 0)
         code = open_temperature(o, model, s);
+    if (code < 0)
+        code = choose_field(o, model, s);
     if (code < 0)
         code = choose_rate(o, s);
     if (code < 0)

@@ -55,6 +55,10 @@ static const option motion_option_table[] = {
     TURN_OPTION("pitch", AT(pitch), "pitch; default 0deg: level"),
     TURN_OPTION("yaw", AT(yaw), "heading, from north to east; default 0deg"),
     {"no-earth", OPTION_FLAG, AT(no_earth), .help = "without Earth rate and gravity"},
+    {"field", OPTION_TEXT, AT(field), .value = "FIELD",
+     .help =
+         "magnetic field north, east and down for a model with a magnetometer, such as \"20 1 43 "
+         "uT\"; default: that of a dipole at the latitude"},
 };
 
 _Static_assert(IMK_SUBSTEPS_MAX == 512, "as the range of --substeps says");

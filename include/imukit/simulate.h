@@ -24,8 +24,10 @@
  *    gyros by `skew`; a row is lost with the probability `drops`. Timestamps are always k/rate;
  *  - with a sensitivity the output is whole counts, round(sensitivity * x + zero_offset);
  *  - every term of every axis has its own random stream, so that changing one changes no other:
- *    axes 0-7 are gyros, 8-15 accelerometers. Repeatabilities are normal 0 of the term
- *    IMK_TERM_REPEATABILITY, instance 0 the bias, 1 the scale factor. */
+ *    axes 0-7 are gyros, 8-15 accelerometers, 16-23 magnetometers. Repeatabilities are normal 0 of
+ *    the term IMK_TERM_REPEATABILITY, instance 0 the bias, 1 the scale factor;
+ *  - a magnetometer sees the field, which is the same everywhere, in body axes at the middle of
+ * each part of a sample. */
 #ifndef IMUKIT_SIMULATE_H
 #define IMUKIT_SIMULATE_H
 
@@ -50,7 +52,9 @@ typedef struct imk_simulation {
     bool earth;        /**< Earth rate and gravity at the place below (default true) */
     double latitude;   /**< geodetic [rad]; default 45 deg */
     double height;     /**< above the ellipsoid [m], -1e4 … 1e5 */
-    double roll, pitch, yaw;                    /**< attitude of the body, north-east-down [rad] */
+    double roll, pitch, yaw; /**< attitude of the body, north-east-down [rad] */
+    double field[3]; /**< magnetic flux density, north, east and down [T]. Not all 0: the channels
+                        of the model's magnetometer are made, too; default 0 */
     const imk_temperature_profile *temperature; /**< of the unit, time 0 at row 0; NULL: none */
     size_t substeps; /**< parts of a sample, 1 … IMK_SUBSTEPS_MAX; 0 (default): as many as the
                         vibration needs, and 8 for a moving unit with a bandwidth */
@@ -70,13 +74,20 @@ IMK_API size_t imk_simulator_size(const imk_model *model, const imk_simulation *
  *  @param memory  imk_simulator_size() bytes for the simulator, which needs no other memory. The
  *                 motion and the temperature profile must exist while it is used
  *  @return the errors of imk_model_validate() and of the motion; IMK_ERROR_RANGE;
- *          IMK_ERROR_CONFLICT (a recorded motion with a clock error, or with another rate than its
- *          own); IMK_ERROR_WORKSPACE */
+ *          IMK_ERROR_CONFLICT (a recorded motion with a clock error, with another rate than its
+ * own, or with a magnetometer, because it states no attitude); IMK_ERROR_WORKSPACE */
 IMK_API imk_status imk_simulator_start(const imk_model *model, const imk_simulation *simulation,
                                        imk_simulator **simulator, void *memory, size_t memory_size,
                                        imk_error *error);
 
-/** Number of channels: gyro axes, then accelerometer axes. */
+/** Field of a magnetic dipole along the Earth's axis at a geodetic latitude [rad] on the ground, by
+ *  the first coefficient of the geomagnetic model of 2025, 29.35 uT [IGRF14]: the true field
+ * differs by up to 20 uT.
+ *  @param field  north, east (0), down [T] */
+IMK_API void imk_dipole_field(double latitude, double field[3]);
+
+/** Number of channels: gyro axes, then accelerometer axes, then those of the magnetometer if the
+ *  simulation has a field. */
 IMK_API size_t imk_simulator_channels(const imk_simulator *simulator);
 
 /** Make the next `count` samples of every channel.

@@ -29,7 +29,8 @@ IMK_API imk_simulate_log_settings imk_simulate_log_default(void);
  *  to three sensors along the body axes, consecutive numbers for others. */
 IMK_API void imk_triad_axes(const imk_triad *triad, int axis[IMK_AXES_MAX]);
 
-/** Simulate one run: time, gyros, accelerometers, and the temperature if there is a profile. Rows
+/** Simulate one run: time, gyros, accelerometers, the magnetometer [uT] if the simulation has a
+ *  field, and the temperature if there is a profile. Rows
  *  that are lost (timing.drops) are left out. A model with a sensitivity gives counts.
  *  @param sink   takes the rows
  *  @param stage  text for the progress, such as "simulating"

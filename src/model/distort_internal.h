@@ -94,4 +94,8 @@ IMKI_DISTORT_LOOPS(portable)
 IMKI_DISTORT_LOOPS(avx2)
 IMKI_DISTORT_LOOPS(avx512)
 
+/* The magnetometer of a model as the accelerometers of a distortion, which see the field. */
+void imki_distortion_of_mag(imk_distortion *distortion, const imk_model *model,
+                            const imk_run_constants *constants, imk_kernel kernel);
+
 #endif

@@ -145,34 +145,50 @@ static void compile_numbers(imk_axis_response *axis, const imk_triad *triad, int
     axis->half_hysteresis = 0.5 * triad->bias.hysteresis.value[i];
 }
 
+static void compile_triad(imk_distortion *distortion, const imk_triad *triad, int sensor,
+                          const imk_run_constants *constants)
+{
+    distortion->axis_count[sensor] = triad->present ? triad->axis_count : 0;
+    for (int i = 0; i < distortion->axis_count[sensor]; i++) {
+        imk_axis_response *axis = &distortion->axis[sensor][i];
+        compile_numbers(axis, triad, i);
+        compile_weights(axis, triad, sensor, i);
+        if (sensor == IMK_ACCEL)
+            compile_cross_products(axis, triad, i);
+        if (constants) {
+            axis->bias += constants->bias[sensor][i];
+            axis->scale += constants->scale_factor[sensor][i];
+        }
+        axis->used[IMKI_ROW_INPUT] = not_zero(axis->input);
+        axis->used[IMKI_ROW_OTHER] = not_zero(axis->other);
+        axis->used[IMKI_ROW_PENDULOUS] = not_zero(axis->pendulous);
+        axis->used[IMKI_ROW_OUTPUT] = not_zero(axis->output);
+    }
+}
+
+static void start(imk_distortion *distortion, imk_kernel kernel)
+{
+    memset(distortion, 0, sizeof *distortion);
+    distortion->cookie = IMKI_DISTORTION_COOKIE;
+    distortion->kernel = kernel;
+}
+
 imk_status imk_distortion_start(imk_distortion *distortion, const imk_model *model,
                                 const imk_run_constants *constants, imk_kernel kernel,
                                 imk_error *error)
 {
-    const imk_triad *triads[2] = {&model->gyro, &model->accel};
     const imk_status status = check_cross_products(&model->accel, error);
     if (status != IMK_OK)
         return status;
-    memset(distortion, 0, sizeof *distortion);
-    distortion->cookie = IMKI_DISTORTION_COOKIE;
-    distortion->kernel = kernel;
-    for (int sensor = 0; sensor < 2; sensor++) {
-        distortion->axis_count[sensor] = triads[sensor]->present ? triads[sensor]->axis_count : 0;
-        for (int i = 0; i < distortion->axis_count[sensor]; i++) {
-            imk_axis_response *axis = &distortion->axis[sensor][i];
-            compile_numbers(axis, triads[sensor], i);
-            compile_weights(axis, triads[sensor], sensor, i);
-            if (sensor == IMK_ACCEL)
-                compile_cross_products(axis, triads[sensor], i);
-            if (constants) {
-                axis->bias += constants->bias[sensor][i];
-                axis->scale += constants->scale_factor[sensor][i];
-            }
-            axis->used[IMKI_ROW_INPUT] = not_zero(axis->input);
-            axis->used[IMKI_ROW_OTHER] = not_zero(axis->other);
-            axis->used[IMKI_ROW_PENDULOUS] = not_zero(axis->pendulous);
-            axis->used[IMKI_ROW_OUTPUT] = not_zero(axis->output);
-        }
-    }
+    start(distortion, kernel);
+    compile_triad(distortion, &model->gyro, IMK_GYRO, constants);
+    compile_triad(distortion, &model->accel, IMK_ACCEL, constants);
     return IMK_OK;
+}
+
+void imki_distortion_of_mag(imk_distortion *distortion, const imk_model *model,
+                            const imk_run_constants *constants, imk_kernel kernel)
+{
+    start(distortion, kernel);
+    compile_triad(distortion, &model->mag, IMK_ACCEL, constants);
 }

@@ -127,6 +127,7 @@ imk_status imki_channel_start(imki_channel *channel, imki_axis axis, double dt, 
 {
     misfit found;
     channel->sensor = axis.sensor;
+    channel->stimulus = axis.stimulus;
     channel->axis = axis.axis;
     channel->random = random;
     channel->kernel = random.kernel;
@@ -188,7 +189,7 @@ static imk_stimulus later(const imk_stimulus *stimulus, size_t first)
 static void respond_still(imki_channel *channel, const imk_distortion *distortion,
                           const imki_scene *scene, size_t part, size_t rows, double *out)
 {
-    imk_stimulus stimulus = scene->stimulus[channel->sensor];
+    imk_stimulus stimulus = scene->stimulus[channel->stimulus];
     for (int i = 0; i < 2; i++)
         if (stimulus.warm_up[i])
             stimulus.warm_up[i] += part;
@@ -213,7 +214,7 @@ void imki_channel_response(imki_channel *channel, const imk_distortion *distorti
         const size_t now = rows - row < rows_at_once ? rows - row : rows_at_once;
         const size_t count = now * substeps;
         double *signal = substeps == 1 ? out + row : parts;
-        imk_stimulus stimulus = later(&scene->stimulus[channel->sensor], part + row * substeps);
+        imk_stimulus stimulus = later(&scene->stimulus[channel->stimulus], part + row * substeps);
         imk_distort(distortion, channel->sensor, channel->axis, &stimulus, count, signal);
         if (channel->band_limit.present)
             limit_band(&channel->band_limit, count, signal);
@@ -236,19 +237,19 @@ void imki_channel_responses(size_t count, imki_channel *const *channels,
                             const imk_distortion *const *distortions, const imki_scene *scene,
                             size_t rows, double *const *out)
 {
-    const int sensor = channels[0]->sensor;
+    const int sensor = channels[0]->sensor, kind = channels[0]->stimulus;
     const imk_axis_response *axes[IMKI_SIDE_BY_SIDE] = {axis_response(channels[0], distortions[0])};
     bool alike = scene->substeps == 1 && !scene->temperature && rows % IMKI_CHUNK == 0;
     for (size_t i = 1; alike && i < count; i++) {
         axes[i] = axis_response(channels[i], distortions[i]);
-        alike = channels[i]->sensor == sensor && imki_axes_alike(axes[0], axes[i]);
+        alike = channels[i]->stimulus == kind && imki_axes_alike(axes[0], axes[i]);
     }
     if (!alike) {
         for (size_t i = 0; i < count; i++)
             imki_channel_response(channels[i], distortions[i], scene, 0, rows, out[i]);
         return;
     }
-    const imki_exposure exposure = imki_expose(sensor, &scene->stimulus[sensor]);
+    const imki_exposure exposure = imki_expose(sensor, &scene->stimulus[kind]);
     imki_distort_alike(distortions[0]->kernel, count, axes, &exposure, rows / IMKI_CHUNK, out);
     for (size_t i = 0; i < count; i++)
         if (channels[i]->band_limit.present)

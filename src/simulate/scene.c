@@ -27,6 +27,12 @@ static bool moves(const imk_simulation *simulation)
     return simulation->motion.recorded || simulation->motion.trajectory;
 }
 
+static bool has_field(const imk_simulation *simulation)
+{
+    const double *field = simulation->field;
+    return field[0] != 0.0 || field[1] != 0.0 || field[2] != 0.0;
+}
+
 static bool has_lever_arm(const imk_triad *triad)
 {
     for (int i = 0; triad->present && i < triad->axis_count; i++)
@@ -46,7 +52,9 @@ size_t imki_substeps(const imk_model *model, const imk_simulation *simulation)
     if (substeps > 0 || simulation->motion.recorded || !moves(simulation))
         return substeps > 0 ? substeps : 1;
     substeps = imk_trajectory_substeps(simulation->motion.trajectory, 1.0 / simulation->rate);
-    if ((has(gyro, &gyro->bandwidth) || has(accel, &accel->bandwidth)) && substeps < FILTERED)
+    const bool magnetic = has_field(simulation) && has(&model->mag, &model->mag.bandwidth);
+    if ((has(gyro, &gyro->bandwidth) || has(accel, &accel->bandwidth) || magnetic) &&
+        substeps < FILTERED)
         substeps = FILTERED;
     return substeps < IMK_SUBSTEPS_MAX ? substeps : IMK_SUBSTEPS_MAX;
 }
@@ -55,7 +63,8 @@ bool imki_scene_varies(const imk_model *model, const imk_simulation *simulation)
 {
     return moves(simulation) || simulation->temperature ||
            has(&model->gyro, &model->gyro.bias.warm_up_amplitude) ||
-           has(&model->accel, &model->accel.bias.warm_up_amplitude);
+           has(&model->accel, &model->accel.bias.warm_up_amplitude) ||
+           (has_field(simulation) && has(&model->mag, &model->mag.bias.warm_up_amplitude));
 }
 
 /* ---- start ---- */
@@ -72,6 +81,10 @@ static imk_status check_recorded(const imk_model *model, const imk_simulation *s
     const imk_timing *timing = &model->timing;
     if (simulation->motion.trajectory)
         return conflict(error, "motion", "give either a trajectory or a recorded motion");
+    if (has_field(simulation))
+        return conflict(
+            error, "motion",
+            "a trajectory: a recorded motion has no attitude, which a magnetometer needs");
     if (recorded->count == 0)
         return imk_error_set(error, IMK_ERROR_EMPTY, "motion", "", "at least one recorded sample");
     if (!(fabs(recorded->rate - simulation->rate) <= 1e-6 * simulation->rate))
@@ -123,7 +136,7 @@ static void assign_columns(imki_scene *e, double *memory)
     for (int i = 0; i < IMKI_COLUMNS; i++)
         e->column[i] = memory + (size_t)i * IMKI_STRETCH;
     e->warm_up_table = memory + (size_t)IMKI_COLUMNS * IMKI_STRETCH;
-    e->boundary = e->warm_up_table + 2 * (size_t)IMK_NOISE_BLOCK;
+    e->boundary = e->warm_up_table + IMK_KINDS * (size_t)IMK_NOISE_BLOCK;
 }
 
 /* The motion of a unit at rest, in every element. */
@@ -131,11 +144,14 @@ static void fill_rest(imki_scene *e, double *const *column, size_t count)
 {
     imk_motion_state state;
     imk_trajectory_state(e->trajectory, e->start, &state);
+    double field[3];
+    imki_field_at(e, e->start, field);
     for (int i = 0; i < 3; i++)
         for (size_t k = 0; k < count; k++) {
             column[IMKI_RATE + i][k] = state.angular_rate.v[i];
             column[IMKI_FORCE + i][k] = state.specific_force.v[i];
             column[IMKI_ACCELERATION + i][k] = 0.0;
+            column[IMKI_FIELD + i][k] = field[i];
         }
 }
 
@@ -161,6 +177,21 @@ static imk_stimulus stimulus_of(const imki_scene *e, double *const *column, int 
     return s;
 }
 
+/* The field in place of the force, and what warms this kind of sensor in the place of an
+ * accelerometer's. */
+static imk_stimulus magnetic_stimulus(const imki_scene *e, double *const *column)
+{
+    imk_stimulus s = stimulus_of(e, column, 0);
+    for (int i = 0; i < 3; i++) {
+        s.specific_force[i] = column[IMKI_FIELD + i];
+        s.angular_acceleration[i] = NULL;
+    }
+    s.hysteresis[IMK_ACCEL] =
+        e->temperature && e->hysteresis_present[IMK_MAG] ? column[IMKI_HYSTERESIS + IMK_MAG] : NULL;
+    s.warm_up[IMK_ACCEL] = e->warm_up_present[IMK_MAG] ? column[IMKI_WARM_UP + IMK_MAG] : NULL;
+    return s;
+}
+
 static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
 {
     e->warm_up_present[sensor] = has(triad, &triad->bias.warm_up_amplitude);
@@ -168,7 +199,7 @@ static void start_triad(imki_scene *e, const imk_triad *triad, int sensor)
     e->same_warm_up =
         e->warm_up_present[0] && e->warm_up_present[1] && e->warm_up_time[0] == e->warm_up_time[1];
     double part = e->interval / (double)e->substeps;
-    const bool needs_table = e->warm_up_present[sensor] && !e->same_warm_up;
+    const bool needs_table = e->warm_up_present[sensor] && (!e->same_warm_up || sensor == IMK_MAG);
     for (size_t i = 0; needs_table && i < IMK_NOISE_BLOCK; i++)
         e->warm_up_table[(size_t)sensor * IMK_NOISE_BLOCK + i] =
             imk_exp(-((double)i * part) / e->warm_up_time[sensor]);
@@ -182,7 +213,9 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
     *e = (imki_scene){.random = imk_random_seeded(simulation->seed),
                       .temperature = simulation->temperature,
                       .jitter = model->timing.jitter.value,
-                      .skew = model->timing.skew.value};
+                      .skew = model->timing.skew.value,
+                      .has_field = model->mag.present && has_field(simulation)};
+    memcpy(e->field, simulation->field, sizeof e->field);
     e->kernel = e->random.kernel;
     e->jitter_stream = imk_stream(simulation->run, IMK_TERM_JITTER, 0, 0);
     imk_status status = start_motion(e, model, simulation, checked, error);
@@ -200,6 +233,8 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
     assign_columns(e, imki_take(memory, IMKI_SCENE_SIZE));
     for (int sensor = 0; sensor < 2; sensor++)
         start_triad(e, sensor == IMK_GYRO ? &model->gyro : &model->accel, sensor);
+    if (e->has_field)
+        start_triad(e, &model->mag, IMK_MAG);
     e->same_hysteresis = e->hysteresis_present[0] && e->hysteresis_present[1] &&
                          e->hysteresis[0].span == e->hysteresis[1].span;
     e->still = !e->motion_varies && !e->temperature && e->substeps == 1;
@@ -208,6 +243,8 @@ imk_status imki_scene_start(imki_scene *e, const imk_model *model, const imk_sim
     e->stimulus[IMK_GYRO] = stimulus_of(e, e->column, 0);
     e->stimulus[IMK_ACCEL] =
         stimulus_of(e, e->column, e->skew != 0.0 && e->motion_varies ? IMKI_LATE : 0);
+    if (e->has_field)
+        e->stimulus[IMK_MAG] = magnetic_stimulus(e, e->column);
     return IMK_OK;
 }
 
@@ -216,7 +253,9 @@ bool imki_scenes_agree(const imki_scene *a, const imki_scene *b)
     /* At rest each has its own trajectory, and what follows the temperature a state. */
     if (!a->trajectory || a->trajectory != b->trajectory || a->temperature || b->temperature)
         return false;
-    for (int i = 0; i < 2; i++)
+    if (a->has_field != b->has_field || memcmp(a->field, b->field, sizeof a->field) != 0)
+        return false;
+    for (int i = 0; i < IMK_KINDS; i++)
         if (a->warm_up_present[i] != b->warm_up_present[i] ||
             (a->warm_up_present[i] && a->warm_up_time[i] != b->warm_up_time[i]))
             return false;
@@ -281,6 +320,31 @@ static void run_motion(void *context, size_t item)
                          e->needs_acceleration ? acceleration : NULL, force);
 }
 
+void imki_field_at(const imki_scene *e, double time, double field[3])
+{
+    imk_motion_state state;
+    imk_trajectory_state(e->trajectory, time, &state);
+    for (int i = 0; i < 3; i++) {
+        field[i] = 0.0;
+        for (int j = 0; j < 3; j++)
+            field[i] += state.c_nb.m[j][i] * e->field[j];
+    }
+}
+
+/* The field in the middle of up to a block of parts. */
+static void run_field(void *context, size_t item)
+{
+    const motion_work *work = context;
+    imki_scene *e = work->scene;
+    const size_t first = item * IMK_NOISE_BLOCK, left = work->count - first;
+    for (size_t k = first; k < first + (left < IMK_NOISE_BLOCK ? left : IMK_NOISE_BLOCK); k++) {
+        double field[3];
+        imki_field_at(e, 0.5 * (work->boundary[k] + work->boundary[k + 1]), field);
+        for (int i = 0; i < 3; i++)
+            e->column[IMKI_FIELD + i][k] = field[i];
+    }
+}
+
 static void fill_trajectory(imki_scene *e, uint64_t first, size_t rows,
                             const imk_executor *executor)
 {
@@ -289,6 +353,8 @@ static void fill_trajectory(imki_scene *e, uint64_t first, size_t rows,
     make_boundaries(e, first, rows);
     motion_work work = {e, count, e->boundary, 0};
     imk_execute(executor, items, run_motion, &work);
+    if (e->has_field)
+        imk_execute(executor, items, run_field, &work);
     if (e->skew == 0.0)
         return;
     for (size_t i = 0; i <= count; i++)
@@ -342,8 +408,8 @@ static void fill_temperature(imki_scene *e, uint64_t first, size_t count)
     for (size_t i = 0; i < count; i++)
         time[i] = ((begin + (double)(int)i) + 0.5 - parts) * part;
     imk_temperature_at(e->temperature, count, time, temperature, e->column[IMKI_TEMPERATURE_RATE]);
-    for (int sensor = 0; sensor < (e->same_hysteresis ? 1 : 2); sensor++)
-        if (e->hysteresis_present[sensor])
+    for (int sensor = 0; sensor < IMK_KINDS; sensor++)
+        if (e->hysteresis_present[sensor] && !(sensor == IMK_ACCEL && e->same_hysteresis))
             imk_hysteresis_next(&e->hysteresis[sensor], count, temperature,
                                 e->column[IMKI_HYSTERESIS + sensor]);
 }
@@ -374,7 +440,7 @@ void imki_scene_fill(imki_scene *e, uint64_t first, size_t rows, const imk_execu
         fill_trajectory(e, first, rows, executor);
     if (e->temperature)
         fill_temperature(e, part, count);
-    for (int sensor = 0; sensor < (e->same_warm_up ? 1 : 2); sensor++)
-        if (e->warm_up_present[sensor])
+    for (int sensor = 0; sensor < IMK_KINDS; sensor++)
+        if (e->warm_up_present[sensor] && !(sensor == IMK_ACCEL && e->same_warm_up))
             fill_warm_up(e, sensor, part, count);
 }

@@ -3,6 +3,8 @@
 #include "imukit/simulate.h"
 
 #include "base/refuse_internal.h"
+#include "imukit/elementary.h"
+#include "model/distort_internal.h"
 #include "simulate_internal.h"
 
 #include <string.h>
@@ -11,7 +13,7 @@ enum { COOKIE = 0x5131A711 };
 
 struct imk_simulator {
     imki_scene scene;
-    imk_distortion distortion;
+    imk_distortion distortion, magnetic; /* the magnetometer's: as accelerometers of its own */
     imk_random random;
     uint64_t drop_stream;
     double drops;
@@ -51,6 +53,9 @@ static imk_status check_simulation(const imk_simulation *simulation, imk_error *
     for (int i = 0; i < 3; i++)
         if (!(fabs(angle[i]) <= 1e4))
             return range_error(error, name[i], angle[i], "an angle");
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(s->field[i]) <= 1.0))
+            return range_error(error, "field", s->field[i], "a flux density of at most 1 T");
     if (s->substeps > IMK_SUBSTEPS_MAX)
         return range_error(error, "substeps", (double)s->substeps, "at most 512 parts of a sample");
     return IMK_OK;
@@ -63,17 +68,36 @@ static size_t axes_of(const imk_triad *triad)
 
 static imki_axis axis_of(const imk_model *model, size_t channel)
 {
-    size_t gyros = axes_of(&model->gyro);
-    if (channel < gyros)
-        return (imki_axis){&model->gyro, "gyro", IMK_GYRO, (int)channel, (uint8_t)channel};
-    size_t axis = channel - gyros;
-    return (imki_axis){&model->accel, "accel", IMK_ACCEL, (int)axis,
-                       (uint8_t)(axis + IMK_AXES_MAX)};
+    static const char *const names[IMK_KINDS] = {"gyro", "accel", "mag"};
+    int kind = IMK_GYRO;
+    while (channel >= axes_of(imk_model_triad(model, kind)))
+        channel -= axes_of(imk_model_triad(model, kind++));
+    return (imki_axis){imk_model_triad(model, kind),
+                       names[kind],
+                       kind == IMK_GYRO ? IMK_GYRO : IMK_ACCEL,
+                       kind,
+                       (int)channel,
+                       (uint8_t)(channel + (size_t)kind * IMK_AXES_MAX)};
+}
+
+static size_t channels_of(const imk_model *model, const imk_simulation *simulation)
+{
+    const double *field = simulation->field;
+    const bool magnetic = field[0] != 0.0 || field[1] != 0.0 || field[2] != 0.0;
+    return axes_of(&model->gyro) + axes_of(&model->accel) + (magnetic ? axes_of(&model->mag) : 0);
+}
+
+void imk_dipole_field(double latitude, double field[3])
+{
+    static const double equator = 29.35e-6;
+    field[0] = equator * imk_cos(latitude);
+    field[1] = 0.0;
+    field[2] = 2.0 * equator * imk_sin(latitude);
 }
 
 size_t imk_simulator_size(const imk_model *model, const imk_simulation *simulation)
 {
-    const size_t count = axes_of(&model->gyro) + axes_of(&model->accel);
+    const size_t count = channels_of(model, simulation);
     imki_parts parts = {NULL, 0};
     size_t states = 0;
     for (size_t i = 0; i < count; i++) {
@@ -107,12 +131,22 @@ static void draw_constants(imki_axis axis, imk_random random, uint32_t run,
 static imk_status start_distortion(imk_simulator *made, const imk_model *model,
                                    const imk_simulation *simulation, imk_error *error)
 {
-    imk_run_constants constants = {.bias = {{0.0}}};
+    imk_run_constants constants = {.bias = {{0.0}}}, magnetic = {.bias = {{0.0}}};
     for (size_t i = 0; i < made->channels; i++) {
         const imki_axis axis = axis_of(model, i);
-        draw_constants(axis, made->random, simulation->run, &constants);
+        draw_constants(axis, made->random, simulation->run,
+                       axis.stimulus == IMK_MAG ? &magnetic : &constants);
     }
-    return imk_distortion_start(&made->distortion, model, &constants, made->random.kernel, error);
+    const imk_status status =
+        imk_distortion_start(&made->distortion, model, &constants, made->random.kernel, error);
+    if (status == IMK_OK && made->scene.has_field)
+        imki_distortion_of_mag(&made->magnetic, model, &magnetic, made->random.kernel);
+    return status;
+}
+
+static const imk_distortion *distortion_of(const imk_simulator *made, const imki_channel *channel)
+{
+    return channel->stimulus == IMK_MAG ? &made->magnetic : &made->distortion;
 }
 
 /* The response of a unit at rest. */
@@ -125,8 +159,14 @@ static double constant_response(const imk_simulator *made, const imki_channel *c
         stimulus.angular_rate[i] = &state.angular_rate.v[i];
         stimulus.specific_force[i] = &state.specific_force.v[i];
     }
-    double response;
-    imk_distort(&made->distortion, channel->sensor, channel->axis, &stimulus, 1, &response);
+    double response, field[3];
+    if (channel->stimulus == IMK_MAG) {
+        imki_field_at(&made->scene, made->scene.start, field);
+        for (int i = 0; i < 3; i++)
+            stimulus.specific_force[i] = &field[i];
+    }
+    imk_distort(distortion_of(made, channel), channel->sensor, channel->axis, &stimulus, 1,
+                &response);
     return response;
 }
 
@@ -162,7 +202,7 @@ imk_status imki_simulator_start(void *memory, size_t size, const imk_model *mode
     if (!memory)
         return imk_error_set(error, IMK_ERROR_ARGUMENT, "memory", "", "memory");
     imki_parts rest = imki_parts_of(memory);
-    const size_t channels = axes_of(&model->gyro) + axes_of(&model->accel);
+    const size_t channels = channels_of(model, simulation);
     imk_simulator *made = imki_take(&rest, sizeof *made);
     imki_channel *channel = imki_take(&rest, channels * sizeof *channel);
     memset(rest.memory, 0, rest.used);
@@ -223,8 +263,9 @@ static void run_response(void *context, size_t item)
 {
     const row_work *work = context;
     imk_simulator *simulator = work->simulator;
-    imki_channel_response(&simulator->channel[item], &simulator->distortion, work->scene, 0,
-                          work->rows, work->out[item] + work->first);
+    imki_channel *channel = &simulator->channel[item];
+    imki_channel_response(channel, distortion_of(simulator, channel), work->scene, 0, work->rows,
+                          work->out[item] + work->first);
 }
 
 /* Noise and output of the blocks that these rows complete: every groups-th channel, which mixes
@@ -296,7 +337,7 @@ static size_t hand_out(imk_simulator *simulator, size_t channels, size_t count, 
     return now;
 }
 
-static void advance(double *column[2 * IMK_AXES_MAX], size_t channels, size_t rows)
+static void advance(double *column[IMKI_CHANNELS], size_t channels, size_t rows)
 {
     for (size_t i = 0; i < channels; i++)
         column[i] += rows;
@@ -305,7 +346,7 @@ static void advance(double *column[2 * IMK_AXES_MAX], size_t channels, size_t ro
 void imk_simulator_next(imk_simulator *simulator, size_t count, double *const *columns,
                         const imk_executor *executor)
 {
-    double *out[2 * IMK_AXES_MAX] = {NULL}, *held[2 * IMK_AXES_MAX] = {NULL};
+    double *out[IMKI_CHANNELS] = {NULL}, *held[IMKI_CHANNELS] = {NULL};
     const size_t channels = simulator->channels;
     for (size_t i = 0; i < channels; i++) {
         out[i] = columns[i];
@@ -338,7 +379,7 @@ static void respond_together(size_t count, imk_simulator *const *simulators,
         double *out[IMKI_SIDE_BY_SIDE];
         for (size_t i = 0; i < count; i++) {
             channels[i] = &simulators[i]->channel[j];
-            distortions[i] = &simulators[i]->distortion;
+            distortions[i] = distortion_of(simulators[i], channels[i]);
             out[i] = columns[i][j] + first;
         }
         imki_channel_responses(count, channels, distortions, scene, rows, out);

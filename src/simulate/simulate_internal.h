@@ -23,8 +23,9 @@ enum {
     IMKI_TEMPERATURE = 18,
     IMKI_TEMPERATURE_RATE,
     IMKI_HYSTERESIS,
-    IMKI_WARM_UP = IMKI_HYSTERESIS + 2,
-    IMKI_TIME = IMKI_WARM_UP + 2, /* scratch: times */
+    IMKI_WARM_UP = IMKI_HYSTERESIS + IMK_KINDS,
+    IMKI_FIELD = IMKI_WARM_UP + IMK_KINDS,
+    IMKI_TIME = IMKI_FIELD + 3, /* scratch: times */
     IMKI_COLUMNS
 };
 
@@ -42,14 +43,18 @@ typedef struct imki_scene {
     size_t substeps;
     bool motion_varies, varies; /* in time; anything at all */
     bool still;                 /* nothing but the warm-up varies, and a row is one part */
-    bool needs_acceleration, hysteresis_present[2], warm_up_present[2];
-    bool same_hysteresis, same_warm_up; /* of both kinds of sensor: made once */
-    double warm_up_time[2];
-    imk_hysteresis hysteresis[2];
-    double *warm_up_table; /* 2 x IMK_NOISE_BLOCK: e^(-i part/time) */
+    bool needs_acceleration, hysteresis_present[IMK_KINDS], warm_up_present[IMK_KINDS];
+    bool same_hysteresis, same_warm_up; /* of gyros and accelerometers: made once */
+    double warm_up_time[IMK_KINDS];
+    imk_hysteresis hysteresis[IMK_KINDS];
+    bool has_field;
+    double field[3];       /* north, east, down */
+    double *warm_up_table; /* IMK_KINDS x IMK_NOISE_BLOCK: e^(-i part/time) */
     double *column[IMKI_COLUMNS];
-    double *boundary;         /* IMKI_STRETCH + 1 */
-    imk_stimulus stimulus[2]; /* of gyros and accelerometers: the stretch made last */
+    double *boundary; /* IMKI_STRETCH + 1 */
+    /* The stretch made last, by kind. To the distortion a magnetometer is an accelerometer that
+     * sees the field. */
+    imk_stimulus stimulus[IMK_KINDS];
 } imki_scene;
 
 /* Parts of a sample this simulation needs. */
@@ -57,7 +62,8 @@ size_t imki_substeps(const imk_model *model, const imk_simulation *simulation);
 /* True when anything varies: then the scene takes this memory for its columns. */
 bool imki_scene_varies(const imk_model *model, const imk_simulation *simulation);
 enum {
-    IMKI_SCENE_SIZE = ((IMKI_COLUMNS + 1) * IMKI_STRETCH + 8 + 2 * IMK_NOISE_BLOCK) * sizeof(double)
+    IMKI_SCENE_SIZE =
+        ((IMKI_COLUMNS + 1) * IMKI_STRETCH + 8 + IMK_KINDS * IMK_NOISE_BLOCK) * sizeof(double)
 };
 /* @param checked  the motion has been found valid before */
 imk_status imki_scene_start(imki_scene *scene, const imk_model *model,
@@ -68,6 +74,8 @@ bool imki_scenes_agree(const imki_scene *a, const imki_scene *b);
 /* Make the rows first … first + rows - 1, rows * substeps <= IMKI_STRETCH. Stretches follow one
  * another. */
 void imki_scene_fill(imki_scene *scene, uint64_t first, size_t rows, const imk_executor *executor);
+/* The field in body axes at an instant. */
+void imki_field_at(const imki_scene *scene, double time, double field[3]);
 /* True time at the end of a row, from the start of the motion. */
 double imki_row_end(const imki_scene *scene, int64_t row);
 
@@ -76,8 +84,9 @@ double imki_row_end(const imki_scene *scene, int64_t row);
 /* One axis of a triad, and where it stands. */
 typedef struct imki_axis {
     const imk_triad *triad;
-    const char *kind;    /* "gyro" or "accel": where errors point */
-    int sensor;          /* IMK_GYRO or IMK_ACCEL */
+    const char *kind;    /* "gyro", "accel" or "mag": where errors point */
+    int sensor;          /* IMK_GYRO or IMK_ACCEL, as which it is distorted */
+    int stimulus;        /* its kind */
     int axis;            /* in the triad */
     uint8_t stream_axis; /* in stream numbers */
 } imki_axis;
@@ -100,7 +109,7 @@ typedef struct imki_channel_term {
 } imki_channel_term;
 
 typedef struct imki_channel {
-    int sensor, axis;
+    int sensor, stimulus, axis;
     double constant, ramp; /* of a unit at rest [unit]; [unit per sample] */
     double dead_band, range, resolution, sensitivity, zero_offset;
     imk_random random;
@@ -132,7 +141,7 @@ void imki_channel_responses(size_t count, imki_channel *const *channels,
                             const imk_distortion *const *distortions, const imki_scene *scene,
                             size_t rows, double *const *out);
 
-enum { IMKI_CHANNELS = 2 * IMK_AXES_MAX };
+enum { IMKI_CHANNELS = IMK_KINDS * IMK_AXES_MAX };
 
 /* Noise and output stage of the next 512 samples of several channels of one unit: together, because
  * some terms wait for their own sums and others can be computed meanwhile.

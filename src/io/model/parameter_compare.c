@@ -165,6 +165,8 @@ void imki_parameters_compare(imki_parameters *p, imki_parameter_function *read, 
     if (p->status == IMK_OK) {
         kept = compare_triads(p, format, IMK_GYRO, &source->gyro, &back->gyro, &had);
         kept += compare_triads(p, format, IMK_ACCEL, &source->accel, &back->accel, &had);
+        if (source->mag.present)
+            imki_note(p, true, "mag is not held by the format %s", format);
         compare_timing(p, format, &source->timing);
     }
     if (had > 0 && kept == 0)

@@ -35,7 +35,7 @@ void imk_triad_axes(const imk_triad *triad, int axis[IMK_AXES_MAX])
 
 /* ---- columns ---- */
 
-enum { COLUMNS_MAX = 2 + 2 * IMK_AXES_MAX }; /* time, channels, temperature */
+enum { COLUMNS_MAX = 2 + IMK_KINDS * IMK_AXES_MAX }; /* time, channels, temperature */
 
 typedef struct layout {
     size_t count, channels;
@@ -79,6 +79,9 @@ static layout make_layout(const imk_model *model, const imk_simulate_log_setting
                    interval, &l);
     describe_triad(&model->accel, steps ? "dvel" : "accel", IMK_QUANTITY_SPECIFIC_FORCE, accel,
                    interval, &l);
+    const double *field = s->simulation.field;
+    if (field[0] != 0 || field[1] != 0 || field[2] != 0)
+        describe_triad(&model->mag, "mag", IMK_QUANTITY_MAGNETIC, imk_unit_of("uT"), 0, &l);
     if (s->simulation.temperature) {
         l.factor[l.count] = 1;
         l.column[l.count++] = (imk_log_column){.name = "temperature",
