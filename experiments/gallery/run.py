@@ -39,7 +39,8 @@ def plan(only, cap, what):
                 for seed in range(_seeds_of(level, cap)):
                     task = tasks.setdefault((fault.base, seed), [False, []])
                     task[1].append((fault.name, level))
-    return [(name, seed, *task) for (name, seed), task in tasks.items()]
+    return sorted(((name, seed, *task) for (name, seed), task in tasks.items()),
+                  key=lambda task: task[1])  # what is there after some minutes is balanced
 
 
 def _identify(settings, record, name):
@@ -85,7 +86,7 @@ def work(job):
     return entries
 
 
-def run(settings, tasks, jobs):
+def run(settings, tasks, jobs, minutes):
     results = {"sound": [], "pairs": []}
     start = time.time()
     todo = [(settings, task) for task in tasks]
@@ -96,6 +97,9 @@ def run(settings, tasks, jobs):
             if done % 20 == 0 or done == len(todo):
                 print(f"{done} of {len(todo)} clean logs, {time.time() - start:.0f} s",
                       file=sys.stderr)
+            if time.time() - start > 60 * minutes:
+                print(f"stopped after {minutes} minutes", file=sys.stderr)
+                break
     results["sound"].sort(key=lambda e: (e["kind"], e["seed"]))
     results["pairs"].sort(key=lambda e: (e["fault"], e["level"], e["seed"]))
     return results
@@ -109,6 +113,8 @@ def arguments():
                         help="at most so many logs of a kind or a fault; default 40")
     parser.add_argument("--imukit", default=str(HERE.parent.parent / "build" / "imukit"))
     parser.add_argument("--jobs", type=int, default=1, help="processes; default 1")
+    parser.add_argument("--minutes", type=float, default=1e9,
+                        help="stop after this time with what is there, first seeds first")
     parser.add_argument("--scratch", help="folder for the logs; default: a temporary one")
     parser.add_argument("-o", "--output", help="write the results to this JSON file")
     parser.add_argument("--list", action="store_true", help="print kinds and faults only")
@@ -125,7 +131,7 @@ def main():
         Path(options.scratch).mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=options.scratch) as folder:
         settings = {"imukit": options.imukit, "folder": folder}
-        results = run(settings, tasks, options.jobs)
+        results = run(settings, tasks, options.jobs, options.minutes)
     if options.output:
         Path(options.output).write_text(json.dumps(results), encoding="utf-8")
     print(tables.report(results))
