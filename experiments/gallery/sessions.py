@@ -20,7 +20,8 @@ AXES = "xyz"
 
 @dataclass
 class Unit:
-    """Errors of a consumer part; a triad of accelerometers is upper triangular."""
+    """Errors of a consumer part; a triad of accelerometers is upper triangular. The slow noise is
+    weak: without a model of it, the intervals of calibrate assume that there is none."""
     gyro_bias: np.ndarray
     gyro_matrix: np.ndarray  # scale factor and misalignment, without the identity
     g_sensitivity: np.ndarray
@@ -28,8 +29,8 @@ class Unit:
     accel_matrix: np.ndarray
     gyro_white: np.ndarray  # [rad/sqrt(s)]
     accel_white: np.ndarray  # [m/s/sqrt(s)]
-    gyro_flicker: float = np.radians(5) / 3600
-    accel_flicker: float = 30e-6 * STANDARD_GRAVITY
+    gyro_flicker: float = np.radians(1) / 3600
+    accel_flicker: float = 5e-6 * STANDARD_GRAVITY
 
     def truth(self):
         """Parameters by the names of --json."""
