@@ -36,7 +36,7 @@ def plan(only, cap, what):
     for fault in faults.FAULTS:
         if what != "sound" and chosen.search(fault.name):
             for level in range(3):
-                for seed in range(_seeds_of(level, cap)):
+                for seed in range(min(fault.most, _seeds_of(level, cap))):
                     task = tasks.setdefault((fault.base, seed), [False, []])
                     task[1].append((fault.name, level))
     return sorted(((name, seed, *task) for (name, seed), task in tasks.items()),
