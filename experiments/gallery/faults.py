@@ -358,7 +358,7 @@ FAULTS = [
           "every second sample missing for a part of each minute"),
     Fault("repeated", "3", "nb_30min", (1.1, 1.5, 4), "rate x", repeated,
           "logged faster than the sensor measures"),
-    Fault("interpolated", "3", "nb_30min", (1.1, 1.5, 4), "rate x", interpolated,
+    Fault("interpolated", "3", "nb_30min", (1.1, 1.5, 2), "rate x", interpolated,
           "interpolated to a higher rate"),
     Fault("clock_back", "3", "nb_30min", (0.05, 2, 600), "s", clock_back, "the clock jumps back"),
     Fault("clock_forward", "3", "nb_30min", (1, 60, 600), "s", clock_forward,

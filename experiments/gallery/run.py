@@ -17,6 +17,7 @@ import tables
 
 HERE = Path(__file__).resolve().parent
 SOUND_SEEDS, MIDDLE_SEEDS, OTHER_SEEDS = 20, 40, 8
+TASK_PAIRS = 12  # a clean log is made again for each of so many faulty ones
 
 
 def _seeds_of(level, cap):
@@ -39,8 +40,11 @@ def plan(only, cap, what):
                 for seed in range(min(fault.most, _seeds_of(level, cap))):
                     task = tasks.setdefault((fault.base, seed), [False, []])
                     task[1].append((fault.name, level))
-    return sorted(((name, seed, *task) for (name, seed), task in tasks.items()),
-                  key=lambda task: task[1])  # what is there after some minutes is balanced
+    split = []
+    for (name, seed), (report, pairs) in tasks.items():
+        for first in range(0, max(1, len(pairs)), TASK_PAIRS):
+            split.append((name, seed, report and first == 0, pairs[first:first + TASK_PAIRS]))
+    return sorted(split, key=lambda task: task[1])  # what is there after some minutes is balanced
 
 
 def _identify(settings, record, name):
@@ -75,7 +79,7 @@ def work(job):
     settings, (name, seed, report, pairs) = job
     kind = sound.BY_NAME[name]
     record = sound.make(kind, seed)
-    label = f"{name}-{seed}"
+    label = "-".join(map(str, (name, seed, *(pairs[0] if pairs else ()))))
     clean = _identify(settings, record, label)
     entries = [("sound", _sound_entry(kind, seed, clean))] if report else []
     for fault_name, level in pairs:
@@ -95,7 +99,7 @@ def run(settings, tasks, jobs, minutes):
             for which, entry in entries:
                 results[which].append(entry)
             if done % 20 == 0 or done == len(todo):
-                print(f"{done} of {len(todo)} clean logs, {time.time() - start:.0f} s",
+                print(f"{done} of {len(todo)} tasks, {time.time() - start:.0f} s",
                       file=sys.stderr)
             if time.time() - start > 60 * minutes:
                 print(f"stopped after {minutes} minutes", file=sys.stderr)
