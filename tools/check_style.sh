@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 status=0
 complain() { echo "$*"; status=1; }
 
-mapfile -t code < <(find include src cli tests bench fuzz examples tools .ci cmake Makefile \
+mapfile -t code < <(find include src cli tests bench fuzz examples experiments tools .ci cmake Makefile \
     CMakeLists.txt -type f \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.sh' -o -name '*.py' \
     -o -name '*.cmake' -o -name CMakeLists.txt -o -name Makefile -o -path 'tools/*' \
     -o -path '.ci/*' \) ! -name '*.txt' ! -name '*.pyc' ; echo CMakeLists.txt)
@@ -36,6 +36,11 @@ done
 
 grep -rnE '\b(TODO|FIXME|XXX|HACK)\b' include src cli tests bench fuzz examples cmake &&
     complain "something is left behind (above)"
+
+# Scripts that no other check runs can be parsed.
+/usr/bin/python3 -c 'import ast, sys
+for f in sys.argv[1:]: ast.parse(open(f).read(), f)' experiments/gallery/*.py ||
+    complain "a script of experiments/gallery cannot be parsed (above)"
 
 # What clang-format leaves where it has broken a comment's lines: a line of a /** block that lost its
 # indentation, blanks from the line's end in the middle of what a /**< comment says.

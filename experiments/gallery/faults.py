@@ -24,6 +24,7 @@ class Fault:
     undecidable: str = ""  # why another sound device explains the log as well
     factor: callable = None  # (strength): what the fault does to the true N, where it is a property
     harmless: str = ""  # why the right answer is an all-clear with unmoved estimates
+    most: int = 40  # pairs at the middle strength
 
 
 def sigma_of(record, column):
@@ -312,6 +313,14 @@ FAULTS = [
     Fault("spikes_87", "1", "nbk_12h", (40, 400, 4000), "sigma", spikes(87),
           "87 one-sample spikes in 12 hours at 100 Hz"),
     Fault("step_12h", "1", "nbk_12h", (4, 15, 150), "B", jumps(1), "a step in 12 hours"),
+    Fault("noise_12h", "1", "nbk_12h", (1.1, 2, 4), "noise x", noise_halfway,
+          "white noise rises half-way in 12 hours", most=8),
+    Fault("stuck_12h", "1", "nbk_12h", (0.0003, 0.003, 0.03), "share", stuck,
+          "stuck values in 12 hours", most=8),
+    Fault("clip_12h", "1", "nbk_12h", (3, 2.5, 2), "sigma", clip(True, True),
+          "clipped on both sides, 12 hours", most=8),
+    Fault("warm_up_12h", "1", "nbk_12h", (5, 20, 100), "B", warm_up,
+          "a warm-up of 3 minutes in 12 hours", most=8),
     Fault("spikes", "1", "nb_30min", (8, 30, 1000), "sigma", spikes(20), "20 spikes in 30 minutes"),
     Fault("spikes_many", "2", "nb_30min", (5, 10, 50), "sigma", spikes(1800),
           "spikes in 1 % of the samples"),
@@ -349,7 +358,7 @@ FAULTS = [
           "every second sample missing for a part of each minute"),
     Fault("repeated", "3", "nb_30min", (1.1, 1.5, 4), "rate x", repeated,
           "logged faster than the sensor measures"),
-    Fault("interpolated", "3", "nb_30min", (1.1, 1.5, 4), "rate x", interpolated,
+    Fault("interpolated", "3", "nb_30min", (1.1, 1.5, 2), "rate x", interpolated,
           "interpolated to a higher rate"),
     Fault("clock_back", "3", "nb_30min", (0.05, 2, 600), "s", clock_back, "the clock jumps back"),
     Fault("clock_forward", "3", "nb_30min", (1, 60, 600), "s", clock_forward,

@@ -17,6 +17,7 @@ import tables
 
 HERE = Path(__file__).resolve().parent
 SOUND_SEEDS, MIDDLE_SEEDS, OTHER_SEEDS = 20, 40, 8
+TASK_PAIRS = 12  # a clean log is made again for each of so many faulty ones
 
 
 def _seeds_of(level, cap):
@@ -36,10 +37,14 @@ def plan(only, cap, what):
     for fault in faults.FAULTS:
         if what != "sound" and chosen.search(fault.name):
             for level in range(3):
-                for seed in range(_seeds_of(level, cap)):
+                for seed in range(min(fault.most, _seeds_of(level, cap))):
                     task = tasks.setdefault((fault.base, seed), [False, []])
                     task[1].append((fault.name, level))
-    return [(name, seed, *task) for (name, seed), task in tasks.items()]
+    split = []
+    for (name, seed), (report, pairs) in tasks.items():
+        for first in range(0, max(1, len(pairs)), TASK_PAIRS):
+            split.append((name, seed, report and first == 0, pairs[first:first + TASK_PAIRS]))
+    return sorted(split, key=lambda task: task[1])  # what is there after some minutes is balanced
 
 
 def _identify(settings, record, name):
@@ -74,7 +79,7 @@ def work(job):
     settings, (name, seed, report, pairs) = job
     kind = sound.BY_NAME[name]
     record = sound.make(kind, seed)
-    label = f"{name}-{seed}"
+    label = "-".join(map(str, (name, seed, *(pairs[0] if pairs else ()))))
     clean = _identify(settings, record, label)
     entries = [("sound", _sound_entry(kind, seed, clean))] if report else []
     for fault_name, level in pairs:
@@ -85,7 +90,7 @@ def work(job):
     return entries
 
 
-def run(settings, tasks, jobs):
+def run(settings, tasks, jobs, minutes):
     results = {"sound": [], "pairs": []}
     start = time.time()
     todo = [(settings, task) for task in tasks]
@@ -94,8 +99,11 @@ def run(settings, tasks, jobs):
             for which, entry in entries:
                 results[which].append(entry)
             if done % 20 == 0 or done == len(todo):
-                print(f"{done} of {len(todo)} clean logs, {time.time() - start:.0f} s",
+                print(f"{done} of {len(todo)} tasks, {time.time() - start:.0f} s",
                       file=sys.stderr)
+            if time.time() - start > 60 * minutes:
+                print(f"stopped after {minutes} minutes", file=sys.stderr)
+                break
     results["sound"].sort(key=lambda e: (e["kind"], e["seed"]))
     results["pairs"].sort(key=lambda e: (e["fault"], e["level"], e["seed"]))
     return results
@@ -109,6 +117,8 @@ def arguments():
                         help="at most so many logs of a kind or a fault; default 40")
     parser.add_argument("--imukit", default=str(HERE.parent.parent / "build" / "imukit"))
     parser.add_argument("--jobs", type=int, default=1, help="processes; default 1")
+    parser.add_argument("--minutes", type=float, default=1e9,
+                        help="stop after this time with what is there, first seeds first")
     parser.add_argument("--scratch", help="folder for the logs; default: a temporary one")
     parser.add_argument("-o", "--output", help="write the results to this JSON file")
     parser.add_argument("--list", action="store_true", help="print kinds and faults only")
@@ -125,7 +135,7 @@ def main():
         Path(options.scratch).mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=options.scratch) as folder:
         settings = {"imukit": options.imukit, "folder": folder}
-        results = run(settings, tasks, options.jobs)
+        results = run(settings, tasks, options.jobs, options.minutes)
     if options.output:
         Path(options.output).write_text(json.dumps(results), encoding="utf-8")
     print(tables.report(results))
