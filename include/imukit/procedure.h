@@ -122,15 +122,15 @@ typedef enum imk_diagnostic {
     IMK_DIAGNOSTIC_NEVER_STATIC = 0, /**< the unit is never at rest */
     IMK_DIAGNOSTIC_NEVER_MOVES,      /**< there is only one pose */
     IMK_DIAGNOSTIC_FEW_POSES,        /**< too few different poses: value found, limit needed */
-    IMK_DIAGNOSTIC_ONE_PLANE,    /**< all poses are in one plane or on a cone about `axis`: value is
-                                    their spread along this axis over gravity (0.58 at best), limit the
-                                    spread needed */
-    IMK_DIAGNOSTIC_GRAVITY_UNIT, /**< |force| at rest is not gravity: value is |force| [m/s^2],
-                                    limit the factor that would correct it: 9.80665 (forces are in
-                                    g), 9.80665e-3 (mg, or Gal), 9.80665e-6 (ug), 1/9.80665
-                                    (converted from g twice), 0.3048 (ft/s^2); 0: none of these */
-    IMK_DIAGNOSTIC_RATE_UNIT,    /**< rates of the turns look like deg/s taken for rad/s, or the
-                                 reverse: value is the ratio, 57.3 or 1/57.3 */
+    IMK_DIAGNOSTIC_ONE_PLANE,        /**< all poses are in one plane across `axis`: value is
+                                        their spread along this axis over gravity (0.58 at best), limit the
+                                        spread needed */
+    IMK_DIAGNOSTIC_GRAVITY_UNIT,     /**< |force| at rest is not gravity: value is |force| [m/s^2],
+                                        limit the factor that would correct it: 9.80665 (forces are in
+                                        g), 9.80665e-3 (mg, or Gal), 9.80665e-6 (ug), 1/9.80665
+                                        (converted from g twice), 0.3048 (ft/s^2); 0: none of these */
+    IMK_DIAGNOSTIC_RATE_UNIT,        /**< rates of the turns look like deg/s taken for rad/s, or the
+                                     reverse: value is the ratio, 57.3 or 1/57.3 */
     IMK_DIAGNOSTIC_SATURATED, /**< an axis stays at the end of its range: value is the share of such
                                  samples, limit the reading */
     IMK_DIAGNOSTIC_COUNTS, /**< a sensor's readings are whole numbers although stated as SI: value
@@ -147,6 +147,11 @@ typedef enum imk_diagnostic {
     IMK_DIAGNOSTIC_CORRELATED, /**< only noise separates two parameters: value is their correlation
                                 */
     IMK_DIAGNOSTIC_OUTLIERS,   /**< many observations are refused: value is their share */
+    IMK_DIAGNOSTIC_SCALE, /**< readings of `sensor` (`axis` -1: of all its axes) are `value` times
+                             the input, further from 1 than `limit`: 0.15, no sensor errs by so
+                             much; of a solution also 0.05, few sensors do */
+    IMK_DIAGNOSTIC_ONE_CONE, /**< as ONE_PLANE, and the force along `axis` is nearly the same in all
+                                poses and not 0 */
     IMK_DIAGNOSTICS
 } imk_diagnostic;
 
@@ -154,6 +159,8 @@ typedef struct imk_diagnostic_finding {
     imk_diagnostic kind;
     int sensor, axis, other; /**< -1: none */
     double value, limit;
+    uint64_t classes; /**< of a record, SWAPPED_AXES and LEFT_HANDED: how the axes may be mended,
+                         for imk_axes_mendings(); else 0 */
 } imk_diagnostic_finding;
 
 /** Check a record, with the static intervals found in it, before the calibration is solved.

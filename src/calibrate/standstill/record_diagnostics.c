@@ -28,6 +28,8 @@ enum {
 static const double SAME_POSE = 0.1;
 /* Least standard deviation of poses along a principal axis, in units of gravity. */
 static const double FLAT = 0.1;
+/* Their mean there, beyond which they are on a cone and not in a plane: 17 deg from the plane. */
+static const double CONE = 0.3;
 
 static imk_diagnostic_finding finding(imk_diagnostic kind, int sensor, int axis, double value,
                                       double limit)
@@ -250,9 +252,9 @@ static void diagnostic_gravity(const imki_diagnostic_call *call, double force,
     imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_GRAVITY_UNIT, IMK_ACCEL, -1, force, best));
 }
 
-/* Standard deviation of the poses along the direction in which they differ least, and the body axis
- * nearest to it. */
-static double least_spread(const poses *p, int *axis)
+/* Standard deviation of the poses along the direction in which they differ least, the body axis
+ * nearest to it, and their mean along it. */
+static double least_spread(const poses *p, int *axis, double *middle)
 {
     double mean[3] = {0.0, 0.0, 0.0}, square[9] = {0.0}, eigenvalue[3], direction[9];
     for (size_t k = 0; k < p->count; k++)
@@ -264,11 +266,14 @@ static double least_spread(const poses *p, int *axis)
                 square[3 * i + j] +=
                     (p->force[k][i] - mean[i]) * (p->force[k][j] - mean[j]) / (double)p->count;
     *axis = 0;
+    *middle = 0.0;
     if (imk_symmetric_eigen(3, square, eigenvalue, direction) != IMK_OK)
         return (double)INFINITY;
     for (int i = 1; i < 3; i++)
         if (fabs(direction[3 * i]) > fabs(direction[3 * *axis]))
             *axis = i;
+    for (int i = 0; i < 3; i++)
+        *middle += mean[i] * direction[3 * i];
     return sqrt(eigenvalue[0] > 0.0 ? eigenvalue[0] : 0.0);
 }
 
@@ -289,9 +294,12 @@ static void diagnostic_poses(const imki_diagnostic_call *call, double force,
         return;
     }
     int axis;
-    const double spread = least_spread(&p, &axis) / p.radius;
+    double middle;
+    const double spread = least_spread(&p, &axis, &middle) / p.radius;
+    const bool cone = p.known && fabs(middle) > CONE * p.radius;
     if (p.count >= 4 && spread < FLAT)
-        imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_ONE_PLANE, IMK_ACCEL, axis, spread, FLAT));
+        imki_diagnostic_add(list, finding(cone ? IMK_DIAGNOSTIC_ONE_CONE : IMK_DIAGNOSTIC_ONE_PLANE,
+                                          IMK_ACCEL, axis, spread, FLAT));
     if (p.count < POSES_NEEDED)
         imki_diagnostic_add(
             list, finding(IMK_DIAGNOSTIC_FEW_POSES, -1, -1, (double)p.count, POSES_NEEDED));
