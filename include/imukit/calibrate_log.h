@@ -62,7 +62,8 @@ typedef struct imk_calibrate_log_settings {
     bool least_squares;   /**< give outliers full weight; default false: robust */
     /* how records are observed; default NaN: of imk_procedure_default() */
     const char *section; /**< name of the column of texts that names holds, turns or runs; default
-                              NULL: the only column of texts, if there is one */
+                              NULL: the only column of texts, if there is one. With multiposition,
+                              rests in rows without a text are then no holds */
     double placement;    /**< 1 sigma of the attitude of a face on the plate [rad] */
     double mounting;     /**< 1 sigma of the attitude of the unit on its fixture or table [rad] */
     double turn_angle;   /**< ferraris: angle of each turn about its axis, with sign [rad] */

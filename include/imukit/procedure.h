@@ -62,10 +62,12 @@ typedef struct imk_procedure_settings {
     bool cross_products; /**< tumble, centrifuge: estimate Kip, Kio, Kpo; default false */
     bool g_sensitivity, g2_sensitivity; /**< estimate those of the gyros, where the forces vary;
                                            default true, false */
-    double sine_block;     /**< rate-table: averaging time of samples where the reference is never
-                              constant [s]; 0 (default): single samples */
-    int temperature_order; /**< thermal: order for the bias; 0 (default): chosen by
-                              cross-validation, at most 5 */
+    bool labelled_only; /**< multiposition: only rests within sections that have a label are holds;
+                             default false */
+    double sine_block;  /**< rate-table: averaging time of samples where the reference is never
+                           constant [s]; 0 (default): single samples */
+    int temperature_order;        /**< thermal: order for the bias; 0 (default): chosen by
+                                     cross-validation, at most 5 */
     int scale_temperature_order;  /**< thermal: order for the scale factor; -1 (default): none for
                                      one pose at rest, else chosen by cross-validation */
     double reference_temperature; /**< thermal [K]; NaN (default): 25 degC if the range contains it,
@@ -122,15 +124,15 @@ typedef enum imk_diagnostic {
     IMK_DIAGNOSTIC_NEVER_STATIC = 0, /**< the unit is never at rest */
     IMK_DIAGNOSTIC_NEVER_MOVES,      /**< there is only one pose */
     IMK_DIAGNOSTIC_FEW_POSES,        /**< too few different poses: value found, limit needed */
-    IMK_DIAGNOSTIC_ONE_PLANE,        /**< all poses are in one plane across `axis`: value is
-                                        their spread along this axis over gravity (0.58 at best), limit the
-                                        spread needed */
-    IMK_DIAGNOSTIC_GRAVITY_UNIT,     /**< |force| at rest is not gravity: value is |force| [m/s^2],
-                                        limit the factor that would correct it: 9.80665 (forces are in
-                                        g), 9.80665e-3 (mg, or Gal), 9.80665e-6 (ug), 1/9.80665
-                                        (converted from g twice), 0.3048 (ft/s^2); 0: none of these */
-    IMK_DIAGNOSTIC_RATE_UNIT,        /**< rates of the turns look like deg/s taken for rad/s, or the
-                                     reverse: value is the ratio, 57.3 or 1/57.3 */
+    IMK_DIAGNOSTIC_ONE_PLANE, /**< all poses are in one plane across `axis` (-1: across none): value
+                                 is their spread along this axis over gravity (0.58 at best), limit
+                                 the spread needed */
+    IMK_DIAGNOSTIC_GRAVITY_UNIT, /**< |force| at rest is not gravity: value is |force| [m/s^2],
+                                    limit the factor that would correct it: 9.80665 (forces are in
+                                    g), 9.80665e-3 (mg, or Gal), 9.80665e-6 (ug), 1/9.80665
+                                    (converted from g twice), 0.3048 (ft/s^2); 0: none of these */
+    IMK_DIAGNOSTIC_RATE_UNIT,    /**< rates of the turns look like deg/s taken for rad/s, or the
+                                 reverse: value is the ratio, 57.3 or 1/57.3 */
     IMK_DIAGNOSTIC_SATURATED, /**< an axis stays at the end of its range: value is the share of such
                                  samples, limit the reading */
     IMK_DIAGNOSTIC_COUNTS, /**< a sensor's readings are whole numbers although stated as SI: value

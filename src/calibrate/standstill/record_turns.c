@@ -79,13 +79,14 @@ static double angle_between(const double a[3], const double b[3])
     return imk_atan2(imki_norm3(across), imki_dot3(a, b));
 }
 
-/* A turn that is complete: no gap, no border of a section, all readings numbers. */
+/* A turn that is complete: no gap, all readings numbers. Without times, sections may have been cut
+ * out of a longer log. */
 static bool is_complete(const imk_test_record *r, size_t begin, size_t end)
 {
     for (size_t k = begin; k < end; k++) {
         if (r->time && imk_step_is_gap(r->time[k] - r->time[k - 1], r->dt))
             return false;
-        if (r->section && r->section[k] != r->section[k - 1])
+        if (!r->time && r->section && r->section[k] != r->section[k - 1])
             return false;
         for (int i = 0; i < 3; i++)
             if (!isfinite(r->reading[IMK_GYRO][i][k]))

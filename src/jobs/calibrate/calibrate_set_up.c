@@ -16,6 +16,9 @@ static const double loose_mounting = 0.1;
 /* What there is on Earth [m/s^2]. */
 static const double gravity_least = 9.5, gravity_most = 10.1;
 
+/* Gravity differs from that of the ellipsoid by 5e-4 of it at most, in high mountains. */
+static const double gravity_anomaly = 1e-3;
+
 static const uint32_t settings_cookie = 0x43414C31; /* "CAL1" */
 
 imk_calibrate_log_settings imk_calibrate_log_default(void)
@@ -126,6 +129,7 @@ static imk_procedure_settings settings_of(const imk_calibrate_log *b, imk_proced
     set_if(&s.settle, o->settle);
     set_if(&s.reference_temperature, o->reference_temperature);
     s.temperature_order = o->temperature_order;
+    s.labelled_only = o->section != NULL;
     switch_terms(o->with, true, &s);
     switch_terms(o->without, false, &s);
     return s;
@@ -259,6 +263,13 @@ static void tell_gravity(imk_calibrate_log *b)
     if (needed && !b->settings.place_known && isnan(b->settings.gravity))
         imki_find(&b->findings, IMK_FINDING_WARNING, "calibrate:gravity", NULL,
                   IMKI_NUMBERS(b->calibration->gravity));
+    if (needed && b->settings.place_known && !isnan(b->settings.gravity)) {
+        const double due = imk_normal_gravity(b->settings.place.latitude, b->settings.place.height);
+        const double off = b->settings.gravity / due - 1;
+        if (fabs(off) > gravity_anomaly)
+            imki_find(&b->findings, IMK_FINDING_WARNING, "calibrate:gravity_of_place", NULL,
+                      IMKI_NUMBERS(b->settings.gravity, due, 100 * off));
+    }
 }
 
 imk_status imki_know_before(imk_calibrate_log *b, imk_error *error)

@@ -32,12 +32,13 @@ static void power_of_two(double ratio, char text[16])
     }
 }
 
-/* The angle of a turn is rate times time: a wrong sampling rate looks like a scale factor. */
+/* The angle of a turn is rate times time: a wrong sampling rate looks like a scale factor, unless
+ * the rates themselves are known. */
 static bool is_of_angles(const imk_calibrate_log *b)
 {
     for (size_t k = 0; k < b->count; k++)
-        if (b->record[k].procedure == IMK_PROCEDURE_MULTIPOSITION ||
-            b->record[k].procedure == IMK_PROCEDURE_FERRARIS)
+        if (b->record[k].procedure < IMK_PROCEDURE_RATE_TABLE ||
+            b->record[k].procedure == IMK_PROCEDURE_THERMAL)
             return true;
     return false;
 }

@@ -26,6 +26,8 @@ void imki_scale_text(const imk_calibrate_log *b, const imk_diagnostic_finding *d
                      size_t size);
 void imki_scale_causes(const imk_calibrate_log *b, int sensor, double ratio, bool all_axes,
                        imki_text *to);
+/* calibrate_untestable.c: a note of what another sound unit would show as well. */
+void imki_untestable(const imk_calibrate_log *b, imk_verdict *verdict);
 /* calibrate_words.c: the verdict in one message. */
 void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *verdict, char *text,
                             size_t size);
