@@ -93,7 +93,10 @@ typedef struct imk_calibrate_record {
     const char *path; /**< name of the record in findings and reports; the caller's */
     imk_log log;      /**< owns the columns */
     imk_test_record record;
-    size_t dropped; /**< rows left out because their time does not increase */
+    int body_axis[2][IMK_AXES_MAX]; /**< of gyros, of accelerometers: the axis that the record names
+                                         each of its axes by, 0 x … 2 z, 3 …; differs from its
+                                         index where x or y is missing */
+    size_t dropped;                 /**< rows left out because their time does not increase */
     int *section;
     const char **section_name;
     double *reference; /**< IMK_CALIBRATE_REFERENCES columns: rate, force, angular acceleration */

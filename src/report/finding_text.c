@@ -214,6 +214,10 @@ static const struct message {
      "first in row {2}; these rows, or the hold or step that they interrupt, are left out"},
     {"axis_gap", "{record} has {name}: calibration needs the axes x, y, z in this order; name the "
                  "columns with --columns"},
+    {"axis_renamed", "{name} is axis {other} in the tables and in the model, which states its "
+                     "direction"},
+    {"axes_named", "{record} has other {name} axes than the other logs: name them alike, in the "
+                   "header or with --columns"},
     {"counts_mixed", "some {name} columns are in counts and some are not"},
     {"no_sensor",
      "{record} has no gyro and no accelerometer column; name them with --columns, such as "

@@ -190,6 +190,29 @@ static void only_labelled_rests_are_holds(void **state)
     sweep();
 }
 
+/* A log of one gyro, about z, on a table: its model has one axis along z, and compensates it. */
+static void one_gyro_about_z(void **state)
+{
+    (void)state;
+    put_unit(1, 1, 0);
+    put("table.yaml", "imukit_motion: 1\nstart: {latitude: 48.1 deg, longitude: 11.6 deg, height: "
+                      "520 m}\nsteps:\n  - hold 5 s\n  - repeat: {times: 2, steps: [rotate z at "
+                      "20 deg/s for 5 s, rotate z at -20 deg/s for 5 s, rotate z at 100 deg/s for "
+                      "5 s, rotate z at -100 deg/s for 5 s]}\n");
+    simulate("table.yaml", 2);
+    const char *line = "cut -d, -f1,4 poses.csv >z.csv; $I calibrate z.csv -p rate-table --motion "
+                       "table.yaml --without nonlinearity -o z.yaml && cat z.yaml && $I compensate "
+                       "z.csv z.yaml -o clean.csv";
+    assert_int_equal(run(line), 0);
+    check_contains(err, "gyro_z is axis x in the tables and in the model", line);
+    check_contains(out, "Good: gyro bias", line);
+    check_contains(out, "direction: [0 0 1]", line);
+    line = "$I evaluate z.csv --motion table.yaml";
+    assert_int_equal(run(line), 0);
+    check_contains(out, "gyro_z: ", line);
+    sweep();
+}
+
 /* Grades from a consumer unit to one whose noise is a hundredth. */
 static void sound_benches_are_good(void **state)
 {
@@ -219,6 +242,7 @@ int main(void)
         cmocka_unit_test(gravity_of_another_place),
         cmocka_unit_test(models_that_do_not_describe_the_log),
         cmocka_unit_test(only_labelled_rests_are_holds),
+        cmocka_unit_test(one_gyro_about_z),
         cmocka_unit_test(sound_benches_are_good),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
