@@ -21,6 +21,8 @@ int session_done(const session *b, imk_status status, const imk_error *error)
         imk_finding_message(f, path, given_model(b->options), text, sizeof text);
         if (f->level == IMK_FINDING_WARNING)
             command_warn(imk_finding_code(f), "%s", text);
+        else if (f->level == IMK_FINDING_NOTE)
+            command_note("%s", text);
     }
     if (command_unless_memory(status) == IMK_OK)
         return -1;

@@ -80,7 +80,8 @@ static const option test_options[] = {
 static const option log_options[] = {
     {"section", OPTION_TEXT, AT(settings.section), .value = "COLUMN",
      .help =
-         "column of texts that name the holds, turns or runs; default: the only column of texts"},
+         "column of texts that name the holds, turns or runs (multiposition: rests without a text "
+         "are no holds); default: the only column of texts"},
     {"initial-rest", OPTION_QUANTITY, AT(settings.initial_rest), .value = "TIME", .unit = "s",
      .choices = "not negative",
      .help = "length of the rest at the beginning of the log; default: the quietest part is used"},

@@ -62,7 +62,8 @@ typedef struct imk_calibrate_log_settings {
     bool least_squares;   /**< give outliers full weight; default false: robust */
     /* how records are observed; default NaN: of imk_procedure_default() */
     const char *section; /**< name of the column of texts that names holds, turns or runs; default
-                              NULL: the only column of texts, if there is one */
+                              NULL: the only column of texts, if there is one. With multiposition,
+                              rests in rows without a text are then no holds */
     double placement;    /**< 1 sigma of the attitude of a face on the plate [rad] */
     double mounting;     /**< 1 sigma of the attitude of the unit on its fixture or table [rad] */
     double turn_angle;   /**< ferraris: angle of each turn about its axis, with sign [rad] */
@@ -92,7 +93,10 @@ typedef struct imk_calibrate_record {
     const char *path; /**< name of the record in findings and reports; the caller's */
     imk_log log;      /**< owns the columns */
     imk_test_record record;
-    size_t dropped; /**< rows left out because their time does not increase */
+    int body_axis[2][IMK_AXES_MAX]; /**< of gyros, of accelerometers: the axis that the record names
+                                         each of its axes by, 0 x … 2 z, 3 …; differs from its
+                                         index where x or y is missing */
+    size_t dropped;                 /**< rows left out because their time does not increase */
     int *section;
     const char **section_name;
     double *reference; /**< IMK_CALIBRATE_REFERENCES columns: rate, force, angular acceleration */

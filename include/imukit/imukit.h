@@ -16,6 +16,7 @@
 #include "imukit/allan_gaps.h"
 #include "imukit/allan_stream.h"
 #include "imukit/attitude.h"
+#include "imukit/axes_mending.h"
 #include "imukit/calibration.h"
 #include "imukit/calibration_plan.h"
 #include "imukit/compensate.h"

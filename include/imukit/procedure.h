@@ -62,10 +62,12 @@ typedef struct imk_procedure_settings {
     bool cross_products; /**< tumble, centrifuge: estimate Kip, Kio, Kpo; default false */
     bool g_sensitivity, g2_sensitivity; /**< estimate those of the gyros, where the forces vary;
                                            default true, false */
-    double sine_block;     /**< rate-table: averaging time of samples where the reference is never
-                              constant [s]; 0 (default): single samples */
-    int temperature_order; /**< thermal: order for the bias; 0 (default): chosen by
-                              cross-validation, at most 5 */
+    bool labelled_only; /**< multiposition: only rests within sections that have a label are holds;
+                             default false */
+    double sine_block;  /**< rate-table: averaging time of samples where the reference is never
+                           constant [s]; 0 (default): single samples */
+    int temperature_order;        /**< thermal: order for the bias; 0 (default): chosen by
+                                     cross-validation, at most 5 */
     int scale_temperature_order;  /**< thermal: order for the scale factor; -1 (default): none for
                                      one pose at rest, else chosen by cross-validation */
     double reference_temperature; /**< thermal [K]; NaN (default): 25 degC if the range contains it,
@@ -122,9 +124,9 @@ typedef enum imk_diagnostic {
     IMK_DIAGNOSTIC_NEVER_STATIC = 0, /**< the unit is never at rest */
     IMK_DIAGNOSTIC_NEVER_MOVES,      /**< there is only one pose */
     IMK_DIAGNOSTIC_FEW_POSES,        /**< too few different poses: value found, limit needed */
-    IMK_DIAGNOSTIC_ONE_PLANE,    /**< all poses are in one plane or on a cone about `axis`: value is
-                                    their spread along this axis over gravity (0.58 at best), limit the
-                                    spread needed */
+    IMK_DIAGNOSTIC_ONE_PLANE, /**< all poses are in one plane across `axis` (-1: across none): value
+                                 is their spread along this axis over gravity (0.58 at best), limit
+                                 the spread needed */
     IMK_DIAGNOSTIC_GRAVITY_UNIT, /**< |force| at rest is not gravity: value is |force| [m/s^2],
                                     limit the factor that would correct it: 9.80665 (forces are in
                                     g), 9.80665e-3 (mg, or Gal), 9.80665e-6 (ug), 1/9.80665
@@ -147,6 +149,11 @@ typedef enum imk_diagnostic {
     IMK_DIAGNOSTIC_CORRELATED, /**< only noise separates two parameters: value is their correlation
                                 */
     IMK_DIAGNOSTIC_OUTLIERS,   /**< many observations are refused: value is their share */
+    IMK_DIAGNOSTIC_SCALE, /**< readings of `sensor` (`axis` -1: of all its axes) are `value` times
+                             the input, further from 1 than `limit`: 0.15, no sensor errs by so
+                             much; of a solution also 0.05, few sensors do */
+    IMK_DIAGNOSTIC_ONE_CONE, /**< as ONE_PLANE, and the force along `axis` is nearly the same in all
+                                poses and not 0 */
     IMK_DIAGNOSTICS
 } imk_diagnostic;
 
@@ -154,6 +161,8 @@ typedef struct imk_diagnostic_finding {
     imk_diagnostic kind;
     int sensor, axis, other; /**< -1: none */
     double value, limit;
+    uint64_t classes; /**< of a record, SWAPPED_AXES and LEFT_HANDED: how the axes may be mended,
+                         for imk_axes_mendings(); else 0 */
 } imk_diagnostic_finding;
 
 /** Check a record, with the static intervals found in it, before the calibration is solved.

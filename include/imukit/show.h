@@ -126,7 +126,8 @@ IMK_API void imk_show_identify_several(const imk_identify_several *several,
  *  @param before  `count` earlier messages to include */
 IMK_API imk_verdict imk_calibrate_verdict(const imk_calibrate_log *session, size_t count,
                                           const imk_message *before, imk_result *result);
-/** The worst level among the messages; good when there are none. */
+/** The worst level among the messages; good when there are none. The note "not_testable" of a
+ *  calibration does not count. */
 IMK_API imk_finding_level imk_verdict_level(const imk_verdict *verdict);
 /** Show parameters, fit, remarks, verdict and a figure. @param poses  show the poses on the
  *  terminal, too */

@@ -221,6 +221,10 @@ static const struct message {
      "first in row {2}; these rows, or the hold or step that they interrupt, are left out"},
     {"axis_gap", "{record} has {name}: calibration needs the axes x, y, z in this order; name the "
                  "columns with --columns"},
+    {"axis_renamed", "{name} is axis {other} in the tables and in the model, which states its "
+                     "direction"},
+    {"axes_named", "{record} has other {name} axes than the other logs: name them alike, in the "
+                   "header or with --columns"},
     {"counts_mixed", "some {name} columns are in counts and some are not"},
     {"no_sensor",
      "{record} has no gyro and no accelerometer column; name them with --columns, such as "
@@ -271,6 +275,10 @@ static const struct message {
      "the place is not known: gravity is taken as {0.5f} m/s^2 (45 deg, sea level). Local gravity "
      "may differ by up to 0.3 %, which goes into the scale factors; add --position \"48.1 deg, "
      "11.6 deg, 520 m\" or --gravity 9.80780m/s^2"},
+    {"calibrate:gravity_of_place",
+     "--gravity {0.5f} m/s^2 differs by {2.2g} % from gravity at --position, {1.5f} m/s^2; real "
+     "gravity differs by 0.05 % at most. The difference goes into the scale factors of the "
+     "accelerometers: correct one of the two"},
     /* calibrate_terms.c */
     {"no_term", "--estimate names no term"},
     {"no_change_of_temperature", "no log has a column temperature [degC] that changes, so no term "

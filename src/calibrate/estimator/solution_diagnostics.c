@@ -3,6 +3,7 @@
 #include "calibration_internal.h"
 #include "imukit/distributions.h"
 #include "imukit/procedure.h"
+#include "solution_scale_internal.h"
 
 #include <math.h>
 
@@ -30,7 +31,8 @@ static void add(list *l, imk_diagnostic kind, int sensor, int axis, int other, d
                 double limit)
 {
     if (l->count < l->capacity)
-        l->diagnostic[l->count] = (imk_diagnostic_finding){kind, sensor, axis, other, value, limit};
+        l->diagnostic[l->count] =
+            (imk_diagnostic_finding){kind, sensor, axis, other, value, limit, 0};
     l->count += l->count < l->capacity;
 }
 
@@ -101,6 +103,7 @@ size_t imk_solution_diagnostics(const imk_calibration *calibration,
 {
     list l = {diagnostic, 0, capacity};
     look_at_responses(result, &l);
+    l.count = imki_solution_scales(result, l.count, capacity, diagnostic);
     look_at_refusals(calibration, result, &l);
     look_at_residuals(result, &l);
     look_at_correlations(result, &l);

@@ -94,7 +94,8 @@ static imk_status find_holds(gathering *g)
     /* Holds that something is missing of are left out; the others move up. */
     const size_t written = count < capacity ? count : capacity;
     for (size_t i = 0; i < written; i++) {
-        bool complete = g->hold[i].end > g->hold[i].begin;
+        bool complete = g->hold[i].end > g->hold[i].begin &&
+                        (!call->settings->labelled_only || g->hold[i].section >= 0);
         for (int axis = 0; axis < g->record->axis_count[IMK_ACCEL]; axis++)
             complete = complete && isfinite(g->hold[i].mean[IMK_ACCEL][axis]);
         if (complete)

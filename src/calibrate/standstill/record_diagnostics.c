@@ -28,6 +28,10 @@ enum {
 static const double SAME_POSE = 0.1;
 /* Least standard deviation of poses along a principal axis, in units of gravity. */
 static const double FLAT = 0.1;
+/* Their mean there, beyond which they are on a cone and not in a plane: 17 deg from the plane. */
+static const double CONE = 0.3;
+/* Least component of a direction that is said to be that of an axis: within 37 deg. */
+static const double ALONG = 0.8;
 
 static imk_diagnostic_finding finding(imk_diagnostic kind, int sensor, int axis, double value,
                                       double limit)
@@ -250,9 +254,9 @@ static void diagnostic_gravity(const imki_diagnostic_call *call, double force,
     imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_GRAVITY_UNIT, IMK_ACCEL, -1, force, best));
 }
 
-/* Standard deviation of the poses along the direction in which they differ least, and the body axis
- * nearest to it. */
-static double least_spread(const poses *p, int *axis)
+/* Standard deviations of the poses along the two directions in which they differ least; the body
+ * axis of the first, -1 where it is along none of them, and their mean along it. */
+static double least_spread(const poses *p, double *next, int *axis, double *middle)
 {
     double mean[3] = {0.0, 0.0, 0.0}, square[9] = {0.0}, eigenvalue[3], direction[9];
     for (size_t k = 0; k < p->count; k++)
@@ -263,12 +267,15 @@ static double least_spread(const poses *p, int *axis)
             for (int j = 0; j < 3; j++)
                 square[3 * i + j] +=
                     (p->force[k][i] - mean[i]) * (p->force[k][j] - mean[j]) / (double)p->count;
-    *axis = 0;
+    *axis = -1;
+    *middle = 0.0;
     if (imk_symmetric_eigen(3, square, eigenvalue, direction) != IMK_OK)
         return (double)INFINITY;
-    for (int i = 1; i < 3; i++)
-        if (fabs(direction[3 * i]) > fabs(direction[3 * *axis]))
-            *axis = i;
+    for (int i = 0; i < 3; i++) {
+        *axis = fabs(direction[3 * i]) > ALONG ? i : *axis;
+        *middle += mean[i] * direction[3 * i];
+    }
+    *next = sqrt(eigenvalue[1] > 0.0 ? eigenvalue[1] : 0.0);
     return sqrt(eigenvalue[0] > 0.0 ? eigenvalue[0] : 0.0);
 }
 
@@ -289,9 +296,13 @@ static void diagnostic_poses(const imki_diagnostic_call *call, double force,
         return;
     }
     int axis;
-    const double spread = least_spread(&p, &axis) / p.radius;
+    double middle, next = 0.0;
+    const double spread = least_spread(&p, &next, &axis, &middle) / p.radius;
+    axis = next > FLAT * p.radius ? axis : -1;
+    const bool cone = p.known && axis >= 0 && fabs(middle) > CONE * p.radius;
     if (p.count >= 4 && spread < FLAT)
-        imki_diagnostic_add(list, finding(IMK_DIAGNOSTIC_ONE_PLANE, IMK_ACCEL, axis, spread, FLAT));
+        imki_diagnostic_add(list, finding(cone ? IMK_DIAGNOSTIC_ONE_CONE : IMK_DIAGNOSTIC_ONE_PLANE,
+                                          IMK_ACCEL, axis, spread, FLAT));
     if (p.count < POSES_NEEDED)
         imki_diagnostic_add(
             list, finding(IMK_DIAGNOSTIC_FEW_POSES, -1, -1, (double)p.count, POSES_NEEDED));

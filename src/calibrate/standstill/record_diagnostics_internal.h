@@ -23,6 +23,10 @@ typedef struct imki_axis_unit {
 imki_axis_unit imki_record_unit(const imk_test_record *record, const imk_model *model, int sensor,
                                 int axis);
 
+/* A scale factor further from 1 is not an error of a sensor: the worst MEMS gyros and
+ * accelerometers are within 10 %. */
+#define IMKI_SCALE_DOUBTED 0.15
+
 /* What the log is looked over with. */
 typedef struct imki_diagnostic_call {
     const imk_test_record *record;

@@ -9,20 +9,18 @@
  * Rotating the axes properly rotates the result, C(P w) = P C(w) P^T for det P = 1; for det P = -1
  * the same with C(-w). So two integrations a factor serve all 48.
  *
- * What P says: the gyros' axes i and j exchanged give the exchange itself, those of the
- * accelerometers its negative (a rotation vector is mirrored with another sign than a force);
- * likewise one axis that is inverted gives one sign or the other two; and both sensors in
- * left-handed axes give -1 times the unit matrix. */
+ * What P means, and which other mendings explain the same: axes_mending.c. */
 #include "record_diagnostics_internal.h"
 
 #include "base/algebra/vector_internal.h"
 #include "imukit/attitude.h"
+#include "imukit/axes_mending.h"
 #include "imukit/elementary.h"
 #include "imukit/samples.h"
 
 #include <math.h>
 
-enum { TURNS_MAX = 48, TURNS_MIN = 3, TURN_STEPS = 256, ALL = 48 };
+enum { TURNS_MAX = 48, TURNS_MIN = 3, TURN_STEPS = 256 };
 
 /* A turn must move the vertical by so much to say anything [rad]; and less than that is what
  * biases, scale factors and misalignments of a raw unit explain. */
@@ -60,25 +58,6 @@ typedef struct turns {
     imk_quaternion forward[TURNS_MAX], backward[TURNS_MAX]; /* by w and by -w */
 } turns;
 
-typedef struct signed_permutation {
-    int column[3], sign[3]; /* row i: sign[i] at column[i] */
-    int determinant;
-} signed_permutation;
-
-static signed_permutation permutation_of(int index)
-{
-    static const int column[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
-                                     {1, 0, 2}, {0, 2, 1}, {2, 1, 0}};
-    signed_permutation p;
-    p.determinant = index / 8 < 3 ? 1 : -1;
-    for (int i = 0; i < 3; i++) {
-        p.column[i] = column[index / 8][i];
-        p.sign[i] = (index >> i) & 1 ? -1 : 1;
-        p.determinant *= p.sign[i];
-    }
-    return p;
-}
-
 static bool unit_vertical(const imki_diagnostic_call *call, const imk_static_interval *interval,
                           double u[3])
 {
@@ -100,13 +79,14 @@ static double angle_between(const double a[3], const double b[3])
     return imk_atan2(imki_norm3(across), imki_dot3(a, b));
 }
 
-/* A turn that is complete: no gap, no border of a section, all readings numbers. */
+/* A turn that is complete: no gap, all readings numbers. Without times, sections may have been cut
+ * out of a longer log. */
 static bool is_complete(const imk_test_record *r, size_t begin, size_t end)
 {
     for (size_t k = begin; k < end; k++) {
         if (r->time && imk_step_is_gap(r->time[k] - r->time[k - 1], r->dt))
             return false;
-        if (r->section && r->section[k] != r->section[k - 1])
+        if (!r->time && r->section && r->section[k] != r->section[k - 1])
             return false;
         for (int i = 0; i < 3; i++)
             if (!isfinite(r->reading[IMK_GYRO][i][k]))
@@ -158,7 +138,7 @@ static void integrate(const imki_diagnostic_call *call, const turn *t, double fa
 }
 
 /* Angle by which a turn, its rates permuted, misses the vertical it should lead to. */
-static double miss(const turns *t, size_t k, const signed_permutation *p)
+static double miss(const turns *t, size_t k, const imk_signed_axes *p)
 {
     /* u' = P C^T P^T u; the sign of a P with determinant -1 cancels. */
     const imk_quaternion c = p->determinant > 0 ? t->forward[k] : t->backward[k];
@@ -177,7 +157,7 @@ static double miss(const turns *t, size_t k, const signed_permutation *p)
  * it is, and few turns about an axis that hardly takes part in the others are still heard. */
 static double cost_of(const turns *t, int index)
 {
-    const signed_permutation p = permutation_of(index);
+    const imk_signed_axes p = imk_signed_axes_of(index);
     double sum = 0.0;
     for (size_t k = 0; k < t->count; k++) {
         const double m = miss(t, k, &p);
@@ -192,42 +172,43 @@ static void integrate_all(const imki_diagnostic_call *call, turns *t, double fac
         integrate(call, &t->turn[k], factor, &t->forward[k], &t->backward[k]);
 }
 
-/* What a permutation other than the identity means. */
-static imk_diagnostic_finding axes_finding(int index, double missed)
+/* What is wrong with the axes, by the simplest mending. */
+static imk_diagnostic_finding axes_finding(uint64_t classes, double missed)
 {
-    const signed_permutation p = permutation_of(index);
+    imk_axes_mending mending[IMK_AXES_MENDINGS_MAX];
     imk_diagnostic_finding f = {.kind = IMK_DIAGNOSTIC_SWAPPED_AXES,
                                 .sensor = -1,
                                 .axis = -1,
                                 .other = -1,
                                 .value = missed,
-                                .limit = EXPLAINED};
-    int negative = 0, fixed = 0;
-    for (int i = 0; i < 3; i++) {
-        negative += p.sign[i] < 0;
-        fixed += p.column[i] == i;
+                                .limit = EXPLAINED,
+                                .classes = classes};
+    if (imk_axes_mendings(classes, mending) == 0)
+        return f;
+    const int sensor = mending[0].mistakes[IMK_GYRO] > 0 ? IMK_GYRO : IMK_ACCEL;
+    const imk_signed_axes *wrong = &mending[0].of[sensor];
+    bool in_place = true;
+    for (int i = 2; i >= 0; i--) {
+        in_place = in_place && wrong->column[i] == i;
+        if (wrong->column[i] != i || wrong->sign[i] < 0) {
+            f.axis = i;
+            f.other = wrong->column[i];
+        }
     }
-    if (fixed == 3) {
-        f.kind = IMK_DIAGNOSTIC_LEFT_HANDED;
-        f.sensor = negative == 3 ? -1 : (negative == 1 ? IMK_GYRO : IMK_ACCEL);
-        for (int i = 0; i < 3; i++)
-            if ((negative == 1 && p.sign[i] < 0) || (negative == 2 && p.sign[i] > 0))
-                f.axis = i;
-    } else if (fixed == 1) {
-        f.sensor = negative == 0 ? IMK_GYRO : (negative == 3 ? IMK_ACCEL : -1);
-        for (int i = 2; i >= 0; i--)
-            if (p.column[i] != i) {
-                f.axis = i;
-                f.other = p.column[i];
-            }
-    }
+    const bool one_mistake = mending[0].mistakes[0] + mending[0].mistakes[1] == 1;
+    f.sensor = one_mistake ? sensor : -1;
+    f.kind = in_place ? IMK_DIAGNOSTIC_LEFT_HANDED : IMK_DIAGNOSTIC_SWAPPED_AXES;
+    if (!one_mistake)
+        f.axis = -1;
+    if (!one_mistake || in_place)
+        f.other = -1;
     return f;
 }
 
 /* Root mean square miss of the log as it stands, of the turns it does not explain. */
 static double missed_as_is(const turns *t)
 {
-    const signed_permutation identity = permutation_of(0);
+    const imk_signed_axes identity = imk_signed_axes_of(0);
     double sum = 0.0, count = 0.0;
     for (size_t k = 0; k < t->count; k++) {
         const double m = miss(t, k, &identity);
@@ -239,47 +220,104 @@ static double missed_as_is(const turns *t)
     return count > 0.0 ? sqrt(sum / count) : 0.0;
 }
 
-/* An exchange or an inversion within one sensor comes before combinations of them. */
-static int complexity(int index)
-{
-    const imk_diagnostic_finding f = axes_finding(index, 0.0);
-    if (index == 0)
-        return 0;
-    return f.kind == IMK_DIAGNOSTIC_LEFT_HANDED || (f.axis >= 0 && f.sensor >= 0) ? 1 : 2;
-}
-
-/* One way to read the log: rates times a factor, permuted. */
+/* One way to read the log: rates times a factor, permuted by any of some classes. */
 typedef struct explanation {
     double factor, cost;
-    int index;
+    uint64_t classes; /* that are as good as the best, within MARGIN */
 } explanation;
 
-/* The simplest explanation that is as good as the best, within MARGIN. `t` is left integrated with
- * another factor. */
-static explanation explain(const imki_diagnostic_call *call, turns *t, size_t factors,
-                           const double *factor)
+/* The best for one factor. `t` is left integrated with it. */
+static explanation explain(const imki_diagnostic_call *call, turns *t, double factor)
 {
-    enum { FACTORS_MAX = 8 };
-    double cost[FACTORS_MAX][ALL], least = HUGE_VAL;
-    for (size_t f = 0; f < factors; f++) {
-        integrate_all(call, t, factor[f]);
-        for (int index = 0; index < ALL; index++) {
-            cost[f][index] = cost_of(t, index);
-            least = fmin(least, cost[f][index]);
-        }
+    explanation e = {.factor = factor, .cost = HUGE_VAL};
+    double cost[IMK_SIGNED_AXES];
+    integrate_all(call, t, factor);
+    for (int index = 0; index < IMK_SIGNED_AXES; index++) {
+        cost[index] = cost_of(t, index);
+        e.cost = fmin(e.cost, cost[index]);
     }
-    explanation chosen = {.cost = HUGE_VAL};
-    int simplest = 100;
-    for (size_t f = 0; f < factors; f++)
-        for (int index = 0; index < ALL; index++) {
-            const int simple = complexity(index) + (f > 0 ? 3 : 0);
-            if (cost[f][index] > least + MARGIN || simple > simplest ||
-                (simple == simplest && cost[f][index] >= chosen.cost))
-                continue;
-            simplest = simple;
-            chosen = (explanation){factor[f], cost[f][index], index};
-        }
-    return chosen;
+    for (int index = 0; index < IMK_SIGNED_AXES; index++)
+        if (cost[index] <= e.cost + MARGIN)
+            e.classes |= UINT64_C(1) << index;
+    return e;
+}
+
+/* Rates as they are, permuted or not, come before other units; of these, axes as they are. */
+static explanation explain_all(const imki_diagnostic_call *call, turns *t, size_t factors,
+                               const double *factor)
+{
+    explanation best = explain(call, t, factor[0]);
+    for (size_t f = 1; f < factors; f++) {
+        const explanation e = explain(call, t, factor[f]);
+        if (e.cost < best.cost - MARGIN)
+            best = e;
+    }
+    if (best.classes & 1)
+        best.classes = 1;
+    return best;
+}
+
+/* Better than the log as it stands, by enough, and good. */
+static bool explains(const turns *t, double as_is, double cost)
+{
+    return as_is - cost >= GAIN && cost <= LEFT_OF_BEFORE * as_is &&
+           cost <= LEFT_OF_ALL * (double)t->count;
+}
+
+/* The factor on all rates, from `low` to `high` in steps of a ratio, that explains the turns best.
+ * `t` is left integrated with the last of them. */
+static explanation scan(const imki_diagnostic_call *call, turns *t, double low, double high,
+                        double ratio)
+{
+    explanation best = {.factor = 1.0, .cost = HUGE_VAL, .classes = 1};
+    for (double factor = low; factor <= high; factor *= ratio) {
+        integrate_all(call, t, factor);
+        const double cost = cost_of(t, 0);
+        if (cost < best.cost)
+            best = (explanation){factor, cost, 1};
+    }
+    return best;
+}
+
+/* Rates that are too large or too small by a factor that is none of a unit: another sampling rate,
+ * another range of the device. */
+static explanation explain_scale(const imki_diagnostic_call *call, turns *t)
+{
+    enum { ROUNDS = 3 };
+    double ratio = 1.05;
+    explanation best = scan(call, t, 0.15, 7.0, ratio);
+    for (int round = 0; round < ROUNDS; round++) {
+        const double finer = 1.0 + 0.2 * (ratio - 1.0);
+        best = scan(call, t, best.factor / (ratio * finer), best.factor * ratio * finer, finer);
+        ratio = finer;
+    }
+    return best;
+}
+
+static void add_explanation(const explanation *e, double missed, imki_diagnostic_list *list)
+{
+    imk_diagnostic_finding f = {
+        .sensor = IMK_GYRO, .axis = -1, .other = -1, .value = 1.0 / e->factor};
+    const bool of_time = e->factor == 1e-3 || e->factor == 1e-6 || e->factor == 1e3;
+    f.kind = of_time ? IMK_DIAGNOSTIC_TIME_UNIT : IMK_DIAGNOSTIC_RATE_UNIT;
+    if (of_time)
+        f.sensor = -1;
+    if (e->factor != 1.0)
+        imki_diagnostic_add(list, f);
+    if (e->classes != 1)
+        imki_diagnostic_add(list, axes_finding(e->classes, missed));
+}
+
+static bool has_both_triads(const imki_diagnostic_call *call)
+{
+    const imk_test_record *r = call->record;
+    if (r->axis_count[IMK_GYRO] != 3 || r->axis_count[IMK_ACCEL] != 3)
+        return false;
+    for (int sensor = 0; sensor < 2; sensor++)
+        for (int i = 0; i < 3; i++)
+            if (!r->reading[sensor][i] || imki_record_unit(r, call->model, sensor, i).unit == 0.0)
+                return false;
+    return true;
 }
 
 void imki_diagnostic_turns(const imki_diagnostic_call *call, imki_diagnostic_list *list)
@@ -287,14 +325,9 @@ void imki_diagnostic_turns(const imki_diagnostic_call *call, imki_diagnostic_lis
     static const double degree = 0.017453292519943295;
     /* Rates in deg/s taken for rad/s, the reverse; times in ms or us taken for s, the reverse. */
     const double factor[] = {1.0, degree, 1.0 / degree, 1e-3, 1e-6, 1e3};
-    const imk_test_record *r = call->record;
-    if (r->axis_count[IMK_GYRO] != 3 || r->axis_count[IMK_ACCEL] != 3)
-        return;
-    for (int sensor = 0; sensor < 2; sensor++)
-        for (int i = 0; i < 3; i++)
-            if (!r->reading[sensor][i] || imki_record_unit(r, call->model, sensor, i).unit == 0.0)
-                return;
     turns t;
+    if (!has_both_triads(call))
+        return;
     collect_turns(call, &t);
     if (t.count < TURNS_MIN)
         return;
@@ -302,21 +335,17 @@ void imki_diagnostic_turns(const imki_diagnostic_call *call, imki_diagnostic_lis
     const double as_is = cost_of(&t, 0), missed = missed_as_is(&t);
     if (as_is < GAIN)
         return;
-    const explanation best = explain(call, &t, sizeof factor / sizeof *factor, factor);
-    if ((best.index == 0 && best.factor == 1.0) || as_is - best.cost < GAIN ||
-        best.cost > LEFT_OF_BEFORE * as_is || best.cost > LEFT_OF_ALL * (double)t.count)
-        return;
-    imk_diagnostic_finding unit = {.sensor = IMK_GYRO, .axis = -1, .other = -1};
-    if (best.factor == factor[1] || best.factor == factor[2]) {
-        unit.kind = IMK_DIAGNOSTIC_RATE_UNIT;
-        unit.value = 1.0 / best.factor;
-        imki_diagnostic_add(list, unit);
-    } else if (best.factor != 1.0) {
-        unit.kind = IMK_DIAGNOSTIC_TIME_UNIT;
-        unit.sensor = -1;
-        unit.value = 1.0 / best.factor;
-        imki_diagnostic_add(list, unit);
-    }
-    if (best.index != 0)
-        imki_diagnostic_add(list, axes_finding(best.index, missed));
+    const explanation best = explain_all(call, &t, sizeof factor / sizeof *factor, factor);
+    const explanation scale = explain_scale(call, &t);
+    const bool is_scale = scale.cost < best.cost - MARGIN;
+    if (is_scale && explains(&t, as_is, scale.cost) &&
+        fabs(1.0 / scale.factor - 1.0) > IMKI_SCALE_DOUBTED)
+        imki_diagnostic_add(list, (imk_diagnostic_finding){.kind = IMK_DIAGNOSTIC_SCALE,
+                                                           .sensor = IMK_GYRO,
+                                                           .axis = -1,
+                                                           .other = -1,
+                                                           .value = 1.0 / scale.factor,
+                                                           .limit = IMKI_SCALE_DOUBTED});
+    else if (!is_scale && explains(&t, as_is, best.cost))
+        add_explanation(&best, missed, list);
 }

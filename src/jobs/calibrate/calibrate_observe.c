@@ -54,6 +54,18 @@ static imk_status find_rests(imk_calibrate_log *b, imk_calibrate_record *log, vo
     }
 }
 
+/* Rests outside the sections that were asked for are none of the test. */
+static void keep_labelled(imk_calibrate_record *log)
+{
+    size_t kept = 0;
+    if (log->procedure != IMK_PROCEDURE_MULTIPOSITION || !log->settings.labelled_only)
+        return;
+    for (size_t k = 0; k < log->interval_count; k++)
+        if (log->interval[k].section >= 0)
+            log->interval[kept++] = log->interval[k];
+    log->interval_count = kept;
+}
+
 /* Where it stands still: for the diagnostics, the table of poses and the plot. */
 static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_error *error)
 {
@@ -69,6 +81,7 @@ static imk_status detect(imk_calibrate_log *b, imk_calibrate_record *log, imk_er
     const imk_status status = find_rests(b, log, workspace, size, error);
     imki_resize(&b->job.allocator, workspace, 0);
     if (status == IMK_OK) {
+        keep_labelled(log);
         log->diagnostic_count = imk_record_diagnostics(
             &log->record, &log->stationary, log->interval_count, log->interval,
             b->calibration->gravity, model, IMK_CALIBRATE_DIAGNOSTICS_MAX, log->diagnostic);

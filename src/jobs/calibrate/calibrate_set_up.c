@@ -16,6 +16,9 @@ static const double loose_mounting = 0.1;
 /* What there is on Earth [m/s^2]. */
 static const double gravity_least = 9.5, gravity_most = 10.1;
 
+/* Gravity differs from that of the ellipsoid by 5e-4 of it at most, in high mountains. */
+static const double gravity_anomaly = 1e-3;
+
 static const uint32_t settings_cookie = 0x43414C31; /* "CAL1" */
 
 imk_calibrate_log_settings imk_calibrate_log_default(void)
@@ -126,6 +129,7 @@ static imk_procedure_settings settings_of(const imk_calibrate_log *b, imk_proced
     set_if(&s.settle, o->settle);
     set_if(&s.reference_temperature, o->reference_temperature);
     s.temperature_order = o->temperature_order;
+    s.labelled_only = o->section != NULL;
     switch_terms(o->with, true, &s);
     switch_terms(o->without, false, &s);
     return s;
@@ -191,6 +195,18 @@ static imk_status apply_counts(imk_calibrate_log *b, int sensor, imk_error *erro
     return IMK_OK;
 }
 
+/* Does the record name the axes of a sensor as the first record that has some? */
+static bool names_same_axes(const imk_calibrate_log *b, int sensor, size_t index)
+{
+    const imk_calibrate_record *here = &b->record[index], *first = b->record;
+    while (first->record.axis_count[sensor] == 0 && first < here)
+        first++;
+    for (int i = 0; i < here->record.axis_count[sensor]; i++)
+        if (here->body_axis[sensor][i] != first->body_axis[sensor][i])
+            return false;
+    return true;
+}
+
 /* The axes that the records have of a sensor: all that have some have the same. */
 static imk_status find_axes(imk_calibrate_log *b, int sensor, int *axes, bool *counts,
                             imk_error *error)
@@ -203,6 +219,9 @@ static imk_status find_axes(imk_calibrate_log *b, int sensor, int *axes, bool *c
         if (here > 0 && *axes > 0 && here != *axes)
             return imki_fail(&b->findings, error, IMK_ERROR_COLUMN, "axes_differ",
                              imki_sensor_titles[sensor], IMKI_NUMBERS(here, *axes));
+        if (!names_same_axes(b, sensor, k))
+            return imki_fail(&b->findings, error, IMK_ERROR_COLUMN, "axes_named",
+                             imki_sensor_titles[sensor], 0, NULL);
         if (here > 0 && *axes > 0 && *counts != record->counts[sensor])
             return imki_fail(&b->findings, error, IMK_ERROR_COLUMN, "counts_differ",
                              imki_sensor_titles[sensor], 0, NULL);
@@ -221,6 +240,24 @@ static imk_status check_counts(imk_calibrate_log *b, int sensor, bool counts, im
         return IMK_OK;
     return imki_fail(&b->findings, error, IMK_ERROR_ARGUMENT, "not_in_counts",
                      imki_sensor_keys[sensor], IMKI_NUMBERS(s->sensitivity[sensor].count));
+}
+
+/* A record with gyro_z alone has one axis, which points along z. */
+static void point_axes(imk_calibrate_log *b, int sensor, int axes, imk_triad *triad)
+{
+    const imk_calibrate_record *log = b->record;
+    while (log < b->record + b->count - 1 && log->record.axis_count[sensor] == 0)
+        log++;
+    for (int i = 0; i < axes && i < 3; i++) {
+        if (log->body_axis[sensor][i] == i)
+            continue;
+        for (int j = 0; j < 3; j++)
+            triad->direction[i][j] = j == log->body_axis[sensor][i];
+        char words[60];
+        snprintf(words, sizeof words, "%s_%c\t%c", imki_sensor_keys[sensor],
+                 imk_axis_letter(log->body_axis[sensor][i]), imk_axis_letter(i));
+        imki_find(&b->findings, IMK_FINDING_NOTE, "axis_renamed", words, 0, NULL);
+    }
 }
 
 /* Axes of the records; a model that is given must have them. */
@@ -244,6 +281,7 @@ static imk_status match_axes(imk_calibrate_log *b, int sensor, imk_error *error)
         triad->axis_count = axes > 0 ? axes : 3;
         for (int i = 3; i < axes; i++)
             triad->direction[i][i % 3] = 1;
+        point_axes(b, sensor, axes, triad);
     }
     b->nominal[sensor] = counts && triad->sensitivity.value[0] == 0;
     return IMK_OK;
@@ -259,6 +297,13 @@ static void tell_gravity(imk_calibrate_log *b)
     if (needed && !b->settings.place_known && isnan(b->settings.gravity))
         imki_find(&b->findings, IMK_FINDING_WARNING, "calibrate:gravity", NULL,
                   IMKI_NUMBERS(b->calibration->gravity));
+    if (needed && b->settings.place_known && !isnan(b->settings.gravity)) {
+        const double due = imk_normal_gravity(b->settings.place.latitude, b->settings.place.height);
+        const double off = b->settings.gravity / due - 1;
+        if (fabs(off) > gravity_anomaly)
+            imki_find(&b->findings, IMK_FINDING_WARNING, "calibrate:gravity_of_place", NULL,
+                      IMKI_NUMBERS(b->settings.gravity, due, 100 * off));
+    }
 }
 
 imk_status imki_know_before(imk_calibrate_log *b, imk_error *error)

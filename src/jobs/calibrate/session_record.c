@@ -35,29 +35,41 @@ static void drop_rows(imk_calibrate_record *log, int time, imk_findings *finding
                   IMKI_NUMBERS((double)log->dropped));
 }
 
+/* Axes beyond z have directions of their own, which only a model states: all before them must be
+ * there. Of x, y and z some may be missing. */
+static imk_status check_gap(imk_calibrate_record *log, int sensor, int axis, int axes,
+                            imk_error *error)
+{
+    const char *key = imki_sensor_keys[sensor];
+    char which[60];
+    if (axis == axes || axis < 3)
+        return IMK_OK;
+    snprintf(which, sizeof which, "%s_%c but no %s_%c", key, imk_axis_letter(axis), key,
+             imk_axis_letter(axes));
+    return imki_fail(&log->loaded, error, IMK_ERROR_COLUMN, "axis_gap", which, 0, NULL);
+}
+
 /* The axes of one kind of sensor, in their order. */
 static imk_status take_axes(imk_calibrate_record *log, int sensor, imk_findings *findings,
                             imk_error *error)
 {
     static const imk_quantity kinds[2] = {IMK_QUANTITY_ANGULAR_RATE, IMK_QUANTITY_SPECIFIC_FORCE};
-    const char *key = imki_sensor_keys[sensor];
     imk_test_record *record = &log->record;
     int axes = 0;
     for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
         const int column = imk_log_find(&log->log, kinds[sensor], axis);
         if (column < 0)
             continue;
-        if (axis != axes) {
-            char which[60];
-            snprintf(which, sizeof which, "%s_%c but no %s_%c", key, imk_axis_letter(axis), key,
-                     imk_axis_letter(axes));
-            return imki_fail(findings, error, IMK_ERROR_COLUMN, "axis_gap", which, 0, NULL);
-        }
+        const imk_status status = check_gap(log, sensor, axis, axes, error);
+        if (status != IMK_OK)
+            return status;
         const bool counts = imk_dimension_equal(log->log.column[column].unit.dimension,
                                                 imk_unit_of("count").dimension);
         if (axes > 0 && counts != record->counts[sensor])
-            return imki_fail(findings, error, IMK_ERROR_COLUMN, "counts_mixed", key, 0, NULL);
+            return imki_fail(findings, error, IMK_ERROR_COLUMN, "counts_mixed",
+                             imki_sensor_keys[sensor], 0, NULL);
         record->counts[sensor] = counts;
+        log->body_axis[sensor][axes] = axis;
         record->reading[sensor][axes++] = log->log.data[column];
     }
     record->axis_count[sensor] = axes;

@@ -372,22 +372,41 @@ static imk_status take_axis(imk_evaluate_log *v, const imk_test_record *record, 
     return status;
 }
 
+/* The record with each axis at its place among x, y, z; `zero` stands for those that are missing.
+ */
+static imk_test_record placed(const imk_calibrate_record *log, const double *zero)
+{
+    imk_test_record record = log->record;
+    for (int sensor = 0; sensor < 2; sensor++) {
+        const int count = log->record.axis_count[sensor];
+        for (int axis = 0; axis < 3 && count > 0 && count <= 3; axis++)
+            record.reading[sensor][axis] = zero;
+        for (int i = 0; i < count && count <= 3; i++) {
+            record.reading[sensor][log->body_axis[sensor][i]] = log->record.reading[sensor][i];
+            record.axis_count[sensor] = log->body_axis[sensor][i] + 1;
+        }
+    }
+    return record;
+}
+
 imk_status imk_evaluate_record(imk_evaluate_log *evaluation, const imk_calibrate_record *log,
                                imk_error *error)
 {
     imk_evaluate_log *v = evaluation;
-    const imk_test_record *record = &log->record;
-    const bool known[2] = {record->reference_rate[0] != NULL, record->reference_force[0] != NULL};
+    const bool known[2] = {log->record.reference_rate[0] != NULL,
+                           log->record.reference_force[0] != NULL};
     if (!known[0] && !known[1])
         return imki_fail(&v->findings, error, IMK_ERROR_KEY_MISSING, "no_reference", NULL, 0, NULL);
     imki_arena scratch = {.allocator = ((imki_arena *)v->memory)->allocator};
-    const double *zero = imki_arena_take(&scratch, record->count * sizeof *zero);
+    const double *zero = imki_arena_take(&scratch, log->record.count * sizeof *zero);
     imk_status status = zero ? IMK_OK : imk_error_set(error, IMK_ERROR_MEMORY, NULL, NULL, NULL);
+    const imk_test_record at_places = placed(log, zero), *record = &at_places;
     for (int sensor = 0; sensor < 2; sensor++)
         for (int axis = 0;
              status == IMK_OK && known[sensor] && axis < 3 && axis < record->axis_count[sensor];
              axis++)
-            status = take_axis(v, record, zero, sensor, axis, error);
+            if (record->reading[sensor][axis] != zero)
+                status = take_axis(v, record, zero, sensor, axis, error);
     imki_arena_free(&scratch);
     v->run_count += v->settings.sections && record->section_count > 0 ? record->section_count : 1;
     if (status == IMK_OK && v->channel_count == 0)

@@ -4,6 +4,7 @@
 
 #include "calibrate/pose_log.h"
 
+#include "imukit/axes_mending.h"
 #include "imukit/procedure.h"
 
 static const double GRAVITY = 9.80620; /* WGS84 at 45 deg, sea level, to five digits */
@@ -255,6 +256,73 @@ static void axes_exchanged_and_inverted(void **state)
     pose_log_free(log);
 }
 
+/* Every signed permutation of the gyros but the identity is found, as the only class. */
+static void every_permutation_is_found(void **state)
+{
+    (void)state;
+    for (int index = 1; index < IMK_SIGNED_AXES; index++) {
+        if (check_skips((size_t)index, 4))
+            continue;
+        pose_log *log = sound(20 + (uint64_t)index);
+        const imk_signed_axes p = imk_signed_axes_of(index);
+        /* Read gyros so that p mends them. */
+        for (int i = 0; i < 3; i++) {
+            for (size_t k = 0; k < log->record.count; k++)
+                log->value[i][k] *= p.sign[i];
+            log->record.reading[0][p.column[i]] = log->value[i];
+        }
+        const diagnostics d = look(log, NULL);
+        assert_int_equal(d.count, 1);
+        if (d.finding[0].classes != UINT64_C(1) << index)
+            print(&d);
+        assert_true(d.finding[0].classes == UINT64_C(1) << index);
+        pose_log_free(log);
+    }
+}
+
+/* A range, or a sampling rate without times: one ratio of all rates, beyond what a sensor errs. */
+static void scales_of_no_sensor(void **state)
+{
+    (void)state;
+    static const double ratio[] = {0.25, 0.5, 0.8, 1.25, 2.0, 4.0};
+    for (int i = 0; i < 6; i++) {
+        pose_log *log = sound(70 + (uint64_t)i);
+        scale(log, IMK_GYRO, ratio[i]);
+        const imk_diagnostic_finding f = only(log, NULL, IMK_DIAGNOSTIC_SCALE);
+        assert_int_equal(f.sensor, IMK_GYRO);
+        CHECK_RELATIVE(f.value, ratio[i], 0.03);
+        pose_log_free(log);
+    }
+    for (int i = 0; i < 2; i++) {
+        pose_log *log = sound(80 + (uint64_t)i);
+        scale(log, IMK_GYRO, i ? 1.1 : 0.9);
+        none(log, NULL);
+        pose_log_free(log);
+    }
+}
+
+/* All poses within 45 deg of level: gravity acts along z throughout. */
+static void one_cone(void **state)
+{
+    (void)state;
+    const imk_model model = pose_log_model();
+    imk_motion_step step[24];
+    imk_motion_script script = imk_motion_script_default();
+    script.step = step;
+    for (int i = 0; i < 12; i++) {
+        step[2 * i] = (imk_motion_step){.kind = IMK_STEP_HOLD, .duration = 3.0};
+        step[2 * i + 1] =
+            (imk_motion_step){.kind = IMK_STEP_POSE,
+                              .duration = 2.0,
+                              .angle = {0.6 * sin(2.4 * i), 0.6 * cos(2.4 * i), 0.5 * i}};
+    }
+    script.step_count = 23;
+    pose_log *log = pose_log_of(&model, &script, 58.0, 100.0, 1);
+    const imk_diagnostic_finding f = only(log, NULL, IMK_DIAGNOSTIC_ONE_CONE);
+    assert_int_equal(f.axis, 2);
+    pose_log_free(log);
+}
+
 /* Turned about x over and over, and only five times about the others. */
 static pose_log *mostly_about_x(uint64_t seed)
 {
@@ -381,6 +449,9 @@ int main(void)
         cmocka_unit_test(units_of_force),
         cmocka_unit_test(units_of_rate_and_time),
         cmocka_unit_test(axes_exchanged_and_inverted),
+        cmocka_unit_test(every_permutation_is_found),
+        cmocka_unit_test(scales_of_no_sensor),
+        cmocka_unit_test(one_cone),
         cmocka_unit_test(axes_seldom_turned_about),
         cmocka_unit_test(bad_turns_are_no_bad_axes),
         cmocka_unit_test(saturated_poses),

@@ -3,6 +3,8 @@
  * mends it; and what diagnostics, the findings over temperature and the warnings add up to. */
 #include "calibrate_show_internal.h"
 
+#include "imukit/axes_mending.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,14 +15,18 @@
  * and the factors asked for are farther apart. */
 static const double factor_tolerance = 0.12;
 
-/* Residuals this far above the noise are not a trembling hand: the model is another one. */
-static const double residual_alarm = 100;
+/* Residuals this far above the noise are not a trembling hand: the model is another one. Sound logs
+ * of real units turned by hand have 1 to 5. */
+static const double residual_alarm = 10;
+
+/* Scale factors further from 1 are no sensor's. */
+static const double scale_doubted = 0.1;
 
 /* A message of the verdict. */
 typedef struct calibrate_message {
     imk_finding_level level;
     const char *code;
-    char text[700];
+    char text[1200];
 } calibrate_message;
 
 static calibrate_message say(imk_finding_level level, const char *code, const char *format, ...)
@@ -56,6 +62,7 @@ static bool diagnostic_matters(const imk_calibrate_record *log,
         return takes_holds;
     case IMK_DIAGNOSTIC_FEW_POSES:
     case IMK_DIAGNOSTIC_ONE_PLANE:
+    case IMK_DIAGNOSTIC_ONE_CONE:
         return looks_for_holds;
     default:
         return true;
@@ -97,24 +104,36 @@ static calibrate_message gravity_unit(const imk_calibrate_log *b, const imk_cali
                    found[0] ? "correct the unit in the header to" : "add --accel-unit",
                    units[k].unit);
     }
-    return say(IMK_FINDING_FAILURE, "gravity_unit",
-               "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: no usual unit "
-               "explains the difference; check the unit of the accelerometer columns; for raw "
-               "counts, use the unit count and --accel-sensitivity",
-               force, b->calibration->gravity);
+    imki_text causes = {0};
+    imki_scale_causes(b, 1, ratio, true, &causes);
+    const calibrate_message message =
+        say(IMK_FINDING_FAILURE, "gravity_unit",
+            "at rest the accelerometers read %.5g m/s^2, gravity is %.5g: no usual unit explains "
+            "the difference; it looks like %s; check the unit of the accelerometer columns; for "
+            "raw counts, use the unit count and --accel-sensitivity",
+            force, b->calibration->gravity, causes.bytes ? causes.bytes : "a wrong unit");
+    free(causes.bytes);
+    return message;
 }
 
-static calibrate_message rate_unit(const imk_calibrate_record *log, double ratio)
+static calibrate_message rate_unit(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                   double ratio)
 {
     const double degrees = 57.29577951308232;
     const char *unit = is_near(ratio, degrees)       ? "deg/s"
                        : is_near(ratio, 1 / degrees) ? "rad/s"
                                                      : NULL;
-    if (!unit)
-        return say(IMK_FINDING_FAILURE, "rate_unit",
-                   "the gyros show turns %.4g times as large as the accelerometers show: check the "
-                   "units of the gyro columns and of the time column",
-                   ratio);
+    if (!unit) {
+        imki_text causes = {0};
+        imki_scale_causes(b, 0, ratio, true, &causes);
+        const calibrate_message message =
+            say(IMK_FINDING_FAILURE, "rate_unit",
+                "the gyros show rates %.4g times as large as they are; it looks like %s; check the "
+                "unit of the gyro columns",
+                ratio, causes.bytes ? causes.bytes : "a wrong unit");
+        free(causes.bytes);
+        return message;
+    }
     return say(IMK_FINDING_FAILURE, "rate_unit",
                "the gyros show turns %.4g times as large as the accelerometers show: the columns "
                "look like %s; %s %s",
@@ -147,11 +166,25 @@ static calibrate_message few_poses(const imk_calibrate_log *b, const imk_calibra
 {
     char poses[160];
     imki_calibrate_poses(b, log, "; the most informative further poses are ", poses, sizeof poses);
+    const bool chosen = b->settings.estimate || b->settings.model;
     return say(
-        b->result ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE, "few_poses",
+        b->result && chosen ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE, "few_poses",
         "the log has %g poses, %g or more are needed: keep the unit at rest for some seconds with "
         "each of its six faces down, and on the edges and corners between the faces%s",
         d->value, d->limit, poses);
+}
+
+static calibrate_message one_cone(const imk_calibrate_log *b, const imk_calibrate_record *log,
+                                  const imk_diagnostic_finding *d)
+{
+    char poses[160];
+    imki_calibrate_poses(b, log, "; the most informative further poses are ", poses, sizeof poses);
+    const char axis = imk_axis_letter(d->axis);
+    return say(b->result ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE, "one_plane",
+               "the force of gravity along %c is nearly the same in all poses, so the bias of %c "
+               "cannot be told from its scale factor: add poses with %c up, with %c down and with "
+               "%c level%s",
+               axis, axis, axis, axis, axis, poses);
 }
 
 static calibrate_message one_plane(const imk_calibrate_log *b, const imk_calibrate_record *log,
@@ -161,6 +194,8 @@ static calibrate_message one_plane(const imk_calibrate_log *b, const imk_calibra
     imki_calibrate_poses(b, log, "; the most informative further poses are ", poses, sizeof poses);
     const imk_finding_level level = b->result ? IMK_FINDING_WARNING : IMK_FINDING_FAILURE;
     const char axis = imk_axis_letter(d->axis);
+    if (d->axis >= 0 && b->nominal[1]) /* zero is not known: a plane or a cone */
+        return one_cone(b, log, d);
     if (d->axis < 0)
         return say(level, "one_plane",
                    "the poses all lie in one plane: add poses far out of this plane%s", poses);
@@ -168,6 +203,17 @@ static calibrate_message one_plane(const imk_calibrate_log *b, const imk_calibra
                "the poses all lie in one plane: gravity hardly ever acts along %c; add poses with "
                "%c up, with %c down and with %c at 45 deg%s",
                axis, axis, axis, axis, poses);
+}
+
+/* A solution is shown with it; without one it is why. */
+static calibrate_message scale(const imk_calibrate_log *b, const imk_diagnostic_finding *d)
+{
+    static const char *const codes[2] = {"gyro_scale", "accel_scale"};
+    calibrate_message m = {.level = IMK_FINDING_FAILURE, .code = codes[d->sensor == 1]};
+    if (b->result)
+        m.level = d->limit < scale_doubted ? IMK_FINDING_NOTE : IMK_FINDING_WARNING;
+    imki_scale_text(b, d, m.text, sizeof m.text);
+    return m;
 }
 
 /* Whole numbers in the unit of the file, of some size: counts, whatever the header says. */
@@ -199,6 +245,14 @@ static calibrate_message never_static(const imk_calibrate_log *b, const imk_cali
                 "no stationary interval is found, and the %s readings are whole numbers: if they "
                 "are counts, not %s, write [count] into the header (or add --%s-unit count)",
                 imki_sensor_titles[sensor], unit_of_column(log, sensor), imki_sensor_keys[sensor]);
+    size_t first;
+    const size_t missing = imk_test_record_missing(&log->record, &first);
+    if (2 * missing > log->record.count)
+        return say(IMK_FINDING_FAILURE, "never_static",
+                   "no stationary interval is found: only %zu of %zu rows have a number in all "
+                   "columns (the first without is row %zu); check the log, or leave a column out "
+                   "with --columns (- skips a column)",
+                   log->record.count - missing, log->record.count, first + 1);
     if (!isnan(b->settings.minimum))
         return say(IMK_FINDING_FAILURE, "never_static",
                    "the unit is never stationary for %.4g s, which --minimum requires: lower "
@@ -208,12 +262,28 @@ static calibrate_message never_static(const imk_calibrate_log *b, const imk_cali
                "the unit is never stationary for long enough: it is stationary in %.2g %% of the "
                "log, tested in windows of %.2g s; put the unit down for 3 s or more in each pose "
                "(a hand moves too much); if the unit was at rest at the beginning, add "
-               "--initial-rest 10s, and the noise is estimated there",
-               100 * log->stationary.standing, log->stationary.window);
+               "--initial-rest 10s, and the noise is estimated there%s",
+               100 * log->stationary.standing, log->stationary.window,
+               log->record.time ? "" : "; if --rate is too high, all rests look too short");
+}
+
+/* In words of the mendings, unless there is one of one mistake. */
+static bool mended(const imk_diagnostic_finding *d, const char *code, calibrate_message *message)
+{
+    imk_axes_mending mending[IMK_AXES_MENDINGS_MAX];
+    const size_t count = imk_axes_mendings(d->classes, mending);
+    *message = (calibrate_message){.level = IMK_FINDING_FAILURE, .code = code};
+    if (count == 0 || (count == 1 && d->sensor >= 0))
+        return false;
+    (void)imki_axes_text(d->classes, message->text, sizeof message->text);
+    return true;
 }
 
 static calibrate_message swapped(const imk_diagnostic_finding *d)
 {
+    calibrate_message message;
+    if (mended(d, "swapped_axes", &message))
+        return message;
     const char *sensor = d->sensor >= 0 ? imki_sensor_keys[d->sensor] : "gyro";
     if (d->axis < 0 || d->other < 0)
         return say(
@@ -231,6 +301,9 @@ static calibrate_message swapped(const imk_diagnostic_finding *d)
 
 static calibrate_message left_handed(const imk_diagnostic_finding *d)
 {
+    calibrate_message message;
+    if (mended(d, "left_handed", &message))
+        return message;
     if (d->axis < 0)
         return say(IMK_FINDING_FAILURE, "left_handed",
                    "all three gyros measure turns in the opposite direction to the accelerometers: "
@@ -263,7 +336,7 @@ static calibrate_message on_log(const imk_calibrate_log *b, const imk_calibrate_
     case IMK_DIAGNOSTIC_GRAVITY_UNIT:
         return gravity_unit(b, log, d->value);
     case IMK_DIAGNOSTIC_RATE_UNIT:
-        return rate_unit(log, d->value);
+        return rate_unit(b, log, d->value);
     case IMK_DIAGNOSTIC_SATURATED:
         return say(
             IMK_FINDING_WARNING, "saturated",
@@ -283,6 +356,10 @@ static calibrate_message on_log(const imk_calibrate_log *b, const imk_calibrate_
         return left_handed(d);
     case IMK_DIAGNOSTIC_TIME_UNIT:
         return time_unit(log, d->value);
+    case IMK_DIAGNOSTIC_SCALE:
+        return scale(b, d);
+    case IMK_DIAGNOSTIC_ONE_CONE:
+        return one_cone(b, log, d);
     default:
         return say(IMK_FINDING_FAILURE, "stuck",
                    "%s %c never changes its reading: the axis is dead, or the column has the wrong "
@@ -308,16 +385,39 @@ static calibrate_message correlated(const imk_calibrate_log *b, double correlati
                one, other, correlation);
 }
 
+/* What the log holds is not what the model says. */
+static calibrate_message unexplained(const imk_calibrate_log *b, const imk_diagnostic_finding *d)
+{
+    static const struct {
+        const char *what, *si, *causes;
+    } groups[IMK_GROUPS] = {
+        {"gyro readings at rest", "rad/s",
+         "the unit was not at rest in all holds, or the bias drifts"},
+        {"accelerometer readings", "m/s^2",
+         "a face, a label or a reference is not what it is said to be, the unit was moved during "
+         "holds, or the accelerometers are at the end of their range or not linear"},
+        {"turns between poses", "rad",
+         "gyros and accelerometers are not sampled at the same time, the sampling rate varies, a "
+         "gyro saturates, signs or axes are wrong, or the gyros sense the force and g_sensitivity "
+         "is not estimated"}};
+    const int g = d->other >= 0 && d->other < IMK_GROUPS ? d->other : 0;
+    const double rms = b->result->group[g].rms;
+    const imk_unit unit = imk_unit_readable(imk_unit_of(groups[g].si).dimension, rms);
+    return say(IMK_FINDING_WARNING, "residuals",
+               "the %s differ from the solution by %.3g %s rms, %.3g times what the noise within "
+               "the holds explains (chi-square per degree of freedom %.3g): the model does not "
+               "describe this log, and the intervals hold only if the excess is random. Likely "
+               "causes: %s; --poses lists the residuals",
+               groups[g].what, rms / unit.scale, unit.text, sqrt(d->value), d->value,
+               groups[g].causes);
+}
+
 static calibrate_message on_solution(const imk_calibrate_log *b, const imk_diagnostic_finding *d)
 {
     switch (d->kind) {
     case IMK_DIAGNOSTIC_RESIDUALS:
         if (sqrt(d->value) > residual_alarm)
-            return say(IMK_FINDING_WARNING, "residuals",
-                       "the residuals are %.3g times what the noise within the holds explains: the "
-                       "model does not describe this log; check the signs and the order of the "
-                       "axes, the labels, and that the log is of the procedure named",
-                       sqrt(d->value));
+            return unexplained(b, d);
         return say(IMK_FINDING_NOTE, "residuals",
                    "the residuals are %.3g times what the noise within the holds explains "
                    "(chi-square per degree of freedom %.3g): the table, the hand or the sensor "
@@ -437,9 +537,9 @@ static void add_undetermined(const imk_calibrate_log *b, const imk_calibrate_rec
 }
 
 /* What a log showed already need not be said of the solution again, nor of each axis. */
-static bool is_said(const imk_verdict *v, const char *code)
+static bool is_said(const imk_verdict *v, size_t count, const char *code)
 {
-    for (size_t k = 0; k < v->count; k++)
+    for (size_t k = 0; k < v->count && k < count; k++)
         if (strcmp(v->message[k].code, code) == 0)
             return true;
     return false;
@@ -456,15 +556,20 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
             if (!diagnostic_matters(log, &log->diagnostic[d]))
                 continue;
             const calibrate_message plain = diagnostic_message(b, log, &log->diagnostic[d]);
-            add(&v, say(plain.level, plain.code, "%.150s: %.540s", log->path, plain.text));
+            add(&v, say(plain.level, plain.code, "%.150s: %.1000s", log->path, plain.text));
         }
         add_undetermined(b, log, &v);
         add_thermal(&v, log);
     }
+    const size_t of_logs = v.count;
     for (size_t d = 0; d < b->diagnostic_count; d++) {
         const calibrate_message message = diagnostic_message(b, NULL, &b->diagnostic[d]);
-        if (!is_said(&v, message.code))
+        const bool of_scale = b->diagnostic[d].kind == IMK_DIAGNOSTIC_SCALE;
+        const char *unit = b->diagnostic[d].sensor == 0 ? "rate_unit" : "gravity_unit";
+        if (!is_said(&v, of_scale ? of_logs : v.count, message.code) &&
+            !(of_scale && is_said(&v, v.count, unit)))
             add(&v, message);
     }
+    imki_untestable(b, &v);
     return v;
 }

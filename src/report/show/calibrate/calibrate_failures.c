@@ -119,7 +119,8 @@ static size_t not_finite(const message *to, const imk_calibrate_record *log)
                 return say(to,
                            "%s: %s_%c never has a number: nothing can be estimated from this "
                            "column; check the log, or name the columns with --columns",
-                           log->path, imki_sensor_keys[sensor], imk_axis_letter(axis));
+                           log->path, imki_sensor_keys[sensor],
+                           imk_axis_letter(log->body_axis[sensor][axis]));
         }
     size_t first;
     const size_t missing = imk_test_record_missing(&log->record, &first);

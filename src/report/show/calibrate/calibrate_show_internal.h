@@ -17,6 +17,17 @@
  */
 bool imki_calibrate_useless(const imk_calibrate_log *b, const imk_calibrate_record *log, char *text,
                             size_t size);
+/* calibrate_axes_text.c: the mendings of axes (imk_axes_mendings()) and what decides. @return their
+ * number */
+size_t imki_axes_text(uint64_t classes, char *text, size_t size);
+/* calibrate_scale_text.c: a scale that no sensor has; and what `ratio` of readings to input looks
+ * like, appended to a list. */
+void imki_scale_text(const imk_calibrate_log *b, const imk_diagnostic_finding *d, char *text,
+                     size_t size);
+void imki_scale_causes(const imk_calibrate_log *b, int sensor, double ratio, bool all_axes,
+                       imki_text *to);
+/* calibrate_untestable.c: a note of what another sound unit would show as well. */
+void imki_untestable(const imk_calibrate_log *b, imk_verdict *verdict);
 /* calibrate_words.c: the verdict in one message. */
 void imki_calibrate_summary(const imk_calibrate_log *b, const imk_verdict *verdict, char *text,
                             size_t size);

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double degree = 0.017453292519943295;
 
@@ -14,8 +15,10 @@ static const double degree = 0.017453292519943295;
 imk_finding_level imk_verdict_level(const imk_verdict *v)
 {
     imk_finding_level level = IMK_FINDING_GOOD;
+    /* What no log of this kind can show is no fault of this one. */
     for (size_t k = 0; k < v->count; k++)
-        level = v->message[k].level > level ? v->message[k].level : level;
+        if (v->message[k].level > level && strcmp(v->message[k].code, "not_testable") != 0)
+            level = v->message[k].level;
     return level;
 }
 

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What no test of these logs can show, because another sound unit would give the same log: it is
+ * named, so that "Good" does not vouch for it. */
+#include "calibrate_show_internal.h"
+
+#include <stdlib.h>
+
+#define add_item(list, words)                                                                      \
+    (imki_text_put(list, (list)->size > 0 ? "; " : ""), imki_text_put(list, words))
+
+static bool is_estimated(const imk_calibrate_log *b, int sensor)
+{
+    for (size_t p = 0; b->result && p < b->result->parameter_count; p++)
+        if (b->result->parameter[p].sensor == sensor &&
+            b->result->parameter[p].term == IMK_MODEL_SCALE_FACTOR)
+            return true;
+    return false;
+}
+
+/* A procedure of any record; `unnamed`: whose faces or poses have no labels. */
+static bool has(const imk_calibrate_log *b, imk_procedure first, imk_procedure last, bool unnamed)
+{
+    for (size_t k = 0; k < b->count; k++)
+        if (b->record[k].procedure >= first && b->record[k].procedure <= last &&
+            !(unnamed && b->record[k].record.section))
+            return true;
+    return false;
+}
+
+/* With references the rates and forces are known: a clock takes no part. */
+static void add_of_gyros(const imk_calibrate_log *b, imki_text *list)
+{
+    if (!is_estimated(b, 0))
+        return;
+    if (has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false))
+        add_item(list, "an error of the reference (it goes into bias, scale factor and "
+                       "misalignment)");
+    else if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false))
+        add_item(list, "a sampling rate that is some per cent off (the scale factors of all "
+                       "gyros change by as much)");
+}
+
+static void add_of_gravity(const imk_calibrate_log *b, imki_text *list)
+{
+    if (!is_estimated(b, 1) || !has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_FERRARIS, false))
+        return;
+    add_item(list, "gravity that is some per cent off (the scale factors of all "
+                   "accelerometers change by as much)");
+    if (has(b, IMK_PROCEDURE_RATE_TABLE, IMK_PROCEDURE_SPIN, false))
+        return;
+    if (has(b, IMK_PROCEDURE_MULTIPOSITION, IMK_PROCEDURE_MULTIPOSITION, false) ||
+        has(b, IMK_PROCEDURE_SIXPOSITION, IMK_PROCEDURE_FERRARIS, true))
+        add_item(list, "all accelerometers with the opposite sign; axes that are named x, y, z in "
+                       "another right-handed order");
+}
+
+void imki_untestable(const imk_calibrate_log *b, imk_verdict *v)
+{
+    imki_text list = {0};
+    add_of_gyros(b, &list);
+    add_of_gravity(b, &list);
+    if (list.bytes)
+        imki_verdict_add(v, IMK_FINDING_NOTE, "not_testable", "Cannot be seen in %s: %s",
+                         b->count == 1 ? "this log" : "these logs", list.bytes);
+    free(list.bytes);
+}
