@@ -76,8 +76,11 @@ typedef struct imk_observation {
     double temperature;              /**< [K]; NaN: not known, the polynomials vanish */
     double temperature_rate;         /**< [K/s] */
     double placement_sigma;          /**< [rad] */
-    int fixture;                     /**< index of the fixture whose mounting it shares; -1: none */
-    bool correlated; /**< true: sigma includes slow noise already, and none is added */
+    double turn_time; /**< of a turn that begins and ends at stops that are placed [s]: its rate,
+                           besides, is off by the placement's angle about it over this time; 0: none
+                           */
+    int fixture;      /**< index of the fixture whose mounting it shares; -1: none */
+    bool correlated;  /**< true: sigma includes slow noise already, and none is added */
     /* Filled by imk_calibration_solve(): */
     double residual[2][IMK_AXES_MAX]; /**< reading less fit [rad/s], [m/s^2]; NaN: not observed */
     double vertical[3]; /**< of an unknown attitude: direction of the specific force, body axes */
@@ -148,7 +151,12 @@ typedef struct imk_group_fit {
     double factor; /**< factor by which sigmas were multiplied: sqrt(chi_square/degrees_of_freedom);
                       1 with fewer than 3 degrees of freedom. It leaves out the part of the Earth's
                       rate at unknown heading (gyros at rest) and of stated slow noise */
-    double rms;    /**< root mean square of the residuals [rad/s], [m/s^2], [rad] */
+    double axis_factor[IMK_AXES_MAX]; /**< the sigma used of an axis is sqrt((axis_factor sigma)^2 +
+                                         axis_added^2): `factor` and 0, or where the residuals fit
+                                         another form better, a factor for each axis, an added part
+                                         for all axes, or one for each */
+    double axis_added[IMK_AXES_MAX];  /**< [rad/s], [m/s^2] */
+    double rms; /**< root mean square of the residuals [rad/s], [m/s^2], [rad] */
 } imk_group_fit;
 
 /** The solution. About 95 kB. */
@@ -161,6 +169,11 @@ typedef struct imk_calibration_result {
                                            t; infinite where no factor was estimated */
     double covariance[IMK_CORRELATED_MAX * IMK_CORRELATED_MAX]; /**< parameter_count^2, row-major */
     imk_group_fit group[IMK_GROUPS];
+    imk_group_fit placement; /**< of the placements: chi_square and degrees_of_freedom of their
+                                agreement with placement_sigma, factor (1 or more), rms: the 1 sigma
+                                of a placement that the log itself shows [rad]; 0 degrees: the log
+                                does not test it */
+    imk_group_fit assumed;   /**< the same of parameters that have a prior_sigma */
     double chi_square, degrees_of_freedom; /**< of all observations, by their stated sigmas */
     size_t observations_refused, turns_refused;
     double fixture[IMK_FIXTURES_MAX][3]; /**< estimated mounting angles [rad] */

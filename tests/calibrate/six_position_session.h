@@ -30,6 +30,9 @@ typedef struct session_plan {
     double hold, turn; /* [s]; turn 0: sixposition, else ferraris, turns of so long */
     double placement;  /* of each hold and turn [rad] */
     double bad_share;  /* of the holds, disturbed: leaning by some degrees, or touched */
+    double stated;     /* placement that the calibration is told, over the true one; 0: 1 */
+    double unequal;    /* white noise of each axis over that of the axis before it; 0: 1 */
+    double push;       /* equal pose errors: a force on every axis of each hold [m/s^2] */
 } session_plan;
 
 typedef struct session {
@@ -145,6 +148,8 @@ static inline void session_plan_motion(session *b, const session_plan *plan)
         else if (is_bad)
             push[a] = 0.3;
         z += 8;
+        for (int i = 0; i < 3; i++)
+            push[i] += plan->push * z[4 + i];
         session_add(b, hold, face, a, sense, 0.0, tilt, heading, push);
         if (turn > 0 && sense > 0) {
             for (int i = 0; i < 3; i++)
@@ -231,6 +236,11 @@ static inline bool session_run(session *b, const session_plan *plan, imk_procedu
     imk_random_normals(imk_random_seeded(seed), 0xB000 + ((uint64_t)number << 32), 0,
                        BENCH_STRETCHES * 8, b->normal);
     session_plan_motion(b, plan);
+    b->unit = session_truth();
+    for (int i = 1; i < 3 && plan->unequal > 0.0; i++) {
+        b->unit.gyro.noise.white.value[i] = plan->unequal * b->unit.gyro.noise.white.value[i - 1];
+        b->unit.accel.noise.white.value[i] = plan->unequal * b->unit.accel.noise.white.value[i - 1];
+    }
     if (!session_readings(b, seed, number, error))
         return false;
     b->record = (imk_test_record){.name = "bench",
@@ -252,7 +262,7 @@ static inline bool session_run(session *b, const session_plan *plan, imk_procedu
     c->model.gyro.sensitivity = b->unit.gyro.sensitivity;
     c->model.accel.sensitivity = b->unit.accel.sensitivity;
     imk_procedure_settings settings = imk_procedure_default(procedure);
-    settings.placement_sigma = plan->placement;
+    settings.placement_sigma = plan->placement * (plan->stated > 0.0 ? plan->stated : 1.0);
     size_t needed = imk_procedure_workspace_size(procedure, &b->record, &settings);
     if (imk_procedure_observe(procedure, c, &b->record, &settings, false, &b->findings,
                               session_workspace(b, needed), needed, error) != IMK_OK)

@@ -30,6 +30,8 @@ class Problem:
         (self.gravity, self.latitude, self.earth, free, fixtures, observations, turns, samples,
          self.dt) = self.take(9)
         self.factor = self.take(3)
+        self.axis_factor, self.axis_added = self.take(2, 8), self.take(2, 8)
+        self.assumed_factor = self.take(2)  # of placements, of terms
         self.model = self.take(2, 15, 8, 6)
         self.direction = self.take(2, 8, 3)
         self.axes = self.take(2).astype(int)
@@ -275,6 +277,7 @@ def system(q, point):
     known = spread[observed]
     weight = q.weight[index[:, 0]]
     group = index[:, 1]
+    factor, added = q.axis_factor[index[:, 1], index[:, 2]], q.axis_added[index[:, 1], index[:, 2]]
 
     if len(q.turn_from):
         time = (q.turn_end[0] - q.turn_begin[0]) * q.dt
@@ -316,28 +319,32 @@ def system(q, point):
         known = np.append(known, np.zeros(2 * len(q.turn_from)))
         weight = np.append(weight, np.repeat(q.turn_weight, 2))
         group = np.append(group, np.full(2 * len(q.turn_from), 2))
+        factor = np.append(factor, np.full(2 * len(q.turn_from), q.factor[2]))
+        added = np.append(added, np.zeros(2 * len(q.turn_from)))
 
-    def prior(column, value, sigma_of):
-        nonlocal rows, residual, sigma, known, weight, group
+    def prior(column, value, sigma_of, of=1.0):
+        nonlocal rows, residual, sigma, known, weight, group, factor, added
         row = np.zeros((1, count))
         row[0, column] = 1
         rows, residual = np.vstack((rows, row)), np.append(residual, -value)
         sigma, known = np.append(sigma, sigma_of), np.append(known, 0.0)
         weight, group = np.append(weight, 1.0), np.append(group, 3)
+        factor, added = np.append(factor, of), np.append(added, 0.0)
 
     for k, (place, own) in enumerate(zip(places(q), q.prior)):
         if own > 0:
-            prior(k, point.values[k] - q.model[place], own)
+            prior(k, point.values[k] - q.model[place], own, q.assumed_factor[1])
     for k in range(fixtures):
         prior(n + k, point.fixture.ravel()[k], q.fixture_sigma[k // 3])
     if free_earth(q):
         prior(globals_count - 1, point.vertical_rate, q.earth / np.sqrt(3))
     def add_known(row, value, sigma_of):
         """One row of derivatives and what is known of it, 0 +- sigma."""
-        nonlocal rows, residual, sigma, known, weight, group
+        nonlocal rows, residual, sigma, known, weight, group, factor, added
         rows, residual = np.vstack((rows, row)), np.append(residual, -value)
         sigma, known = np.append(sigma, sigma_of), np.append(known, 0.0)
         weight, group = np.append(weight, 1.0), np.append(group, 3)
+        factor, added = np.append(factor, 1.0), np.append(added, 0.0)
 
     for k in np.flatnonzero(earth):
         into = np.flatnonzero((q.turn_to == k) & (q.turn_from < k))[:1]
@@ -354,15 +361,16 @@ def system(q, point):
             add_known(row, value, (0.03 if len(into) else 1.0) * np.sqrt(horizontal))
     for k in np.flatnonzero(q.knowledge == PLACED):
         for j in range(3):
-            prior(local[k, j], point.attitude[k, j], q.placement[k])
-    return rows, residual, sigma, known, weight, group, globals_count, local
+            prior(local[k, j], point.attitude[k, j], q.placement[k], q.assumed_factor[0])
+    variance = (sigma * factor)**2 + added**2 + known
+    return rows, residual, sigma, known, weight, group, globals_count, local, variance
 
 
 def solve(q):
     point = Point(q)
     for _ in range(20):
-        rows, residual, sigma, known, weight, group, globals_count, local = system(q, point)
-        variance = (sigma * np.append(q.factor, 1.0)[group])**2 + known
+        (rows, residual, sigma, known, weight, group, globals_count, local,
+         variance) = system(q, point)
         scale = np.sqrt(weight / variance)
         unit = 1 / np.linalg.norm(rows * scale[:, None], axis=0)  # columns of length 1
         white = rows * (scale[:, None] * unit)
@@ -372,8 +380,7 @@ def solve(q):
         point = point.moved(q, step[:globals_count], change)
         if np.max(abs(step / unit)) < 1e-5:  # sigmas; what is left is its square
             break
-    rows, residual, sigma, known, weight, group, _, _ = system(q, point)
-    variance = (sigma * np.append(q.factor, 1.0)[group])**2 + known
+    rows, residual, sigma, known, weight, group, _, _, variance = system(q, point)
     scale = np.sqrt(weight / variance)
     unit = 1 / np.linalg.norm(rows * scale[:, None], axis=0)
     white = rows * (scale[:, None] * unit)

@@ -19,7 +19,7 @@ static double prior_cost(imki_estimator *e, const imki_point *point, bool build)
     for (size_t g = 0; g < e->globals; g++) {
         double sigma = 0.0, from = 0.0;
         if (g < e->parameters) {
-            sigma = problem->prior_sigma[g];
+            sigma = problem->prior_sigma[g] * e->factor[IMKI_PART_TERMS];
             from = e->start[g];
         } else if ((int)g == e->vertical_global) {
             sigma = e->vertical_sigma;
@@ -43,14 +43,15 @@ static double prior_cost(imki_estimator *e, const imki_point *point, bool build)
         const imk_observation *o = &problem->observation[i];
         if (o->knowledge != IMK_INPUT_PLACED || e->local_first[i] < 0)
             continue;
+        const double sigma = o->placement_sigma * e->factor[IMKI_PART_PLACEMENT];
         for (size_t k = 0; k < 3; k++) {
             const size_t local = (size_t)e->local_first[i] + k;
-            const double off = -point->attitude[i][k] / o->placement_sigma;
+            const double off = -point->attitude[i][k] / sigma;
             cost += off * off;
             if (build) {
                 e->normal.band[local * (e->normal.width + 1) + e->normal.width] +=
-                    1.0 / (o->placement_sigma * o->placement_sigma);
-                e->normal.local_gradient[local] += off / o->placement_sigma;
+                    1.0 / (sigma * sigma);
+                e->normal.local_gradient[local] += off / sigma;
             }
         }
     }

@@ -13,6 +13,7 @@
  * from the last row up [TAKAHASHI1973]. */
 #include "estimator_internal.h"
 
+#include "imukit/elementary.h"
 #include "imukit/linear_algebra.h"
 
 #include <math.h>
@@ -139,6 +140,16 @@ imk_status imki_normal_factor(imki_normal *n, double damping)
         }
     }
     return imk_cholesky_factor(g, n->schur);
+}
+
+double imki_normal_log_determinant(const imki_normal *n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n->locals; i++)
+        sum += 2.0 * imk_ln(n->factor[at(n, i, i)]);
+    for (size_t i = 0; i < n->globals; i++)
+        sum += 2.0 * imk_ln(n->schur[i * n->globals + i]);
+    return sum;
 }
 
 void imki_normal_solve(imki_normal *n)

@@ -104,6 +104,9 @@ static double rescale(imki_estimator *e, double ratio[IMK_GROUPS])
             continue;
         ratio[g] = middle > 1e-3 ? middle : 1e-3;
         change = fmax(change, fabs(ratio[g] - 1.0));
+        /* Placements show in the accelerometers, and share their scale. */
+        if (g == IMK_GROUP_ACCEL)
+            e->factor[IMKI_PART_PLACEMENT] = fmax(1e-3, e->factor[IMKI_PART_PLACEMENT] * ratio[g]);
         e->factor[g] *= ratio[g];
         if (!(e->factor[g] > 1e-3))
             e->factor[g] = 1e-3;
@@ -140,16 +143,23 @@ static imk_status step(imki_estimator *e)
     return status == IMK_OK ? imki_built_covariance(e) : status;
 }
 
+typedef struct limits {
+    double limit[IMK_GROUPS][2][IMKI_ROWS_MAX + 1]; /* of F, by degrees; in use and refused */
+    imki_fit fit;
+    imki_group_sum group[IMK_GROUPS];
+} limits;
+
 /* Least squares over all items show no bad one; but several might hide each other. Their scatter
  * then is far above what is stated, or above what the median says. */
-static bool is_suspicious(imki_estimator *e)
+static bool is_suspicious(imki_estimator *e, const limits *l)
 {
     bool suspicious = false;
     find_distances(e);
     for (int g = 0; g < IMK_GROUPS; g++) {
         const double middle = middle_of(e, g);
-        suspicious = suspicious || (middle > 0.0 && (e->factor[g] > far_scale ||
-                                                     middle * beyond_median * beyond_median < 1.0));
+        suspicious =
+            suspicious || (middle > 0.0 && (l->group[g].stated * far_scale * far_scale < 1.0 ||
+                                            middle * beyond_median * beyond_median < 1.0));
     }
     return suspicious;
 }
@@ -252,8 +262,8 @@ static imk_status try_half(imki_estimator *e, int trial)
         imk_random_words(random, imk_stream(TRIAL_STREAM, 0, 0, (uint8_t)trial), item, 1, &word);
         e->weight[item] = word & 1 ? 1.0 : IMKI_WEIGHT_REFUSED;
     }
-    for (int g = 0; g < IMK_GROUPS; g++)
-        e->factor[g] = 1.0;
+    for (int part = 0; part < IMKI_PARTS; part++)
+        e->factor[part] = 1.0;
     imk_status status = imki_iterate(e, TRIAL_STEPS, &converged);
     if (status == IMK_OK)
         status = imki_built_covariance(e);
@@ -292,49 +302,35 @@ static imk_status find_majority(imki_estimator *e, const imki_fit *all)
 /* ---- decisions --------------------------------------------------------------------------------
  */
 
-typedef struct limits {
-    double limit[IMK_GROUPS][2][IMKI_ROWS_MAX + 1]; /* of F, by degrees; in use and refused */
-    imki_fit fit;
-} limits;
-
 /* A placement is told by its readings and by what is known of it before: as the distance of an
  * item counts both, so must what it is compared with. */
-static void add_placements(imki_estimator *e, imki_fit *fit)
+static void add_placements(imki_estimator *e, imki_group_sum sum[IMK_GROUPS])
 {
     for (size_t i = 0; i < e->observations; i++) {
-        const imk_observation *o = &e->problem->observation[i];
         double matrix[9];
-        if (o->knowledge != IMK_INPUT_PLACED || e->local_first[i] < 0 || e->weight[i] < 1.0)
+        if (e->weight[i] < 1.0 || imki_placement_rows(e, &e->now, i, e->row) == 0)
             continue;
         int group = IMK_GROUP_GYRO;
         for (int axis = 0; axis < IMK_AXES_MAX; axis++)
             group = isnan(e->reading[i][IMK_ACCEL][axis]) ? group : IMK_GROUP_ACCEL;
-        for (size_t k = 0; k < 3; k++) {
-            imki_row *row = &e->row[k];
-            row->locals = 1;
-            row->globals = 0;
-            row->local[0] = (size_t)e->local_first[i] + k;
-            row->by_local[0] = 1.0 / o->placement_sigma;
-            row->residual = e->now.attitude[i][k] / o->placement_sigma;
-        }
+        imki_whiten(e, 3, e->row);
         imki_rows_covariance(&e->normal, e->row, 3, matrix, NULL);
         for (int k = 0; k < 3; k++) {
-            fit->square[group] += e->row[k].residual * e->row[k].residual;
-            fit->redundancy[group] += 1.0 - matrix[4 * k];
+            sum[group].square += e->row[k].residual * e->row[k].residual;
+            sum[group].redundancy += 1.0 - matrix[4 * k];
         }
     }
 }
 
 /* F of an item in a group over its limit: above 1 it does not belong. Where few directions are
  * redundant the others may scatter by far less than their sigmas by chance; so they count as
- * scattering by what is stated at least, `stated` in units of their variance factor squared. */
-static double excess(limits *l, bool used, int g, double square, int degrees, double stated,
-                     double probability)
+ * scattering by what is stated at least. */
+static double excess(limits *l, bool used, int g, double square, int degrees, double probability)
 {
     if (degrees == 0)
         return 0.0;
-    const bool estimated = l->fit.estimated[g];
-    double left = l->fit.redundancy[g], others = l->fit.square[g];
+    const bool estimated = l->group[g].estimated;
+    double left = l->group[g].redundancy, others = l->group[g].square;
     if (used) {
         left -= degrees;
         others -= square;
@@ -347,7 +343,7 @@ static double excess(limits *l, bool used, int g, double square, int degrees, do
         return square / degrees / *limit;
     if (!(left >= 1.0))
         return 0.0;
-    return square / degrees / fmax(others / left, stated) / *limit;
+    return square / degrees / fmax(others / left, l->group[g].stated) / *limit;
 }
 
 static double worst_excess(imki_estimator *e, limits *l, size_t item, double probability)
@@ -356,8 +352,8 @@ static double worst_excess(imki_estimator *e, limits *l, size_t item, double pro
     int degrees[IMK_GROUPS];
     imki_item_distances(e, item, square, degrees);
     for (int g = 0; g < IMK_GROUPS; g++)
-        worst = fmax(worst, excess(l, e->weight[item] >= 1.0, g, square[g], degrees[g],
-                                   1.0 / (e->factor[g] * e->factor[g]), probability));
+        worst =
+            fmax(worst, excess(l, e->weight[item] >= 1.0, g, square[g], degrees[g], probability));
     return worst;
 }
 
@@ -375,7 +371,9 @@ static bool decide(imki_estimator *e, limits *l)
     double worst = 1.0;
     bool changed = false;
     memset(l->limit, 0, sizeof l->limit);
-    add_placements(e, &l->fit);
+    for (int g = 0; g < IMK_GROUPS; g++)
+        l->group[g] = imki_sum_group(e, &l->fit, g);
+    add_placements(e, l->group);
     for (size_t item = 0; item < e->items; item++) {
         e->distance[item] = worst_excess(e, l, item, probability);
         if (!(e->state[item] & REFUSED))
@@ -423,16 +421,80 @@ static imk_status keep_determined(imki_estimator *e)
     }
 }
 
+static size_t count_refused(const imki_estimator *e)
+{
+    size_t refused = 0;
+    for (size_t item = 0; item < e->items; item++)
+        refused += (e->state[item] & REFUSED) != 0;
+    return refused;
+}
+
+/* Decide until that changes nothing. */
+static imk_status decide_all(imki_estimator *e, limits *l)
+{
+    imk_status status = IMK_OK;
+    for (int round = 0; round < DECIDE_ROUNDS; round++) {
+        set_weights(e);
+        status = imki_variance_factors(e, 0.01, &l->fit);
+        if (status != IMK_OK || !decide(e, l))
+            break;
+    }
+    return status;
+}
+
+/* Nothing to refuse: neither by one factor a group, nor, where axes differ, by what fits better. */
+static imk_status look(imki_estimator *e, limits *l, bool *clean)
+{
+    imk_status status = imki_variance_factors(e, 0.01, &l->fit);
+    *clean = false;
+    for (int way = 0; status == IMK_OK && !*clean && way < 2; way++) {
+        if (way == 1)
+            status = imki_choose_scatter(e, &l->fit);
+        memset(e->state, 0, e->items);
+        if (status == IMK_OK)
+            *clean = !decide(e, l) && !is_suspicious(e, l);
+    }
+    return status;
+}
+
+/* The second stage, from the solution of the first. */
+static imk_status decide_from_majority(imki_estimator *e, limits *l)
+{
+    (void)imki_turns_linearise(e, linear_enough);
+    for (size_t item = 0; item < e->items; item++)
+        e->state[item] = e->weight[item] <= IMKI_WEIGHT_REFUSED ? REFUSED : 0;
+    imk_status status = decide_all(e, l);
+    if (status == IMK_OK)
+        status = imki_choose_scatter(e, &l->fit);
+    if (status == IMK_OK &&
+        (e->by_axis[0] || e->by_axis[1] || e->added[0] > 0.0 || e->added[1] > 0.0))
+        status = decide_all(e, l);
+    if (2 * count_refused(e) > e->items) { /* no majority: the misfit is the model's */
+        refuse_nothing(e);
+        return status;
+    }
+    return status == IMK_OK || status == IMK_ERROR_SINGULAR ? keep_determined(e) : status;
+}
+
 imk_status imki_refuse_outliers(imki_estimator *e)
 {
     limits l;
+    bool clean;
+    imk_status status = look(e, &l, &clean);
+    if (status != IMK_OK)
+        return status;
+    if (clean)
+        return e->by_axis[0] || e->by_axis[1] || e->added[0] > 0.0 || e->added[1] > 0.0
+                   ? IMK_OK
+                   : imki_choose_scatter(e, &l.fit);
+    imki_common_scatter(e);
     memset(e->state, 0, e->items);
-    imk_status status = imki_variance_factors(e, 0.01, &l.fit);
+    set_weights(e);
+    status = imki_variance_factors(e, 0.01, &l.fit);
     if (status != IMK_OK)
         return status;
     const imki_fit all = l.fit;
-    if (!decide(e, &l) && !is_suspicious(e))
-        return IMK_OK;
+    (void)decide(e, &l);
     set_weights(e);
     keep_best(e);
     status = find_majority(e, &all);
@@ -441,23 +503,5 @@ imk_status imki_refuse_outliers(imki_estimator *e)
         refuse_nothing(e);
         return IMK_OK;
     }
-    if (status != IMK_OK)
-        return status;
-    (void)imki_turns_linearise(e, linear_enough);
-    for (size_t item = 0; item < e->items; item++)
-        e->state[item] = e->weight[item] <= IMKI_WEIGHT_REFUSED ? REFUSED : 0;
-    for (int round = 0; round < DECIDE_ROUNDS; round++) {
-        set_weights(e);
-        status = imki_variance_factors(e, 0.01, &l.fit);
-        if (status != IMK_OK || !decide(e, &l))
-            break;
-    }
-    size_t refused = 0;
-    for (size_t item = 0; item < e->items; item++)
-        refused += e->state[item] & REFUSED;
-    if (2 * refused > e->items) { /* no majority: the misfit is the model's */
-        refuse_nothing(e);
-        return status;
-    }
-    return status == IMK_OK || status == IMK_ERROR_SINGULAR ? keep_determined(e) : status;
+    return status == IMK_OK ? decide_from_majority(e, &l) : status;
 }

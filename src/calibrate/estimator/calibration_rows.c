@@ -78,7 +78,24 @@ typedef struct exposure {
     double vertical[3];
     int fixture; /* first global; -1: none */
     imk_matrix3 by_placement, by_fixture;
+    double turned[3]; /* rate by an angle of the placement: along the rate, over the time */
 } exposure;
+
+/* The end of a turn is placed: its angle, about the rate, is off. */
+static void end_of_turn(const imki_estimator *e, const imk_observation *o,
+                        const double placement[3], size_t index, exposure *x, double rate[3])
+{
+    const double size = imki_norm3(o->rate);
+    memset(x->turned, 0, sizeof x->turned);
+    if (!(o->turn_time > 0.0) || !(size > 0.0) || e->local_first[index] < 0)
+        return;
+    const double angle = imki_dot3(o->rate, placement) / size;
+    for (int j = 0; j < 3; j++) {
+        x->turned[j] = o->rate[j] / size;
+        rate[j] += x->turned[j] * angle / o->turn_time;
+        x->turned[j] /= sqrt(o->turn_time);
+    }
+}
 
 static void expose(const imki_estimator *e, const imki_point *point, size_t index, exposure *x)
 {
@@ -120,6 +137,7 @@ static void expose(const imki_estimator *e, const imki_point *point, size_t inde
     if (e->local_first[index] >= 0 || x->fixture >= 0)
         for (int j = 0; j < 3; j++)
             vector[j] = imk_matrix3_apply(total, vector[j]);
+    end_of_turn(e, o, attitude, index, x, vector[0].v);
     memcpy(x->input.rate, vector[0].v, sizeof vector[0].v);
     memcpy(x->input.force, vector[1].v, sizeof vector[1].v);
     memcpy(x->input.angular_acceleration, vector[2].v, sizeof vector[2].v);
@@ -144,10 +162,11 @@ static void by_rotations(const exposure *x, const imki_axis_reading *y, int firs
     add_cross(y->by_rate, x->input.rate, lever);
     add_cross(y->by_force, x->input.force, lever);
     add_cross(y->by_angular_acceleration, x->input.angular_acceleration, lever);
+    const double along = imki_dot3(y->by_rate, x->turned);
     for (int k = 0; first >= 0 && k < 3; k++)
         add_local(row, (size_t)first + (size_t)k,
-                  lever[0] * x->by_placement.m[0][k] + lever[1] * x->by_placement.m[1][k] +
-                      lever[2] * x->by_placement.m[2][k]);
+                  along * x->turned[k] + lever[0] * x->by_placement.m[0][k] +
+                      lever[1] * x->by_placement.m[1][k] + lever[2] * x->by_placement.m[2][k]);
     for (int k = 0; x->fixture >= 0 && k < 3; k++)
         add_global(row, x->fixture + k,
                    lever[0] * x->by_fixture.m[0][k] + lever[1] * x->by_fixture.m[1][k] +
@@ -170,11 +189,16 @@ static int observation_rows(const imki_estimator *e, const imki_point *point, si
             const imki_axis_reading y = imki_axis_read(&problem->model, sensor, axis, &x.input);
             imki_row *row = &rows[count++];
             row->group = sensor == IMK_GYRO ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL;
+            row->part = imki_part_of(e, sensor, axis);
             row->sensor = sensor;
             row->axis = axis;
             row->residual = reading - y.value;
             row->sigma = e->sigma[index][sensor][axis];
             row->known_variance = sensor == IMK_GYRO ? e->known_variance[index][axis] : 0.0;
+            if (e->added[sensor] > 0.0) {
+                row->known_variance += row->sigma * row->sigma;
+                row->sigma = e->added[sensor];
+            }
             row->locals = row->globals = 0;
             for (int k = 0; k < e->axis_parameters[sensor][axis]; k++) {
                 const int p = e->axis_parameter[sensor][axis][k];
@@ -231,6 +255,7 @@ static int turn_rows(const imki_estimator *e, const imki_point *point, size_t in
     for (int i = 0; i < 2; i++) {
         imki_row *row = &rows[i];
         *row = (imki_row){.group = IMK_GROUP_TURN,
+                          .part = IMK_GROUP_TURN,
                           .sensor = -1,
                           .axis = i,
                           .residual = -stretch * imki_dot3(across[i], end),
@@ -268,13 +293,41 @@ int imki_item_rows(imki_estimator *e, const imki_point *point, size_t item, imki
                                   : turn_rows(e, point, item - e->observations, row);
 }
 
-int imki_whitened_rows(imki_estimator *e, size_t item)
+int imki_placement_rows(const imki_estimator *e, const imki_point *point, size_t index,
+                        imki_row *row)
 {
-    const int count = imki_item_rows(e, &e->now, item, e->row);
+    const imk_observation *o = &e->problem->observation[index];
+    if (o->knowledge != IMK_INPUT_PLACED || e->local_first[index] < 0)
+        return 0;
+    for (int k = 0; k < 3; k++) {
+        row[k] = (imki_row){.part = IMKI_PART_PLACEMENT,
+                            .sensor = -1,
+                            .axis = k,
+                            .residual = -point->attitude[index][k],
+                            .sigma = o->placement_sigma};
+        add_local(&row[k], (size_t)e->local_first[index] + (size_t)k, 1.0);
+    }
+    return 3;
+}
+
+int imki_term_row(const imki_estimator *e, const imki_point *point, size_t p, imki_row *row)
+{
+    if (!(e->problem->prior_sigma[p] > 0.0))
+        return 0;
+    *row = (imki_row){.part = IMKI_PART_TERMS,
+                      .sensor = -1,
+                      .residual = e->start[p] - point->global[p],
+                      .sigma = e->problem->prior_sigma[p]};
+    add_global(row, (int)p, 1.0);
+    return 1;
+}
+
+void imki_whiten(const imki_estimator *e, int count, imki_row *rows)
+{
     for (int i = 0; i < count; i++) {
-        imki_row *row = &e->row[i];
+        imki_row *row = &rows[i];
         const double total = imki_row_variance(e, row), scale = 1.0 / sqrt(total);
-        const double scaled = row->sigma * e->factor[row->group];
+        const double scaled = row->sigma * e->factor[row->part];
         row->share = scaled * scaled / total;
         row->residual *= scale;
         for (int k = 0; k < row->locals; k++)
@@ -282,5 +335,11 @@ int imki_whitened_rows(imki_estimator *e, size_t item)
         for (int k = 0; k < row->globals; k++)
             row->by_global[k] *= scale;
     }
+}
+
+int imki_whitened_rows(imki_estimator *e, size_t item)
+{
+    const int count = imki_item_rows(e, &e->now, item, e->row);
+    imki_whiten(e, count, e->row);
     return count;
 }

@@ -463,8 +463,8 @@ imk_status imki_estimator_start(imki_estimator *e, const imk_calibration *calibr
     imki_slow_noise_start(e);
     for (size_t item = 0; item < e->items; item++)
         e->weight[item] = 1.0;
-    for (int g = 0; g < IMK_GROUPS; g++)
-        e->factor[g] = 1.0;
+    for (int part = 0; part < IMKI_PARTS; part++)
+        e->factor[part] = 1.0;
     memset(e->turn_jacobian, 0, 3 * e->turns * e->parameters * sizeof *e->turn_jacobian);
     memcpy(e->turn_reference, e->now.global, sizeof e->turn_reference);
     for (size_t t = 0; t < e->turns; t++) {

@@ -414,8 +414,7 @@ void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
         return;
     memset(e->slow.covariance, 0, g * g * sizeof *e->slow.covariance);
     for (int sensor = 0; sensor < 2; sensor++) {
-        const int group = sensor == IMK_GYRO ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL;
-        double expected = 0.0;
+        double expected[IMKI_PARTS] = {0.0};
         for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
             const double all = length_of_all(e, sensor, axis);
             for (size_t first = 0; all > 0.0 && first < e->slow.count;) {
@@ -425,15 +424,18 @@ void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit)
                 if (!process_of(e, &r, &p))
                     continue;
                 sum_pairs(e, &r, &p, s);
-                expected += s->diagonal - trace_with_information(&e->normal, e->slow.axis);
+                expected[imki_part_of(e, sensor, axis)] +=
+                    s->diagonal - trace_with_information(&e->normal, e->slow.axis);
                 for (size_t i = 0; i < g * g; i++)
                     e->slow.covariance[i] += e->slow.axis[i];
                 add_level(e, &r, &p, all, s);
             }
         }
-        const double left = fit->redundancy[group];
-        fit->slow_square[group] =
-            left > 0.0 ? fmax(0.0, expected) * fit->shared_redundancy[group] / left : 0.0;
+        for (int part = 0; part < IMKI_PARTS; part++) {
+            const double left = fit->redundancy[part];
+            if (expected[part] > 0.0 && left > 0.0)
+                fit->slow_square[part] = expected[part] * fit->shared_redundancy[part] / left;
+        }
     }
 }
 

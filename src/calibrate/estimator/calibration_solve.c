@@ -107,8 +107,9 @@ static imk_status solve(imki_estimator *e, imki_fit *fit, double *weakest, imk_e
         return status == IMK_ERROR_SINGULAR
                    ? status
                    : imk_error_set(error, status, NULL, NULL, "finite readings and inputs");
-    if (e->problem->robust)
-        status = imki_refuse_outliers(e);
+    status = e->problem->robust ? imki_refuse_outliers(e) : imki_variance_factors(e, 0.01, fit);
+    if (status == IMK_OK && !e->problem->robust)
+        status = imki_choose_scatter(e, fit);
     for (int round = 0; status == IMK_OK && round < OUTER_ROUNDS; round++) {
         status = imki_variance_factors(e, 1e-3, fit);
         if (status == IMK_OK && imki_turns_linearise(e, 0.01) <= 0.01)
@@ -122,7 +123,7 @@ static imk_status solve(imki_estimator *e, imki_fit *fit, double *weakest, imk_e
     if (status == IMK_OK || status == IMK_ERROR_SINGULAR)
         status = imki_check_determined(e, weakest, error);
     if (status == IMK_OK) {
-        bool estimated[IMK_GROUPS];
+        bool estimated[IMKI_PARTS];
         memcpy(estimated, fit->estimated, sizeof estimated);
         imki_fit_groups(e, fit);
         memcpy(fit->estimated, estimated, sizeof estimated);
@@ -148,8 +149,7 @@ static void fill_outputs(imki_estimator *e, imk_calibration_result *result)
             group->count++;
             group->refused += !used;
             if (used) {
-                group->chi_square +=
-                    row->residual * row->residual / (row->sigma * row->sigma + row->known_variance);
+                group->chi_square += row->residual * row->residual / imki_stated_variance(e, row);
                 group->rms += row->residual * row->residual;
             }
         }
@@ -178,18 +178,58 @@ static void fill_outputs(imki_estimator *e, imk_calibration_result *result)
     }
 }
 
+/* The factor of a group whose axes have their own is their mean by redundancy. */
+static void fill_factors(const imki_estimator *e, const imki_fit *fit, int g, imk_group_fit *group)
+{
+    const int sensor = g == IMK_GROUP_GYRO ? IMK_GYRO : IMK_ACCEL;
+    const bool readings = g != IMK_GROUP_TURN;
+    const double added = readings ? e->added[sensor] : 0.0;
+    double left = 0.0, square = 0.0;
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++) {
+        const int part = readings ? imki_part_of(e, sensor, axis) : g;
+        const double factor = e->factor[part];
+        group->axis_factor[axis] = added > 0.0 ? 1.0 : factor;
+        group->axis_added[axis] = added * factor;
+        if (axis == 0 || (readings && e->by_axis[sensor])) {
+            left += fit->redundancy[part];
+            square += fit->redundancy[part] * factor * factor;
+        }
+    }
+    if (added > 0.0)
+        square = group->chi_square;
+    group->degrees_of_freedom = left > 1e-9 ? left : 0.0;
+    group->factor = left > 1e-9 ? sqrt(square / left) : group->axis_factor[0];
+}
+
+/* Fit of placements, or of terms, to what was assumed of them. */
+static void fill_assumed(const imki_estimator *e, const imki_fit *fit, int part,
+                         imk_group_fit *group)
+{
+    const double factor = e->factor[part], left = fit->redundancy[part];
+    if (fit->scaled[part] == 0.0)
+        return;
+    group->factor = factor;
+    group->count = fit->count[part];
+    group->chi_square = fit->square[part] * factor * factor;
+    group->degrees_of_freedom = left > 1e-9 ? left : 0.0;
+    group->rms = left > 1e-9 ? sqrt(fmax(0.0, fit->excess[part]) / left) : 0.0;
+    for (int axis = 0; axis < IMK_AXES_MAX; axis++)
+        group->axis_factor[axis] = factor;
+}
+
 static void fill_groups(const imki_estimator *e, const imki_fit *fit,
                         imk_calibration_result *result)
 {
     for (int g = 0; g < IMK_GROUPS; g++) {
         imk_group_fit *group = &result->group[g];
         const size_t used = group->count - group->refused;
-        group->degrees_of_freedom = fit->redundancy[g] > 1e-9 ? fit->redundancy[g] : 0.0;
-        group->factor = e->factor[g];
+        fill_factors(e, fit, g, group);
         group->rms = used > 0 ? sqrt(group->rms / (double)used) : 0.0;
         result->chi_square += group->chi_square;
         result->degrees_of_freedom += group->degrees_of_freedom;
     }
+    fill_assumed(e, fit, IMKI_PART_PLACEMENT, &result->placement);
+    fill_assumed(e, fit, IMKI_PART_TERMS, &result->assumed);
 }
 
 /* The parameters as the caller has them; a symmetric frame has the other halves of its pairs too,

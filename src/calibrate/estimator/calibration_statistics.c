@@ -92,29 +92,64 @@ imk_status imki_estimator_covariance(imki_estimator *e)
     return imki_built_covariance(e);
 }
 
-void imki_fit_groups(imki_estimator *e, imki_fit *fit)
+/* Rows of one item, or of one thing assumed, whitened. */
+static void add_to_fit(imki_estimator *e, int count, imki_fit *fit)
 {
     double matrix[IMKI_ROWS_MAX * IMKI_ROWS_MAX];
-    memset(fit, 0, sizeof *fit);
-    for (size_t item = 0; item < e->items; item++) {
-        if (e->weight[item] < 1.0)
-            continue;
-        const int count = imki_whitened_rows(e, item);
-        imki_rows_covariance(&e->normal, e->row, count, matrix, NULL);
-        for (int i = 0; i < count; i++) {
-            const int group = (int)e->row[i].group;
-            const double square = e->row[i].residual * e->row[i].residual;
-            const double left = 1.0 - matrix[i * count + i], share = e->row[i].share;
-            fit->square[group] += square;
-            fit->redundancy[group] += left;
-            fit->shared_square[group] += share * square;
-            fit->shared_redundancy[group] += share * left;
-            fit->freedom[group] += share * share * left;
-            const double variance = imki_row_variance(e, &e->row[i]);
-            fit->excess[group] += variance * square - e->row[i].known_variance * left;
-            fit->scaled[group] += e->row[i].sigma * e->row[i].sigma * left;
-        }
+    imki_rows_covariance(&e->normal, e->row, count, matrix, NULL);
+    for (int i = 0; i < count; i++) {
+        const int part = e->row[i].part;
+        const double square = e->row[i].residual * e->row[i].residual;
+        const double left = 1.0 - matrix[i * count + i], share = e->row[i].share;
+        fit->count[part]++;
+        fit->square[part] += square;
+        fit->redundancy[part] += left;
+        fit->shared_square[part] += share * square;
+        fit->shared_redundancy[part] += share * left;
+        fit->freedom[part] += share * share * left;
+        const double variance = imki_row_variance(e, &e->row[i]);
+        fit->stated[part] += left * imki_stated_variance(e, &e->row[i]) / variance;
+        fit->excess[part] += variance * square - e->row[i].known_variance * left;
+        fit->scaled[part] += e->row[i].sigma * e->row[i].sigma * left;
     }
+}
+
+int imki_rows_of(imki_estimator *e, size_t k)
+{
+    int count;
+    if (k < e->items)
+        return e->weight[k] < 1.0 ? 0 : imki_whitened_rows(e, k);
+    k -= e->items;
+    if (k < e->observations)
+        count = e->weight[k] < 1.0 ? 0 : imki_placement_rows(e, &e->now, k, e->row);
+    else
+        count = imki_term_row(e, &e->now, k - e->observations, e->row);
+    imki_whiten(e, count, e->row);
+    return count;
+}
+
+imki_group_sum imki_sum_group(const imki_estimator *e, const imki_fit *fit, int group)
+{
+    const int sensor = group == IMK_GROUP_GYRO ? IMK_GYRO : IMK_ACCEL;
+    const bool by_axis = group != IMK_GROUP_TURN && e->by_axis[sensor];
+    imki_group_sum sum = {0.0, 0.0, 0.0, false};
+    double stated = 0.0;
+    for (int axis = 0; axis < (by_axis ? IMK_AXES_MAX : 1); axis++) {
+        const int part = group == IMK_GROUP_TURN ? group : imki_part_of(e, sensor, axis);
+        sum.square += fit->square[part];
+        sum.redundancy += fit->redundancy[part];
+        stated += fit->stated[part];
+        sum.estimated = sum.estimated || fit->estimated[part];
+    }
+    sum.stated = sum.redundancy > 0.0 ? stated / sum.redundancy : 1.0;
+    return sum;
+}
+
+void imki_fit_groups(imki_estimator *e, imki_fit *fit)
+{
+    memset(fit, 0, sizeof *fit);
+    for (size_t k = 0; k < imki_things(e); k++)
+        add_to_fit(e, imki_rows_of(e, k), fit);
     imki_slow_noise_fit(e, fit);
 }
 
@@ -133,9 +168,27 @@ static double next_square(const imki_estimator *e, const imki_fit *fit, int g, b
                 square * fmax(0.01, 1.0 + (excess - fit->slow_square[g]) / fit->freedom[g]));
 }
 
-/* `held`: groups that are not estimated. A group that loses its redundancy to the others while its
+/* What is assumed may have reasons that repeats do not show, such as a cube that is not square: it
+ * is never taken for better than stated. */
+static bool is_assumed(int part)
+{
+    return part == IMKI_PART_PLACEMENT || part == IMKI_PART_TERMS;
+}
+
+/* An added sigma that few axes show: its interval says how little that is. */
+static double least_freedom_of(const imki_estimator *e, int part)
+{
+    const bool of_axis = part >= IMKI_PART_AXIS;
+    const bool gyro = of_axis ? part < IMKI_PART_AXIS + IMK_AXES_MAX : part == IMK_GROUP_GYRO;
+    const bool accel = of_axis ? !gyro : part == IMK_GROUP_ACCEL;
+    return (gyro && e->added[IMK_GYRO] > 0.0) || (accel && e->added[IMK_ACCEL] > 0.0)
+               ? 1.0
+               : least_freedom;
+}
+
+/* `held`: parts that are not estimated. A group that loses its redundancy to the others while its
  * factor falls joins them: with the sigmas stated it would have it again, and so on without end. */
-static imk_status find_factors(imki_estimator *e, double tolerance, bool held[IMK_GROUPS],
+static imk_status find_factors(imki_estimator *e, double tolerance, bool held[IMKI_PARTS],
                                imki_fit *fit)
 {
     /* Where the sigmas stated are thousand times too large something else is wrong. */
@@ -149,12 +202,13 @@ static imk_status find_factors(imki_estimator *e, double tolerance, bool held[IM
         if (status != IMK_OK)
             return status;
         imki_fit_groups(e, fit);
-        for (int g = 0; g < IMK_GROUPS; g++) {
+        for (int g = 0; g < IMKI_PARTS; g++) {
             double factor = 1.0;
-            if (round > 0 && e->factor[g] < 1.0 && fit->redundancy[g] < least_freedom)
+            if (round > 0 && e->factor[g] < 1.0 && fit->redundancy[g] < least_freedom_of(e, g))
                 held[g] = true;
-            if (!held[g] && fit->redundancy[g] >= least_freedom && fit->freedom[g] > 0.0)
-                factor = fmax(least_factor, sqrt(next_square(e, fit, g, round == 0)));
+            if (!held[g] && fit->redundancy[g] >= least_freedom_of(e, g) && fit->freedom[g] > 0.0)
+                factor = fmax(is_assumed(g) ? 1.0 : least_factor,
+                              sqrt(next_square(e, fit, g, round == 0)));
             same = same && fabs(factor - e->factor[g]) <= tolerance * e->factor[g];
             e->factor[g] = factor;
         }
@@ -166,16 +220,16 @@ static imk_status find_factors(imki_estimator *e, double tolerance, bool held[IM
 
 imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *fit)
 {
-    bool held[IMK_GROUPS] = {false}, again = false;
+    bool held[IMKI_PARTS] = {false}, again = false;
     imk_status status = find_factors(e, tolerance, held, fit);
-    for (int g = 0; g < IMK_GROUPS; g++) {
-        held[g] = held[g] || !(fit->freedom[g] >= least_freedom);
+    for (int g = 0; g < IMKI_PARTS; g++) {
+        held[g] = held[g] || !(fit->freedom[g] >= least_freedom_of(e, g));
         again = again || (held[g] && e->factor[g] != 1.0);
     }
     if (status == IMK_OK && again)
         status = find_factors(e, tolerance, held, fit);
-    for (int g = 0; g < IMK_GROUPS; g++)
-        fit->estimated[g] = !held[g];
+    for (int g = 0; g < IMKI_PARTS; g++)
+        fit->estimated[g] = !held[g] && !(is_assumed(g) && e->factor[g] <= 1.0);
     return status;
 }
 
@@ -194,24 +248,22 @@ static double freedom_of_factor(const imki_fit *fit, int g)
 void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *freedom)
 {
     double matrix[IMKI_ROWS_MAX * IMKI_ROWS_MAX];
-    double share[IMK_GROUPS][IMK_CORRELATED_MAX];
+    double share[IMKI_PARTS][IMK_CORRELATED_MAX];
     double by_globals[IMKI_ROWS_MAX * IMKI_GLOBALS_MAX];
     memset(share, 0, sizeof share);
-    for (size_t item = 0; item < e->items; item++) {
-        if (e->weight[item] < 1.0)
-            continue;
-        const int count = imki_whitened_rows(e, item);
+    for (size_t k = 0; k < imki_things(e); k++) {
+        const int count = imki_rows_of(e, k);
         imki_rows_covariance(&e->normal, e->row, count, matrix, by_globals);
         for (int i = 0; i < count; i++)
             for (size_t p = 0; p < e->parameters; p++) {
                 const double by = by_globals[(size_t)i * e->globals + p];
-                share[e->row[i].group][p] += e->row[i].share * by * by;
+                share[e->row[i].part][p] += e->row[i].share * by * by;
             }
     }
     for (size_t p = 0; p < e->parameters; p++) {
         const double variance = e->normal.covariance[p * e->globals + p];
         double sum = 0.0;
-        for (int g = 0; g < IMK_GROUPS; g++)
+        for (int g = 0; g < IMKI_PARTS; g++)
             if (fit->estimated[g])
                 sum += share[g][p] * share[g][p] / freedom_of_factor(fit, g);
         freedom[p] =

@@ -21,9 +21,19 @@ enum {
     IMKI_LOCALS_OF_ROW = 6
 };
 
+/* What has a variance factor of its own: the groups of observations, or where a group's residuals
+ * are enough, each of its axes instead; and what is assumed before, placements and terms. */
+enum {
+    IMKI_PART_PLACEMENT = IMK_GROUPS,
+    IMKI_PART_TERMS,
+    IMKI_PART_AXIS, /* of gyros, then of accelerometers */
+    IMKI_PARTS = IMKI_PART_AXIS + 2 * IMK_AXES_MAX
+};
+
 /* One scalar: observed less predicted, and the derivatives of the prediction. */
 typedef struct imki_row {
     imk_observation_group group;
+    int part;
     int sensor, axis;       /* of a reading; axis is the component of a turn */
     double residual, sigma; /* [unit], sigma as stated */
     double known_variance;  /* besides, which no factor multiplies: the Earth's horizontal rate */
@@ -94,9 +104,11 @@ typedef struct imki_estimator {
     double *turn_jacobian; /* per turn 3 x parameters */
     bool turns_known;      /* integrated at least once */
     double turn_reference[IMKI_GLOBALS_MAX];
-    double factor[IMK_GROUPS]; /* of sigmas */
+    double factor[IMKI_PARTS]; /* of sigmas */
+    bool by_axis[2];           /* axes of a sensor have factors of their own */
+    double added[2]; /* > 0: the factor is of this sigma, added to those stated [rad/s], [m/s^2] */
     imki_point now, trial, best;
-    double best_factor[IMK_GROUPS];
+    double best_factor[IMKI_PARTS];
     double *best_weight; /* per item */
     imki_normal normal;
     imki_slow_noise slow;
@@ -132,7 +144,9 @@ void imki_earth_move(const double n[3], const double a[3], const double b[3], co
 
 /* ---- calibration_rows.c ---- */
 int imki_item_rows(imki_estimator *e, const imki_point *point, size_t item, imki_row *row);
-/* Rows of an item over their sigma and factor, in e->row. @return their number */
+/* Rows over their sigma and factor. */
+void imki_whiten(const imki_estimator *e, int count, imki_row *rows);
+/* The same of an item, in e->row. @return their number */
 int imki_whitened_rows(imki_estimator *e, size_t item);
 /* Two unit vectors across a unit vector. */
 void imki_across(const double n[3], double a[3], double b[3]);
@@ -144,6 +158,8 @@ void imki_normal_clear(imki_normal *n);
 void imki_normal_add(imki_normal *n, const imki_row *row, double information);
 imk_status imki_normal_factor(imki_normal *n, double damping);
 void imki_normal_solve(imki_normal *n);
+/* ln of the determinant, after a factor without damping. */
+double imki_normal_log_determinant(const imki_normal *n);
 /* Covariance of the globals and what imki_rows_covariance() needs, after a factor without damping.
  */
 void imki_normal_invert(imki_normal *n);
@@ -168,21 +184,24 @@ double imki_cost(imki_estimator *e, const imki_point *point);
 /* Variance of a row: (factor sigma)^2 + what is known besides. */
 static inline double imki_row_variance(const imki_estimator *e, const imki_row *row)
 {
-    const double sigma = row->sigma * e->factor[row->group];
+    const double sigma = row->sigma * e->factor[row->part];
     return sigma * sigma + row->known_variance;
 }
 
-/* Fit of the groups at the present solution, items of full weight. */
+/* Fit of the parts at the present solution, items of full weight. */
 typedef struct imki_fit {
-    double square[IMK_GROUPS];     /* of residuals over their sigma */
-    double redundancy[IMK_GROUPS]; /* what the fit left of their number */
-    double shared_square[IMK_GROUPS], shared_redundancy[IMK_GROUPS]; /* each row by the share of its
+    size_t count[IMKI_PARTS];
+    double square[IMKI_PARTS];     /* of residuals over their sigma */
+    double redundancy[IMKI_PARTS]; /* what the fit left of their number */
+    double shared_square[IMKI_PARTS], shared_redundancy[IMKI_PARTS]; /* each row by the share of its
                                       variance that the factor multiplies */
-    double freedom[IMK_GROUPS]; /* degrees of freedom of the factor: by the square of the share */
-    double excess[IMK_GROUPS], scaled[IMK_GROUPS]; /* for a first factor^2: sums of residual^2 less
+    double
+        stated[IMKI_PARTS]; /* redundancy, each row by the share of its variance that is stated */
+    double freedom[IMKI_PARTS]; /* degrees of freedom of the factor: by the square of the share */
+    double excess[IMKI_PARTS], scaled[IMKI_PARTS]; /* for a first factor^2: sums of residual^2 less
                                       what is known of it, and of sigma^2 (1 - M_ii) */
-    bool estimated[IMK_GROUPS];                    /* the factor; else it is 1 */
-    double slow_square[IMK_GROUPS]; /* what slow noise is expected to add to shared_square */
+    bool estimated[IMKI_PARTS];                    /* the factor; else it is 1 */
+    double slow_square[IMKI_PARTS]; /* what slow noise is expected to add to shared_square */
 } imki_fit;
 /* Squared distances of an item's rows, by group, from what the others predict, over their variance:
  * chi-square with so many degrees (0: nothing to tell it by) when sigmas are right. */
@@ -192,6 +211,37 @@ imk_status imki_estimator_covariance(imki_estimator *e);
 /* The same from normal equations built for the present point. */
 imk_status imki_built_covariance(imki_estimator *e);
 void imki_fit_groups(imki_estimator *e, imki_fit *fit);
+/* Part of the readings of an axis. */
+static inline int imki_part_of(const imki_estimator *e, int sensor, int axis)
+{
+    const int group = sensor == IMK_GYRO ? IMK_GROUP_GYRO : IMK_GROUP_ACCEL;
+    return e->by_axis[sensor] ? IMKI_PART_AXIS + sensor * IMK_AXES_MAX + axis : group;
+}
+/* Things that have rows: items, placements, what is known of parameters. */
+static inline size_t imki_things(const imki_estimator *e)
+{
+    return e->items + e->observations + e->parameters;
+}
+/* Rows of the k-th of them, whitened, in e->row. @return their number, 0 where refused */
+int imki_rows_of(imki_estimator *e, size_t k);
+/* The three rows of a placement, not whitened. @return their number; 0: not placed */
+int imki_placement_rows(const imki_estimator *e, const imki_point *point, size_t index,
+                        imki_row *row);
+/* The row of what is known before of a parameter. @return 0: nothing is */
+int imki_term_row(const imki_estimator *e, const imki_point *point, size_t p, imki_row *row);
+/* Variance of a row by what was stated of it. */
+static inline double imki_stated_variance(const imki_estimator *e, const imki_row *row)
+{
+    const bool added = row->sensor >= 0 && e->added[row->sensor] > 0.0;
+    return row->known_variance + (added ? 0.0 : row->sigma * row->sigma);
+}
+/* The parts of a group as one. */
+typedef struct imki_group_sum {
+    double square, redundancy;
+    double stated; /* variance stated over variance, on the average */
+    bool estimated;
+} imki_group_sum;
+imki_group_sum imki_sum_group(const imki_estimator *e, const imki_fit *fit, int group);
 /* Variance factors until they stay; the solution follows. */
 imk_status imki_variance_factors(imki_estimator *e, double tolerance, imki_fit *fit);
 void imki_freedoms(imki_estimator *e, const imki_fit *fit, double *freedom);
@@ -204,6 +254,12 @@ void imki_slow_noise_start(imki_estimator *e);
 void imki_slow_noise_fit(imki_estimator *e, imki_fit *fit);
 /* Add it to the covariance of the globals; it counts as known exactly. */
 void imki_slow_noise_add(imki_estimator *e, double *freedom);
+
+/* ---- calibration_scatter.c: what is wrong about the sigmas stated ---- */
+/* From the solution with one factor a group: choose by the restricted likelihood, and solve so. */
+imk_status imki_choose_scatter(imki_estimator *e, imki_fit *fit);
+/* Back to one factor a group. */
+void imki_common_scatter(imki_estimator *e);
 
 /* ---- calibration_robust.c ---- */
 imk_status imki_refuse_outliers(imki_estimator *e);

@@ -201,6 +201,7 @@ static void observe_turn(const imki_procedure_call *call, const imki_session_str
                                    .end = at->end,
                                    .temperature = means.temperature,
                                    .placement_sigma = placement,
+                                   .turn_time = means.duration,
                                    .fixture = fixture};
     double earth_sigma[3];
     force_of(meter, means.reading[IMK_ACCEL], observation.force);
@@ -215,9 +216,8 @@ static void observe_turn(const imki_procedure_call *call, const imki_session_str
     for (int i = 0; i < 3; i++) {
         const double counts = fabs(imki_counts_per_unit(&c->model, record, IMK_GYRO, i));
         const double noise = noise_density(record, list, i) / sqrt(means.duration);
-        const double end = i == at->axis ? counts * placement / means.duration : 0.0;
         const double earth = counts * earth_sigma[i];
-        const double sigma = sqrt(noise * noise + end * end + earth * earth);
+        const double sigma = sqrt(noise * noise + earth * earth);
         observation.reading[IMK_GYRO][i] = means.reading[IMK_GYRO][i];
         observation.sigma[IMK_GYRO][i] = sigma > 0.0 ? sigma : 1e-9 * counts;
     }

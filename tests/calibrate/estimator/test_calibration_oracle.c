@@ -82,6 +82,12 @@ static void put_problem(FILE *file, const session *b)
     put(file, 9, head);
     for (int g = 0; g < IMK_GROUPS; g++)
         put(file, 1, &b->result.group[g].factor);
+    for (int g = 0; g < IMK_GROUP_TURN; g++)
+        put(file, IMK_AXES_MAX, b->result.group[g].axis_factor);
+    for (int g = 0; g < IMK_GROUP_TURN; g++)
+        put(file, IMK_AXES_MAX, b->result.group[g].axis_added);
+    const double assumed[2] = {b->result.placement.factor, b->result.assumed.factor};
+    put(file, 2, assumed);
     put_model(file, &c->model);
     for (size_t p = 0; p < c->parameter_count; p++) {
         const imk_model_parameter at = c->parameter[p];
@@ -171,7 +177,10 @@ static void compare(const char *what, const session *b, double in_sigmas, double
             continue;
         worst[2] = fmax(worst[2], fabs(a.figure[g][0] / group->chi_square - 1.0));
         worst[2] = fmax(worst[2], fabs(a.figure[g][1] / group->degrees_of_freedom - 1.0));
-        if (group->factor != 1.0)
+        bool common = true; /* one factor, which is what is solved for */
+        for (int axis = 0; axis < IMK_AXES_MAX; axis++)
+            common = common && group->axis_factor[axis] == group->factor;
+        if (common && group->factor != 1.0)
             worst[3] = fmax(worst[3], fabs(a.figure[g][2] - 1.0));
     }
     print_message("%s: estimates %.1e sigma, covariance %.1e, chi-square %.1e, factors %.1e\n",

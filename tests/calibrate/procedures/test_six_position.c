@@ -304,6 +304,55 @@ static void test_coverage_placed(void **state)
     run_benches(&twice, IMK_PROCEDURE_SIXPOSITION, check_runs(80), 0, 1.6);
 }
 
+/* Placements of 0.3 deg where 0.1 is stated: six faces show it with six degrees of freedom, two
+ * rounds with eighteen. */
+static void test_coverage_placed_worse(void **state)
+{
+    (void)state;
+    static const session_plan once = {
+        .rounds = 1, .hold = 8, .placement = 5.1e-3, .stated = 1.0 / 3};
+    static const session_plan more = {
+        .rounds = 2, .hold = 8, .placement = 5.1e-3, .stated = 1.0 / 3};
+    run_benches(&once, IMK_PROCEDURE_SIXPOSITION, check_runs(80), 0, 1.8);
+    run_benches(&more, IMK_PROCEDURE_SIXPOSITION, check_runs(80), 0, 1.8);
+}
+
+/* What is said of the placements: chi-square of the stated sigma has the degrees that the faces
+ * leave, and the factor never takes them for better than stated. */
+static void test_placements_are_tested(void **state)
+{
+    (void)state;
+    const session_plan good = {.rounds = 1, .hold = 8, .placement = 1.7e-3, .stated = 1.0};
+    const session_plan wide = {.rounds = 1, .hold = 8, .placement = 1.7e-3, .stated = 4.0};
+    const uint32_t benches = check_runs(60);
+    double chi_square = 0.0, square = 0.0;
+    session *b = session_new();
+    for (uint32_t n = 0; n < benches; n++) {
+        imk_error error;
+        assert_true(session_run(b, &good, IMK_PROCEDURE_SIXPOSITION, 1, n, &error));
+        const imk_group_fit *fit = &b->result.placement;
+        CHECK_CLOSE(fit->degrees_of_freedom, 6.0, 0.1);
+        assert_true(fit->factor >= 1.0);
+        chi_square += fit->chi_square / benches;
+        square += fit->rms * fit->rms / benches;
+        assert_true(session_run(b, &wide, IMK_PROCEDURE_SIXPOSITION, 1, n, &error));
+        CHECK_CLOSE(b->result.placement.factor, 1.0, 0.0);
+    }
+    /* A mean of chi-squares: six sigma are below one in a million. */
+    CHECK_CLOSE(chi_square, 6.0, 6.0 * sqrt(12.0 / benches));
+    CHECK_CLOSE(square / (1.7e-3 * 1.7e-3), 1.0, 6.0 * sqrt(2.0 / 6.0 / benches));
+    session_free(b);
+}
+
+/* Noise of the axes 1 : 2 : 4, and every hold off by the same on all of them: one factor for the
+ * sensor would make the first axis too certain. */
+static void test_coverage_unequal_axes(void **state)
+{
+    (void)state;
+    static const session_plan plan = {.rounds = 3, .hold = 8, .unequal = 2.0, .push = 3e-3};
+    run_benches(&plan, IMK_PROCEDURE_SIXPOSITION, check_runs(80), 0, 1.6);
+}
+
 static void test_coverage_exact(void **state)
 {
     (void)state;
@@ -365,6 +414,9 @@ int main(void)
                                        cmocka_unit_test(test_refusals),
                                        cmocka_unit_test(test_left_out),
                                        cmocka_unit_test(test_coverage_placed),
+                                       cmocka_unit_test(test_coverage_placed_worse),
+                                       cmocka_unit_test(test_placements_are_tested),
+                                       cmocka_unit_test(test_coverage_unequal_axes),
                                        cmocka_unit_test(test_coverage_exact),
                                        cmocka_unit_test(test_coverage_ferraris),
                                        cmocka_unit_test(test_bad_holds_refused),

@@ -4,6 +4,7 @@
 #include "calibrate_show_internal.h"
 
 #include "imukit/axes_mending.h"
+#include "imukit/distributions.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -536,6 +537,26 @@ static void add_undetermined(const imk_calibrate_log *b, const imk_calibrate_rec
     free(names.bytes);
 }
 
+/* Placements that scatter beyond what is stated of them: in one of a thousand calibrations by
+ * chance. */
+static void add_placements(const imk_calibrate_log *b, imk_verdict *v)
+{
+    const double by_chance = 1e-3, degrees = 57.29577951308232;
+    const imk_group_fit *fit = b->result ? &b->result->placement : NULL;
+    if (!fit || !(fit->factor > 0))
+        return;
+    if (!(fit->degrees_of_freedom >= 3))
+        add(v, say(IMK_FINDING_NOTE, "placement_untested",
+                   "this log does not test the placements: their uncertainty is as --placement "
+                   "states; put the unit on each face three times to test it"));
+    else if (imk_gamma_upper(0.5 * fit->degrees_of_freedom, 0.5 * fit->chi_square) < by_chance)
+        add(v, say(IMK_FINDING_WARNING, "placement",
+                   "the placements scatter by %.2g deg (1 sigma), %.2g times what --placement "
+                   "states: this is included in every uncertainty; check the faces and the plate, "
+                   "or state --placement %.2gdeg",
+                   fit->rms * degrees, fit->factor, fit->rms * degrees));
+}
+
 /* What a log showed already need not be said of the solution again, nor of each axis. */
 static bool is_said(const imk_verdict *v, size_t count, const char *code)
 {
@@ -562,6 +583,7 @@ imk_verdict imk_calibrate_verdict(const imk_calibrate_log *b, size_t count,
         add_thermal(&v, log);
     }
     const size_t of_logs = v.count;
+    add_placements(b, &v);
     for (size_t d = 0; d < b->diagnostic_count; d++) {
         const calibrate_message message = diagnostic_message(b, NULL, &b->diagnostic[d]);
         const bool of_scale = b->diagnostic[d].kind == IMK_DIAGNOSTIC_SCALE;
